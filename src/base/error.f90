@@ -1,0 +1,70 @@
+!> Errors as values: nothing in the library prints or stops.
+!>
+!> A procedure that can fail has `type(error_type), allocatable, intent(out) :: error` as its last
+!> argument; the error is there if and only if the procedure failed.
+module rbs_base_error
+   implicit none
+   private
+
+   public :: error_type, message_list, fatal_error
+   public :: analysis_failed, bad_input
+
+   !> The analysis could not be carried on (exit code 1 of the executable).
+   integer, parameter :: analysis_failed = 1
+   !> The input is wrong (exit code 2 of the executable).
+   integer, parameter :: bad_input = 2
+
+   !> One error: what kind, and what the user reads.
+   type :: error_type
+      !> `analysis_failed` or `bad_input`
+      integer :: code = 0
+      !> The object, the value and the remedy
+      character(len=:), allocatable :: message
+   end type error_type
+
+   !> Messages collected on the way, so that one run shows all faults of an input.
+   type :: message_list
+      !> Number of messages
+      integer :: count = 0
+      !> The messages, separated by `new_line`
+      character(len=:), allocatable :: text
+   contains
+      procedure :: add
+      procedure :: raise
+   end type message_list
+
+contains
+
+   !> Make an error.
+   subroutine fatal_error(error, code, message)
+      type(error_type), allocatable, intent(out) :: error
+      integer, intent(in) :: code
+      character(len=*), intent(in) :: message
+
+      allocate (error)
+      error%code = code
+      error%message = message
+   end subroutine fatal_error
+
+   !> Put one message on the list.
+   subroutine add(self, message)
+      class(message_list), intent(inout) :: self
+      character(len=*), intent(in) :: message
+
+      self%count = self%count + 1
+      if (self%count == 1) then
+         self%text = message
+      else
+         self%text = self%text//new_line('a')//message
+      end if
+   end subroutine add
+
+   !> Turn the list into one `bad_input` error; none if the list is empty.
+   subroutine raise(self, error)
+      class(message_list), intent(in) :: self
+      type(error_type), allocatable, intent(out) :: error
+
+      if (self%count > 0) call fatal_error(error, bad_input, self%text)
+   end subroutine raise
+
+end module rbs_base_error
