@@ -1,0 +1,113 @@
+!> Checks on single numbers of an input: each adds one message that names the thing, its value and
+!> what it may be.
+module rbs_spec_check
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use, intrinsic :: iso_fortran_env, only: int64
+   use rbs_base_kinds, only: wp
+   use rbs_base_constants, only: unset
+   use rbs_base_error, only: message_list
+   use rbs_base_text, only: to_text, nearest_name, list_of
+   implicit none
+   private
+
+   public :: is_given, check_positive, check_not_negative, check_finite, check_name
+
+contains
+
+   !> Whether the user has given this number.
+   elemental logical function is_given(x)
+      real(wp), intent(in) :: x
+
+      is_given = transfer(x, 0_int64) /= transfer(unset, 0_int64)
+   end function is_given
+
+   !> The number must be there, finite and above zero.
+   subroutine check_positive(x, name, unit, messages, ok)
+      real(wp), intent(in) :: x
+      !> What it is: 'column: height'
+      character(len=*), intent(in) :: name
+      !> Its unit, empty for a pure number
+      character(len=*), intent(in) :: unit
+      type(message_list), intent(inout) :: messages
+      !> Whether the check passed
+      logical, intent(out), optional :: ok
+      logical :: passed
+
+      call check_finite(x, name, unit, messages, passed)
+      if (passed) then
+         passed = x > 0.0_wp
+         if (.not. passed) call messages%add(name//' = '//with_unit(x, unit)//' must be above zero')
+      end if
+      if (present(ok)) ok = passed
+   end subroutine check_positive
+
+   !> The number must be there, finite and not below zero.
+   subroutine check_not_negative(x, name, unit, messages, ok)
+      real(wp), intent(in) :: x
+      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: unit
+      type(message_list), intent(inout) :: messages
+      logical, intent(out), optional :: ok
+      logical :: passed
+
+      call check_finite(x, name, unit, messages, passed)
+      if (passed) then
+         passed = x >= 0.0_wp
+         if (.not. passed) call messages%add(name//' = '//with_unit(x, unit)//' must not be negative')
+      end if
+      if (present(ok)) ok = passed
+   end subroutine check_not_negative
+
+   !> The number must be there and finite.
+   subroutine check_finite(x, name, unit, messages, ok)
+      real(wp), intent(in) :: x
+      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: unit
+      type(message_list), intent(inout) :: messages
+      logical, intent(out), optional :: ok
+      logical :: passed
+
+      passed = .false.
+      if (.not. is_given(x)) then
+         if (unit == '') then
+            call messages%add(name//' is missing; give it a value')
+         else
+            call messages%add(name//' is missing; give it a value in '//unit)
+         end if
+      else if (.not. ieee_is_finite(x)) then
+         call messages%add(name//' = '//to_text(x)//' must be a finite number')
+      else
+         passed = .true.
+      end if
+      if (present(ok)) ok = passed
+   end subroutine check_finite
+
+   !> The word must be one of the valid ones; returns its place among them, 0 if it is none.
+   subroutine check_name(word, valid, name, messages, place)
+      character(len=*), intent(in) :: word
+      character(len=*), intent(in) :: valid(:)
+      character(len=*), intent(in) :: name
+      type(message_list), intent(inout) :: messages
+      integer, intent(out) :: place
+
+      do place = 1, size(valid)
+         if (word == valid(place)) return
+      end do
+      place = 0
+      if (word == '') then
+         call messages%add(name//' is missing; it is one of '//list_of(valid))
+      else
+         call messages%add(name//" = '"//trim(word)//"' is not known; it is one of "// &
+                           list_of(valid)//" (did you mean '"//nearest_name(word, valid)//"'?)")
+      end if
+   end subroutine check_name
+
+   function with_unit(x, unit) result(text)
+      real(wp), intent(in) :: x
+      character(len=*), intent(in) :: unit
+      character(len=:), allocatable :: text
+
+      text = trim(to_text(x)//' '//unit)
+   end function with_unit
+
+end module rbs_spec_check
