@@ -1,0 +1,58 @@
+!> Bilinear spring with kinematic hardening (paper, table 1, shear spring).
+!>
+!> Between two bounding lines F = k_post D + q and F = k_post D - q, q = (k - k_post) d_y, the spring is
+!> elastic with slope k; the elastic range is 2 d_y wide and travels with the plastic deformation.
+module rbs_hysteresis_bilinear
+   use rbs_base_kinds, only: wp
+   use rbs_base_constants, only: unbounded
+   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_segment, only: segment
+   implicit none
+   private
+
+   public :: bilinear_rule
+
+   type, extends(rule_type) :: bilinear_rule
+      !> Initial stiffness [N/m or N m/rad]
+      real(wp) :: k = 0.0_wp
+      !> Yield deformation [m or rad]
+      real(wp) :: d_y = 0.0_wp
+      !> Stiffness after yield [N/m or N m/rad]
+      real(wp) :: k_post = 0.0_wp
+   contains
+      procedure :: start
+      procedure :: next
+   end type bilinear_rule
+
+contains
+
+   subroutine start(self, line)
+      class(bilinear_rule), intent(inout) :: self
+      type(segment), intent(out) :: line
+
+      line = segment(k=self%k, lo=-self%d_y, hi=self%d_y)
+   end subroutine start
+
+   subroutine next(self, line, direction)
+      class(bilinear_rule), intent(inout) :: self
+      type(segment), intent(inout) :: line
+      integer, intent(in) :: direction
+      real(wp) :: d, f
+
+      if (line%one_way == 0) then
+         ! An elastic end: yield along the bounding line of this direction.
+         d = merge(line%hi, line%lo, direction > 0)
+         line = segment(f0=direction*(self%k - self%k_post)*self%d_y, k=self%k_post)
+         line = line%outward(direction, near=d, far=direction*unbounded, near_closed=.false., &
+                             one_way=.true.)
+      else
+         ! Turned back from a bounding line: elastic over twice the yield deformation.
+         d = merge(line%hi, line%lo, direction > 0)
+         f = line%force(d)
+         line = segment(d0=d, f0=f, k=self%k)
+         line = line%outward(-direction, near=d + direction*2.0_wp*self%d_y, far=d, &
+                             near_closed=.false., one_way=.false.)
+      end if
+   end subroutine next
+
+end module rbs_hysteresis_bilinear

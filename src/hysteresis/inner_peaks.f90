@@ -1,0 +1,107 @@
+!> The memory of a reloading rule: the peaks of inner loops that are still open, oldest first.
+module rbs_hysteresis_inner_peaks
+   use, intrinsic :: iso_fortran_env, only: int64
+   use rbs_base_kinds, only: wp
+   use rbs_hysteresis_segment, only: segment
+   implicit none
+   private
+
+   public :: point, reloading_line, inner_peak, inner_peaks
+
+   !> Most peaks that are remembered; then the older half is forgotten, so that a vibration that
+   !> dies away for ever needs no memory without bound.
+   integer, parameter :: most_peaks = 4096
+
+   !> A point of the diagram.
+   type :: point
+      !> Deformation [m or rad] and force [N or N m]
+      real(wp) :: d = 0.0_wp, f = 0.0_wp
+   end type point
+
+   !> A reloading line: what must be known to take it up again.
+   type :: reloading_line
+      !> Anchor and slope
+      type(segment) :: line
+      !> The point it aims at
+      type(point) :: target
+      !> Serial number of the inner peak it aims at, 0 for the peak on the backbone
+      integer(int64) :: target_serial = 0_int64
+      !> The crossing of zero force at which it began [m or rad]
+      real(wp) :: zero = 0.0_wp
+   end type reloading_line
+
+   !> A point where reloading turned back.
+   type :: inner_peak
+      !> Side, +1 or -1
+      integer :: side = 0
+      !> Serial number, ascending; 64 bits do not run out
+      integer(int64) :: serial = 0_int64
+      type(point) :: at
+      !> The line that was left here
+      type(reloading_line) :: left
+   end type inner_peak
+
+   !> The open inner peaks.
+   type :: inner_peaks
+      !> How many there are
+      integer :: count = 0
+      !> The serial number given last
+      integer(int64) :: last_serial = 0_int64
+      type(inner_peak), allocatable :: peak(:)
+   contains
+      procedure :: push
+      procedure :: newest_of_side
+      procedure :: place_of
+   end type inner_peaks
+
+contains
+
+   !> Remember a peak as the newest.
+   subroutine push(self, side, at, left)
+      class(inner_peaks), intent(inout) :: self
+      integer, intent(in) :: side
+      type(point), intent(in) :: at
+      type(reloading_line), intent(in) :: left
+      type(inner_peak), allocatable :: longer(:)
+      integer :: i, dropped
+
+      if (.not. allocated(self%peak)) allocate (self%peak(8))
+      if (self%count == most_peaks) then
+         dropped = most_peaks/2
+         do i = 1, self%count - dropped
+            self%peak(i) = self%peak(i + dropped)
+         end do
+         self%count = self%count - dropped
+      else if (self%count == size(self%peak)) then
+         allocate (longer(2*self%count))
+         longer(:self%count) = self%peak
+         call move_alloc(longer, self%peak)
+      end if
+      self%count = self%count + 1
+      self%last_serial = self%last_serial + 1_int64
+      self%peak(self%count) = inner_peak(side, self%last_serial, at, left)
+   end subroutine push
+
+   !> Place of the newest peak on a side, 0 if there is none.
+   pure integer function newest_of_side(self, side) result(place)
+      class(inner_peaks), intent(in) :: self
+      integer, intent(in) :: side
+
+      do place = self%count, 1, -1
+         if (self%peak(place)%side == side) return
+      end do
+      place = 0
+   end function newest_of_side
+
+   !> Place of the peak with a serial number, 0 if it has been forgotten.
+   pure integer function place_of(self, serial) result(place)
+      class(inner_peaks), intent(in) :: self
+      integer(int64), intent(in) :: serial
+
+      do place = self%count, 1, -1
+         if (self%peak(place)%serial == serial) return
+      end do
+      place = 0
+   end function place_of
+
+end module rbs_hysteresis_inner_peaks

@@ -1,0 +1,70 @@
+!> The heart of the program: a spring is, at any moment, a straight line with two ends.
+module rbs_hysteresis_segment
+   use rbs_base_kinds, only: wp
+   use rbs_base_constants, only: unbounded
+   implicit none
+   private
+
+   public :: segment
+
+   !> The line f = f0 + k (d - d0) and the deformations between which it holds.
+   !>
+   !> The force is always reckoned from the fixed anchor (d0, f0), never by adding increments: it
+   !> cannot depend on how a path is cut.
+   type :: segment
+      !> Anchor: deformation [m or rad] and force [N or N m] of one point of the line
+      real(wp) :: d0 = 0.0_wp, f0 = 0.0_wp
+      !> Slope [N/m or N m/rad]
+      real(wp) :: k = 0.0_wp
+      !> Ends: least and largest deformation
+      real(wp) :: lo = -unbounded, hi = unbounded
+      !> Whether the point at the end still belongs to this line. An open end belongs to the line
+      !> that follows: to arrive there is to be on it. Only a crossing of zero force is closed.
+      logical :: lo_closed = .false., hi_closed = .false.
+      !> A one-way line is left at once when the motion turns back: its rear end travels with the
+      !> motion. +1: one-way upward, lo follows; -1: one-way downward, hi follows; 0: both ways.
+      integer :: one_way = 0
+   contains
+      procedure :: force
+      procedure :: outward
+   end type segment
+
+contains
+
+   !> Force on the line [N or N m].
+   elemental real(wp) function force(self, d)
+      class(segment), intent(in) :: self
+      !> Deformation [m or rad]
+      real(wp), intent(in) :: d
+
+      force = self%f0 + self%k*(d - self%d0)
+   end function force
+
+   !> A line through (d0, f0) seen from side s: it leads outward to `far`, and back to `near`.
+   !> Rules are written for the positive side once; this is where the mirror stands.
+   elemental type(segment) function outward(self, s, near, far, near_closed, one_way) result(line)
+      !> Anchor and slope are taken from here
+      class(segment), intent(in) :: self
+      !> Side, +1 or -1
+      integer, intent(in) :: s
+      !> Ends, `far` further in the direction s than `near`
+      real(wp), intent(in) :: near, far
+      !> Whether the near end is closed
+      logical, intent(in) :: near_closed
+      !> Whether the line is left when the motion turns back from s
+      logical, intent(in) :: one_way
+
+      line = segment(d0=self%d0, f0=self%f0, k=self%k)
+      if (s > 0) then
+         line%lo = near
+         line%hi = far
+         line%lo_closed = near_closed
+      else
+         line%lo = far
+         line%hi = near
+         line%hi_closed = near_closed
+      end if
+      if (one_way) line%one_way = s
+   end function outward
+
+end module rbs_hysteresis_segment

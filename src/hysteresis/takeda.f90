@@ -1,0 +1,354 @@
+!> Trilinear Takeda spring with the degradation factors B0 and B1 (paper, table 1, flexural spring).
+!>
+!> Takeda, Sozen, Nielsen 1970 (ASCE 96 ST12) in six kinds of branch; s is the side of the force:
+!>
+!>     uncracked          slope k_c, ends at cracking
+!>     cracked backbone   slope k_y, ends at yield; turning back: outer unloading
+!>     yielded backbone   slope k_u; turning back: outer unloading
+!>     outer unloading    from the peak of the side, slope K_r; ends at zero force
+!>     reloading          aims at the newest open inner peak of its side, else at the backbone peak
+!>     inner unloading    from a point where reloading turned back, slope K_in; ends at zero force
+!>
+!> K_r = (|Fm| + f_c)/(|Dm| + d_c) before yield, K_0 (d_y/|Dm|)^B0 after it, K_0 = (f_c + f_y)/(d_c + d_y)
+!> (eq 7). K_in = B1 k_c (`inner = 'kc'`), B1 K_r ('kr') or K_r ('one'), never above K_r and never below
+!> the secant to the zero crossing of the excursion: below it a loop would create energy.
+module rbs_hysteresis_takeda
+   use, intrinsic :: iso_fortran_env, only: int64
+   use rbs_base_kinds, only: wp
+   use rbs_base_constants, only: unbounded
+   use rbs_hysteresis_inner_peaks, only: point, reloading_line, inner_peaks
+   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_segment, only: segment
+   implicit none
+   private
+
+   public :: takeda_rule
+
+   integer, parameter :: uncracked = 0, cracked_backbone = 1, yielded_backbone = 2
+   integer, parameter :: outer_unloading = 3, reloading = 4, inner_unloading = 5
+
+   !> Below this share of the yield force a reversal counts as one at zero force.
+   real(wp), parameter :: no_force = 1.0e-12_wp
+
+   type, extends(rule_type) :: takeda_rule
+      !> Uncracked, cracked and yielded stiffness [N/m or N m/rad]
+      real(wp) :: k_c = 0.0_wp, k_y = 0.0_wp, k_u = 0.0_wp
+      !> Cracking and yield deformation [m or rad]
+      real(wp) :: d_c = 0.0_wp, d_y = 0.0_wp
+      !> Degradation factors
+      real(wp) :: b0 = 0.0_wp, b1 = 0.0_wp
+      !> What B1 multiplies: 'kc', 'kr' or 'one'
+      character(len=3) :: inner = 'kc'
+      !> Cracking and yield force [N or N m]
+      real(wp), private :: f_c = 0.0_wp, f_y = 0.0_wp
+      !> Present branch and its side
+      integer, private :: branch = uncracked, side = 0
+      !> Of each side: whether it has cracked, its backbone peak, the slope of its last outer unloading
+      logical, private :: cracked(-1:1) = .false.
+      type(point), private :: peak(-1:1)
+      real(wp), private :: k_r(-1:1) = 0.0_wp
+      !> The present reloading line, and those left at inner peaks that are still open
+      type(reloading_line), private :: aim
+      type(inner_peaks), private :: open
+   contains
+      procedure :: start
+      procedure :: next
+   end type takeda_rule
+
+contains
+
+   subroutine start(self, line)
+      class(takeda_rule), intent(inout) :: self
+      type(segment), intent(out) :: line
+
+      self%f_c = self%k_c*self%d_c
+      self%f_y = self%f_c + self%k_y*(self%d_y - self%d_c)
+      self%branch = uncracked
+      self%side = 0
+      self%cracked = .false.
+      self%peak = point()
+      self%k_r = 0.0_wp
+      self%open%count = 0
+      line = segment(k=self%k_c, lo=-self%d_c, hi=self%d_c)
+   end subroutine start
+
+   !> Where a branch ends, going on or turning back.
+   subroutine next(self, line, direction)
+      class(takeda_rule), intent(inout) :: self
+      type(segment), intent(inout) :: line
+      integer, intent(in) :: direction
+      type(point) :: here
+      logical :: outward
+
+      here%d = merge(line%hi, line%lo, direction > 0)
+      here%f = line%force(here%d)
+      outward = direction == self%side
+
+      select case (self%branch)
+      case (uncracked)
+         self%cracked(direction) = .true.
+         call follow_backbone(self, line, direction, direction*self%d_c)
+      case (cracked_backbone, yielded_backbone)
+         if (outward) then
+            call follow_backbone(self, line, self%side, here%d)
+         else
+            call unload_from_peak(self, line, here)
+         end if
+      case (outer_unloading)
+         if (outward) then
+            call follow_backbone(self, line, self%side, here%d)
+         else if (self%cracked(direction)) then
+            call cross_zero_from_peak(self, line, here%d)
+         else
+            call crack_in_return(self, line, here%d)
+         end if
+      case (reloading)
+         if (outward) then
+            call arrive(self, line)
+         else
+            call turn_back_inside(self, line, here)
+         end if
+      case (inner_unloading)
+         if (outward) then
+            call take_up(self, line, (self%open%count))
+         else
+            call aim_inside(self, line, direction, here)
+         end if
+      case default
+         return                                     ! there are no other branches
+      end select
+   end subroutine next
+
+   !> On the backbone of side s from deformation d on.
+   subroutine follow_backbone(self, line, s, d)
+      type(takeda_rule), intent(inout) :: self
+      type(segment), intent(inout) :: line
+      integer, intent(in) :: s
+      real(wp), intent(in) :: d
+
+      self%side = s
+      if (s*d < self%d_y) then
+         self%branch = cracked_backbone
+         line = segment(d0=s*self%d_c, f0=s*self%f_c, k=self%k_y)
+         line = line%outward(s, near=d, far=s*self%d_y, near_closed=.true., one_way=.true.)
+      else
+         self%branch = yielded_backbone
+         line = segment(d0=s*self%d_y, f0=s*self%f_y, k=self%k_u)
+         line = line%outward(s, near=d, far=s*unbounded, near_closed=.true., one_way=.true.)
+      end if
+   end subroutine follow_backbone
+
+   !> The backbone turns back: a new peak of this side, unloading with K_r.
+   subroutine unload_from_peak(self, line, peak)
+      type(takeda_rule), intent(inout) :: self
+      type(segment), intent(inout) :: line
+      type(point), intent(in) :: peak
+      real(wp) :: near
+      integer :: s
+
+      s = self%side
+      self%branch = outer_unloading
+      self%peak(s) = peak
+      self%k_r(s) = outer_stiffness(self, abs(peak%d), abs(peak%f))
+      line = segment(d0=peak%d, f0=peak%f, k=self%k_r(s))
+      if (self%cracked(-s)) then
+         near = peak%d - peak%f/self%k_r(s)
+      else if (abs(peak%d) <= self%d_y) then
+         near = -s*self%d_c                         ! K_r aims at the cracking point by definition
+      else
+         near = peak%d - (peak%f + s*self%f_c)/self%k_r(s)
+      end if
+      line = line%outward(s, near=near, far=peak%d, near_closed=self%cracked(-s), one_way=.false.)
+   end subroutine unload_from_peak
+
+   !> K_r of a peak (eq 7). The secant is the floor: unloading must not cross the origin's side.
+   elemental real(wp) function outer_stiffness(self, d, f) result(k_r)
+      type(takeda_rule), intent(in) :: self
+      !> Peak, both positive
+      real(wp), intent(in) :: d, f
+
+      if (d <= self%d_y) then
+         k_r = (f + self%f_c)/(d + self%d_c)
+      else
+         k_r = (self%f_c + self%f_y)/(self%d_c + self%d_y)*(self%d_y/d)**self%b0
+      end if
+      k_r = max(k_r, f/d)
+   end function outer_stiffness
+
+   !> Outer unloading reaches zero force, the other side has cracked: reload toward its peak, or
+   !> toward its yield point if it has not yielded and that is the steeper way.
+   subroutine cross_zero_from_peak(self, line, zero)
+      type(takeda_rule), intent(inout) :: self
+      type(segment), intent(inout) :: line
+      real(wp), intent(in) :: zero
+      type(point) :: yield
+      integer :: s
+
+      s = -self%side
+      yield = point(s*self%d_y, s*self%f_y)
+      if (s*self%peak(s)%d < self%d_y) then
+         if (yield%f/(yield%d - zero) > self%peak(s)%f/(self%peak(s)%d - zero)) self%peak(s) = yield
+      end if
+      call aim_at_peak(self, line, s, point(zero, 0.0_wp), zero)
+   end subroutine cross_zero_from_peak
+
+   !> Outer unloading has gone on to the cracking force of the other side, which had not cracked.
+   subroutine crack_in_return(self, line, d)
+      type(takeda_rule), intent(inout) :: self
+      type(segment), intent(inout) :: line
+      real(wp), intent(in) :: d
+      real(wp) :: zero, k_r, ahead, d_peak
+      integer :: s
+
+      s = -self%side
+      self%cracked(s) = .true.
+      associate (left => self%peak(-s))
+         k_r = self%k_r(-s)
+         if (abs(left%d) <= self%d_y) then
+            call follow_backbone(self, line, s, d)
+            return
+         end if
+         zero = left%d - left%f/k_r
+      end associate
+      self%peak(s) = point(s*self%d_y, s*self%f_y)
+      ahead = s*(self%peak(s)%d - d)
+      if (self%f_y - self%f_c > k_r*ahead) then
+         ! The yield point is steeper than K_r or behind: go on with K_r to the yielded backbone.
+         d_peak = (self%f_y - self%k_u*self%d_y - self%f_c + k_r*s*d)/(k_r - self%k_u)
+         self%peak(s) = point(s*d_peak, s*(self%f_y + self%k_u*(d_peak - self%d_y)))
+      end if
+      call aim_at_peak(self, line, s, point(d, s*self%f_c), zero)
+   end subroutine crack_in_return
+
+   !> Reloading has arrived at its target.
+   subroutine arrive(self, line)
+      type(takeda_rule), intent(inout) :: self
+      type(segment), intent(inout) :: line
+      type(point) :: here
+      integer :: place
+
+      here = self%aim%target
+      place = self%open%place_of(self%aim%target_serial)
+      if (place > 0) then
+         call take_up(self, line, place)
+         return
+      end if
+      self%open%count = 0
+      if (self%aim%target_serial == 0_int64) then
+         call follow_backbone(self, line, self%side, here%d)
+      else
+         ! An inner peak so old that it was forgotten: on from it to the backbone.
+         call aim_at_peak(self, line, self%side, here, self%aim%zero)
+      end if
+   end subroutine arrive
+
+   !> Reloading turns back before its target: an inner peak opens, unloading with K_in.
+   subroutine turn_back_inside(self, line, here)
+      type(takeda_rule), intent(inout) :: self
+      type(segment), intent(inout) :: line
+      type(point), intent(in) :: here
+      real(wp) :: k_in
+      integer :: s
+
+      s = self%side
+      if (abs(here%f) <= no_force*self%f_y) then
+         call aim_inside(self, line, -s, here)
+         return
+      end if
+      self%aim%line = line
+      call self%open%push(s, here, self%aim)
+      self%branch = inner_unloading
+      k_in = inner_stiffness(self, here)
+      line = segment(d0=here%d, f0=here%f, k=k_in)
+      line = line%outward(s, near=here%d - here%f/k_in, far=here%d, near_closed=.true., &
+                          one_way=.false.)
+   end subroutine turn_back_inside
+
+   !> K_in of an inner peak, within its bounds; the lower one wins.
+   pure real(wp) function inner_stiffness(self, peak) result(k_in)
+      type(takeda_rule), intent(in) :: self
+      type(point), intent(in) :: peak
+      real(wp) :: k_r
+
+      k_r = self%k_r(self%side)
+      if (.not. k_r > 0.0_wp) k_r = self%k_r(-self%side)
+      select case (self%inner)
+      case ('kc')
+         k_in = self%b1*self%k_c
+      case ('kr')
+         k_in = self%b1*k_r
+      case default
+         k_in = k_r
+      end select
+      k_in = max(min(k_in, k_r), peak%f/(peak%d - self%aim%zero))
+   end function inner_stiffness
+
+   !> Take up the reloading line that was left at an inner peak; it and all newer ones are closed.
+   subroutine take_up(self, line, place)
+      type(takeda_rule), intent(inout) :: self
+      type(segment), intent(inout) :: line
+      integer, intent(in) :: place
+
+      associate (peak => self%open%peak(place))
+         self%branch = reloading
+         self%side = peak%side
+         self%aim = peak%left
+         line = self%aim%line%outward(peak%side, near=peak%at%d, far=self%aim%target%d, &
+                                      near_closed=.true., one_way=.true.)
+      end associate
+      self%open%count = place - 1
+   end subroutine take_up
+
+   !> Zero force inside: reload toward the newest open peak of side s, else toward its backbone peak
+   !> as it is. Redirection to the yield point would keep inner loops from closing.
+   subroutine aim_inside(self, line, s, from)
+      type(takeda_rule), intent(inout) :: self
+      type(segment), intent(inout) :: line
+      integer, intent(in) :: s
+      type(point), intent(in) :: from
+      integer :: place
+
+      place = self%open%newest_of_side(s)
+      if (place == 0) then
+         call aim_at_peak(self, line, s, from, from%d)
+      else
+         self%aim = reloading_line(target=self%open%peak(place)%at, &
+                                   target_serial=self%open%peak(place)%serial, zero=from%d)
+         call reload(self, line, s, from)
+      end if
+   end subroutine aim_inside
+
+   !> Reload toward the backbone peak of side s.
+   subroutine aim_at_peak(self, line, s, from, zero)
+      type(takeda_rule), intent(inout) :: self
+      type(segment), intent(inout) :: line
+      integer, intent(in) :: s
+      type(point), intent(in) :: from
+      real(wp), intent(in) :: zero
+
+      self%aim = reloading_line(target=self%peak(s), zero=zero)
+      call reload(self, line, s, from)
+   end subroutine aim_at_peak
+
+   !> The straight line to the target. It hangs on the target, so that a peak is met exactly.
+   subroutine reload(self, line, s, from)
+      type(takeda_rule), intent(inout) :: self
+      type(segment), intent(inout) :: line
+      integer, intent(in) :: s
+      type(point), intent(in) :: from
+      real(wp) :: way, k
+
+      self%branch = reloading
+      self%side = s
+      associate (target => self%aim%target)
+         way = target%d - from%d
+         ! Where round-off leaves no way at all, the target is met at once.
+         k = self%k_c
+         if (s*way > 0.0_wp) k = (target%f - from%f)/way
+         line = segment(d0=target%d, f0=target%f, k=k)
+         line = line%outward(s, near=from%d, far=s*max(s*target%d, s*from%d), near_closed=.true., &
+                             one_way=.true.)
+      end associate
+   end subroutine reload
+
+end module rbs_hysteresis_takeda
