@@ -1,0 +1,70 @@
+!> Mass matrix of the chain for small rotations, in two views of the same equations.
+module rbs_column_mass
+   use rbs_base_kinds, only: wp
+   use rbs_column_column, only: column_type
+   implicit none
+   private
+
+   public :: symmetric_mass, paper_mass
+
+contains
+
+   !> Mass matrix in (slip, relative rotation): symmetric, positive definite. It is the form that the
+   !> paper leaves to future work; with k >= max(i, j) and h_ki the height of centroid k over joint i
+   !>
+   !>     M_uu = sum m_k,  M_uphi = sum m_k h_kj,  M_phiphi = sum (m_k h_ki h_kj + I_k)
+   subroutine symmetric_mass(column, mass)
+      type(column_type), intent(in) :: column
+      !> Matrix (2 n, 2 n) [kg, kg m, kg m2]
+      real(wp), intent(out) :: mass(:, :)
+      real(wp) :: between
+      integer :: i, j, p, n
+
+      n = column%n
+      do j = 1, n
+         do i = 1, n
+            p = max(i, j)
+            between = column%joint_height(p) - column%joint_height(min(i, j))
+            mass(i, j) = column%mass_above(p)
+            mass(i, n + j) = column%moment_above(p) &
+                             + (column%joint_height(p) - column%joint_height(j))*column%mass_above(p)
+            mass(n + j, i) = mass(i, n + j)
+            mass(n + i, n + j) = column%inertia_above(p) + between*column%moment_above(p)
+         end do
+      end do
+   end subroutine symmetric_mass
+
+   !> The paper's matrix [A B; C D] (eq 3) in (slip, absolute rotation), rows as in eqs 1 and 2, with
+   !> the misprints corrected: the lever arm of a body below a joint is zero, the double sums start at
+   !> h = j for i < j, I_i = m_i l_i^2/12.
+   subroutine paper_mass(column, mass)
+      type(column_type), intent(in) :: column
+      !> Matrix (2 n, 2 n) [kg, kg m, kg m2]
+      real(wp), intent(out) :: mass(:, :)
+      real(wp) :: to_joint
+      integer :: i, j, p, n
+
+      n = column%n
+      do j = 1, n
+         associate (l => column%length(j), m => column%mass(j))
+            do i = 1, n
+               p = max(i, j)
+               mass(i, j) = column%mass_above(p)
+               mass(n + i, j) = column%moment_above(p) &
+                                + (column%joint_height(p) - column%joint_height(i))*column%mass_above(p)
+               if (i > j) then
+                  mass(i, n + j) = l*column%mass_above(i)
+                  mass(n + i, n + j) = l*column%moment_above(i)
+               else
+                  to_joint = column%joint_height(j) - column%joint_height(i)
+                  mass(i, n + j) = m*l/2.0_wp + l*column%mass_above(j + 1)
+                  mass(n + i, n + j) = column%inertia(j) + m*(to_joint + l/2.0_wp)*l/2.0_wp &
+                                       + l*(column%moment_above(j + 1) &
+                                            + (to_joint + l)*column%mass_above(j + 1))
+               end if
+            end do
+         end associate
+      end do
+   end subroutine paper_mass
+
+end module rbs_column_mass

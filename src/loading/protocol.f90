@@ -1,0 +1,92 @@
+!> Built-in cyclic protocol: full cycles of given amplitudes.
+module rbs_loading_protocol
+   use rbs_base_error, only: error_type, fatal_error, bad_input
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_spec_loading, only: loading_spec, units_of
+   use rbs_spec_units, only: unit_type, to_si
+   implicit none
+   private
+
+   public :: protocol_values
+
+   !> More points than this are a slip of the pen.
+   integer, parameter :: most_points = 100000000
+
+contains
+
+   !> Points of a protocol: from zero, for every amplitude its cycles 0, +a, 0, -a, 0, each quarter in
+   !> equal parts; the whole `repeats` times.
+   subroutine protocol_values(spec, height, time, value, error)
+      !> Validated loading with source = 'protocol'
+      type(loading_spec), intent(in) :: spec
+      !> Height of the column, for amplitudes in drift [m]
+      real(wp), intent(in) :: height
+      !> Time of each point [s]; the number of the point where no period is given
+      real(wp), allocatable, intent(out) :: time(:)
+      !> Points [m, N or m/s2]
+      real(wp), allocatable, intent(out) :: value(:)
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: amplitude, interval
+      integer :: repeat, step, cycle, j, at, quarter
+      integer, allocatable :: cycles(:)
+      real(wp) :: total
+
+      allocate (cycles(size(spec%amplitudes)), source=1)
+      if (allocated(spec%cycles)) cycles = spec%cycles(min([(j, j=1, size(cycles))], size(spec%cycles)))
+      quarter = spec%points
+      total = 4.0_wp*quarter*sum(real(cycles, wp))*spec%repeats + 1.0_wp
+      if (total > real(most_points, wp)) then
+         call fatal_error(error, bad_input, 'loading: the protocol has '//to_text(total)// &
+                          ' points; reduce cycles, repeats or points to stay below '//to_text(most_points))
+         return
+      end if
+      allocate (value(nint(total)), time(nint(total)))
+      value(1) = 0.0_wp
+      at = 1
+      do repeat = 1, spec%repeats
+         do step = 1, size(cycles)
+            amplitude = si_amplitude(spec, spec%amplitudes(step), height)
+            do cycle = 1, cycles(step)
+               do j = 1, 4*quarter
+                  value(at + j) = amplitude*triangle(j, quarter)
+               end do
+               at = at + 4*quarter
+            end do
+         end do
+      end do
+      interval = 1.0_wp
+      if (spec%period > 0.0_wp) interval = spec%period/(4*quarter)
+      time = [((j - 1)*interval, j=1, size(value))]
+   end subroutine protocol_values
+
+   !> Amplitude in SI; drift is displacement over height.
+   real(wp) function si_amplitude(spec, amplitude, height) result(si)
+      type(loading_spec), intent(in) :: spec
+      real(wp), intent(in) :: amplitude, height
+      type(unit_type), allocatable :: units(:)
+      integer :: i
+
+      si = amplitude*spec%scale
+      if (spec%drive == 'displacement' .and. (spec%unit == '' .or. spec%unit == 'drift')) then
+         si = si*height
+         return
+      end if
+      units = units_of(spec%drive)
+      do i = 1, size(units)
+         if (spec%unit == units(i)%name) si = to_si(si, units(i))
+      end do
+   end function si_amplitude
+
+   !> The triangle wave of unit amplitude after j parts of a cycle; exact at its corners.
+   pure real(wp) function triangle(j, quarter)
+      integer, intent(in) :: j, quarter
+      integer :: up
+
+      up = j
+      if (j > quarter) up = 2*quarter - j
+      if (j > 3*quarter) up = j - 4*quarter
+      triangle = real(up, wp)/quarter
+   end function triangle
+
+end module rbs_loading_protocol

@@ -1,0 +1,77 @@
+!> A tabulated signal of time, linear between its points.
+module rbs_loading_signal
+   use rbs_base_kinds, only: wp
+   implicit none
+   private
+
+   public :: signal_type
+
+   type :: signal_type
+      !> Times, strictly ascending (m) [s]; a signal without points is zero
+      real(wp), allocatable :: time(:)
+      !> Values (m)
+      real(wp), allocatable :: value(:)
+      !> The interval asked for last: time runs forward, so the next one is this or close by
+      integer, private :: at = 1
+      !> The line of that interval: value = start + slope (t - begin)
+      real(wp), private :: begin = 1.0_wp, finish = -1.0_wp, start = 0.0_wp, slope = 0.0_wp
+   contains
+      procedure :: at_time
+      procedure :: acts
+      procedure, private :: find
+   end type signal_type
+
+contains
+
+   !> Whether there is a signal.
+   pure logical function acts(self)
+      class(signal_type), intent(in) :: self
+
+      acts = allocated(self%value)
+   end function acts
+
+   !> Value at a time; before the first point the first value, after the last the last.
+   real(wp) function at_time(self, t) result(value)
+      class(signal_type), intent(inout) :: self
+      !> Time [s]
+      real(wp), intent(in) :: t
+
+      if (t < self%begin .or. t > self%finish) call self%find(t)
+      value = self%start + self%slope*(t - self%begin)
+   end function at_time
+
+   !> Make the interval that holds t the present one.
+   subroutine find(self, t)
+      class(signal_type), intent(inout) :: self
+      real(wp), intent(in) :: t
+      integer :: last
+
+      last = size(self%time)
+      self%slope = 0.0_wp
+      if (t <= self%time(1)) then
+         self%begin = -huge(1.0_wp)/2
+         self%finish = self%time(1)
+         self%start = self%value(1)
+         self%at = 1
+         return
+      else if (t >= self%time(last)) then
+         self%begin = self%time(last)
+         self%finish = huge(1.0_wp)
+         self%start = self%value(last)
+         self%at = last
+         return
+      end if
+      self%at = min(self%at, last - 1)
+      do while (t < self%time(self%at))
+         self%at = self%at - 1
+      end do
+      do while (t > self%time(self%at + 1))
+         self%at = self%at + 1
+      end do
+      self%begin = self%time(self%at)
+      self%finish = self%time(self%at + 1)
+      self%start = self%value(self%at)
+      self%slope = (self%value(self%at + 1) - self%start)/(self%finish - self%begin)
+   end subroutine find
+
+end module rbs_loading_signal

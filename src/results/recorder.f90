@@ -1,0 +1,48 @@
+!> Where kept rows go: an array (Python) or a file (executable). The solver does not know which.
+module rbs_results_recorder
+   use rbs_base_error, only: error_type
+   use rbs_base_kinds, only: wp
+   implicit none
+   private
+
+   public :: recorder_type, array_recorder
+
+   type, abstract :: recorder_type
+   contains
+      procedure(record_interface), deferred :: record
+   end type recorder_type
+
+   abstract interface
+      !> Take one kept row; the order of its values is that of `rbs_results_row`.
+      subroutine record_interface(self, row, error)
+         import :: recorder_type, error_type, wp
+         implicit none
+         class(recorder_type), intent(inout) :: self
+         real(wp), intent(in) :: row(:)
+         type(error_type), allocatable, intent(inout) :: error
+      end subroutine record_interface
+   end interface
+
+   !> Keeps rows in an array of the caller.
+   type, extends(recorder_type) :: array_recorder
+      !> Rows kept so far
+      integer :: count = 0
+      !> One row a column (values of a row, rows)
+      real(wp), pointer, contiguous :: rows(:, :) => null()
+   contains
+      procedure :: record
+   end type array_recorder
+
+contains
+
+   subroutine record(self, row, error)
+      class(array_recorder), intent(inout) :: self
+      real(wp), intent(in) :: row(:)
+      type(error_type), allocatable, intent(inout) :: error
+
+      if (allocated(error) .or. self%count == size(self%rows, 2)) return
+      self%count = self%count + 1
+      self%rows(:, self%count) = row
+   end subroutine record
+
+end module rbs_results_recorder

@@ -1,0 +1,71 @@
+!> What is told of a run besides its rows.
+module rbs_results_summary
+   use rbs_base_kinds, only: wp
+   use rbs_results_row, only: row_displacement, row_force, row_input, row_kinetic, row_spring, &
+                              row_damping, row_residual
+   implicit none
+   private
+
+   public :: summary_type, summary_size, summary_names
+
+   integer, parameter :: summary_size = 13
+
+   !> Names of the numbers of `as_array`.
+   character(len=28), parameter :: summary_names(summary_size) = [ &
+      'steps                       ', 'rows                        ', 'events                      ', &
+      'time_step_s                 ', 'stable_step_s               ', 'peak_displacement_m         ', &
+      'peak_force_N                ', 'displacement_at_peak_force_m', 'input_energy_J              ', &
+      'spring_energy_J             ', 'damping_energy_J            ', 'energy_residual_J           ', &
+      'relative_energy_residual    ']
+
+   type :: summary_type
+      !> Steps or increments taken, rows offered to the recorder, lines of springs left
+      integer :: steps = 0, rows = 0, events = 0
+      !> Time step and stability limit of the scheme [s]; 0 in a static analysis
+      real(wp) :: time_step = 0.0_wp, stable_step = 0.0_wp
+      !> Largest displacement and force in size, with sign, over the rows [m, N], and the
+      !> displacement where the force is largest [m]
+      real(wp) :: peak_displacement = 0.0_wp, peak_force = 0.0_wp, displacement_at_peak = 0.0_wp
+      !> Energies at the end [J]
+      real(wp) :: input = 0.0_wp, spring = 0.0_wp, damping = 0.0_wp
+      !> Largest residual of the balance over the rows, in size, and the largest energy [J]
+      real(wp) :: residual = 0.0_wp, largest = 0.0_wp
+   contains
+      procedure :: see
+      procedure :: as_array
+   end type summary_type
+
+contains
+
+   !> Take a row into account.
+   pure subroutine see(self, row)
+      class(summary_type), intent(inout) :: self
+      real(wp), intent(in) :: row(:)
+
+      self%rows = self%rows + 1
+      if (abs(row(row_displacement)) > abs(self%peak_displacement)) then
+         self%peak_displacement = row(row_displacement)
+      end if
+      if (abs(row(row_force)) > abs(self%peak_force)) then
+         self%peak_force = row(row_force)
+         self%displacement_at_peak = row(row_displacement)
+      end if
+      self%input = row(row_input)
+      self%spring = row(row_spring)
+      self%damping = row(row_damping)
+      self%residual = max(self%residual, abs(row(row_residual)))
+      self%largest = max(self%largest, abs(row(row_input)), row(row_kinetic) + row(row_spring))
+   end subroutine see
+
+   !> The numbers in the order of `summary_names`.
+   pure function as_array(self) result(values)
+      class(summary_type), intent(in) :: self
+      real(wp) :: values(summary_size)
+
+      values = [real(self%steps, wp), real(self%rows, wp), real(self%events, wp), self%time_step, &
+                self%stable_step, self%peak_displacement, self%peak_force, self%displacement_at_peak, &
+                self%input, self%spring, self%damping, self%residual, &
+                self%residual/max(self%largest, tiny(1.0_wp))]
+   end function as_array
+
+end module rbs_results_summary
