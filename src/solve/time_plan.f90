@@ -1,0 +1,129 @@
+!> Which steps are taken from which time to which, and after which of them a row is kept.
+module rbs_solve_time_plan
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use rbs_base_error, only: error_type, fatal_error, bad_input
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_spec_check, only: is_given
+   implicit none
+   private
+
+   public :: time_plan, new_plan, check_times
+
+   !> Where the user gives no step, it is at the most this share of the stability limit.
+   real(wp), parameter, public :: auto_share = 0.2_wp
+
+   !> Steps this close to a whole number in an interval divide it.
+   real(wp), parameter :: whole = 1.0e-9_wp
+
+   !> More steps than this do not end in a lifetime.
+   real(wp), parameter :: most_steps = 2.0e9_wp
+
+   type :: time_plan
+      !> Longest step [s]
+      real(wp) :: dt = 0.0_wp
+      !> Number of intervals between kept times, and of steps in all
+      integer :: intervals = 0, steps = 0
+      !> Whether every interval is one step of length dt from the begin on (the last may be shorter);
+      !> else interval j is the loading's, in `parts(j)` equal steps
+      logical :: free = .false.
+      !> First and last time [s]
+      real(wp) :: begin = 0.0_wp, finish = 0.0_wp
+      integer, allocatable :: parts(:)
+   end type time_plan
+
+contains
+
+   !> Times must be finite and ascend.
+   subroutine check_times(time, error)
+      !> Times of the loading (m) [s]
+      real(wp), intent(in) :: time(:)
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      if (size(time) < 2) then
+         call fatal_error(error, bad_input, 'time: '//to_text(size(time))// &
+                          ' point(s); give two or more, from the begin to the end of the analysis')
+         return
+      end if
+      do i = 1, size(time)
+         if (ieee_is_finite(time(i))) cycle
+         call fatal_error(error, bad_input, 'time: value '//to_text(i)//' of '//to_text(size(time))// &
+                          ' is '//to_text(time(i))//'; it must be a finite number')
+         return
+      end do
+      do i = 2, size(time)
+         if (time(i) > time(i - 1)) cycle
+         call fatal_error(error, bad_input, 'time: value '//to_text(i)//' of '//to_text(size(time))// &
+                          ', '//to_text(time(i))//' s, does not come after the one before, '// &
+                          to_text(time(i - 1))//' s; times must ascend strictly')
+         return
+      end do
+   end subroutine check_times
+
+   !> Plan the steps. Without `dt` each interval of the loading is cut into equal steps not longer than
+   !> `auto_share` of the limit, and rows are kept at its ends. With `dt` the same, if dt divides every
+   !> interval; else steps of dt run from the begin to the end and a row is kept after each.
+   subroutine new_plan(plan, time, dt, limit, error)
+      type(time_plan), intent(out) :: plan
+      !> Times of the loading, checked (m) [s]
+      real(wp), intent(in) :: time(:)
+      !> Step that the user wants, or `unset` [s]
+      real(wp), intent(in) :: dt
+      !> Stability limit [s]
+      real(wp), intent(in) :: limit
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), allocatable :: parts(:)
+      real(wp) :: step, steps
+      integer :: m
+
+      m = size(time)
+      plan%begin = time(1)
+      plan%finish = time(m)
+      if (is_given(dt)) then
+         call check_step(dt, limit, error)
+         if (allocated(error)) return
+         step = dt
+         parts = (time(2:) - time(:m - 1))/step
+         plan%free = any(abs(parts - max(anint(parts), 1.0_wp)) > whole*parts)
+         parts = max(anint(parts), 1.0_wp)
+      else
+         step = auto_share*limit
+         parts = max(aint((time(2:) - time(:m - 1))/step*(1.0_wp - whole)) + 1.0_wp, 1.0_wp)
+      end if
+      steps = sum(parts)
+      if (plan%free) steps = aint((plan%finish - plan%begin)/step*(1.0_wp - whole)) + 1.0_wp
+      if (steps > most_steps) then
+         call fatal_error(error, bad_input, 'analysis: '//to_text(steps)//' steps of '//to_text(step)// &
+                          ' s are more than '//to_text(most_steps)//'; shorten the duration, or give '// &
+                          'a longer dt (the stability limit is '//to_text(limit)//' s)')
+         return
+      end if
+      plan%steps = nint(steps)
+      if (plan%free) then
+         plan%dt = step
+         plan%intervals = plan%steps
+      else
+         plan%parts = nint(parts)
+         plan%dt = maxval((time(2:) - time(:m - 1))/parts)
+         plan%intervals = m - 1
+      end if
+   end subroutine new_plan
+
+   !> Refuse a step beyond the stability limit.
+   subroutine check_step(dt, limit, error)
+      real(wp), intent(in) :: dt, limit
+      type(error_type), allocatable, intent(out) :: error
+
+      if (.not. ieee_is_finite(dt)) then
+         call fatal_error(error, bad_input, 'analysis: dt = '//to_text(dt)//' must be a finite number')
+      else if (.not. dt > 0.0_wp) then
+         call fatal_error(error, bad_input, 'analysis: dt = '//to_text(dt)//' s must be above zero')
+      else if (dt > limit) then
+         call fatal_error(error, bad_input, 'analysis: dt = '//to_text(dt)//' s is beyond the '// &
+                          'stability limit of rk4, '//to_text(limit)//' s; give a dt below it, or '// &
+                          'none to have it chosen')
+      end if
+   end subroutine check_step
+
+end module rbs_solve_time_plan
