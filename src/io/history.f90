@@ -1,0 +1,350 @@
+!> History files: the text format of the PEER database, and csv.
+module rbs_io_history
+   use rbs_base_error, only: error_type, fatal_error, bad_input
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_io_text_file, only: text_file, load_text, read_real, is_integer, number_ok, number_not_finite
+   implicit none
+   private
+
+   public :: history_type, read_history
+
+   !> More columns than this are not a history.
+   integer, parameter :: most_columns = 64
+
+   !> Files beyond this are not read at once [bytes].
+   integer, parameter :: most_bytes = 2000000000
+
+   character(len=1), parameter :: tab = achar(9)
+
+   type :: history_type
+      !> Name of the test: first line of a PEER file, else the file's name
+      character(len=:), allocatable :: name
+      !> Whether the file is of the PEER format: millimetres, kilonewtons
+      logical :: peer = .false.
+      !> Numbers of columns and rows
+      integer :: columns = 0, rows = 0
+      !> Names of the columns; empty where the file gives none
+      character(len=64), allocatable :: labels(:)
+      !> Values (columns, rows)
+      real(wp), allocatable :: values(:, :)
+   end type history_type
+
+   !> Begin and end of the fields of a line.
+   type :: field_list
+      integer :: count = 0
+      integer :: first(most_columns) = 0, last(most_columns) = 0
+   end type field_list
+
+contains
+
+   !> Read a history.
+   subroutine read_history(path, format, history, error)
+      character(len=*), intent(in) :: path
+      !> 'peer', 'csv' or 'auto'
+      character(len=*), intent(in) :: format
+      type(history_type), intent(out) :: history
+      type(error_type), allocatable, intent(out) :: error
+      type(text_file) :: file
+
+      call load_text(file, path, most_bytes, error)
+      if (allocated(error)) return
+      history%peer = format == 'peer'
+      if (format == 'auto') history%peer = is_peer(file)
+      call file%go_back()
+      if (history%peer) then
+         call read_peer(file, path, history, error)
+      else
+         call read_csv(file, path, history, error)
+      end if
+   end subroutine read_history
+
+   !> A PEER file has a name, a count (perhaps followed by 0), and then at least two numbers a line.
+   logical function is_peer(file)
+      type(text_file), intent(inout) :: file
+      type(field_list) :: fields
+      real(wp) :: value
+      integer :: first, last, status
+      logical :: found
+
+      is_peer = .false.
+      call file%next_line(first, last, found)
+      if (.not. found) return
+      call split(file%text(first:last), ' ', fields)
+      if (fields%count == 0) return
+      call read_real(file%text(first + fields%first(1) - 1:first + fields%last(1) - 1), value, status)
+      if (status == number_ok) return
+      call file%next_line(first, last, found)
+      if (.not. found) return
+      if (count_of(file%text(first:last)) < 0) return
+      call file%next_line(first, last, found)
+      if (.not. found) return
+      call split(file%text(first:last), ' ', fields)
+      is_peer = fields%count >= 2
+   end function is_peer
+
+   !> The count on the second line of a PEER file, alone or followed by one 0; -1 if it is none.
+   integer function count_of(line)
+      character(len=*), intent(in) :: line
+      type(field_list) :: fields
+
+      count_of = -1
+      call split(line, ' ', fields)
+      if (fields%count < 1 .or. fields%count > 2) return
+      if (fields%count == 2) then
+         if (line(fields%first(2):fields%last(2)) /= '0') return
+      end if
+      associate (word => line(fields%first(1):fields%last(1)))
+         if (is_integer(word)) read (word, '(i9)') count_of
+      end associate
+   end function count_of
+
+   !> Name, count, then displacement [mm], force [kN] and in some files the axial load [kN].
+   subroutine read_peer(file, path, history, error)
+      type(text_file), intent(inout) :: file
+      character(len=*), intent(in) :: path
+      type(history_type), intent(inout) :: history
+      type(error_type), allocatable, intent(out) :: error
+      character(len=12), parameter :: labels(3) = ['displacement', 'force       ', 'axial_load  ']
+      character(len=3), parameter :: units(3) = ['_mm', '_kN', '_kN']
+      integer :: first, last, declared, i
+      logical :: found
+
+      call file%next_line(first, last, found)
+      history%name = plain(file%text(first:last))
+      call file%next_line(first, last, found)
+      declared = -1
+      if (found) declared = count_of(file%text(first:last))
+      if (declared < 0) then
+         call fatal_error(error, bad_input, path//" line 2: '"//snippet(file%text(first:last))// &
+                          "' is not the number of pairs that a PEER file has there; check the file, "// &
+                          "or set format = 'csv'")
+         return
+      end if
+      call read_rows(file, path, ' ', history, error)
+      if (allocated(error)) return
+      if (history%columns < 2 .or. history%columns > 3) then
+         call fatal_error(error, bad_input, path//': has '//to_text(history%columns)//' columns; a PEER '// &
+                          'file has displacement, force and perhaps the axial load')
+      else if (history%rows /= declared) then
+         call fatal_error(error, bad_input, path//': line 2 declares '//to_text(declared)// &
+                          ' pairs, but there are '//to_text(history%rows)//'; the file is cut or '// &
+                          'mixed up, or the number wants correcting')
+      else
+         allocate (history%labels(history%columns))
+         do i = 1, history%columns
+            history%labels(i) = trim(labels(i))//units(i)
+         end do
+      end if
+   end subroutine read_peer
+
+   !> Comments with #, perhaps a line of names, then numbers.
+   subroutine read_csv(file, path, history, error)
+      type(text_file), intent(inout) :: file
+      character(len=*), intent(in) :: path
+      type(history_type), intent(inout) :: history
+      type(error_type), allocatable, intent(out) :: error
+      type(field_list) :: fields
+      character(len=1) :: separator
+      integer :: begin(2)
+      real(wp) :: value
+      integer :: first, last, status, i
+      logical :: found, named
+
+      history%name = path(index(path, '/', back=.true.) + 1:)
+      do
+         begin = file%place()
+         call file%next_line(first, last, found)
+         if (.not. found) exit
+         if (.not. is_blank(file%text(first:last))) exit
+      end do
+      if (.not. found) then
+         call fatal_error(error, bad_input, path//': has no rows of numbers')
+         return
+      end if
+      separator = separator_of(file%text(first:last))
+      call split(file%text(first:last), separator, fields)
+      named = .true.
+      do i = 1, fields%count
+         call read_real(plain(file%text(first + fields%first(i) - 1:first + fields%last(i) - 1)), value, status)
+         if (status /= 1) named = .false.
+      end do
+      allocate (history%labels(fields%count))
+      history%labels = ''
+      if (named) then
+         do i = 1, fields%count
+            history%labels(i) = plain(file%text(first + fields%first(i) - 1:first + fields%last(i) - 1))
+         end do
+      else
+         call file%go_back(begin)
+      end if
+      call read_rows(file, path, separator, history, error)
+      if (allocated(error)) return
+      if (size(history%labels) /= history%columns) then
+         call fatal_error(error, bad_input, path//': has '//to_text(size(history%labels))// &
+                          ' names of columns for '//to_text(history%columns)//' columns; make them equal')
+      end if
+   end subroutine read_csv
+
+   !> Rows of numbers to the end of the file; every row as long as the first.
+   subroutine read_rows(file, path, separator, history, error)
+      type(text_file), intent(inout) :: file
+      character(len=*), intent(in) :: path
+      character(len=1), intent(in) :: separator
+      type(history_type), intent(inout) :: history
+      type(error_type), allocatable, intent(out) :: error
+      type(field_list) :: fields
+      integer :: first, last, rows, i, status, begin(2)
+      logical :: found
+
+      begin = file%place()
+      rows = 0
+      do
+         call file%next_line(first, last, found)
+         if (.not. found) exit
+         if (.not. is_blank(file%text(first:last))) rows = rows + 1
+      end do
+      call file%go_back(begin)
+      if (rows == 0) then
+         call fatal_error(error, bad_input, path//': has no rows of numbers')
+         return
+      end if
+      history%rows = 0
+      do
+         call file%next_line(first, last, found)
+         if (.not. found) exit
+         if (is_blank(file%text(first:last))) cycle
+         call split(file%text(first:last), separator, fields)
+         if (history%rows == 0) then
+            history%columns = fields%count
+            allocate (history%values(fields%count, rows))
+         else if (fields%count /= history%columns) then
+            call fatal_error(error, bad_input, path//' line '//to_text(file%line)//': has '// &
+                             to_text(fields%count)//' values, the rows before have '// &
+                             to_text(history%columns))
+            return
+         end if
+         history%rows = history%rows + 1
+         do i = 1, fields%count
+            associate (word => file%text(first + fields%first(i) - 1:first + fields%last(i) - 1))
+               call read_real(word, history%values(i, history%rows), status)
+               if (status /= number_ok) then
+                  call report_number(path, file%line, i, word, status, error)
+                  return
+               end if
+            end associate
+         end do
+      end do
+   end subroutine read_rows
+
+   subroutine report_number(path, line, column, word, status, error)
+      character(len=*), intent(in) :: path, word
+      integer, intent(in) :: line, column, status
+      type(error_type), allocatable, intent(out) :: error
+      character(len=:), allocatable :: remedy
+
+      remedy = 'is not a number'
+      if (status == number_not_finite) remedy = 'is not a finite number'
+      if (word == '') remedy = 'is empty'
+      call fatal_error(error, bad_input, path//' line '//to_text(line)//", value "//to_text(column)// &
+                       ": '"//snippet(word)//"' "//remedy//'; correct the file')
+   end subroutine report_number
+
+   !> Cut a line into fields. Blanks separate (any number of them, and tabs) where the separator is one.
+   subroutine split(line, separator, fields)
+      character(len=*), intent(in) :: line
+      character(len=1), intent(in) :: separator
+      type(field_list), intent(out) :: fields
+      integer :: at, last, stop_at
+
+      at = 1
+      last = len(line)
+      ! Spreadsheets leave separators at the end of every line.
+      do while (last > 0)
+         if (scan(line(last:last), ' '//tab) == 0) exit
+         last = last - 1
+      end do
+      do while (at <= last .and. fields%count < most_columns)
+         if (separator == ' ') then
+            stop_at = verify(line(at:last), ' '//tab)
+            if (stop_at == 0) exit
+            at = at + stop_at - 1
+            stop_at = scan(line(at:last), ' '//tab)
+         else
+            stop_at = index(line(at:last), separator)
+         end if
+         fields%count = fields%count + 1
+         fields%first(fields%count) = at
+         fields%last(fields%count) = merge(last, at + stop_at - 2, stop_at == 0)
+         call trim_field(line, fields%first(fields%count), fields%last(fields%count))
+         if (stop_at == 0) exit
+         at = at + stop_at
+         if (at > last .and. separator /= ' ') then
+            fields%count = min(fields%count + 1, most_columns)
+            fields%first(fields%count) = last + 1
+            fields%last(fields%count) = last
+         end if
+      end do
+   end subroutine split
+
+   !> Leave blanks and quotes out of a field.
+   subroutine trim_field(line, first, last)
+      character(len=*), intent(in) :: line
+      integer, intent(inout) :: first, last
+
+      do while (first <= last)
+         if (scan(line(first:first), ' "'//tab) == 0) exit
+         first = first + 1
+      end do
+      do while (last >= first)
+         if (scan(line(last:last), ' "'//tab) == 0) exit
+         last = last - 1
+      end do
+   end subroutine trim_field
+
+   !> The separator of a csv: semicolon, comma, tab or blanks.
+   character(len=1) function separator_of(line)
+      character(len=*), intent(in) :: line
+
+      separator_of = ' '
+      if (index(line, ';') > 0) then
+         separator_of = ';'
+      else if (index(line, ',') > 0) then
+         separator_of = ','
+      end if
+   end function separator_of
+
+   logical function is_blank(line)
+      character(len=*), intent(in) :: line
+      integer :: at
+
+      at = verify(line, ' '//tab)
+      is_blank = at == 0
+      if (at > 0) is_blank = line(at:at) == '#'
+   end function is_blank
+
+   !> A text without blanks, tabs and quotes around it.
+   function plain(text)
+      character(len=*), intent(in) :: text
+      character(len=:), allocatable :: plain
+      integer :: first, last
+
+      first = 1
+      last = len(text)
+      call trim_field(text, first, last)
+      plain = text(first:last)
+   end function plain
+
+   !> A short piece of a text for a message, without control characters.
+   function snippet(text)
+      character(len=*), intent(in) :: text
+      character(len=:), allocatable :: snippet
+      integer :: i
+
+      snippet = text(:min(len(text), 40))
+      do i = 1, len(snippet)
+         if (iachar(snippet(i:i)) < 32 .or. iachar(snippet(i:i)) > 126) snippet(i:i) = '?'
+      end do
+   end function snippet
+
+end module rbs_io_history

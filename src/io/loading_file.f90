@@ -1,0 +1,211 @@
+!> From a history file to the values of a loading, in SI.
+module rbs_io_loading_file
+   use, intrinsic :: iso_c_binding, only: c_int
+   use rbs_base_error, only: error_type, fatal_error, bad_input
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: lower, list_of, nearest_name, to_text
+   use rbs_io_history, only: history_type, read_history
+   use rbs_io_text_file, only: is_integer
+   use rbs_spec_check, only: is_given
+   use rbs_spec_loading, only: loading_spec, units_of
+   use rbs_spec_units, only: unit_type, to_si
+   implicit none
+   private
+
+   public :: loading_values, read_test
+
+contains
+
+   !> Times and values of a loading with source = 'file'.
+   subroutine loading_values(spec, folder, dynamic, time, value, error)
+      !> Validated loading
+      type(loading_spec), intent(in) :: spec
+      !> Folder that a relative path starts from, with a slash at its end, or empty
+      character(len=*), intent(in) :: folder
+      !> Whether times are needed
+      logical, intent(in) :: dynamic
+      !> Times (m) [s]; the number of the row in a static analysis
+      real(wp), allocatable, intent(out) :: time(:)
+      !> Values (m) [m, N or m/s2]
+      real(wp), allocatable, intent(out) :: value(:)
+      type(error_type), allocatable, intent(out) :: error
+      type(history_type) :: history
+      character(len=:), allocatable :: path
+      integer :: column, i
+
+      path = folder//spec%file
+      if (spec%file(1:1) == '/') path = spec%file
+      call read_history(path, spec%format, history, error)
+      if (allocated(error)) return
+      call find_column(history, path, spec%drive, spec%column, 'column', column, error)
+      if (allocated(error)) return
+      value = history%values(column, :)
+      call convert(history, path, column, spec%drive, spec%unit, value, error)
+      if (allocated(error)) return
+      value = value*spec%scale
+      if (.not. dynamic) then
+         time = [(real(i - 1, wp), i=1, history%rows)]
+         return
+      end if
+      call find_times(history, path, spec, time, error)
+   end subroutine loading_values
+
+   !> Displacements [m] and forces [N] of a measured test.
+   subroutine read_test(path, name, rows, displacement, force, error)
+      character(len=*), intent(in) :: path
+      !> Name of the test
+      character(len=*), intent(out) :: name
+      !> Number of rows; the arrays must have room for as many
+      integer(c_int), intent(out) :: rows
+      real(wp), intent(out) :: displacement(:), force(:)
+      type(error_type), allocatable, intent(out) :: error
+      type(history_type) :: history
+      real(wp), allocatable :: value(:)
+      character(len=12), parameter :: drives(2) = ['displacement', 'force       ']
+      integer :: column, i
+
+      rows = 0
+      name = ''
+      displacement = 0.0_wp
+      force = 0.0_wp
+      call read_history(path, 'auto', history, error)
+      if (allocated(error)) return
+      name = history%name
+      do i = 1, 2
+         call find_column(history, path, drives(i), '', 'column', column, error)
+         if (allocated(error)) return
+         value = history%values(column, :)
+         call convert(history, path, column, drives(i), '', value, error)
+         if (allocated(error)) return
+         if (i == 1) displacement(:history%rows) = value
+         if (i == 2) force(:history%rows) = value
+      end do
+      rows = history%rows
+   end subroutine read_test
+
+   !> The column that a word names, or the one that the drive stands for.
+   subroutine find_column(history, path, drive, word, key, column, error)
+      type(history_type), intent(in) :: history
+      character(len=*), intent(in) :: path, drive, word
+      !> What the word is called in the input
+      character(len=*), intent(in) :: key
+      integer, intent(out) :: column
+      type(error_type), allocatable, intent(out) :: error
+      character(len=64) :: wanted
+      integer :: i
+
+      column = 0
+      if (word == '') then
+         wanted = drive
+         if (drive == 'ground') wanted = 'acceleration'
+         do i = 1, history%columns
+            if (index(lower(history%labels(i)), trim(wanted)) == 1 .or. &
+                index(lower(history%labels(i)), trim(drive)) == 1) column = i
+            if (column > 0) return
+         end do
+         if (history%columns == 1) column = 1
+         if (history%columns == 2 .and. is_time(history%labels(1))) column = 2
+         if (column == 0) then
+            call fatal_error(error, bad_input, path//": no column is named after '"//trim(drive)// &
+                             "' ("//labels_text(history)//'); name one with '//key)
+         end if
+      else if (is_integer(trim(word))) then
+         read (word, '(i9)') column
+         if (column < 1 .or. column > history%columns) then
+            call fatal_error(error, bad_input, path//': '//key//' = '//trim(word)//', but the columns '// &
+                             'are 1 to '//to_text(history%columns))
+         end if
+      else
+         do column = 1, history%columns
+            if (lower(history%labels(column)) == lower(word)) return
+         end do
+         call fatal_error(error, bad_input, path//': '//key//" = '"//trim(word)//"' is not there ("// &
+                          labels_text(history)//"); did you mean '"// &
+                          nearest_name(word, history%labels)//"'?")
+      end if
+   end subroutine find_column
+
+   function labels_text(history) result(text)
+      type(history_type), intent(in) :: history
+      character(len=:), allocatable :: text
+
+      if (all(history%labels == '')) then
+         text = to_text(history%columns)//' columns without names'
+      else
+         text = 'columns: '//list_of(history%labels)
+      end if
+   end function labels_text
+
+   !> Values in SI: the unit that the user gives, else the one behind the column's name, else the one
+   !> of PEER files, else SI already.
+   subroutine convert(history, path, column, drive, unit, value, error)
+      type(history_type), intent(in) :: history
+      character(len=*), intent(in) :: path, drive, unit
+      integer, intent(in) :: column
+      real(wp), intent(inout) :: value(:)
+      type(error_type), allocatable, intent(out) :: error
+      type(unit_type), allocatable :: units(:)
+      character(len=64) :: name
+      integer :: i, mark
+
+      allocate (units, source=units_of(drive))
+      name = unit
+      if (name == '') then
+         mark = index(history%labels(column), '_', back=.true.)
+         if (mark == 0) return
+         name = history%labels(column) (mark + 1:)
+      end if
+      do i = 1, size(units)
+         if (lower(units(i)%name) == lower(name)) then
+            value = to_si(value, units(i))
+            return
+         end if
+      end do
+      call fatal_error(error, bad_input, path//": the unit '"//trim(name)//"' of column "// &
+                       trim(history%labels(column))//' is not one of '//list_of(units%name)// &
+                       '; give the right one with unit')
+   end subroutine convert
+
+   !> Times from their column, or from the interval between rows.
+   subroutine find_times(history, path, spec, time, error)
+      type(history_type), intent(in) :: history
+      character(len=*), intent(in) :: path
+      type(loading_spec), intent(in) :: spec
+      real(wp), allocatable, intent(out) :: time(:)
+      type(error_type), allocatable, intent(out) :: error
+      integer :: column, i
+
+      column = 0
+      if (spec%time_column /= '') then
+         call find_column(history, path, 'time', spec%time_column, 'time_column', column, error)
+         if (allocated(error)) return
+      else if (.not. is_given(spec%interval)) then
+         do i = history%columns, 1, -1
+            if (is_time(history%labels(i))) column = i
+         end do
+      end if
+      if (column > 0) then
+         time = history%values(column, :)
+         do i = 2, size(time)
+            if (time(i) > time(i - 1)) cycle
+            call fatal_error(error, bad_input, path//': row '//to_text(i)//' of the times, '// &
+                             to_text(time(i))//' s, does not come after the row before, '// &
+                             to_text(time(i - 1))//' s; times must ascend strictly')
+            return
+         end do
+      else if (is_given(spec%interval)) then
+         time = [((i - 1)*spec%interval, i=1, history%rows)]
+      else
+         call fatal_error(error, bad_input, path//': has no column with the time; give the time from '// &
+                          'row to row with interval, in s, or name the column with time_column')
+      end if
+   end subroutine find_times
+
+   !> Whether a column has the name of a time: t, time, time_s.
+   pure logical function is_time(label)
+      character(len=*), intent(in) :: label
+
+      is_time = lower(label) == 't' .or. lower(label) == 't_s' .or. index(lower(label), 'time') == 1
+   end function is_time
+
+end module rbs_io_loading_file

@@ -1,0 +1,454 @@
+!> First look at a namelist file: groups, names and values, each with its line.
+!>
+!> The Fortran read alone does not tell which name it did not know, takes a missing group, a value too
+!> many and the end of the file for the same, and says nothing about a value too few. Here the text is
+!> cut into pieces that are known to be sound; the read of each piece follows.
+module rbs_io_namelist_scan
+   use rbs_base_error, only: message_list
+   use rbs_base_text, only: lower, to_text
+   use rbs_io_text_file, only: text_file
+   implicit none
+   private
+
+   public :: nml_value, nml_entry, nml_group, nml_scan, scan_namelist
+
+   character(len=*), parameter :: letters = 'abcdefghijklmnopqrstuvwxyz'
+   character(len=*), parameter :: name_set = letters//'0123456789_'
+
+   !> Repeat counts beyond this are a slip of the pen.
+   integer, parameter :: most_repeats = 100000
+
+   !> Faults of the text beyond this are not listed: the file is none of ours.
+   integer, parameter :: most_messages = 20
+
+   !> One value as it stands in the file.
+   type :: nml_value
+      !> How often it is repeated (`3*0.5`)
+      integer :: times = 1
+      !> Its text, quotes included
+      character(len=:), allocatable :: text
+   end type nml_value
+
+   !> `name = values` or `name(i) = values`.
+   type :: nml_entry
+      character(len=32) :: name = ''
+      !> Subscript, 0 without one
+      integer :: subscript = 0
+      !> Line in the file
+      integer :: line = 0
+      integer :: values = 0
+      type(nml_value), allocatable :: value(:)
+   end type nml_entry
+
+   !> One `&name ... /`.
+   type :: nml_group
+      character(len=32) :: name = ''
+      integer :: line = 0
+      !> Its entries are `first` to `last` of the scan
+      integer :: first = 1, last = 0
+   end type nml_group
+
+   type :: nml_scan
+      integer :: groups = 0, entries = 0
+      type(nml_group), allocatable :: group(:)
+      type(nml_entry), allocatable :: entry(:)
+   end type nml_scan
+
+   !> Where the scan is in the text; each line ends with a blank here.
+   type :: cursor
+      character(len=:), allocatable :: text
+      integer, allocatable :: line_of(:)
+      integer :: at = 1
+   end type cursor
+
+contains
+
+   !> Cut a file into groups and entries.
+   subroutine scan_namelist(file, path, scanned, messages)
+      type(text_file), intent(inout) :: file
+      !> For messages
+      character(len=*), intent(in) :: path
+      type(nml_scan), intent(out) :: scanned
+      type(message_list), intent(inout) :: messages
+      type(cursor) :: c
+      integer :: known
+
+      known = messages%count
+      allocate (scanned%group(8), scanned%entry(64))
+      call strip_comments(file, path, c, messages)
+      if (messages%count > known) return
+      do
+         call skip_blanks(c)
+         if (c%at > len(c%text)) exit
+         if (c%text(c%at:c%at) /= '&') then
+            call complain(c, path, "'"//word_at(c)//"' stands outside a group; a group begins with "// &
+                          '&name and ends with /', messages)
+            return
+         end if
+         c%at = c%at + 1
+         call scan_group(c, path, scanned, messages)
+         if (messages%count > known) return
+      end do
+      if (scanned%groups == 0) then
+         call messages%add(path//': has no groups; a case has &column, &shear, &flexure, &loading ...')
+      end if
+   end subroutine scan_namelist
+
+   !> The text without comments, and refuse what no keyboard writes.
+   subroutine strip_comments(file, path, c, messages)
+      type(text_file), intent(inout) :: file
+      character(len=*), intent(in) :: path
+      type(cursor), intent(out) :: c
+      type(message_list), intent(inout) :: messages
+      character(len=1) :: quote, letter
+      integer :: first, last, i, length
+      logical :: found
+
+      allocate (character(len=len(file%text) + 2) :: c%text)
+      allocate (c%line_of(len(file%text) + 2))
+      length = 0
+      do
+         call file%next_line(first, last, found)
+         if (.not. found) exit
+         quote = ' '
+         do i = first, last
+            letter = file%text(i:i)
+            if (letter == achar(9)) letter = ' '
+            if (quote == ' ' .and. letter == '!') exit
+            if (iachar(letter) < 32 .or. iachar(letter) == 127) then
+               call messages%add(path//' line '//to_text(file%line)//': a control character (code '// &
+                                 to_text(iachar(letter))//') stands in the text; is it a text file?')
+               if (messages%count > most_messages) return
+               exit
+            end if
+            if (quote == ' ') then
+               if (letter == '''' .or. letter == '"') quote = letter
+            else if (letter == quote) then
+               quote = ' '
+            end if
+            length = length + 1
+            c%text(length:length) = letter
+            c%line_of(length) = file%line
+         end do
+         if (quote /= ' ') then
+            call messages%add(path//' line '//to_text(file%line)//': a text begins with '//quote// &
+                              ' and does not end on the line; close the quotes')
+            if (messages%count > most_messages) return
+         end if
+         length = length + 1
+         c%text(length:length) = ' '
+         c%line_of(length) = file%line
+      end do
+      c%text = c%text(:length)
+   end subroutine strip_comments
+
+   !> Scan from behind the & to the closing slash.
+   subroutine scan_group(c, path, scanned, messages)
+      type(cursor), intent(inout) :: c
+      character(len=*), intent(in) :: path
+      type(nml_scan), intent(inout) :: scanned
+      type(message_list), intent(inout) :: messages
+      character(len=:), allocatable :: name
+      integer :: begin, known
+
+      known = messages%count
+      begin = c%at - 1
+      call take_name(c, name)
+      if (name == '') then
+         call complain(c, path, 'a group has no name behind &', messages)
+         return
+      end if
+      call add_group(scanned, name, c%line_of(begin))
+      do
+         call skip_blanks(c, commas=.true.)
+         if (c%at > len(c%text)) then
+            c%at = begin
+            call complain(c, path, '&'//name//' is not closed; end it with /', messages)
+            return
+         end if
+         if (c%text(c%at:c%at) == '/') then
+            c%at = c%at + 1
+            scanned%group(scanned%groups)%last = scanned%entries
+            return
+         end if
+         call scan_entry(c, path, name, scanned, messages)
+         if (messages%count > known) return
+      end do
+   end subroutine scan_group
+
+   !> Scan `name = values` or `name(i) = values`.
+   subroutine scan_entry(c, path, group, scanned, messages)
+      type(cursor), intent(inout) :: c
+      character(len=*), intent(in) :: path, group
+      type(nml_scan), intent(inout) :: scanned
+      type(message_list), intent(inout) :: messages
+      character(len=:), allocatable :: name
+      integer :: subscript, known
+
+      known = messages%count
+      call take_name(c, name)
+      if (name == '') then
+         call complain(c, path, "'"//word_at(c)//"' in &"//group//' is no name; entries are name = value', &
+                       messages)
+         return
+      end if
+      call add_entry(scanned, name, c%line_of(min(c%at, size(c%line_of)) - 1))
+      subscript = 0
+      call skip_blanks(c)
+      if (at_letter(c, '(')) call take_subscript(c, path, name, subscript, messages)
+      if (messages%count > known) return
+      scanned%entry(scanned%entries)%subscript = subscript
+      call skip_blanks(c)
+      if (.not. at_letter(c, '=')) then
+         call complain(c, path, "'"//name//"' in &"//group//' has no = behind it; entries are '// &
+                       'name = value, and texts stand in quotes', messages)
+         return
+      end if
+      c%at = c%at + 1
+      call scan_values(c, path, name, scanned%entry(scanned%entries), messages)
+   end subroutine scan_entry
+
+   !> Scan values up to the next name or the end of the group.
+   subroutine scan_values(c, path, name, entry, messages)
+      type(cursor), intent(inout) :: c
+      character(len=*), intent(in) :: path, name
+      type(nml_entry), intent(inout) :: entry
+      type(message_list), intent(inout) :: messages
+      logical :: after_comma
+      integer :: known
+
+      known = messages%count
+      after_comma = .true.
+      do
+         call skip_blanks(c)
+         if (c%at > len(c%text)) exit
+         if (at_letter(c, '/')) exit
+         if (at_letter(c, ',')) then
+            if (after_comma) then
+               call complain(c, path, "a value of '"//name//"' is missing before a comma", messages)
+               return
+            end if
+            after_comma = .true.
+            c%at = c%at + 1
+            cycle
+         end if
+         if (is_name_ahead(c)) exit
+         call take_value(c, path, name, entry, messages)
+         if (messages%count > known) return
+         after_comma = .false.
+      end do
+      if (entry%values == 0) call complain(c, path, "'"//name//"' has no value", messages)
+   end subroutine scan_values
+
+   !> One value: a quoted text or a word, perhaps with a repeat count.
+   subroutine take_value(c, path, name, entry, messages)
+      type(cursor), intent(inout) :: c
+      character(len=*), intent(in) :: path, name
+      type(nml_entry), intent(inout) :: entry
+      type(message_list), intent(inout) :: messages
+      character(len=1) :: quote
+      integer :: length, star, times
+
+      quote = c%text(c%at:c%at)
+      if (quote == '''' .or. quote == '"') then
+         length = index(c%text(c%at + 1:), quote) + 1
+         if (length == 1) then
+            call complain(c, path, "the text of '"//name//"' has no closing quote", messages)
+            return
+         end if
+         call add_value(entry, 1, c%text(c%at:c%at + length - 1))
+         c%at = c%at + length
+         return
+      end if
+      length = scan(c%text(c%at:), ' ,/''"=') - 1
+      if (length < 0) length = len(c%text) - c%at + 1
+      if (length == 0) then
+         call complain(c, path, "'"//c%text(c%at:c%at)//"' does not belong into the values of '"//name//"'", &
+                       messages)
+         return
+      end if
+      associate (word => c%text(c%at:c%at + length - 1))
+         star = index(word, '*')
+         times = 1
+         if (star > 0) then
+            times = -1
+            if (star > 1 .and. star <= 7 .and. verify(word(:star - 1), '0123456789') == 0) then
+               read (word(:star - 1), '(i6)') times
+            end if
+            if (times < 1 .or. times > most_repeats .or. star == length) then
+               call complain(c, path, "'"//word//"' of '"//name//"' is no value; repeats are count*value", &
+                             messages)
+               return
+            end if
+         end if
+         call add_value(entry, times, word(star + 1:))
+      end associate
+      c%at = c%at + length
+   end subroutine take_value
+
+   !> A subscript (i).
+   subroutine take_subscript(c, path, name, subscript, messages)
+      type(cursor), intent(inout) :: c
+      character(len=*), intent(in) :: path, name
+      integer, intent(out) :: subscript
+      type(message_list), intent(inout) :: messages
+      integer :: length
+
+      subscript = 0
+      length = index(c%text(c%at:), ')')
+      if (length > 2 .and. length < 12) then
+         associate (word => trim(adjustl(c%text(c%at + 1:c%at + length - 2))))
+            if (len(word) > 0 .and. len(word) < 8 .and. verify(word, '0123456789') == 0) then
+               read (word, '(i8)') subscript
+            end if
+         end associate
+      end if
+      if (subscript < 1) then
+         call complain(c, path, "the subscript of '"//name//"' must be one whole number from 1", messages)
+         return
+      end if
+      c%at = c%at + length
+   end subroutine take_subscript
+
+   !> Whether a name and its = (or subscript) come next.
+   logical function is_name_ahead(c)
+      type(cursor), intent(in) :: c
+      integer :: at
+
+      at = c%at
+      is_name_ahead = .false.
+      if (verify(lower(c%text(at:at)), letters) /= 0) return
+      do while (at <= len(c%text))
+         if (verify(lower(c%text(at:at)), name_set) /= 0) exit
+         at = at + 1
+      end do
+      do while (at <= len(c%text))
+         if (c%text(at:at) /= ' ') exit
+         at = at + 1
+      end do
+      if (at <= len(c%text)) is_name_ahead = c%text(at:at) == '=' .or. c%text(at:at) == '('
+   end function is_name_ahead
+
+   !> Take a name, in lower case; empty if none is there.
+   subroutine take_name(c, name)
+      type(cursor), intent(inout) :: c
+      character(len=:), allocatable, intent(out) :: name
+      integer :: begin
+
+      begin = c%at
+      do while (c%at <= len(c%text))
+         if (verify(lower(c%text(c%at:c%at)), name_set) /= 0) exit
+         c%at = c%at + 1
+      end do
+      name = lower(c%text(begin:c%at - 1))
+      if (len(name) > 31) name = name(:31)
+   end subroutine take_name
+
+   subroutine skip_blanks(c, commas)
+      type(cursor), intent(inout) :: c
+      logical, intent(in), optional :: commas
+
+      do while (c%at <= len(c%text))
+         if (c%text(c%at:c%at) /= ' ') then
+            if (.not. present(commas)) exit
+            if (c%text(c%at:c%at) /= ',') exit
+         end if
+         c%at = c%at + 1
+      end do
+   end subroutine skip_blanks
+
+   pure logical function at_letter(c, letter)
+      type(cursor), intent(in) :: c
+      character(len=1), intent(in) :: letter
+
+      at_letter = .false.
+      if (c%at <= len(c%text)) at_letter = c%text(c%at:c%at) == letter
+   end function at_letter
+
+   !> The word at the present place, for a message.
+   function word_at(c) result(word)
+      type(cursor), intent(in) :: c
+      character(len=:), allocatable :: word
+      integer :: length
+
+      word = ''
+      if (c%at > len(c%text)) return
+      length = scan(c%text(c%at:), ' ') - 1
+      if (length < 1) length = len(c%text) - c%at + 1
+      word = c%text(c%at:c%at + min(length, 30) - 1)
+   end function word_at
+
+   subroutine complain(c, path, what, messages)
+      type(cursor), intent(in) :: c
+      character(len=*), intent(in) :: path, what
+      type(message_list), intent(inout) :: messages
+      integer :: line
+
+      line = 1
+      if (len(c%text) > 0) line = c%line_of(max(1, min(c%at, len(c%text))))
+      call messages%add(path//' line '//to_text(line)//': '//what)
+   end subroutine complain
+
+   subroutine add_group(scanned, name, line)
+      type(nml_scan), intent(inout) :: scanned
+      character(len=*), intent(in) :: name
+      integer, intent(in) :: line
+      type(nml_group), allocatable :: longer(:)
+
+      if (scanned%groups == size(scanned%group)) then
+         allocate (longer(2*scanned%groups))
+         longer(:scanned%groups) = scanned%group
+         call move_alloc(longer, scanned%group)
+      end if
+      scanned%groups = scanned%groups + 1
+      scanned%group(scanned%groups)%name = name
+      scanned%group(scanned%groups)%line = line
+      scanned%group(scanned%groups)%first = scanned%entries + 1
+      scanned%group(scanned%groups)%last = scanned%entries
+   end subroutine add_group
+
+   subroutine add_entry(scanned, name, line)
+      type(nml_scan), intent(inout) :: scanned
+      character(len=*), intent(in) :: name
+      integer, intent(in) :: line
+      type(nml_entry), allocatable :: longer(:)
+      integer :: i
+
+      if (scanned%entries == size(scanned%entry)) then
+         allocate (longer(2*scanned%entries))
+         do i = 1, scanned%entries
+            longer(i)%name = scanned%entry(i)%name
+            longer(i)%subscript = scanned%entry(i)%subscript
+            longer(i)%line = scanned%entry(i)%line
+            longer(i)%values = scanned%entry(i)%values
+            call move_alloc(scanned%entry(i)%value, longer(i)%value)
+         end do
+         call move_alloc(longer, scanned%entry)
+      end if
+      scanned%entries = scanned%entries + 1
+      scanned%entry(scanned%entries)%name = name
+      scanned%entry(scanned%entries)%line = line
+   end subroutine add_entry
+
+   subroutine add_value(entry, times, text)
+      type(nml_entry), intent(inout) :: entry
+      integer, intent(in) :: times
+      character(len=*), intent(in) :: text
+      type(nml_value), allocatable :: longer(:)
+      integer :: i
+
+      if (.not. allocated(entry%value)) allocate (entry%value(4))
+      if (entry%values == size(entry%value)) then
+         allocate (longer(2*entry%values))
+         do i = 1, entry%values
+            longer(i)%times = entry%value(i)%times
+            call move_alloc(entry%value(i)%text, longer(i)%text)
+         end do
+         call move_alloc(longer, entry%value)
+      end if
+      entry%values = entry%values + 1
+      entry%value(entry%values)%times = times
+      entry%value(entry%values)%text = text
+   end subroutine add_value
+
+end module rbs_io_namelist_scan
