@@ -1,0 +1,143 @@
+!> What the user typed.
+module rbs_app_command_line
+   use rbs_base_error, only: error_type, fatal_error, bad_input
+   use rbs_base_text, only: nearest_name
+   implicit none
+   private
+
+   public :: command_type, read_command_line
+
+   character(len=9), parameter :: commands(3) = ['run  ', 'check', 'modes']
+   character(len=9), parameter :: options(4) = ['--output ', '--quiet  ', '--help   ', '--version']
+
+   type :: command_type
+      !> run, check, modes, help or version
+      character(len=:), allocatable :: name
+      !> Path of the case
+      character(len=:), allocatable :: case
+      !> Path of the output; not allocated: what the case says
+      character(len=:), allocatable :: output
+      logical :: quiet = .false.
+   end type command_type
+
+contains
+
+   !> Read the arguments of the process.
+   subroutine read_command_line(command, error)
+      type(command_type), intent(out) :: command
+      type(error_type), allocatable, intent(out) :: error
+      character(len=:), allocatable :: word
+      integer :: i
+
+      if (command_argument_count() == 0) then
+         call complain('no command', error)
+         return
+      end if
+      i = 0
+      do while (i < command_argument_count())
+         i = i + 1
+         word = argument(i)
+         if (len(word) > 1 .and. index(word, '-') == 1) then
+            call take_option(command, word, i, error)
+         else
+            call take_word(command, word, error)
+         end if
+         if (allocated(error)) return
+      end do
+      call check_whole(command, error)
+   end subroutine read_command_line
+
+   subroutine take_option(command, word, i, error)
+      type(command_type), intent(inout) :: command
+      character(len=*), intent(in) :: word
+      !> Number of the argument; goes on where a value follows
+      integer, intent(inout) :: i
+      type(error_type), allocatable, intent(out) :: error
+      integer :: mark
+
+      mark = index(word//'=', '=')
+      select case (word(:mark - 1))
+      case ('-h', '--help')
+         command%name = 'help'
+      case ('--version')
+         command%name = 'version'
+      case ('-q', '--quiet')
+         command%quiet = .true.
+      case ('-o', '--output')
+         if (mark < len(word)) then
+            command%output = word(mark + 1:)
+         else if (mark > len(word) .and. i < command_argument_count()) then
+            i = i + 1
+            command%output = argument(i)
+         else
+            call complain(word(:mark - 1)//' needs the path of a file behind it', error)
+         end if
+         return
+      case default
+         call complain("the option '"//word(:mark - 1)//"' is not known; did you mean '"// &
+                       nearest_name(word(:mark - 1), options)//"'?", error)
+         return
+      end select
+      if (mark <= len(word)) call complain("the option '"//word(:mark - 1)//"' takes no value", error)
+   end subroutine take_option
+
+   subroutine take_word(command, word, error)
+      type(command_type), intent(inout) :: command
+      character(len=*), intent(in) :: word
+      type(error_type), allocatable, intent(out) :: error
+
+      if (.not. allocated(command%name)) then
+         if (all(commands /= word)) then
+            call complain("the command '"//word//"' is not known; did you mean '"// &
+                          nearest_name(word, commands)//"'?", error)
+            return
+         end if
+         command%name = word
+      else if (.not. allocated(command%case)) then
+         if (word == '') then
+            call complain('the path of the case is empty', error)
+            return
+         end if
+         command%case = word
+      else
+         call complain("one argument too many: '"//word//"'", error)
+      end if
+   end subroutine take_word
+
+   subroutine check_whole(command, error)
+      type(command_type), intent(in) :: command
+      type(error_type), allocatable, intent(out) :: error
+
+      if (.not. allocated(command%name)) then
+         call complain('no command', error)
+      else if (command%name == 'help' .or. command%name == 'version') then
+         return
+      else if (.not. allocated(command%case)) then
+         call complain(command%name//' needs the path of a case behind it', error)
+      else if (allocated(command%output)) then
+         if (command%name /= 'run') then
+            call complain('--output is for run only', error)
+         else if (len_trim(command%output) == 0) then
+            call complain('--output needs the path of a file', error)
+         end if
+      end if
+   end subroutine check_whole
+
+   subroutine complain(what, error)
+      character(len=*), intent(in) :: what
+      type(error_type), allocatable, intent(out) :: error
+
+      call fatal_error(error, bad_input, what//" (try 'rbsdem --help')")
+   end subroutine complain
+
+   function argument(i) result(word)
+      integer, intent(in) :: i
+      character(len=:), allocatable :: word
+      integer :: length
+
+      call get_command_argument(i, length=length)
+      allocate (character(len=length) :: word)
+      call get_command_argument(i, word)
+   end function argument
+
+end module rbs_app_command_line

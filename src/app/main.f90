@@ -1,0 +1,97 @@
+!> The executable. Only here errors are printed and the process ends.
+program rbsdem
+   use, intrinsic :: iso_c_binding, only: c_int
+   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use rbs_app_command_line, only: command_type, read_command_line
+   use rbs_app_run, only: run_case, check_case, show_modes
+   use rbs_base_error, only: error_type
+   use rbs_version, only: version
+   implicit none
+
+   interface
+      !> C: end the process with a status and without a word.
+      subroutine c_exit(status) bind(c, name='exit')
+         import :: c_int
+         implicit none
+         integer(c_int), value :: status
+      end subroutine c_exit
+   end interface
+
+   type(command_type) :: command
+   type(error_type), allocatable :: error
+   integer(c_int) :: status
+
+   call read_command_line(command, error)
+   if (.not. allocated(error)) then
+      select case (command%name)
+      case ('run')
+         call run_case(command%case, command%output, command%quiet, error)
+      case ('check')
+         call check_case(command%case, command%quiet, error)
+      case ('modes')
+         call show_modes(command%case, error)
+      case ('version')
+         write (output_unit, '(a)') 'rbsdem '//version
+      case default
+         call print_help()
+      end select
+   end if
+   status = 0_c_int
+   if (allocated(error)) then
+      call print_error(error%message)
+      status = int(error%code, c_int)
+   end if
+   flush (output_unit)
+   flush (error_unit)
+   ! Not `stop`: it reports floating-point flags on the way out.
+   call c_exit(status)
+
+contains
+
+   !> Every line of a message with the name of the program before it.
+   subroutine print_error(message)
+      character(len=*), intent(in) :: message
+      integer :: first, length
+
+      first = 1
+      do
+         length = index(message(first:), new_line('a')) - 1
+         if (length < 0) exit
+         write (error_unit, '(a)') 'rbsdem: '//message(first:first + length - 1)
+         first = first + length + 1
+      end do
+      write (error_unit, '(a)') 'rbsdem: '//message(first:)
+   end subroutine print_error
+
+   subroutine print_help()
+      character(len=*), parameter :: text(22) = [character(len=84) :: &
+         'rbsdem '//version//': reinforced-concrete columns as rigid bodies and springs', &
+         '', &
+         'usage:', &
+         '  rbsdem run CASE.nml [--output FILE] [--quiet]  solve a case, write a csv', &
+         '  rbsdem check CASE.nml [--quiet]                 find all errors of the input', &
+         '  rbsdem modes CASE.nml                           natural frequencies, stable step', &
+         '  rbsdem --help | --version', &
+         '', &
+         'options:', &
+         '  -o, --output FILE   where the rows go (default: what &output says, or the', &
+         '                      name of the case with .csv)', &
+         '  -q, --quiet         no summary and no progress', &
+         '', &
+         'exit code:', &
+         '  0  all went well', &
+         '  1  the analysis failed; rows up to there are in FILE.partial', &
+         '  2  the input is wrong; all its errors are listed', &
+         '', &
+         'A case has the groups &case, &column, &axial, &shear, &flexure, &loading,', &
+         '&analysis and &output. The input reference is docs/input.md, examples are in', &
+         'examples/.', &
+         '']
+      integer :: i
+
+      do i = 1, size(text) - 1
+         write (output_unit, '(a)') trim(text(i))
+      end do
+   end subroutine print_help
+
+end program rbsdem

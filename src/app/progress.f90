@@ -1,0 +1,96 @@
+!> Progress of a long run on a terminal; silence in a pipe.
+module rbs_app_progress
+   use, intrinsic :: iso_c_binding, only: c_int
+   use, intrinsic :: iso_fortran_env, only: error_unit, int64
+   use rbs_base_kinds, only: wp
+   use rbs_results_progress, only: progress_type
+   implicit none
+   private
+
+   public :: terminal_progress
+
+   !> Runs shorter than this say nothing [s]; then a line is written over no more often than that.
+   real(wp), parameter :: quiet_time = 1.0_wp, pause = 0.2_wp
+
+   integer, parameter :: bar_length = 30
+
+   character(len=1), parameter :: carriage_return = achar(13)
+
+   type, extends(progress_type) :: terminal_progress
+      logical :: shown = .false.
+      logical, private :: wanted = .false.
+      real(wp), private :: begin = 0.0_wp, last = 0.0_wp
+   contains
+      procedure :: start
+      procedure :: update
+      procedure :: finish
+   end type terminal_progress
+
+   interface
+      !> C: 1 if a file descriptor is a terminal.
+      function c_isatty(descriptor) bind(c, name='isatty') result(answer)
+         import :: c_int
+         implicit none
+         integer(c_int), value :: descriptor
+         integer(c_int) :: answer
+      end function c_isatty
+   end interface
+
+contains
+
+   !> Begin to count the time.
+   subroutine start(self, quiet)
+      class(terminal_progress), intent(inout) :: self
+      logical, intent(in) :: quiet
+
+      self%wanted = .not. quiet .and. c_isatty(2_c_int) == 1_c_int
+      self%begin = seconds()
+   end subroutine start
+
+   subroutine update(self, share)
+      class(terminal_progress), intent(inout) :: self
+      real(wp), intent(in) :: share
+      real(wp) :: now
+      integer :: filled
+
+      if (.not. self%wanted) return
+      now = seconds()
+      if (now - self%begin < quiet_time .or. now - self%last < pause) return
+      self%last = now
+      self%shown = .true.
+      filled = nint(bar_length*share)
+      write (error_unit, '(8a)', advance='no') carriage_return, '[', repeat('#', filled), &
+         repeat('.', bar_length - filled), '] ', percent(share), ' % ', left(share, now - self%begin)
+      flush (error_unit)
+   end subroutine update
+
+   !> Take the line away.
+   subroutine finish(self)
+      class(terminal_progress), intent(inout) :: self
+
+      if (self%shown) write (error_unit, '(3a)', advance='no') carriage_return, repeat(' ', 70), carriage_return
+      self%shown = .false.
+   end subroutine finish
+
+   function percent(share) result(text)
+      real(wp), intent(in) :: share
+      character(len=3) :: text
+
+      write (text, '(i3)') nint(100.0_wp*share)
+   end function percent
+
+   function left(share, spent) result(text)
+      real(wp), intent(in) :: share, spent
+      character(len=24) :: text
+
+      write (text, '(i0, a)') nint(min(spent*(1.0_wp/max(share, 1.0e-6_wp) - 1.0_wp), 1.0e6_wp)), ' s left'
+   end function left
+
+   real(wp) function seconds()
+      integer(int64) :: count, rate
+
+      call system_clock(count, rate)
+      seconds = real(count, wp)/rate
+   end function seconds
+
+end module rbs_app_progress
