@@ -1,0 +1,38 @@
+"""The command `rbsdem`: hands over to the executable that was built with the package."""
+
+from __future__ import annotations
+
+import os
+import sys
+from importlib.resources import files
+
+
+def executable() -> str:
+    """Return the path of the Fortran executable.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the package was built without it.
+    """
+    program = "rbsdem.exe" if os.name == "nt" else "rbsdem"
+    path = os.fspath(files("rbsdem").joinpath("bin", program))
+    if not os.path.isfile(path):
+        raise FileNotFoundError(f"rbsdem: the executable {path} is missing; install the package anew")
+    return path
+
+
+def main() -> int:
+    """Run the executable with the arguments of the command line."""
+    try:
+        program = executable()
+    except FileNotFoundError as error:
+        print(error, file=sys.stderr)
+        return 2
+    sys.stdout.flush()
+    os.execv(program, [program, *sys.argv[1:]])
+    return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())

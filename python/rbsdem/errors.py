@@ -1,0 +1,43 @@
+"""Exceptions of rbsdem; the text of an error is the same in Python and in the executable."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rbsdem.analysis import Result
+
+__all__ = ["InputError", "RbsdemError", "SolveError"]
+
+
+class RbsdemError(Exception):
+    """Base of every error that rbsdem raises on purpose."""
+
+
+class InputError(RbsdemError, ValueError):
+    """What was asked for cannot be: the message names the object, its value and a remedy."""
+
+
+class SolveError(RbsdemError, RuntimeError):
+    """An analysis of valid input could not be carried to its end.
+
+    Parameters
+    ----------
+    message : str
+        What stopped the analysis and where.
+    result : rbsdem.Result, optional
+        The path up to that point.
+
+    Attributes
+    ----------
+    result : rbsdem.Result or None
+        The path up to the point that was reached; None if there is none.
+    """
+
+    def __init__(self, message: str = "", result: Result | None = None) -> None:
+        super().__init__(message)
+        self.result = result
+
+    def __reduce__(self) -> tuple[type[SolveError], tuple[str, Result | None]]:
+        """Keep `result` when the error crosses a process (pickle)."""
+        return type(self), (str(self), self.result)

@@ -1,0 +1,260 @@
+"""Tables 2 and 3 of the paper: the four tested columns and their springs.
+
+The numbers are read from `data/paper_table_2.csv` and `data/paper_table_3.csv`, which hold them as
+printed; here they are in SI.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import dataclass, replace
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from rbsdem.column import Column
+from rbsdem.errors import InputError
+from rbsdem.springs import Bilinear, Takeda
+
+__all__ = [
+    "CONCRETE_DENSITY",
+    "KEYS",
+    "PaperSection",
+    "data_text",
+    "paper_columns",
+    "paper_sections",
+]
+
+KEYS = ("soesianawati_1", "tanaka_park_1", "tanaka_park_5", "zahn_7")
+"""The four columns of the paper, in its order."""
+
+CONCRETE_DENSITY = 2400.0
+"""Density of reinforced concrete that gives the columns their mass [kg/m3]; not in the paper."""
+
+# Whole numbers to divide or multiply by: 400 mm is then the same number as 0.4 m.
+_DIVIDE = {"-": 1, "mm": 1000, "mm2": 1000**2}
+_MULTIPLY = {"kN": 1000, "MPa": 1000**2}
+
+
+@dataclass(frozen=True, slots=True)
+class PaperSection:
+    """One column of table 2, in SI.
+
+    Attributes
+    ----------
+    specimen : str
+        Name as printed.
+    span_depth_ratio : float
+        Length over depth.
+    length : float
+        From the base to the lateral load, of the equivalent cantilever [m].
+    axial_load : float
+        Compression positive [N].
+    concrete_strength : float
+        Cylinder strength [Pa].
+    width, depth : float
+        Of the section, depth in the direction of loading [m].
+    cover : float
+        Clear cover to the outer edge of the stirrups [m].
+    longitudinal_number : int
+        Number of longitudinal bars.
+    longitudinal_diameter : float
+        Of one bar [m].
+    longitudinal_yield_stress, longitudinal_ultimate_stress : float
+        Of the steel [Pa].
+    longitudinal_area : float
+        Of one bar [m2].
+    transverse_yield_stress, transverse_ultimate_stress : float
+        Of the steel [Pa].
+    transverse_diameter : float
+        Of one stirrup bar [m].
+    transverse_spacing : float
+        Of the stirrups near the base [m].
+    transverse_area : float
+        Of one stirrup bar [m2].
+    transverse_type : str
+        As printed.
+    shear_legs : int
+        Stirrup bars that cross the section.
+    """
+
+    specimen: str
+    span_depth_ratio: float
+    length: float
+    axial_load: float
+    concrete_strength: float
+    width: float
+    depth: float
+    cover: float
+    longitudinal_number: int
+    longitudinal_diameter: float
+    longitudinal_yield_stress: float
+    longitudinal_ultimate_stress: float
+    longitudinal_area: float
+    transverse_yield_stress: float
+    transverse_ultimate_stress: float
+    transverse_diameter: float
+    transverse_spacing: float
+    transverse_area: float
+    transverse_type: str
+    shear_legs: int
+
+    @property
+    def gross_area(self) -> float:
+        """Area of the concrete section [m2]."""
+        return self.width * self.depth
+
+    @property
+    def mass(self) -> float:
+        """Mass of the column from its gross volume and `CONCRETE_DENSITY` [kg]."""
+        return self.gross_area * self.length * CONCRETE_DENSITY
+
+    @property
+    def axial_load_ratio(self) -> float:
+        """Axial load over gross area times concrete strength."""
+        return self.axial_load / (self.gross_area * self.concrete_strength)
+
+    @property
+    def longitudinal_ratio(self) -> float:
+        """Area of all longitudinal bars over the gross area."""
+        return self.longitudinal_number * self.longitudinal_area / self.gross_area
+
+
+def paper_sections() -> dict[str, PaperSection]:
+    """Read table 2 of the paper.
+
+    Returns
+    -------
+    dict of str to PaperSection
+        The four columns by key, SI units: soesianawati_1, tanaka_park_1, tanaka_park_5, zahn_7.
+
+    Examples
+    --------
+    >>> paper_sections()["zahn_7"].axial_load
+    1010000.0
+    """
+    fields: dict[str, dict[str, Any]] = {key: {} for key in KEYS}
+    for row in _table("paper_table_2.csv"):
+        name = row["property"]
+        if row["group"] != "column" and name != "shear_legs":
+            name = f"{row['group']}_{name}"
+        for key in KEYS:
+            fields[key][name] = _value(name, row[key], row["unit"])
+    return {key: PaperSection(**fields[key]) for key in KEYS}
+
+
+def paper_columns(kinematics: str = "small", **changes: Any) -> dict[str, Column]:
+    """Build the one-component columns of table 3 of the paper.
+
+    Height and axial load are those of table 2, the mass is the gross volume times
+    `CONCRETE_DENSITY`; the shear spring is bilinear, the flexural one trilinear Takeda. The paper
+    estimates B_1 as a ratio to the initial stiffness, so it multiplies K_c here (`inner="kc"`).
+
+    Parameters
+    ----------
+    kinematics : {"small", "pdelta", "finite"}, default "small"
+        Level of kinematics; the axial load acts from "pdelta" on.
+    **changes
+        Other fields of `rbsdem.Column` to set on all four, as in ``axial_load=0.0``.
+
+    Returns
+    -------
+    dict of str to Column
+        The four columns by key: soesianawati_1, tanaka_park_1, tanaka_park_5, zahn_7.
+
+    Raises
+    ------
+    InputError
+        If a change names no field of `rbsdem.Column`, or its value is refused there.
+
+    Examples
+    --------
+    The columns of equation 4 of the paper, which has no axial load:
+
+    >>> columns = paper_columns("finite", axial_load=0.0)
+    >>> columns["tanaka_park_5"].height
+    1.65
+    """
+    springs: dict[str, dict[tuple[str, str], float]] = {key: {} for key in KEYS}
+    for row in _table("paper_table_3.csv"):
+        for key in KEYS:
+            springs[key][row["spring"], row["parameter"]] = float(row[key])
+    sections = paper_sections()
+    columns = {key: _column(sections[key], springs[key], kinematics) for key in KEYS}
+    if not changes:
+        return columns
+    try:
+        return {key: replace(column, **changes) for key, column in columns.items()}
+    except TypeError as error:
+        raise InputError(f"paper_columns: {error}") from error
+
+
+def _column(section: PaperSection, s: dict[tuple[str, str], float], kinematics: str) -> Column:
+    return Column(
+        height=section.length,
+        mass=section.mass,
+        shear=Bilinear(k=s["shear", "K_y"], d_y=s["shear", "D_y"], k_post=s["shear", "K_u"]),
+        flexure=Takeda(
+            k_c=s["flexure", "K_c"],
+            d_c=s["flexure", "D_c"],
+            k_y=s["flexure", "K_y"],
+            d_y=s["flexure", "D_y"],
+            k_u=s["flexure", "K_u"],
+            b0=s["flexure", "B_0"],
+            b1=s["flexure", "B_1"],
+            inner="kc",
+        ),
+        axial_load=section.axial_load,
+        kinematics=kinematics,
+    )
+
+
+def data_text(name: str) -> str:
+    """Read a file of the project's `data` folder, from the package or from a checkout.
+
+    Parameters
+    ----------
+    name : str
+        File name inside the folder.
+
+    Returns
+    -------
+    str
+        The text of the file.
+
+    Raises
+    ------
+    InputError
+        If the file is in neither place.
+    """
+    try:
+        return resources.files("rbsdem").joinpath("data", name).read_text(encoding="utf-8")
+    except (OSError, ModuleNotFoundError):
+        pass
+    checkout = Path(__file__).resolve().parents[2] / "data" / name
+    try:
+        return checkout.read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(
+            f"data file {name} is neither in the installed package nor in {checkout.parent}; "
+            f"install rbsdem again"
+        ) from error
+
+
+def _table(name: str) -> list[dict[str, str]]:
+    """Rows of a csv of the data folder; lines that begin with # are its source note."""
+    lines = [line for line in data_text(name).splitlines() if not line.startswith("#")]
+    return list(csv.DictReader(io.StringIO("\n".join(lines))))
+
+
+def _value(name: str, text: str, unit: str) -> float | int | str:
+    """One entry of table 2 in SI, of the type that `PaperSection` gives it."""
+    kind = PaperSection.__annotations__[name]
+    if kind == "str":
+        return text
+    if kind == "int":
+        return int(text)
+    if unit in _DIVIDE:
+        return float(text) / _DIVIDE[unit]
+    return float(text) * _MULTIPLY[unit]

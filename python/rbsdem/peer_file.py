@@ -1,0 +1,50 @@
+"""Measured histories in the text format of the PEER database, or as csv."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+
+from rbsdem import _core
+from rbsdem._core import Array
+
+
+@dataclass(frozen=True)
+class PeerTest:
+    """A measured force-displacement history.
+
+    Attributes
+    ----------
+    name : str
+        Name of the test, from the first line of a PEER file; the file's name for a csv.
+    displacement : ndarray, shape (m,)
+        Displacement of the top of the equivalent cantilever [m].
+    force : ndarray, shape (m,)
+        Force column of the file [N]; what it means is told by the test's P-Delta code.
+    """
+
+    name: str
+    displacement: Array
+    force: Array
+
+
+def read_peer(path: str | os.PathLike[str]) -> PeerTest:
+    """Read a history: the PEER text format (millimetres, kilonewtons), or a csv with a header.
+
+    Parameters
+    ----------
+    path : path-like
+        File with columns displacement [mm] and force [kN]; a csv may name other units, such as
+        `displacement_m,force_N`.
+
+    Returns
+    -------
+    PeerTest
+        In SI units, every row of the file in its order.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read; the message names file, line and remedy.
+    """
+    return PeerTest(*_core.read_history(os.fspath(path)))

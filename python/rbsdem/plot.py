@@ -1,0 +1,379 @@
+"""Force-displacement loops as a journal prints them: mm and kN, the model over the test.
+
+Needs matplotlib (``pip install rbsdem[plot]``), which is imported when a figure is asked for.
+Functions take SI and draw millimetres and kilonewtons; ``ax=None`` makes a figure of its own. The
+style is the dictionary `RC`, in force only while a function draws.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from rbsdem.errors import InputError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = ["RC", "Panel", "four_panels", "loop", "loops_over_test", "save", "style"]
+
+RC: dict[str, Any] = {
+    "font.family": "STIXGeneral",
+    "font.size": 9.0,
+    "mathtext.fontset": "stix",
+    "axes.labelsize": 9.0,
+    "axes.titlesize": 9.0,
+    "axes.linewidth": 0.6,
+    "axes.unicode_minus": True,
+    "axes.grid": False,
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.major.size": 3.0,
+    "ytick.major.size": 3.0,
+    "lines.linewidth": 0.8,
+    "lines.solid_joinstyle": "round",
+    "legend.frameon": False,
+    "legend.fontsize": 9.0,
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+    "pdf.fonttype": 42,
+}
+"""The style of every figure, as matplotlib parameters."""
+
+MODEL_LINE: dict[str, Any] = {"color": "black", "linestyle": "-", "linewidth": 0.75, "zorder": 3}
+TEST_LINE: dict[str, Any] = {
+    "color": "0.55",
+    "linestyle": (0, (3.2, 1.4)),
+    "linewidth": 0.85,
+    "zorder": 2,
+}
+TEST_POINTS: dict[str, Any] = {
+    "color": "0.45",
+    "linestyle": "none",
+    "marker": "o",
+    "markersize": 3.4,
+    "markerfacecolor": "white",
+    "markeredgewidth": 0.8,
+    "zorder": 4,
+}
+ZERO_LINE: dict[str, Any] = {"color": "0.75", "linewidth": 0.4, "zorder": 1}
+
+FIGURE_SIZE = (6.9, 6.0)
+DPI = 300
+
+
+class HasLoop(Protocol):
+    """Anything with a loop, as a `rbsdem.Result` or a test that `rbsdem.read_peer` returns."""
+
+    displacement: NDArray[np.float64]
+    force: NDArray[np.float64]
+
+
+Curve: TypeAlias = HasLoop | tuple[ArrayLike, ArrayLike]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Panel:
+    """What one panel of `four_panels` shows.
+
+    Attributes
+    ----------
+    title : str
+        Name of the specimen; the letter comes by itself.
+    model, test : Curve
+        Objects with `displacement` and `force`, or pairs of arrays [m, N].
+    height : float, optional
+        Height of the column for the axis of drift ratios [m].
+    test_points : bool, default False
+        Draw the test as single points, where only its reversal points are known.
+    """
+
+    title: str
+    model: Curve
+    test: Curve
+    height: float | None = None
+    test_points: bool = False
+
+
+@contextmanager
+def style() -> Iterator[None]:
+    """Put the house style `RC` in force inside a ``with`` block, nowhere else."""
+    import matplotlib as mpl  # noqa: PLC0415
+
+    with mpl.rc_context(RC):
+        yield
+
+
+def loop(
+    curve: Curve | ArrayLike,
+    force: ArrayLike | None = None,
+    *,
+    height: float | None = None,
+    ax: Axes | None = None,
+    **line: Any,
+) -> Axes:
+    """Draw one force-displacement loop.
+
+    Parameters
+    ----------
+    curve : Result, PeerTest, pair of arrays, or array_like of shape (n,)
+        The loop, or its displacements [m].
+    force : array_like, shape (n,), optional
+        Forces [N], if `curve` holds displacements.
+    height : float, optional
+        Height of the column [m]; adds an axis of drift ratios on top.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+    **line
+        Properties of the line, as for ``Axes.plot``.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes, limits symmetric about zero.
+
+    Raises
+    ------
+    InputError
+        If displacements and forces differ in length or are empty.
+    ImportError
+        If matplotlib is not installed.
+
+    Examples
+    --------
+    >>> ax = loop([0.0, 0.01, 0.0], [0.0, 2.0e5, -1.0e5])
+    >>> ax.get_xlabel()
+    'Top displacement (mm)'
+    """
+    _need_matplotlib()
+    pair = (curve, force) if force is not None else curve
+    d, f = _curve(pair, "the loop")
+    with style():
+        ax = _axes(ax)
+        ax.plot(d, f, **{**MODEL_LINE, **line})
+        _dress(ax, height)
+    return ax
+
+
+def loops_over_test(
+    model: Curve,
+    test: Curve,
+    *,
+    title: str | None = None,
+    height: float | None = None,
+    test_points: bool = False,
+    legend: bool = True,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw a computed loop over the measured one: solid black over broken gray, as in figure 3.
+
+    Parameters
+    ----------
+    model, test : Result, PeerTest or pair of arrays
+        The two loops [m, N].
+    title : str, optional
+        Written in the upper left corner, which a loop leaves empty.
+    height : float, optional
+        Height of the column [m]; adds an axis of drift ratios on top.
+    test_points : bool, default False
+        Draw the test as single points, where only its reversal points are known.
+    legend : bool, default True
+        Say which line is which.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes, limits symmetric about zero.
+
+    Raises
+    ------
+    InputError
+        If displacements and forces differ in length or are empty.
+    ImportError
+        If matplotlib is not installed.
+    """
+    _need_matplotlib()
+    measured = _curve(test, "the test")
+    computed = _curve(model, "the model")
+    with style():
+        ax = _axes(ax)
+        ax.plot(*measured, label="Test", **(TEST_POINTS if test_points else TEST_LINE))
+        ax.plot(*computed, label="Model", **MODEL_LINE)
+        _dress(ax, height)
+        if title:
+            ax.text(0.035, 0.955, title, transform=ax.transAxes, ha="left", va="top", zorder=5)
+        if legend:
+            ax.legend(loc="lower right", handlelength=2.4)
+    return ax
+
+
+def four_panels(
+    panels: Sequence[Panel], *, test_label: str = "Test", model_label: str = "Model"
+) -> Figure:
+    """Draw up to four loops over their tests, (a) to (d), in one figure.
+
+    Parameters
+    ----------
+    panels : sequence of Panel
+        One to four of them, in the order of the letters.
+    test_label, model_label : str
+        Texts of the legend, which stands once below the panels.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure, 175 mm wide; `save` writes it.
+
+    Raises
+    ------
+    InputError
+        If there are no panels or more than four, or if displacements and forces of one differ in
+        length or are empty.
+    ImportError
+        If matplotlib is not installed.
+    """
+    _need_matplotlib()
+    if not 1 <= len(panels) <= 4:
+        raise InputError(f"four_panels: {len(panels)} panels; give one to four")
+    from matplotlib.figure import Figure  # noqa: PLC0415
+
+    rows = 1 if len(panels) <= 2 else 2
+    with style():
+        # Not through pyplot: a script that draws many figures then keeps none of them open.
+        figure = Figure(
+            figsize=(FIGURE_SIZE[0], FIGURE_SIZE[1] * (rows / 2 + 0.04 * (2 - rows))),
+            layout="constrained",
+        )
+        figure.get_layout_engine().set(w_pad=0.06, h_pad=0.05, wspace=0.04, hspace=0.03)
+        grid = figure.subplots(rows, 2, squeeze=False).ravel()
+        for ax in grid[len(panels) :]:
+            ax.remove()
+        for letter, ax, panel in zip("abcd", grid, panels, strict=False):
+            loops_over_test(
+                panel.model,
+                panel.test,
+                title=f"({letter}) {panel.title}",
+                height=panel.height,
+                test_points=panel.test_points,
+                legend=False,
+                ax=ax,
+            )
+        handles = grid[0].get_lines()[:2]
+        figure.legend(
+            handles,
+            [test_label, model_label],
+            loc="outside lower center",
+            ncols=2,
+            handlelength=3.2,
+            columnspacing=3.0,
+        )
+        # Ticks and layout take their style when they are first drawn.
+        figure.draw_without_rendering()
+    return figure
+
+
+def save(figure: Figure, path: str | os.PathLike[str], *, pdf: bool = False) -> list[Path]:
+    """Write a figure as PNG at 300 dpi, and as PDF beside it if asked for.
+
+    Parameters
+    ----------
+    figure : matplotlib Figure
+        What to write.
+    path : path
+        File to write; the ending .png is added if there is none. Its folder is made.
+    pdf : bool, default False
+        Write the PDF as well.
+
+    Returns
+    -------
+    list of Path
+        The files written.
+    """
+    target = Path(path)
+    if not target.suffix:
+        target = target.with_suffix(".png")
+    target.parent.mkdir(parents=True, exist_ok=True)
+    files = [target, target.with_suffix(".pdf")] if pdf else [target]
+    with style():
+        for file in files:
+            figure.savefig(file, dpi=DPI)
+    return files
+
+
+def _need_matplotlib() -> None:
+    try:
+        import matplotlib  # noqa: PLC0415
+    except ImportError as error:
+        raise ImportError(
+            "plots need matplotlib, which is not installed: pip install rbsdem[plot]"
+        ) from error
+    del matplotlib
+
+
+def _axes(ax: Axes | None) -> Axes:
+    if ax is not None:
+        return ax
+    import matplotlib.pyplot as plt  # noqa: PLC0415
+
+    return plt.subplots(figsize=(3.5, 3.0), layout="constrained")[1]
+
+
+def _curve(curve: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return displacements [mm] and forces [kN] of a result, a test or a pair of arrays."""
+    if hasattr(curve, "displacement") and hasattr(curve, "force"):
+        curve = curve.displacement, curve.force
+    try:
+        d, f = (np.asarray(values, dtype=np.float64) for values in curve)
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"{name} is neither a result or test nor a pair of displacements and forces"
+        ) from error
+    if d.ndim != 1 or d.shape != f.shape or d.size == 0:
+        raise InputError(
+            f"{name}: displacements have shape {d.shape}, forces {f.shape}; "
+            f"they must be vectors of one length"
+        )
+    return d * 1e3, f * 1e-3
+
+
+def _dress(ax: Axes, height: float | None) -> None:
+    """Limits symmetric about zero, zero lines, labels, and drift ratios on top."""
+    from matplotlib.ticker import MaxNLocator  # noqa: PLC0415
+
+    lines = [line for line in ax.get_lines() if line.get_gid() != "zero"]
+    points = [np.asarray(line.get_xydata(), dtype=np.float64) for line in lines]
+    reach = np.nanmax(np.abs(np.vstack(points)), axis=0)
+    x, y = (1.08 * value if value > 0 else 1.0 for value in reach)
+    ax.set_xlim(-x, x)
+    ax.set_ylim(-y, y)
+    if not any(line.get_gid() == "zero" for line in ax.get_lines()):
+        ax.axhline(0.0, gid="zero", **ZERO_LINE)
+        ax.axvline(0.0, gid="zero", **ZERO_LINE)
+    steps = [1, 2, 2.5, 5, 10]
+    ax.xaxis.set_major_locator(MaxNLocator(nbins=7, symmetric=True, steps=steps))
+    ax.yaxis.set_major_locator(MaxNLocator(nbins=9, symmetric=True, steps=steps))
+    ax.set_xlabel("Top displacement (mm)")
+    ax.set_ylabel("Lateral force (kN)")
+    ax.tick_params(right=True, top=height is None)
+    if height is not None:
+        if not height > 0:
+            raise InputError(f"height = {height} m; give a positive height for the drift ratios")
+        share = 0.1 / height  # per cent of a height in m, of a displacement in mm
+        top = ax.secondary_xaxis(
+            "top", functions=(lambda d: d * share, lambda drift: drift / share)
+        )
+        top.xaxis.set_major_locator(MaxNLocator(nbins=9, symmetric=True, steps=[1, 2, 5, 10]))
+        top.set_xlabel("Drift ratio (%)")
