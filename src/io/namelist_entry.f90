@@ -15,7 +15,7 @@ module rbs_io_namelist_entry
 
    !> A name that a group has.
    type :: key_type
-      character(len=16) :: name
+      character(len=32) :: name
       !> 'r' real, 'i' whole number, 'l' logical, 's' text
       character(len=1) :: kind
       !> Most values

@@ -1,0 +1,336 @@
+"""The four columns of the paper against their tests: driven by force, then by displacement.
+
+    python examples/01-paper-columns/run.py [--peer DIR] [--out DIR] [--no-plot]
+
+(a) The measured force drives one-component models with the springs of table 3, as in figure 3 of
+    the paper: equation 4 (finite rotations, inertia of the real column, no axial load) by RK4, and
+    the static path of the same column; the two are compared.
+(b) The measured displacement drives the same models on the static path with P-Delta. The force of
+    these tests is the net horizontal force, which is the lateral load of the model.
+
+The full measured histories are taken from --peer, from the environment variable RBSDEM_PEER_DIR or
+from ../shared/peer beside the checkout. Without them, the reversal points that come with rbsdem are
+used.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import dataclasses
+import math
+import os
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import rbsdem
+from numpy.typing import NDArray
+from rbsdem import compare
+from rbsdem.peer import FOLDER_VARIABLE, find_history, measured_loops, shipped_reversals
+
+try:
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+except ImportError:
+    sys.exit("run.py: the tables need rich, which is not installed: pip install rbsdem[plot]")
+
+BESIDE = Path(__file__).resolve().parents[3] / "shared" / "peer"
+
+# A leg between two reversal points gets this many rows, about as many as in the histories; they
+# follow half a cosine, for a test also slows down where it turns.
+ROWS_PER_LEG = 30
+
+# Seconds for one row of a test in RK4. The first natural period is about 0.01 s elastic and 0.06 s
+# after yield. There is no damping in equation 4, so the column runs on where the force turns, by a
+# length in proportion to its speed: 0.05 s leave 2 to 4 % of the peak displacement, 0.1 s 1 to 2 %.
+ROW_TIME = 0.1
+
+# RK4 step as a share of the largest stable one: the higher mode only has to stay quiet.
+STEP_SHARE = 0.5
+
+Vector = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Drive:
+    """Measured rows of a test, and what drives the model through them.
+
+    `displacement` and `force` [m, N] are the path of the model; `rows` picks the measured rows out
+    of it (all of them where the full history is there).
+    """
+
+    key: str
+    displacement: Vector
+    force: Vector
+    rows: NDArray[np.intp]
+    full: bool
+    source: str
+
+
+@dataclass(frozen=True)
+class Run:
+    """One test and one model: what the table and a panel show."""
+
+    drive: Drive
+    test: compare.Loop
+    model: compare.Loop
+    nrmse: float
+    curve: tuple[Vector, Vector]
+    static_difference: float | None = None
+
+
+def read(key: str, folder: Path | None) -> Drive:
+    """Return the full history of a test if it can be found, else its reversal points."""
+    path = find_history(key, folder)
+    if path is None and folder is None and not os.environ.get(FOLDER_VARIABLE) and BESIDE.is_dir():
+        path = find_history(key, BESIDE)
+    if path is not None:
+        test = rbsdem.read_peer(path)
+        rows = np.arange(len(test.force))
+        source = f"full history, {len(rows)} rows ({path.name})"
+        return Drive(key, test.displacement, test.force, rows, True, source)
+    points = shipped_reversals(key)
+    rows = np.arange(len(points.force)) * ROWS_PER_LEG
+    leg = 0.5 - 0.5 * np.cos(np.pi * np.arange(ROWS_PER_LEG) / ROWS_PER_LEG)
+    at = np.append(np.add.outer(np.arange(len(rows) - 1), leg).ravel(), len(rows) - 1)
+    displacement, force = (
+        np.interp(at, np.arange(len(rows)), values)
+        for values in (points.displacement, points.force)
+    )
+    source = f"{len(rows)} reversal points"
+    named = folder or os.environ.get(FOLDER_VARIABLE)
+    if named:
+        source += f" (no history of this test in {named})"
+    return Drive(key, displacement, force, rows, False, source)
+
+
+def by_force(drive: Drive, column: rbsdem.Column, row_time: float) -> tuple[Run, float]:
+    """Drive a column by the measured force, by RK4 on equation 4 and on the static path.
+
+    Returns the run and the seconds that the two analyses took.
+    """
+    small = dataclasses.replace(column, axial_load=0.0, kinematics="small")
+    finite = dataclasses.replace(column, axial_load=0.0, kinematics="finite")
+    at = np.arange(len(drive.force)) * row_time
+    begin = time.perf_counter()
+    static = rbsdem.cyclic(small, force=drive.force)
+    # A whole number of steps in a row, so that results come at the rows.
+    dt = row_time / math.ceil(row_time / (STEP_SHARE * rbsdem.modes(finite).stable_step))
+    dynamic = rbsdem.time_history(finite, at, force=drive.force, dt=dt, method="rk4")
+    seconds = time.perf_counter() - begin
+
+    model = np.interp(at, dynamic.time, dynamic.displacement)
+    difference = np.max(np.abs(model - static.displacement)) / np.max(np.abs(static.displacement))
+    if drive.full:
+        metrics = compare.displacement_metrics(drive.force, drive.displacement, model)
+        test, loop, nrmse = metrics.test, metrics.model, metrics.nrmse
+    else:
+        test = measured_loops()[drive.key]
+        loop = compare.summarise(model, drive.force, reference_force=test.peak_force)
+        nrmse = rms_over_peak(model, drive.displacement, drive.rows)
+    return Run(drive, test, loop, nrmse, (model, drive.force), float(difference)), seconds
+
+
+def by_displacement(drive: Drive, column: rbsdem.Column) -> tuple[Run, float]:
+    """Drive a column by the measured displacement on the static path with P-Delta.
+
+    Returns the run and the seconds that the analysis took.
+    """
+    pdelta = dataclasses.replace(column, kinematics="pdelta")
+    begin = time.perf_counter()
+    static = rbsdem.cyclic(pdelta, displacement=drive.displacement)
+    seconds = time.perf_counter() - begin
+
+    if drive.full:
+        metrics = compare.loop_metrics(drive.displacement, drive.force, static.force)
+        test, loop, nrmse = metrics.test, metrics.model, metrics.nrmse
+    else:
+        test = measured_loops()[drive.key]
+        loop = compare.summarise(drive.displacement, static.force, reference_force=test.peak_force)
+        nrmse = rms_over_peak(static.force, drive.force, drive.rows)
+    return Run(drive, test, loop, nrmse, (drive.displacement, static.force)), seconds
+
+
+def rms_over_peak(model: Vector, test: Vector, rows: NDArray[np.intp]) -> float:
+    """Root mean square difference at some rows over the largest absolute test value there."""
+    error = model[rows] - test[rows]
+    return float(np.sqrt(np.mean(error**2)) / np.max(np.abs(test[rows])))
+
+
+QUANTITIES = (
+    ("Peak\nforce", "kN", "peak_force", 1e-3),
+    ("Displ.\nat peak", "mm", "displacement_at_peak", 1e3),
+    ("Largest\ndispl.", "mm", "peak_displacement", 1e3),
+    ("\nEnergy", "kJ", "energy", 1e-3),
+    ("Initial\nstiffness", "kN/mm", "stiffness", 1e-6),
+)
+
+
+def print_histories(console: Console, measured: dict[str, Drive]) -> None:
+    """Say which measured rows are used."""
+    console.print("[bold]Measured histories[/bold]")
+    for key, drive in measured.items():
+        line = f"  {rbsdem.paper_sections()[key].specimen:<20}{drive.source}"
+        console.print(line, markup=False, soft_wrap=True)
+    if not all(drive.full for drive in measured.values()):
+        console.print(
+            "  Of reversal points, the rms error below is that at the points alone; the other\n"
+            "  numbers of the test are those of its full history (data/measured_loops.csv).\n"
+            f"  To use the full histories: --peer DIR or {FOLDER_VARIABLE}; data/README.md."
+        )
+    console.print()
+
+
+def print_table(console: Console, title: str, error: str, notes: str, runs: dict[str, Run]) -> None:
+    """Print test, model and ratio for each specimen, and what the columns mean."""
+    sections = rbsdem.paper_sections()
+    dynamic = any(run.static_difference is not None for run in runs.values())
+    out = Table(box=box.SIMPLE_HEAD, padding=0, show_edge=False)
+    out.add_column("\n\nSpecimen")
+    for name, unit, _, _ in QUANTITIES:
+        out.add_column(f"{name}\n{unit}", justify="right")
+    out.add_column(f"{error}\n%", justify="right")
+    if dynamic:
+        out.add_column("RK4 -\nstatic\n%", justify="right")
+    for key, run in runs.items():
+        test = [getattr(run.test, name) * scale for _, _, name, scale in QUANTITIES]
+        model = [getattr(run.model, name) * scale for _, _, name, scale in QUANTITIES]
+        last = [f"{100 * run.nrmse:.1f}"]
+        if run.static_difference is not None:
+            last.append(f"{100 * run.static_difference:.2f}")
+        out.add_row(f"[bold]{sections[key].specimen}")
+        out.add_row("  test", *(f"{value:.1f}" for value in test))
+        out.add_row("  model", *(f"{value:.1f}" for value in model), *last)
+        ratios = (f"{abs(m / t):.2f}" for m, t in zip(model, test, strict=True))
+        out.add_row("  model / test", *ratios, end_section=True)
+    console.print(f"[bold]{title}[/bold]\n")
+    console.print(out)
+    console.print(f"\n[dim]{notes}[/dim]\n")
+
+
+def write_csv(path: Path, drives: dict[str, dict[str, Run]]) -> None:
+    """Write the tables in long form: one row for each drive, specimen and quantity."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_suffix(".partial")
+    with partial.open("w", encoding="utf-8", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(
+            ["driven_by", "specimen", "history", "quantity", "unit", "test", "model", "ratio"]
+        )
+        for drive, runs in drives.items():
+            for key, run in runs.items():
+                start = [drive, key, "full" if run.drive.full else "reversals"]
+                for _, unit, name, scale in QUANTITIES:
+                    test, model = (scale * getattr(x, name) for x in (run.test, run.model))
+                    numbers = [f"{x:.6g}" for x in (test, model, abs(model / test))]
+                    rows.writerow([*start, name, unit, *numbers])
+                rows.writerow([*start, "rms_error_over_peak", "1", "", f"{run.nrmse:.6g}", ""])
+                if run.static_difference is not None:
+                    value = f"{run.static_difference:.6g}"
+                    rows.writerow([*start, "rk4_minus_static_over_peak", "1", "", value, ""])
+    partial.replace(path)
+
+
+def figure(path: Path, runs: dict[str, Run]) -> list[Path]:
+    """Draw the four panels of one drive; return the files written."""
+    from rbsdem import plot  # noqa: PLC0415
+
+    sections = rbsdem.paper_sections()
+    panels = []
+    for key, run in runs.items():
+        rows = run.drive.rows
+        panels.append(
+            plot.Panel(
+                title=sections[key].specimen,
+                model=run.curve,
+                test=(run.drive.displacement[rows], run.drive.force[rows]),
+                height=sections[key].length,
+                test_points=not run.drive.full,
+            )
+        )
+    full = all(run.drive.full for run in runs.values())
+    label = "Test" if full else "Test (reversal points)"
+    return plot.save(plot.four_panels(panels, test_label=label), path, pdf=True)
+
+
+def arguments() -> argparse.Namespace:
+    """Read the command line."""
+    parser = argparse.ArgumentParser(
+        description=__doc__.splitlines()[0],
+        epilog=f"Without --peer, the environment variable {FOLDER_VARIABLE} names the folder.",
+    )
+    parser.add_argument("--peer", type=Path, metavar="DIR", help="folder of the full histories")
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", default=Path("figures"), help="default: ./figures"
+    )
+    parser.add_argument("--no-plot", action="store_true", help="print and write the tables only")
+    parser.add_argument(
+        "--row-time",
+        type=float,
+        metavar="SECONDS",
+        default=ROW_TIME,
+        help=f"time in which RK4 loads one row of a test (default {ROW_TIME})",
+    )
+    given = parser.parse_args()
+    if not 0 < given.row_time < float("inf"):
+        parser.error(f"--row-time {given.row_time}: give a positive number of seconds")
+    return given
+
+
+def main() -> None:
+    """Do the main job."""
+    given = arguments()
+    console = Console(highlight=False)
+    columns = rbsdem.paper_columns()
+    measured = {key: read(key, given.peer) for key in columns}
+
+    seconds = 0.0
+    drives: dict[str, dict[str, Run]] = {"force": {}, "displacement": {}}
+    for key, column in columns.items():
+        drives["force"][key], taken = by_force(measured[key], column, given.row_time)
+        seconds += taken
+        drives["displacement"][key], taken = by_displacement(measured[key], column)
+        seconds += taken
+
+    print_histories(console, measured)
+    print_table(
+        console,
+        "(a) Driven by the measured force, as in figure 3 of the paper: RK4 on equation 4",
+        "rms displ.\nerror",
+        "Error over the measured peak. RK4 - static: largest difference of displacement\n"
+        "from the static path, over its peak. Initial stiffness: secant at half of the\n"
+        "test's peak force.",
+        drives["force"],
+    )
+    print_table(
+        console,
+        "(b) Driven by the measured displacement: static path with P-Delta",
+        "rms force\nerror",
+        "Error over the measured peak. Initial stiffness: secant at half of the test's\n"
+        "peak force.",
+        drives["displacement"],
+    )
+    console.print(f"Computed in {seconds:.3f} s, apart from reading and plotting.")
+
+    written = [given.out / "comparison.csv"]
+    write_csv(written[0], drives)
+    if not given.no_plot:
+        written += figure(given.out / "fig3_force_driven.png", drives["force"])
+        written += figure(given.out / "displacement_driven.png", drives["displacement"])
+    for path in written:
+        console.print(f"wrote {path}", markup=False, soft_wrap=True)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except rbsdem.InputError as error:
+        print(f"run.py: {error}", file=sys.stderr)
+        sys.exit(2)
+    except (rbsdem.RbsdemError, OSError, ImportError) as error:
+        print(f"run.py: {error}", file=sys.stderr)
+        sys.exit(1)

@@ -1,0 +1,9 @@
+#!/usr/bin/env bash
+# Sets up what is missing, builds, and runs the main job: the four columns of the paper.
+#
+#   bash scripts/demo.sh [--peer DIR] [--out DIR] [--no-plot]
+RBSDEM_EXTRA=plot
+. "$(dirname "${BASH_SOURCE[0]}")/build.sh"
+
+cd "$root"
+MPLBACKEND=Agg "$venv/bin/python" examples/01-paper-columns/run.py "$@"
