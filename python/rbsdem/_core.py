@@ -20,6 +20,9 @@ Array = NDArray[np.float64]
 #: Marks a number that is not given (the constant `unset` of the Fortran part).
 UNSET = -float(np.finfo(np.float64).max)
 
+#: The same for a whole number.
+UNSET_INTEGER = -int(np.iinfo(np.int32).max)
+
 #: Order of the numbers of a spring, and of the names of rules (`rule_names`, `inner_names`).
 SPRING_NUMBERS = ("k", "d_y", "k_post", "k_c", "d_c", "k_y", "k_u", "b0", "b1")
 RULES = ("elastic", "bilinear", "takeda")
@@ -147,9 +150,9 @@ def time_history(
     n: int,
 ) -> tuple[Array, dict[str, float], SolveError | None]:
     """Return rows, figures, and the error that ended the response early."""
-    intervals, status, message = _rbsdem.rbs_plan(**column, time=time, dt=dt)
+    kept, status, message = _rbsdem.rbs_plan(**column, time=time, dt=dt, every=every)
     _raise(status, message)
-    rows = _empty_rows(n, 1 + intervals // every + (intervals % every > 0))
+    rows = _empty_rows(n, kept)
     kept, figures, status, message = _rbsdem.rbs_time_history(
         **column,
         time=time,
@@ -188,8 +191,8 @@ def read_history(path: str) -> tuple[str, Array, Array]:
 
 def _kept(points: int, every: int) -> int:
     """Return the number of rows of `points` when every n-th and the last are kept."""
-    if points == 0:
-        return 0
+    if points == 0 or every == UNSET_INTEGER:
+        return points
     return (points - 1) // every + 1 + ((points - 1) % every > 0)
 
 

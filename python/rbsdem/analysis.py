@@ -75,7 +75,7 @@ def cyclic(
     displacement: ArrayLike | None = None,
     force: ArrayLike | None = None,
     *,
-    every: int = 1,
+    every: int | None = None,
 ) -> Result:
     """Static path of a column through displacements of the top, or lateral forces.
 
@@ -89,7 +89,7 @@ def cyclic(
     displacement, force : array_like, shape (m,)
         What is driven, exactly one of the two: displacement of the top [m] or lateral force [N].
     every : int, optional
-        Every n-th row is kept, and the last.
+        Every n-th point is kept, and the last; without it all are.
 
     Returns
     -------
@@ -126,7 +126,7 @@ def time_history(
     method: str = "rk4",
     initial: Mapping[str, ArrayLike] | None = None,
     *,
-    every: int = 1,
+    every: int | None = None,
 ) -> Result:
     """Response in time to a lateral force, a ground motion, or both.
 
@@ -151,7 +151,7 @@ def time_history(
         State at the begin: "slip" [m], "rotation" [rad], "slip_velocity", "rotation_velocity", each
         of shape (n,). The springs get there from zero.
     every : int, optional
-        Every n-th row is kept, and the last.
+        Every n-th step is kept, and the last. Without it rows are kept as said for `dt`.
 
     Returns
     -------
@@ -188,7 +188,9 @@ def _checked(column: Column) -> Column:
     return column
 
 
-def _every(every: int) -> int:
+def _every(every: int | None) -> int:
+    if every is None:
+        return _core.UNSET_INTEGER
     if _core.whole(every, "every") < 1:
         raise InputError(f"every = {every} must be 1 or more")
     return every

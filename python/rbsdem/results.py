@@ -36,7 +36,7 @@ class Result:
     summary : dict
         Figures of the run: steps, rows, events (lines of springs left), time_step and stable_step
         [s], peak_displacement [m], peak_force [N], displacement_at_peak_force [m], energies at the
-        end [J], energy_residual [J] and relative_energy_residual (largest over the rows).
+        end [J], energy_residual [J] and relative_energy_residual (largest over the rows kept).
     """
 
     time: Array

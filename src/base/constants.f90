@@ -16,4 +16,7 @@ module rbs_base_constants
    !> such, and comparing a NaN traps in builds with floating-point traps.
    real(wp), parameter, public :: unset = -huge(1.0_wp)
 
+   !> The same for a whole number.
+   integer, parameter, public :: unset_integer = -huge(1)
+
 end module rbs_base_constants

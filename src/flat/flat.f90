@@ -171,7 +171,7 @@ end subroutine rbs_cyclic
 
 subroutine rbs_plan(n, kinematics, numbers, nl, lengths, nm, masses, &
                     ns, shear, codes_shear, nf, flexure, codes_flexure, &
-                    m, time, dt, intervals, status, message)
+                    m, time, dt, every, rows, status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_column_column, only: column_type
@@ -179,12 +179,12 @@ subroutine rbs_plan(n, kinematics, numbers, nl, lengths, nm, masses, &
    use rbs_solve_run, only: plan_dynamic
    use rbs_solve_time_plan, only: time_plan
    implicit none
-   integer(c_int), intent(in) :: n, nl, nm, ns, nf, m
+   integer(c_int), intent(in) :: n, nl, nm, ns, nf, m, every
    character(len=*), intent(in) :: kinematics
    real(c_double), intent(in) :: numbers(7), lengths(nl), masses(nm), shear(9, ns), flexure(9, nf)
    integer(c_int), intent(in) :: codes_shear(2, ns), codes_flexure(2, nf)
    real(c_double), intent(in) :: time(m), dt
-   integer(c_int), intent(out) :: intervals, status
+   integer(c_int), intent(out) :: rows, status
    character(len=4096), intent(out) :: message
    !f2py threadsafe
    type(column_type) :: column
@@ -195,7 +195,7 @@ subroutine rbs_plan(n, kinematics, numbers, nl, lengths, nm, masses, &
    call column_from_numbers(column, n, kinematics, numbers, lengths, masses, shear, flexure, &
                             codes_shear, codes_flexure, error)
    if (.not. allocated(error)) call plan_dynamic(column, time, dt, plan, limit, error)
-   intervals = plan%intervals
+   rows = plan%rows(every)
    call tell(error, status, message)
 end subroutine rbs_plan
 

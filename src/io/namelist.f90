@@ -1,6 +1,6 @@
 !> A case from a namelist file.
 module rbs_io_namelist
-   use rbs_base_constants, only: unset
+   use rbs_base_constants, only: unset, unset_integer
    use rbs_base_error, only: error_type, message_list
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -347,7 +347,7 @@ contains
       scale = spec%scale
       interval = spec%interval
       amplitudes = unset
-      cycles = -huge(1)
+      cycles = unset_integer
       repeats = spec%repeats
       points = spec%points
       period = spec%period
@@ -457,7 +457,7 @@ contains
       type(message_list), intent(inout) :: messages
       integer :: last
 
-      call find_last(r, name, values /= -huge(1), last, messages)
+      call find_last(r, name, values /= unset_integer, last, messages)
       if (last > 0) given = values(:last)
    end subroutine given_integers
 

@@ -1,8 +1,7 @@
 !> What is told of a run besides its rows.
 module rbs_results_summary
    use rbs_base_kinds, only: wp
-   use rbs_results_row, only: row_displacement, row_force, row_input, row_kinetic, row_spring, &
-                              row_damping, row_residual
+   use rbs_results_row, only: row_input, row_kinetic, row_spring, row_damping, row_residual
    implicit none
    private
 
@@ -23,33 +22,40 @@ module rbs_results_summary
       integer :: steps = 0, rows = 0, events = 0
       !> Time step and stability limit of the scheme [s]; 0 in a static analysis
       real(wp) :: time_step = 0.0_wp, stable_step = 0.0_wp
-      !> Largest displacement and force in size, with sign, over the rows [m, N], and the
-      !> displacement where the force is largest [m]
+      !> Largest displacement and force in size, with sign [m, N], and the displacement where the force
+      !> is largest [m]; over all points (static) or steps (dynamic)
       real(wp) :: peak_displacement = 0.0_wp, peak_force = 0.0_wp, displacement_at_peak = 0.0_wp
       !> Energies at the end [J]
       real(wp) :: input = 0.0_wp, spring = 0.0_wp, damping = 0.0_wp
       !> Largest residual of the balance over the rows, in size, and the largest energy [J]
       real(wp) :: residual = 0.0_wp, largest = 0.0_wp
    contains
+      procedure :: see_peak
       procedure :: see
       procedure :: as_array
    end type summary_type
 
 contains
 
-   !> Take a row into account.
+   !> Take a displacement and a force into account, whether they are kept or not.
+   pure subroutine see_peak(self, displacement, force)
+      class(summary_type), intent(inout) :: self
+      !> Of the top [m], lateral [N]
+      real(wp), intent(in) :: displacement, force
+
+      if (abs(displacement) > abs(self%peak_displacement)) self%peak_displacement = displacement
+      if (abs(force) > abs(self%peak_force)) then
+         self%peak_force = force
+         self%displacement_at_peak = displacement
+      end if
+   end subroutine see_peak
+
+   !> Take the energies of a kept row into account.
    pure subroutine see(self, row)
       class(summary_type), intent(inout) :: self
       real(wp), intent(in) :: row(:)
 
       self%rows = self%rows + 1
-      if (abs(row(row_displacement)) > abs(self%peak_displacement)) then
-         self%peak_displacement = row(row_displacement)
-      end if
-      if (abs(row(row_force)) > abs(self%peak_force)) then
-         self%peak_force = row(row_force)
-         self%displacement_at_peak = row(row_displacement)
-      end if
       self%input = row(row_input)
       self%spring = row(row_spring)
       self%damping = row(row_damping)

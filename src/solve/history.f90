@@ -1,5 +1,6 @@
 !> Response in time: marching through the plan, springs, energy balance, rows.
 module rbs_solve_history
+   use rbs_base_constants, only: unset_integer
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -53,7 +54,7 @@ contains
       !> Lateral force [N] and acceleration of the ground [m/s2]; a signal without points is zero
       type(signal_type), intent(in) :: force, ground
       type(initial_state), intent(in) :: initial
-      !> Every n-th kept time gives a row, and the last
+      !> Every n-th step gives a row, and the last; `unset_integer`: every interval of the plan
       integer, intent(in) :: every
       class(recorder_type), intent(inout) :: recorder
       !> On entry with the stability limit
@@ -71,28 +72,43 @@ contains
       if (allocated(error)) return
       allocate (row(row_size(column%n)))
       summary%time_step = plan%dt
+      call summary%see_peak(run%motion%top_displacement(run%q), run%force_now)
       call keep(run, row, recorder, summary, error)
+      if (allocated(error)) return
       do interval = 1, plan%intervals
-         if (allocated(error)) return
          call interval_of(plan, time, interval, finish, parts)
          do part = parts, 1, -1
             call take_step(run, (finish - run%time)/part)
             summary%steps = summary%steps + 1
             if (part == 1) run%time = finish
+            call summary%see_peak(run%motion%top_displacement(run%q), run%force_now)
             if (.not. maxval(abs(run%q)) < out_of_bounds) then
                call report_unbounded(run, error)
                return
+            end if
+            if (is_kept(summary%steps, part == 1, plan%steps, every)) then
+               call keep(run, row, recorder, summary, error)
+               if (allocated(error)) return
             end if
             if (mod(summary%steps, 8192) == 0 .and. present(progress)) then
                call progress%update(real(summary%steps, wp)/plan%steps)
             end if
          end do
-         summary%events = run%springs%events
-         if (mod(interval, every) == 0 .or. interval == plan%intervals) then
-            call keep(run, row, recorder, summary, error)
-         end if
       end do
    end subroutine march
+
+   !> Whether a step gives a row.
+   pure logical function is_kept(step, ends_interval, steps, every)
+      !> Number of the step, of all steps, and n of every n-th
+      integer, intent(in) :: step, steps, every
+      logical, intent(in) :: ends_interval
+
+      if (every == unset_integer) then
+         is_kept = ends_interval
+      else
+         is_kept = mod(step, every) == 0 .or. step == steps
+      end if
+   end function is_kept
 
    !> End of an interval between kept times, and the number of its steps.
    pure subroutine interval_of(plan, time, interval, finish, parts)
@@ -185,6 +201,7 @@ contains
                           - row(row_damping) - row(row_axial)
       row(row_joints:row_joints + m - 1) = run%q
       row(row_joints + m:) = run%springs%f0 + run%springs%k*(run%q - run%springs%d0)
+      summary%events = run%springs%events
       call summary%see(row)
       call recorder%record(row, error)
    end subroutine keep

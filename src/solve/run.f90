@@ -40,7 +40,7 @@ contains
       logical, intent(in) :: by_force
       !> Targets (m)
       real(wp), intent(in) :: target(:)
-      !> Every n-th row is kept, and the last
+      !> Every n-th point is kept, and the last; `unset_integer`: all
       integer, intent(in) :: every
       class(recorder_type), intent(inout) :: recorder
       type(summary_type), intent(out) :: summary
@@ -94,7 +94,7 @@ contains
       !> Lateral force [N] and acceleration of the ground [m/s2]; no points: none
       type(signal_type), intent(in) :: force, ground
       type(initial_state), intent(in) :: initial
-      !> Every n-th kept time gives a row, and the last
+      !> Every n-th step gives a row, and the last; `unset_integer`: every interval of the plan
       integer, intent(in) :: every
       class(recorder_type), intent(inout) :: recorder
       type(summary_type), intent(out) :: summary

@@ -1,6 +1,7 @@
 !> Static path, event to event: the column goes along its line to the target or to the next end of a
 !> spring's line, whichever comes first. Exact for `small` and `pdelta`; no tolerance, no increments.
 module rbs_solve_static
+   use rbs_base_constants, only: unset_integer
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -56,7 +57,11 @@ contains
       integer, intent(in) :: m, every
 
       kept_rows = 0
-      if (m > 0) kept_rows = (m - 1)/every + 1 + merge(0, 1, mod(m - 1, every) == 0)
+      if (every == unset_integer) then
+         kept_rows = m
+      else if (m > 0) then
+         kept_rows = (m - 1)/every + 1 + merge(0, 1, mod(m - 1, every) == 0)
+      end if
    end function kept_rows
 
    !> Follow the targets one after the other from the virgin state.
@@ -66,7 +71,7 @@ contains
       logical, intent(in) :: by_force
       !> Targets (m)
       real(wp), intent(in) :: target(:)
-      !> Every n-th row is kept, and the last
+      !> Every n-th point is kept, and the last; `unset_integer`: all
       integer, intent(in) :: every
       class(recorder_type), intent(inout) :: recorder
       type(summary_type), intent(out) :: summary
@@ -75,14 +80,17 @@ contains
       type(path_type) :: path
       type(error_type), allocatable :: failure
       real(wp), allocatable :: row(:)
-      integer :: i
+      integer :: i, n
 
+      n = every
+      if (every == unset_integer) n = 1
       call start_path(path, column, by_force)
       allocate (row(row_size(column%n)))
       do i = 1, size(target)
          call advance(path, target(i), failure)
          if (allocated(failure)) failure%message = 'row '//to_text(i)//': '//failure%message
-         if (mod(i - 1, every) == 0 .or. i == size(target) .or. allocated(failure)) then
+         call summary%see_peak(path%displacement, path%force)
+         if (mod(i - 1, n) == 0 .or. i == size(target) .or. allocated(failure)) then
             call fill_row(path, row, i - 1)
             call summary%see(row)
             call recorder%record(row, error)

@@ -1,6 +1,7 @@
 !> Which steps are taken from which time to which, and after which of them a row is kept.
 module rbs_solve_time_plan
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use rbs_base_constants, only: unset_integer
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -19,6 +20,7 @@ module rbs_solve_time_plan
    !> More steps than this do not end in a lifetime.
    real(wp), parameter :: most_steps = 2.0e9_wp
 
+   !> Intervals run from one time at which a row is kept by default to the next.
    type :: time_plan
       !> Longest step [s]
       real(wp) :: dt = 0.0_wp
@@ -30,6 +32,8 @@ module rbs_solve_time_plan
       !> First and last time [s]
       real(wp) :: begin = 0.0_wp, finish = 0.0_wp
       integer, allocatable :: parts(:)
+   contains
+      procedure :: rows
    end type time_plan
 
 contains
@@ -109,6 +113,19 @@ contains
          plan%intervals = m - 1
       end if
    end subroutine new_plan
+
+   !> Number of rows of a run, the first at its begin.
+   elemental integer function rows(self, every)
+      class(time_plan), intent(in) :: self
+      !> Every n-th step is kept, and the last; `unset_integer`: every interval
+      integer, intent(in) :: every
+
+      if (every == unset_integer) then
+         rows = 1 + self%intervals
+      else
+         rows = 1 + self%steps/every + merge(0, 1, mod(self%steps, every) == 0)
+      end if
+   end function rows
 
    !> Refuse a step beyond the stability limit.
    subroutine check_step(dt, limit, error)

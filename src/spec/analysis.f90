@@ -1,7 +1,7 @@
 !> What the user asked of the analysis and of its output.
 module rbs_spec_analysis
    use rbs_base_kinds, only: wp
-   use rbs_base_constants, only: unset
+   use rbs_base_constants, only: unset, unset_integer
    use rbs_base_error, only: message_list
    use rbs_base_text, only: to_text
    use rbs_spec_check, only: is_given, check_positive, check_name
@@ -29,8 +29,9 @@ module rbs_spec_analysis
    type :: output_spec
       !> Path of the csv; not allocated: the case file's name with .csv
       character(len=:), allocatable :: file
-      !> Every n-th row (static) or step (dynamic) is kept
-      integer :: every = 1
+      !> Every n-th point (static) or step (dynamic) is kept, and the last; `unset_integer`: every point
+      !> of the loading
+      integer :: every = unset_integer
    contains
       procedure :: validate => validate_output
    end type output_spec
@@ -68,7 +69,7 @@ contains
       class(output_spec), intent(in) :: self
       type(message_list), intent(inout) :: messages
 
-      if (self%every < 1) then
+      if (self%every < 1 .and. self%every /= unset_integer) then
          call messages%add('output: every = '//to_text(self%every)//' must be 1 or more')
       end if
    end subroutine validate_output
