@@ -78,12 +78,12 @@ def vector(values: ArrayLike, name: str) -> Array:
         array = np.asarray(values)
         if array.dtype.kind in "cSUbO" and array.size:
             raise TypeError
-        array = np.ascontiguousarray(array, dtype=np.float64)
+        array = array.astype(np.float64)
     except (TypeError, ValueError):
         raise InputError(f"{name} must be an array of numbers") from None
     if array.ndim != 1:
         raise InputError(f"{name} has shape {array.shape}; it must have one dimension")
-    return array
+    return np.ascontiguousarray(array)
 
 
 def finite_vector(values: ArrayLike, name: str) -> Array:

@@ -107,10 +107,10 @@ contains
       if (allocated(error)) return
       write (output_unit, '(a)') 'mode,frequency_Hz,period_s,omega_rad/s'
       do i = 1, column%unknowns
-         write (output_unit, '(i0, 3(a, es24.16e3))') i, ',', modes%omega(i)/(2.0_wp*pi), ',', &
+         write (output_unit, '(i0, 3(a, es22.16e2))') i, ',', modes%omega(i)/(2.0_wp*pi), ',', &
             2.0_wp*pi/modes%omega(i), ',', modes%omega(i)
       end do
-      write (output_unit, '(a, es24.16e3)') '# stable step of rk4 [s]:', modes%stable_step
+      write (output_unit, '(a, es23.16e2)') '# stable step of rk4 [s]:', modes%stable_step
    end subroutine show_modes
 
    !> Read a case and its loadings; all their faults come back as one error.

@@ -83,7 +83,8 @@ contains
    end function axial_energy
 
    !> The number by which all axial forces must be multiplied to make the uncracked column lose its
-   !> stiffness; `huge` for a column under tension or without axial force.
+   !> stiffness; `huge` if no multiple does. Tension too can buckle a column of several bodies, by slip
+   !> against rotation.
    subroutine critical_factor(column, factor, error)
       type(column_type), intent(in) :: column
       real(wp), intent(out) :: factor
@@ -115,9 +116,9 @@ contains
       call critical_factor(column, factor, error)
       if (allocated(error) .or. factor > 1.0_wp) return
       call fatal_error(error, bad_input, 'column: the axial load of '// &
-                       to_text(column%axial_joint(1))//' N at the base is above the critical load of '// &
+                       to_text(column%axial_joint(1))//' N at the base is beyond the critical load of '// &
                        to_text(factor*column%axial_joint(1))//' N; the column buckles by itself. '// &
-                       'Reduce axial_load, stiffen the springs, or drive it by displacement')
+                       'Reduce axial_load or stiffen the springs')
    end subroutine check_stable
 
 end module rbs_column_axial

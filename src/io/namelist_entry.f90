@@ -68,9 +68,11 @@ contains
       !> Not allocated if the entry is not sound
       character(len=:), allocatable, intent(out) :: text
       type(message_list), intent(inout) :: messages
+      character(len=len(keys%name)) :: names(size(keys))
       integer :: place, known
 
       known = messages%count
+      names = keys%name
       associate (entry => scanned%entry(i))
          do place = 1, size(keys)
             if (keys(place)%name == entry%name) exit
@@ -78,7 +80,7 @@ contains
          if (place > size(keys)) then
             call messages%add(location(path, entry%line)//': &'//trim(group%name)//" has no '"// &
                               trim(entry%name)//"'; did you mean '"// &
-                              nearest_name(entry%name, keys%name)//"'?")
+                              nearest_name(entry%name, names)//"'?")
             return
          end if
          call check_twice(path, scanned, group, i, messages)

@@ -14,6 +14,9 @@ module rbs_solve_equilibrium
 
    public :: equilibrium_type
 
+   !> A pivot below this share of the initial stiffness is round-off.
+   real(wp), parameter :: no_stiffness = 1.0e-12_wp
+
    type :: equilibrium_type
       !> Number of unknowns
       integer :: unknowns = 0
@@ -81,6 +84,7 @@ contains
       integer, intent(out) :: weakest
       real(wp), allocatable :: a(:, :)
       logical :: positive
+      integer :: i
 
       weakest = 0
       if (.not. self%coupled) then
@@ -92,6 +96,11 @@ contains
       else
          a = tangent(self, k)
          call factor_positive(a, positive)
+         if (positive) then
+            do i = 1, self%unknowns
+               positive = positive .and. a(i, i)**2 > no_stiffness*self%initial_stiffness(i)
+            end do
+         end if
          if (positive) then
             rate = self%arm
             correction = r

@@ -11,6 +11,12 @@ module rbs_solve_modal
 
    public :: modes_type, find_modes
 
+   !> The stability region of RK4 ends here on the negative real axis: z = -2.785293563...
+   real(wp), parameter :: real_limit = 2.785293563405282_wp
+
+   !> The left half of a disc of this radius lies in the stability region; it touches at 122.7 degrees.
+   real(wp), parameter :: least_radius = 2.615587_wp
+
    type :: modes_type
       !> Circular frequencies, ascending (2 n) [rad/s]
       real(wp), allocatable :: omega(:)
@@ -36,19 +42,34 @@ contains
       if (allocated(error)) return
       plain = modes%omega
       if (column%axially_loaded) then
-         ! Compression lowers the frequencies, tension raises them: the higher ones are the safe ones,
-         ! and cover a column that loses its axial load.
          call solve_modes(column, .false., plain, shapes, error)
          if (allocated(error)) return
-         plain = max(plain, modes%omega)
       end if
       modes%stable_step = huge(1.0_wp)
-      do i = size(plain), 1, -1
-         modes%stable_step = min(modes%stable_step, stable_step(plain(i), column%mass_damping &
-                                                                + column%stiffness_damping*plain(i)**2))
-         if (.not. (column%mass_damping > 0.0_wp .or. column%stiffness_damping > 0.0_wp)) exit
+      do i = 1, size(plain)
+         modes%stable_step = min(modes%stable_step, step_of_mode(column, plain(i), modes%omega(i)))
       end do
    end subroutine find_modes
+
+   !> Longest stable step for one mode, on the safe side of what is not known.
+   pure real(wp) function step_of_mode(column, plain, loaded) result(h)
+      type(column_type), intent(in) :: column
+      !> Circular frequency without and with axial forces [rad/s]
+      real(wp), intent(in) :: plain, loaded
+      real(wp) :: omega, c
+
+      omega = max(plain, loaded)
+      c = column%mass_damping + column%stiffness_damping*plain**2
+      if (column%axially_loaded .and. column%stiffness_damping > 0.0_wp) then
+         ! The axial load is not in the damping, so the modes do not part; but no eigenvalue is larger
+         ! than the larger of omega and c.
+         h = least_radius/max(omega, c)
+      else
+         h = stable_step(omega, c)
+      end if
+      ! Where springs yield, their stiffness goes and their damping stays: the eigenvalue -c is left.
+      if (c > 0.0_wp .and. any(column%spring%rule /= 'elastic')) h = min(h, real_limit/c)
+   end function step_of_mode
 
    !> Eigenproblem K x = omega^2 M x of the uncracked column.
    subroutine solve_modes(column, axial, omega, shapes, error)

@@ -24,8 +24,8 @@ module rbs_solve_static
    !> unloading.
    real(wp), parameter :: on_the_end = 1.0e-11_wp
 
-   !> More line changes than this without any motion are a circle.
-   integer, parameter :: most_changes = 1000
+   !> Most springs whose two ways out of a corner are tried in all combinations.
+   integer, parameter :: most_tried = 14
 
    !> The state of a path and the line it is on.
    type :: path_type
@@ -46,6 +46,8 @@ module rbs_solve_static
       !> Its end, and the spring that ends it (0: none)
       real(wp) :: finish = 0.0_wp
       integer :: ends = 0
+      !> How often each spring has changed its line at the present corner (2 n)
+      integer, allocatable :: changed(:)
       !> Work arrays (2 n)
       real(wp), allocatable :: residual(:), correction(:), f(:)
    end type path_type
@@ -114,6 +116,7 @@ contains
       call path%springs%create(column%spring)
       path%by_force = by_force
       allocate (path%q(column%unknowns), path%rate(column%unknowns), source=0.0_wp)
+      allocate (path%changed(column%unknowns), source=0)
       allocate (path%residual(column%unknowns), path%correction(column%unknowns), &
                 path%f(column%unknowns), source=0.0_wp)
    end subroutine start_path
@@ -147,8 +150,8 @@ contains
    !> Find the line of the column that leads on in a direction.
    !>
    !> A spring that stands at an end of its line, or on a one-way line against its way, is put on the
-   !> next line, one at a time and the first one first: for springs that stiffen when they turn back
-   !> this ends (Murty's least-index rule of the linear complementarity problem).
+   !> next line, one at a time and the first one first: while the column is stable this ends (Murty's
+   !> least-index rule of the linear complementarity problem). Beyond the peak it may go in a circle.
    subroutine find_line(path, direction, target, error)
       type(path_type), intent(inout) :: path
       integer, intent(in) :: direction
@@ -158,7 +161,8 @@ contains
       logical :: found
 
       path%direction = 0
-      do changes = 1, most_changes + 20*path%springs%count
+      path%changed = 0
+      do changes = 1, 20 + 10*path%springs%count
          call solve_line(path, direction, found)
          if (.not. found) then
             i = findloc(path%springs%one_way, -direction, dim=1)
@@ -175,12 +179,64 @@ contains
             call begin_line(path, direction)
             return
          end if
+         path%changed(i) = path%changed(i) + 1
          call path%springs%leave(i, way)
       end do
-      call fatal_error(error, analysis_failed, 'the static path turns in a circle between lines of '// &
-                       'the springs at '//state_text(path)//'; the column snaps back here, which a '// &
-                       'driven top cannot follow. Use fewer bodies or a dynamic analysis')
+      call try_all_ways(path, direction, found)
+      if (found) then
+         call begin_line(path, direction)
+      else
+         call fatal_error(error, analysis_failed, 'the column snaps back at '//state_text(path)// &
+                          ': no combination of loading and unloading springs was found that lets its '// &
+                          'top go on. A driven top cannot follow that; use a dynamic analysis')
+      end if
    end subroutine find_line
+
+   !> Try both ways of the springs at the corner in all combinations, one change at a time (Gray code),
+   !> until all have room. Of more springs than can be tried, those come first that the search went back
+   !> and forth with.
+   subroutine try_all_ways(path, direction, found)
+      type(path_type), intent(inout) :: path
+      integer, intent(in) :: direction
+      logical, intent(out) :: found
+      integer, allocatable :: tried(:)
+      integer :: trial, i, way
+
+      associate (springs => path%springs)
+         tried = pack([(i, i=1, springs%count)], springs%one_way /= 0 .or. springs%d >= springs%line%hi &
+                      .or. springs%d <= springs%line%lo)
+      end associate
+      tried = [pack(tried, path%changed(tried) > 1), pack(tried, path%changed(tried) <= 1)]
+      tried = tried(:min(size(tried), most_tried))
+      found = .false.
+      do trial = 1, 2**size(tried)
+         call solve_line(path, direction, found)
+         if (found) then
+            call first_without_room(path, direction, i, way)
+            found = i == 0
+            if (found) return
+         end if
+         ! The bit that changes next in the Gray code.
+         if (trial == 2**size(tried)) exit
+         i = tried(trailz(trial) + 1)
+         call path%springs%leave(i, way_out(path, i))
+      end do
+      found = .false.
+   end subroutine try_all_ways
+
+   !> The way by which a spring at a corner leaves its line.
+   pure integer function way_out(path, i)
+      type(path_type), intent(in) :: path
+      integer, intent(in) :: i
+
+      if (path%springs%one_way(i) /= 0) then
+         way_out = -path%springs%one_way(i)
+      else if (path%springs%d(i) >= path%springs%line(i)%hi) then
+         way_out = 1
+      else
+         way_out = -1
+      end if
+   end function way_out
 
    !> Rates of the column on the present lines of its springs.
    subroutine solve_line(path, direction, found)
