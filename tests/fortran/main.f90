@@ -1,0 +1,81 @@
+!> Unit tests: `unit_tests [suite [part of a test's name]]`; without arguments all suites.
+program unit_tests
+   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use check, only: unit_test, run_suite
+   use test_bilinear, only: collect_bilinear
+   use test_column, only: collect_column
+   use test_history, only: collect_history
+   use test_linalg, only: collect_linalg
+   use test_modal, only: collect_modal
+   use test_protocol, only: collect_protocol
+   use test_results, only: collect_results
+   use test_segment, only: collect_segment
+   use test_signal, only: collect_signal
+   use test_spec, only: collect_spec
+   use test_springs, only: collect_springs
+   use test_static, only: collect_static
+   use test_takeda, only: collect_takeda
+   use test_text, only: collect_text
+   use test_time_plan, only: collect_time_plan
+   implicit none
+
+   abstract interface
+      subroutine collect_interface(tests)
+         import :: unit_test
+         implicit none
+         type(unit_test), allocatable, intent(out) :: tests(:)
+      end subroutine collect_interface
+   end interface
+
+   !> A suite by name.
+   type :: suite_type
+      character(len=16) :: name
+      procedure(collect_interface), pointer, nopass :: collect => null()
+   end type suite_type
+
+   type(suite_type) :: suites(15)
+   character(len=80) :: wanted, pattern
+   integer :: i, run, failed, found
+
+   suites = [suite_type('text', collect_text), suite_type('linalg', collect_linalg), &
+             suite_type('spec', collect_spec), suite_type('segment', collect_segment), &
+             suite_type('bilinear', collect_bilinear), suite_type('takeda', collect_takeda), &
+             suite_type('springs', collect_springs), suite_type('column', collect_column), &
+             suite_type('protocol', collect_protocol), suite_type('signal', collect_signal), &
+             suite_type('results', collect_results), suite_type('time_plan', collect_time_plan), &
+             suite_type('modal', collect_modal), suite_type('static', collect_static), &
+             suite_type('history', collect_history)]
+
+   call get_command_argument(1, wanted)
+   call get_command_argument(2, pattern)
+   found = 0
+   run = 0
+   failed = 0
+   do i = 1, size(suites)
+      if (wanted /= '' .and. wanted /= suites(i)%name) cycle
+      found = found + 1
+      call run_one(suites(i))
+   end do
+
+   write (output_unit, '(i0, a, i0, a)') run, ' tests, ', failed, ' failed'
+   if (found == 0) then
+      write (error_unit, '(a)', advance='no') "unit_tests: no suite '"//trim(wanted)//"'; there are"
+      do i = 1, size(suites)
+         write (error_unit, '(a)', advance='no') ' '//trim(suites(i)%name)
+      end do
+      write (error_unit, '(a)') ''
+   end if
+   ! A filter that meets nothing, or an unknown suite, must not look like success.
+   if (failed > 0 .or. run == 0) error stop 1
+
+contains
+
+   subroutine run_one(suite)
+      type(suite_type), intent(in) :: suite
+      type(unit_test), allocatable :: tests(:)
+
+      call suite%collect(tests)
+      call run_suite(trim(suite%name), tests, trim(pattern), output_unit, run, failed)
+   end subroutine run_one
+
+end program unit_tests

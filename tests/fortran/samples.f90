@@ -1,0 +1,128 @@
+!> Springs, columns and paths that several suites use.
+module samples
+   use, intrinsic :: iso_fortran_env, only: int64
+   use rbs_base_error, only: error_type
+   use rbs_base_kinds, only: wp
+   use rbs_column_column, only: column_type
+   use rbs_solve_run, only: make_column
+   use rbs_spec_column, only: column_spec
+   use rbs_spec_spring, only: spring_spec
+   implicit none
+   private
+
+   public :: elastic, bilinear, takeda, bilinear_1, takeda_1, column_1, chain, made
+   public :: random_type
+
+   !> Soesianawati & Park No 1, table 3 of the paper: flexure [N m, rad] ...
+   real(wp), parameter, public :: k_c = 2.5428e8_wp, d_c = 3.1891e-4_wp
+   real(wp), parameter, public :: k_y = 6.2937e7_wp, d_y = 2.7183e-3_wp, k_u = 7.5772e6_wp
+   real(wp), parameter, public :: b0 = 0.4_wp, b1 = 0.22_wp
+   real(wp), parameter, public :: f_c = k_c*d_c, f_y = f_c + k_y*(d_y - d_c)
+   real(wp), parameter, public :: k_0 = (f_c + f_y)/(d_c + d_y)
+   !> ... and shear [N, m]
+   real(wp), parameter, public :: s_k = 7.0387e8_wp, s_d = 1.2960e-4_wp, s_post = 8.3185e6_wp
+   !> Mass [kg] and height [m] of the column
+   real(wp), parameter, public :: mass_1 = 614.4_wp, height_1 = 1.6_wp
+
+   !> Random numbers that are the same everywhere (Lehmer, 2**31 - 1).
+   type :: random_type
+      integer(int64) :: state = 20240229_int64
+   contains
+      procedure :: uniform
+   end type random_type
+
+contains
+
+   !> The next number between two bounds.
+   real(wp) function uniform(self, low, high) result(x)
+      class(random_type), intent(inout) :: self
+      real(wp), intent(in) :: low, high
+
+      self%state = mod(48271_int64*self%state, 2147483647_int64)
+      x = low + (high - low)*real(self%state, wp)/2147483647.0_wp
+   end function uniform
+
+   pure type(spring_spec) function elastic(k) result(spec)
+      real(wp), intent(in) :: k
+
+      spec%rule = 'elastic'
+      spec%k = k
+   end function elastic
+
+   pure type(spring_spec) function bilinear(k, d_y, k_post) result(spec)
+      real(wp), intent(in) :: k, d_y, k_post
+
+      spec%rule = 'bilinear'
+      spec%k = k
+      spec%d_y = d_y
+      spec%k_post = k_post
+   end function bilinear
+
+   pure type(spring_spec) function takeda(k_c, d_c, k_y, d_y, k_u, b0, b1, inner) result(spec)
+      real(wp), intent(in) :: k_c, d_c, k_y, d_y, k_u, b0, b1
+      character(len=*), intent(in) :: inner
+
+      spec%rule = 'takeda'
+      spec%k_c = k_c
+      spec%d_c = d_c
+      spec%k_y = k_y
+      spec%d_y = d_y
+      spec%k_u = k_u
+      spec%b0 = b0
+      spec%b1 = b1
+      spec%inner = inner
+   end function takeda
+
+   !> Shear spring of column 1.
+   pure type(spring_spec) function bilinear_1() result(spec)
+      spec = bilinear(s_k, s_d, s_post)
+   end function bilinear_1
+
+   !> Flexural spring of column 1.
+   pure type(spring_spec) function takeda_1(inner) result(spec)
+      character(len=*), intent(in) :: inner
+
+      spec = takeda(k_c, d_c, k_y, d_y, k_u, b0, b1, inner)
+   end function takeda_1
+
+   !> Column 1 in one component.
+   type(column_spec) function column_1(kinematics) result(spec)
+      character(len=*), intent(in) :: kinematics
+
+      spec%height = height_1
+      spec%mass = mass_1
+      spec%kinematics = kinematics
+      allocate (spec%shear(1), spec%flexure(1))
+      spec%shear(1) = bilinear_1()
+      spec%flexure(1) = takeda_1('kc')
+   end function column_1
+
+   !> A column 2 m high of n bodies that differ, with elastic springs that differ.
+   type(column_spec) function chain(n, kinematics) result(spec)
+      integer, intent(in) :: n
+      character(len=*), intent(in) :: kinematics
+      integer :: i
+
+      spec%n = n
+      spec%height = 2.0_wp
+      spec%kinematics = kinematics
+      allocate (spec%lengths(n), spec%masses(n), spec%shear(n), spec%flexure(n))
+      do i = 1, n
+         spec%lengths(i) = 1.0_wp + 0.3_wp*sin(1.0_wp*i)
+         spec%masses(i) = 80.0_wp + 30.0_wp*cos(2.0_wp*i)
+         spec%shear(i) = elastic(4.0e8_wp + 1.0e8_wp*sin(3.0_wp*i))
+         spec%flexure(i) = elastic(2.0e8_wp + 5.0e7_wp*cos(1.0_wp*i))
+      end do
+      spec%lengths = spec%lengths*(spec%height/sum(spec%lengths))
+   end function chain
+
+   !> The column of a specification that must be valid.
+   type(column_type) function made(spec) result(column)
+      type(column_spec), intent(in) :: spec
+      type(error_type), allocatable :: error
+
+      call make_column(spec, column, error)
+      if (allocated(error)) error stop 'samples: a column that should be valid is refused'
+   end function made
+
+end module samples

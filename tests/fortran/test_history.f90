@@ -1,0 +1,760 @@
+!> Response in time by RK4: closed forms and observed orders, energy, the static path, and failures.
+module test_history
+   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+   use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_same, check_true
+   use rbs_base_constants, only: unset, unset_integer
+   use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_column_column, only: column_type
+   use rbs_hysteresis_springs, only: follow_path
+   use rbs_loading_signal, only: signal_type
+   use rbs_results_progress, only: progress_type
+   use rbs_results_recorder, only: array_recorder, recorder_type
+   use rbs_results_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
+                              row_spring, row_damping, row_axial, row_residual, row_joints
+   use rbs_results_summary, only: summary_type
+   use rbs_solve_history, only: initial_state, march
+   use rbs_solve_modal, only: modes_type, find_modes
+   use rbs_solve_motion, only: motion_type
+   use rbs_solve_run, only: plan_dynamic, run_dynamic, run_static
+   use rbs_solve_time_plan, only: time_plan
+   use rbs_spec_column, only: column_spec
+   use samples, only: chain, column_1, elastic, made, random_type, d_y, k_c, k_u, s_k, mass_1, height_1
+   implicit none
+   private
+
+   public :: collect_history
+
+   !> Takes a few rows, then fails, as a full disk does.
+   type, extends(recorder_type) :: failing_recorder
+      integer :: count = 0
+   contains
+      procedure :: record => record_and_fail
+   end type failing_recorder
+
+   !> Counts how often it is told, and remembers the last share.
+   type, extends(progress_type) :: counting_progress
+      integer :: count = 0
+      real(wp) :: share = 0.0_wp
+      logical :: ascends = .true.
+   contains
+      procedure :: update
+   end type counting_progress
+
+   !> One run: what goes in besides the column, and what comes out.
+   type :: run_data
+      real(wp), allocatable :: time(:), force(:), ground(:)
+      real(wp) :: dt = unset
+      integer :: every = unset_integer
+      type(initial_state) :: initial
+      !> Stability limit [s]
+      real(wp) :: limit = 0.0_wp
+      real(wp), allocatable :: rows(:, :)
+      type(summary_type) :: summary
+      type(error_type), allocatable :: outcome
+   end type run_data
+
+contains
+
+   subroutine collect_history(tests)
+      type(unit_test), allocatable, intent(out) :: tests(:)
+
+      tests = [unit_test('free vibration in a mode: closed form, order 4', free_vibration), &
+               unit_test('damped free vibration: closed form, order 4', damped_vibration), &
+               unit_test('harmonic force: closed form, order 4', harmonic_force), &
+               unit_test('harmonic ground motion: closed form, order 4', harmonic_ground), &
+               unit_test('ramp of the force: the input is linear between its points', ramp), &
+               unit_test('beyond the stability limit the motion grows, below it does not', limit), &
+               unit_test('a step beyond the limit is refused, with the limit', refused), &
+               unit_test('misprint E6: eq 4 keeps its energy, finite rotation', misprint_e6), &
+               unit_test('finite rotation: energy under force, ground, axial load, damping', finite_energy), &
+               unit_test('finite rotation begins as small rotation', finite_small), &
+               unit_test('energy balance of a linear chain under everything', chain_energy), &
+               unit_test('nonlinear: springs follow their rules, to the last bit', spring_rows), &
+               unit_test('nonlinear: the energy residual shrinks with the step', energy_converges), &
+               unit_test('slow force-driven loading approaches the static path', slow_loading), &
+               unit_test('initial state: the springs get there from zero', initial), &
+               unit_test('rows: begin, every n-th, the last', rows), &
+               unit_test('free steps end exactly at the end', free_steps), &
+               unit_test('a column that falls: an error, the rows up to there', falling), &
+               unit_test('a recorder that fails ends the run', failing), &
+               unit_test('progress is told in ascending shares', progress), &
+               unit_test('input that is no number is refused', not_a_number)]
+   end subroutine collect_history
+
+   subroutine record_and_fail(self, row, error)
+      class(failing_recorder), intent(inout) :: self
+      real(wp), intent(in) :: row(:)
+      type(error_type), allocatable, intent(inout) :: error
+
+      self%count = self%count + 1
+      if (self%count == 3) then
+         call fatal_error(error, analysis_failed, 'disk full at '//to_text(row(row_time))//' s')
+      end if
+   end subroutine record_and_fail
+
+   subroutine update(self, share)
+      class(counting_progress), intent(inout) :: self
+      real(wp), intent(in) :: share
+
+      self%count = self%count + 1
+      self%ascends = self%ascends .and. share > self%share
+      self%share = share
+   end subroutine update
+
+   subroutine run(data, column)
+      type(run_data), intent(inout) :: data
+      type(column_type), intent(in) :: column
+      type(time_plan) :: plan
+      type(array_recorder) :: recorder
+      type(signal_type) :: force, ground
+      real(wp), allocatable, target :: kept(:, :)
+
+      if (allocated(data%rows)) deallocate (data%rows)
+      if (allocated(data%outcome)) deallocate (data%outcome)
+      call plan_dynamic(column, data%time, data%dt, plan, data%limit, data%outcome)
+      if (allocated(data%outcome)) return
+      if (allocated(data%force)) then
+         force%time = data%time
+         force%value = data%force
+      end if
+      if (allocated(data%ground)) then
+         ground%time = data%time
+         ground%value = data%ground
+      end if
+      allocate (kept(row_size(column%n), plan%rows(data%every)))
+      recorder%rows => kept
+      call run_dynamic(column, plan, data%limit, data%time, force, ground, data%initial, data%every, &
+                       recorder, data%summary, data%outcome)
+      data%rows = kept(:, :recorder%count)
+   end subroutine run
+
+   !> Times 0, h, ..., m h.
+   pure function times(m, h) result(t)
+      integer, intent(in) :: m
+      real(wp), intent(in) :: h
+      real(wp) :: t(m + 1)
+      integer :: i
+
+      t = [(i*h, i=0, m)]
+   end function times
+
+   !> The error must fall by 2**4 as the step is halved, within 4.0 +- 0.05.
+   subroutine check_order(error, wrong, what)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp), intent(in) :: wrong(:)
+      character(len=*), intent(in) :: what
+      integer :: m
+
+      m = size(wrong)
+      call check_close(error, log(wrong(:m - 1)/wrong(2:))/log(2.0_wp), spread(4.0_wp, 1, m - 1), 0.0_wp, &
+                       0.05_wp, what//': order')
+   end subroutine check_order
+
+   !> Largest difference of the deformations at the last row from the exact ones, over their size.
+   real(wp) function wrong_at_end(data, exact) result(wrong)
+      type(run_data), intent(in) :: data
+      real(wp), intent(in) :: exact(:)
+      real(wp) :: q(size(exact))
+
+      q = data%rows(row_joints:row_joints + size(exact) - 1, size(data%rows, 2))
+      wrong = maxval(abs(q - exact))/maxval(abs(exact))
+   end function wrong_at_end
+
+   subroutine free_vibration(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: n = 3
+      type(error_type), allocatable :: outcome
+      type(run_data) :: data
+      type(column_type) :: column
+      type(modes_type) :: modes
+      real(wp) :: finish, wrong(3), h
+      integer :: mode, i
+
+      column = made(chain(n, 'small'))
+      call find_modes(column, modes, outcome)
+      call check_passed(error, outcome, 'find_modes')
+      allocate (data%initial%deformation(2*n))
+      do mode = 1, 2*n
+         ! Where the cosine is steep, the error of the phase is seen.
+         finish = 4.7_wp/modes%omega(mode)
+         data%initial%deformation(:) = 1.0e-3_wp*modes%shapes(:, mode)
+         h = min(finish/20, 0.9_wp*modes%stable_step)
+         do i = 1, 3
+            data%time = [0.0_wp, finish]
+            data%dt = finish/(ceiling(finish/h)*2**i)
+            call run(data, column)
+            call check_passed(error, data%outcome, 'run')
+            if (allocated(error)) return
+            wrong(i) = wrong_at_end(data, data%initial%deformation*cos(modes%omega(mode)*finish))
+         end do
+         call check_order(error, wrong, 'mode '//to_text(mode))
+         call check_true(error, wrong(3) < 1.0e-5_wp, 'error in mode '//to_text(mode))
+      end do
+   end subroutine free_vibration
+
+   !> Rayleigh damping keeps the modes: exp(-c t/2) (cos w t + c/(2 w) sin w t), c = alpha + beta omega^2.
+   subroutine damped_vibration(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(run_data) :: data
+      type(column_spec) :: spec
+      type(column_type) :: column
+      type(modes_type) :: modes
+      real(wp), parameter :: alpha(3) = [60.0_wp, 0.0_wp, 30.0_wp], beta(3) = [0.0_wp, 5.0e-5_wp, 2.0e-5_wp]
+      real(wp) :: wrong(3), c, w, t
+      integer :: kind, i
+
+      do kind = 1, 3
+         spec = chain(2, 'small')
+         spec%mass_damping = alpha(kind)
+         spec%stiffness_damping = beta(kind)
+         column = made(spec)
+         call find_modes(column, modes, outcome)
+         call check_passed(error, outcome, 'find_modes')
+         c = alpha(kind) + beta(kind)*modes%omega(4)**2
+         w = sqrt(modes%omega(4)**2 - c**2/4)
+         t = 4.7_wp/modes%omega(4)
+         data%time = [0.0_wp, t]
+         data%initial%deformation = modes%shapes(:, 4)
+         do i = 1, 3
+            data%dt = t/(40*2**i)
+            call run(data, column)
+            call check_passed(error, data%outcome, 'run')
+            if (allocated(error)) return
+            wrong(i) = wrong_at_end(data, modes%shapes(:, 4)*exp(-c*t/2)*(cos(w*t) + c/(2*w)*sin(w*t)))
+         end do
+         call check_order(error, wrong, 'damping '//to_text(kind))
+         call check_true(error, abs(data%rows(row_residual, size(data%rows, &
+                         2))) < 1.0e-5_wp*data%summary%largest, &
+                         'energy balance')
+         call check_true(error, data%rows(row_damping, size(data%rows, 2)) > 0.0_wp, 'damping takes energy')
+      end do
+   end subroutine damped_vibration
+
+   !> Modal response to a load b sin(W t) from rest: b_m/(omega^2 - W^2) (sin W t - W/omega sin omega t).
+   pure function harmonic(modes, load, w, t) result(q)
+      type(modes_type), intent(in) :: modes
+      real(wp), intent(in) :: load(:), w, t
+      real(wp) :: q(size(load))
+      integer :: i
+
+      q = 0.0_wp
+      do i = 1, size(load)
+         associate (omega => modes%omega(i), shape => modes%shapes(:, i))
+            q = q + shape*(dot_product(shape, load)/(omega**2 - w**2)*(sin(w*t) - w/omega*sin(omega*t)))
+         end associate
+      end do
+   end function harmonic
+
+   !> The table has a point at every half step, where RK4 asks for the load: no error of interpolation.
+   subroutine harmonic_orders(error, by_ground)
+      type(error_type), allocatable, intent(inout) :: error
+      logical, intent(in) :: by_ground
+      type(error_type), allocatable :: outcome
+      type(run_data) :: data
+      type(column_type) :: column
+      type(modes_type) :: modes
+      real(wp) :: wrong(3), w, finish, h, q(4), exact(4)
+      real(wp), allocatable :: load(:), wave(:)
+      integer :: i, j, m
+
+      column = made(chain(2, 'small'))
+      call find_modes(column, modes, outcome)
+      call check_passed(error, outcome, 'find_modes')
+      w = 0.7_wp*modes%omega(1)
+      finish = 5.0_wp/modes%omega(1)
+      load = 1.0e5_wp*column%arm
+      if (by_ground) load = -3.0_wp*column%ground_arm
+      do i = 1, 3
+         m = ceiling(2.0_wp*finish*modes%omega(4))*2**i
+         h = finish/m
+         data%time = times(2*m, 0.5_wp*h)
+         data%dt = h
+         wave = sin(w*data%time)
+         if (by_ground) then
+            data%ground = 3.0_wp*wave
+         else
+            data%force = 1.0e5_wp*wave
+         end if
+         call run(data, column)
+         call check_passed(error, data%outcome, 'run')
+         if (allocated(error)) return
+         call check_equal(error, data%summary%steps, m, 'steps')
+         wrong(i) = 0.0_wp
+         do j = 1, m + 1
+            q = data%rows(row_joints:row_joints + 3, j)
+            exact = harmonic(modes, load, w, data%rows(row_time, j))
+            wrong(i) = max(wrong(i), maxval(abs(q - exact)))
+         end do
+         wrong(i) = wrong(i)/maxval(abs(exact))
+      end do
+      call check_order(error, wrong, 'harmonic load')
+      call check_true(error, wrong(3) < 1.0e-6_wp, 'error')
+   end subroutine harmonic_orders
+
+   subroutine harmonic_force(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      call harmonic_orders(error, .false.)
+   end subroutine harmonic_force
+
+   subroutine harmonic_ground(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      call harmonic_orders(error, .true.)
+   end subroutine harmonic_ground
+
+   subroutine ramp(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(run_data) :: data
+      type(column_type) :: column
+      type(modes_type) :: modes
+      real(wp) :: q(2), t, omega
+      integer :: i
+
+      column = made(column_1('small'))
+      call find_modes(column, modes, outcome)
+      call check_passed(error, outcome, 'find_modes')
+      t = 0.013_wp
+      data%time = t*[0.0_wp, 0.25_wp, 1.0_wp]
+      data%force = 2.0e4_wp*[0.0_wp, 0.25_wp, 1.0_wp]
+      data%dt = t/2000
+      call run(data, column)
+      call check_passed(error, data%outcome, 'run')
+      if (allocated(error)) return
+      q = 0.0_wp
+      do i = 1, 2
+         omega = modes%omega(i)
+         q = q + modes%shapes(:, i)*dot_product(modes%shapes(:, i), column%arm)*2.0e4_wp/t &
+             *(t - sin(omega*t)/omega)/omega**2
+      end do
+      call check_true(error, wrong_at_end(data, q) < 1.0e-8_wp, 'closed form')
+      call check_close(error, data%rows(row_force, :), data%force, 1.0e-14_wp, 0.0_wp, 'force')
+      call check_equal(error, data%summary%events, 0, 'no spring has left its first line')
+   end subroutine ramp
+
+   !> March with a step that no plan would allow: the limit is where the scheme itself fails.
+   subroutine limit(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(column_type) :: column
+      type(modes_type) :: modes
+      type(time_plan) :: plan
+      type(initial_state) :: start
+      type(signal_type) :: none
+      type(summary_type) :: summary
+      type(array_recorder) :: recorder
+      real(wp), allocatable, target :: kept(:, :)
+      real(wp) :: energy(2), share(2)
+      integer, parameter :: steps = 3000
+      integer :: kind, i
+
+      share = [0.999_wp, 1.001_wp]
+      do kind = 1, 3
+         spec = chain(2, 'small')
+         if (kind > 1) spec%stiffness_damping = 1.0e-5_wp*100.0_wp**(kind - 2)
+         column = made(spec)
+         call find_modes(column, modes, outcome)
+         call check_passed(error, outcome, 'find_modes')
+         start%velocity = modes%shapes(:, 4)
+         do i = 1, 2
+            plan%free = .true.
+            plan%dt = share(i)*modes%stable_step
+            plan%intervals = steps
+            plan%steps = steps
+            plan%finish = steps*plan%dt
+            if (allocated(kept)) deallocate (kept)
+            allocate (kept(row_size(2), 2))
+            recorder%rows => kept
+            recorder%count = 0
+            call march(column, plan, [0.0_wp, plan%finish], none, none, start, steps, recorder, summary, &
+                       outcome)
+            call check_passed(error, outcome, 'march')
+            energy(i) = (kept(row_kinetic, 2) + kept(row_spring, 2))/kept(row_kinetic, 1)
+         end do
+         call check_true(error, energy(1) < 1.0_wp, 'just below the limit, damping '//to_text(kind))
+         call check_true(error, energy(2) > 10.0_wp, 'just above the limit, damping '//to_text(kind))
+      end do
+   end subroutine limit
+
+   subroutine refused(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(run_data) :: data
+      type(column_type) :: column
+      type(modes_type) :: modes
+
+      column = made(column_1('small'))
+      call find_modes(column, modes, outcome)
+      call check_passed(error, outcome, 'find_modes')
+      data%time = [0.0_wp, 1.0_wp]
+      data%dt = 1.01_wp*modes%stable_step
+      call run(data, column)
+      call check_failed(error, data%outcome, bad_input, 'is beyond the stability limit of rk4, '// &
+                        to_text(modes%stable_step)//' s')
+   end subroutine refused
+
+   !> theory.md section 4: as printed, the energy of this motion drifts by 18 %.
+   subroutine misprint_e6(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(run_data) :: data
+      type(column_spec) :: spec
+      real(wp) :: energy
+
+      spec = column_1('finite')
+      spec%shear(1) = elastic(7.0e3_wp)
+      spec%flexure(1) = elastic(2.5e3_wp)
+      data%time = times(200, 0.05_wp)
+      data%dt = 5.0e-4_wp
+      data%initial%deformation = [0.05_wp, 0.8_wp]
+      call run(data, made(spec))
+      call check_passed(error, data%outcome, 'run')
+      if (allocated(error)) return
+      energy = 0.5_wp*(7.0e3_wp*0.05_wp**2 + 2.5e3_wp*0.8_wp**2)
+      call check_close(error, data%rows(row_kinetic, :) + data%rows(row_spring, :), spread(energy, 1, 201), &
+                       1.0e-10_wp, 0.0_wp, 'energy')
+      call check_true(error, minval(data%rows(row_joints + 1, :)) < -0.75_wp, 'the rotation is large')
+      call check_close(error, data%rows(row_displacement, :), data%rows(row_joints, :) &
+                       + height_1*sin(data%rows(row_joints + 1, :)), 1.0e-14_wp, 1.0e-15_wp, 'top')
+   end subroutine misprint_e6
+
+   subroutine finite_energy(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(run_data) :: data
+      type(column_spec) :: spec
+      real(wp) :: wrong(3)
+      integer :: i, last
+
+      spec = column_1('finite')
+      spec%shear(1) = elastic(7.0e4_wp)
+      spec%flexure(1) = elastic(2.5e4_wp)
+      spec%axial_load = 5.0e3_wp
+      spec%self_weight = .true.
+      spec%mass_damping = 0.3_wp
+      spec%stiffness_damping = 1.0e-3_wp
+      data%initial%deformation = [0.05_wp, 0.6_wp]
+      data%initial%velocity = [-0.2_wp, 1.0_wp]
+      do i = 1, 3
+         data%time = times(100, 0.02_wp)
+         data%force = 3.0e3_wp*sin(7.0_wp*data%time)
+         data%ground = 4.0_wp*cos(5.0_wp*data%time)
+         data%dt = 4.0e-3_wp/2**i
+         call run(data, made(spec))
+         call check_passed(error, data%outcome, 'run')
+         if (allocated(error)) return
+         wrong(i) = data%summary%residual/data%summary%largest
+      end do
+      last = size(data%rows, 2)
+      call check_true(error, wrong(3) < 1.0e-8_wp, 'residual')
+      call check_true(error, all(wrong(:2)/wrong(2:) > 12.0_wp), 'order of the residual is 4 or more')
+      call check_true(error, minval(abs([data%rows(row_input, last), data%rows(row_damping, last), &
+                                         data%rows(row_axial, last)])) > 1.0_wp, 'every energy takes part')
+   end subroutine finite_energy
+
+   subroutine finite_small(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(random_type) :: random
+      type(column_spec) :: spec
+      type(motion_type) :: small, finite
+      real(wp) :: q(2), v(2), f(2), a(2), b(2)
+      integer :: i
+
+      spec = column_1('pdelta')
+      spec%axial_load = 1.0e6_wp
+      spec%self_weight = .true.
+      spec%mass_damping = 2.0_wp
+      spec%stiffness_damping = 1.0e-4_wp
+      call small%create(made(spec), outcome)
+      call check_passed(error, outcome, 'small')
+      spec%kinematics = 'finite'
+      call finite%create(made(spec), outcome)
+      call check_passed(error, outcome, 'finite')
+      do i = 1, 50
+         q = 1.0e-7_wp*[random%uniform(-1.0_wp, 1.0_wp), random%uniform(-1.0_wp, 1.0_wp)]
+         v = 1.0e-6_wp*[random%uniform(-1.0_wp, 1.0_wp), random%uniform(-1.0_wp, 1.0_wp)]
+         f = [s_k, k_c]*q
+         call small%acceleration(q, v, f, 30.0_wp, 0.1_wp, a)
+         call finite%acceleration(q, v, f, 30.0_wp, 0.1_wp, b)
+         call check_close(error, a, b, 1.0e-10_wp, 1.0e-10_wp, 'acceleration')
+         call check_close(error, small%kinetic_energy(q, v), finite%kinetic_energy(q, v), 1.0e-10_wp, &
+                          0.0_wp, &
+                          'kinetic energy')
+         call check_close(error, small%potential(q), finite%potential(q), 1.0e-10_wp, 0.0_wp, 'potential')
+      end do
+   end subroutine finite_small
+
+   subroutine chain_energy(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(run_data) :: data
+      type(column_spec) :: spec
+      real(wp) :: wrong(3)
+      integer :: i
+
+      spec = chain(5, 'pdelta')
+      spec%axial_load = 1.0e6_wp
+      spec%self_weight = .true.
+      spec%mass_damping = 5.0_wp
+      spec%stiffness_damping = 1.0e-6_wp
+      do i = 1, 3
+         data%time = times(40, 1.0e-3_wp)
+         data%force = 3.0e5_wp*sin(70.0_wp*data%time)
+         data%ground = 4.0_wp*cos(50.0_wp*data%time)
+         data%dt = 1.0e-3_wp/(10*2**i)
+         call run(data, made(spec))
+         call check_passed(error, data%outcome, 'run')
+         if (allocated(error)) return
+         wrong(i) = data%summary%residual/data%summary%largest
+      end do
+      call check_true(error, wrong(3) < 1.0e-6_wp, 'residual')
+      call check_true(error, all(wrong(:2)/wrong(2:) > 12.0_wp), 'order of the residual is 4 or more')
+   end subroutine chain_energy
+
+   !> A force that brings both springs of column 1 beyond yield, twice.
+   subroutine yielding_force(data, height, seconds)
+      type(run_data), intent(inout) :: data
+      real(wp), intent(in) :: height, seconds
+      integer, parameter :: corners = 4
+      integer :: i
+
+      data%time = times(corners, seconds/corners)
+      data%force = height*[(merge(0.0_wp, 1.0_wp, i == 0)*merge(1, -1, mod(i, 2) == 1), i=0, corners)]
+   end subroutine yielding_force
+
+   subroutine spring_rows(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(run_data) :: data
+      type(column_type) :: column
+      real(wp), allocatable :: f(:)
+      integer :: i
+
+      column = made(column_1('small'))
+      call yielding_force(data, 1.6e5_wp, 0.2_wp)
+      data%dt = 0.2_wp/2003.0_wp
+      call run(data, column)
+      call check_passed(error, data%outcome, 'run')
+      if (allocated(error)) return
+      call check_equal(error, size(data%rows, 2), 2004, 'a row after each step')
+      call check_true(error, data%summary%events > 20, 'the springs change lines')
+      allocate (f(size(data%rows, 2)))
+      do i = 1, 2
+         call follow_path(column%spring(i), data%rows(row_joints - 1 + i, :), f)
+         call check_same(error, data%rows(row_joints + 1 + i, :), f, 'force of a spring')
+      end do
+   end subroutine spring_rows
+
+   subroutine energy_converges(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(run_data) :: data
+      real(wp) :: wrong(4)
+      integer :: i
+
+      do i = 1, 4
+         call yielding_force(data, 1.6e5_wp, 0.2_wp)
+         data%dt = 0.05_wp/(50*4**i)
+         call run(data, made(column_1('small')))
+         call check_passed(error, data%outcome, 'run')
+         if (allocated(error)) return
+         wrong(i) = data%summary%residual/data%summary%largest
+      end do
+      ! A line is changed at the end of a step: the residual is of second order only on average.
+      call check_true(error, wrong(4) < 1.0e-6_wp, 'residual')
+      call check_true(error, wrong(4) < 0.01_wp*wrong(1), 'residual of a step 64 times smaller')
+   end subroutine energy_converges
+
+   subroutine slow_loading(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(run_data) :: data
+      type(array_recorder) :: recorder
+      type(summary_type) :: summary
+      real(wp), allocatable, target :: kept(:, :)
+      real(wp) :: wrong(2)
+      integer :: i
+
+      spec = column_1('small')
+      spec%mass_damping = 100.0_wp
+      do i = 1, 2
+         call yielding_force(data, 1.6e5_wp, 5.0_wp*10**(i - 1))
+         call run(data, made(spec))
+         call check_passed(error, data%outcome, 'run')
+         if (allocated(error)) return
+         if (allocated(kept)) deallocate (kept)
+         allocate (kept(row_size(1), size(data%force)))
+         recorder%rows => kept
+         recorder%count = 0
+         call run_static(made(spec), .true., data%force, 1, recorder, summary, outcome)
+         call check_passed(error, outcome, 'static path')
+         wrong(i) = maxval(abs(data%rows(row_displacement, :) - kept(row_displacement, :))) &
+                    /maxval(abs(kept(row_displacement, :)))
+      end do
+      call check_true(error, maxval(abs(kept(row_displacement, :))) > 3.0_wp*height_1*d_y, 'beyond yield')
+      call check_true(error, wrong(2) < 0.01_wp, 'slow: below 1 %, not '//to_text(wrong(2)))
+      call check_true(error, wrong(2) < 0.2_wp*wrong(1), 'ten times slower is better')
+   end subroutine slow_loading
+
+   subroutine initial(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(run_data) :: data
+      type(column_type) :: column
+      real(wp) :: f(1)
+
+      column = made(column_1('small'))
+      data%time = [0.0_wp, 1.0e-4_wp]
+      data%initial%deformation = [0.0_wp, 3.0_wp*d_y]
+      data%initial%velocity = [1.0_wp, 0.0_wp]
+      call run(data, column)
+      call check_passed(error, data%outcome, 'run')
+      if (allocated(error)) return
+      call follow_path(column%spring(2), [3.0_wp*d_y], f)
+      call check_same(error, data%rows(row_joints + 3, 1), f(1), 'moment at the begin')
+      call check_same(error, data%rows(row_kinetic, 1), 0.5_wp*mass_1, 'kinetic energy at the begin')
+      call check_same(error, data%rows(row_residual, 1), 0.0_wp, 'the balance begins at zero')
+   end subroutine initial
+
+   subroutine rows(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(run_data) :: data, fine, thin
+      type(column_type) :: column
+      integer :: steps
+
+      column = made(column_1('small'))
+      data%time = times(10, 0.01_wp)
+      data%force = 1.0e4_wp*sin(30.0_wp*data%time)
+      call run(data, column)
+      call check_passed(error, data%outcome, 'run')
+      if (allocated(error)) return
+      call check_same(error, data%rows(row_time, :), data%time, 'times of the loading')
+      call check_close(error, data%rows(row_force, :), data%force, 1.0e-14_wp, 0.0_wp, 'force')
+      call check_equal(error, size(data%rows, 2), 11, 'rows')
+
+      ! With `every` it is the steps that count.
+      steps = data%summary%steps
+      fine%time = data%time
+      fine%force = data%force
+      fine%every = 1
+      call run(fine, column)
+      call check_passed(error, fine%outcome, 'a row after each step')
+      if (allocated(error)) return
+      call check_equal(error, size(fine%rows, 2), steps + 1, 'a row after each step')
+      thin%time = data%time
+      thin%force = data%force
+      thin%every = 7
+      call run(thin, column)
+      call check_passed(error, thin%outcome, 'every 7th step')
+      if (allocated(error)) return
+      call check_true(error, mod(steps, 7) /= 0, 'the last step is none of them')
+      call check_equal(error, thin%summary%rows, steps/7 + 2, 'rows: begin, every 7th, the last')
+      call check_same(error, pack(thin%rows(:, :steps/7 + 1), .true.), pack(fine%rows(:, ::7), .true.), &
+                      'every 7th step')
+      call check_same(error, thin%rows(:, steps/7 + 2), fine%rows(:, steps + 1), 'the last step')
+      call check_same(error, pack(data%rows(:, 11), .true.), fine%rows(:, steps + 1), 'the same run')
+      call check_same(error, thin%summary%peak_displacement, fine%summary%peak_displacement, &
+                      'the peak is that of all steps')
+      call check_same(error, fine%summary%peak_displacement, &
+                      fine%rows(row_displacement, maxloc(abs(fine%rows(row_displacement, :)), dim=1)), &
+                      'the peak is that of a row')
+   end subroutine rows
+
+   subroutine free_steps(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(run_data) :: data
+      integer :: last
+
+      data%time = [1.0_wp, 1.0205_wp]
+      data%dt = 1.0e-3_wp
+      data%initial%velocity = [1.0_wp, 0.0_wp]
+      call run(data, made(column_1('small')))
+      call check_passed(error, data%outcome, 'run')
+      if (allocated(error)) return
+      last = size(data%rows, 2)
+      call check_equal(error, last, 22, 'rows: the begin, 20 steps and a half one')
+      call check_same(error, data%rows(row_time, [1, last]), data%time, 'begin and end')
+      call check_close(error, data%rows(row_time, last - 1), 1.02_wp, 1.0e-15_wp, 0.0_wp, 'last whole step')
+   end subroutine free_steps
+
+   !> P l above k_u: once yielded, the column falls, and falls without end with linear geometry.
+   subroutine falling(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(run_data) :: data
+      type(column_spec) :: spec
+      integer :: last
+
+      spec = column_1('pdelta')
+      spec%axial_load = 10.0_wp*k_u/height_1
+      data%time = times(1000, 0.01_wp)
+      data%force = 2.0e5_wp + 0.0_wp*data%time
+      call run(data, made(spec))
+      call check_failed(error, data%outcome, analysis_failed, 'the motion has no bounds any more at time')
+      last = size(data%rows, 2)
+      call check_true(error, last > 1 .and. last < 1000, 'rows up to there')
+      call check_true(error, all(abs(data%rows(row_displacement, :)) < 1.0e100_wp), 'finite rows')
+   end subroutine falling
+
+   subroutine failing(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(failing_recorder) :: recorder
+      type(column_type) :: column
+      type(time_plan) :: plan
+      type(signal_type) :: none
+      type(initial_state) :: rest
+      type(summary_type) :: summary
+      real(wp) :: time(6), step_limit
+
+      column = made(column_1('small'))
+      time = times(5, 0.25_wp)
+      call plan_dynamic(column, time, unset, plan, step_limit, outcome)
+      call check_passed(error, outcome, 'plan')
+      call run_dynamic(column, plan, step_limit, time, none, none, rest, unset_integer, recorder, summary, &
+                       outcome)
+      call check_failed(error, outcome, analysis_failed, 'disk full at 0.5 s')
+      call check_equal(error, recorder%count, 3, 'rows offered')
+   end subroutine failing
+
+   subroutine progress(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(array_recorder) :: recorder
+      type(counting_progress) :: told
+      type(column_type) :: column
+      type(time_plan) :: plan
+      type(signal_type) :: none
+      type(initial_state) :: rest
+      type(summary_type) :: summary
+      real(wp), target :: kept(13, 2)
+      real(wp) :: step_limit
+
+      column = made(column_1('small'))
+      call plan_dynamic(column, [0.0_wp, 10.0_wp], 1.0e-4_wp, plan, step_limit, outcome)
+      call check_passed(error, outcome, 'plan')
+      recorder%rows => kept
+      call run_dynamic(column, plan, step_limit, [0.0_wp, 10.0_wp], none, none, rest, unset_integer, &
+                       recorder, summary, outcome, told)
+      call check_passed(error, outcome, 'run')
+      call check_equal(error, told%count, 12, 'times told')
+      call check_true(error, told%ascends .and. told%share <= 1.0_wp, 'shares')
+   end subroutine progress
+
+   subroutine not_a_number(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(run_data) :: data
+      type(column_type) :: column
+
+      column = made(column_1('small'))
+      data%time = [0.0_wp, 1.0_wp]
+      data%force = [0.0_wp, ieee_value(1.0_wp, ieee_quiet_nan)]
+      call run(data, column)
+      call check_failed(error, data%outcome, bad_input, 'force: value 2 of 2 is NaN')
+      data%force = [0.0_wp, 0.0_wp]
+      data%ground = [ieee_value(1.0_wp, ieee_quiet_nan), 0.0_wp]
+      call run(data, column)
+      call check_failed(error, data%outcome, bad_input, 'ground_acceleration: value 1 of 2 is NaN')
+   end subroutine not_a_number
+
+end module test_history

@@ -1,0 +1,159 @@
+!> Rows, recorder and summary.
+module test_results
+   use check, only: unit_test, check_close, check_equal, check_same, check_true
+   use rbs_base_error, only: error_type, fatal_error
+   use rbs_base_kinds, only: wp
+   use rbs_results_recorder, only: array_recorder
+   use rbs_results_row, only: row_size, row_labels, row_time, row_displacement, row_force, row_input, &
+                              row_kinetic, row_spring, row_damping, row_axial, row_residual, row_joints
+   use rbs_results_summary, only: summary_type, summary_size, summary_names
+   implicit none
+   private
+
+   public :: collect_results
+
+contains
+
+   subroutine collect_results(tests)
+      type(unit_test), allocatable, intent(out) :: tests(:)
+
+      tests = [unit_test('places of a row are all different and fill it', places), &
+               unit_test('labels carry joint and unit', labels), &
+               unit_test('recorder keeps rows until it is full', recorder), &
+               unit_test('recorder keeps nothing after an error', recorder_after_error), &
+               unit_test('summary sees peaks with sign, kept or not', peaks), &
+               unit_test('summary sees the energies of kept rows', energies), &
+               unit_test('summary as an array, in the order of its names', as_array)]
+   end subroutine collect_results
+
+   subroutine places(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer :: i
+      integer, parameter :: all_places(10) = [row_time, row_displacement, row_force, row_input, &
+                                              row_kinetic, row_spring, row_damping, row_axial, &
+                                              row_residual, row_joints]
+
+      do i = 1, 10
+         call check_equal(error, all_places(i), i, 'place')
+      end do
+      call check_equal(error, row_size(1), 13, 'one body')
+      call check_equal(error, row_size(50), 209, 'fifty bodies')
+   end subroutine places
+
+   subroutine labels(error)
+      type(error_type), allocatable, intent(inout) :: error
+      character(len=24), allocatable :: label(:)
+
+      allocate (label, source=row_labels(12, .true.))
+      call check_equal(error, size(label), row_size(12), 'number of labels')
+      call check_equal(error, trim(label(row_time)), 'time_s', 'dynamic')
+      call check_equal(error, trim(label(row_residual)), 'residual_J', 'residual')
+      call check_equal(error, trim(label(row_joints)), 'slip_1_m', 'first slip')
+      call check_equal(error, trim(label(row_joints + 12)), 'rotation_1_rad', 'first rotation')
+      call check_equal(error, trim(label(row_joints + 35)), 'shear_12_N', 'last shear')
+      call check_equal(error, trim(label(row_joints + 47)), 'moment_12_Nm', 'last moment')
+      label = row_labels(1, .false.)
+      call check_equal(error, trim(label(row_time)), 'step', 'static')
+   end subroutine labels
+
+   subroutine recorder(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(array_recorder) :: keeper
+      real(wp), target :: rows(3, 2)
+
+      rows = 0.0_wp
+      keeper%rows => rows
+      call keeper%record([1.0_wp, 2.0_wp, 3.0_wp], outcome)
+      call keeper%record([4.0_wp, 5.0_wp, 6.0_wp], outcome)
+      call keeper%record([7.0_wp, 8.0_wp, 9.0_wp], outcome)
+      call check_true(error, .not. allocated(outcome), 'a full recorder is no error')
+      call check_equal(error, keeper%count, 2, 'rows kept')
+      call check_same(error, pack(rows, .true.), 1.0_wp*[1, 2, 3, 4, 5, 6], 'rows')
+   end subroutine recorder
+
+   subroutine recorder_after_error(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(array_recorder) :: keeper
+      real(wp), target :: rows(1, 1)
+
+      rows = 0.0_wp
+      keeper%rows => rows
+      call fatal_error(outcome, 1, 'before')
+      call keeper%record([1.0_wp], outcome)
+      call check_equal(error, keeper%count, 0, 'rows kept')
+      call check_true(error, allocated(outcome), 'the error is still there')
+   end subroutine recorder_after_error
+
+   !> A row with a displacement, a force, and energies that are told apart.
+   pure function row_of(displacement, force, residual) result(row)
+      real(wp), intent(in) :: displacement, force, residual
+      real(wp) :: row(13)
+
+      row = 0.0_wp
+      row(row_displacement) = displacement
+      row(row_force) = force
+      row(row_input) = 10.0_wp*force
+      row(row_kinetic) = 1.0_wp
+      row(row_spring) = 2.0_wp
+      row(row_damping) = 3.0_wp
+      row(row_residual) = residual
+   end function row_of
+
+   subroutine peaks(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(summary_type) :: summary
+
+      call summary%see_peak(0.1_wp, 5.0_wp)
+      call summary%see_peak(-0.3_wp, -4.0_wp)
+      call summary%see_peak(0.2_wp, -6.0_wp)
+      call summary%see_peak(0.3_wp, 6.0_wp)
+      call check_same(error, summary%peak_displacement, -0.3_wp, 'peak displacement: the first of two')
+      call check_same(error, summary%peak_force, -6.0_wp, 'peak force')
+      call check_same(error, summary%displacement_at_peak, 0.2_wp, 'displacement there')
+      call check_equal(error, summary%rows, 0, 'no row')
+   end subroutine peaks
+
+   subroutine energies(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(summary_type) :: summary
+
+      call summary%see(row_of(0.1_wp, 5.0_wp, 1.0e-9_wp))
+      call summary%see(row_of(-0.3_wp, -4.0_wp, -2.0e-9_wp))
+      call summary%see(row_of(0.2_wp, -6.0_wp, 0.0_wp))
+      call check_equal(error, summary%rows, 3, 'rows')
+      call check_same(error, [summary%input, summary%spring, summary%damping], [-60.0_wp, 2.0_wp, 3.0_wp], &
+                      'energies at the end')
+      call check_same(error, summary%residual, 2.0e-9_wp, 'largest residual')
+      call check_same(error, summary%largest, 60.0_wp, 'largest energy')
+   end subroutine energies
+
+   subroutine as_array(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(summary_type) :: summary
+      real(wp) :: values(summary_size)
+
+      values = summary%as_array()
+      call check_same(error, values, spread(0.0_wp, 1, summary_size), 'nothing seen yet')
+      summary%steps = 7
+      summary%stable_step = 0.5_wp
+      call summary%see_peak(0.1_wp, 5.0_wp)
+      call summary%see(row_of(0.1_wp, 5.0_wp, 1.0e-9_wp))
+      values = summary%as_array()
+      call check_same(error, values(named('steps')), 7.0_wp, 'steps')
+      call check_same(error, values(named('rows')), 1.0_wp, 'rows')
+      call check_same(error, values(named('stable_step_s')), 0.5_wp, 'stable step')
+      call check_same(error, values(named('peak_force_N')), 5.0_wp, 'peak force')
+      call check_same(error, values(named('damping_energy_J')), 3.0_wp, 'damping')
+      call check_close(error, values(named('relative_energy_residual')), 1.0e-9_wp/50.0_wp, 1.0e-15_wp, &
+                       0.0_wp, 'relative residual')
+   end subroutine as_array
+
+   integer function named(name)
+      character(len=*), intent(in) :: name
+
+      named = findloc(summary_names == name, .true., dim=1)
+   end function named
+
+end module test_results

@@ -1,0 +1,492 @@
+!> What is refused, and what the user reads then: the thing, its value, the remedy.
+module test_spec
+   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf
+   use check, only: unit_test, check_close, check_contains, check_equal, check_failed, check_same, &
+                    check_true
+   use rbs_base_constants, only: unset, standard_gravity
+   use rbs_base_error, only: error_type, message_list, bad_input
+   use rbs_base_kinds, only: wp
+   use rbs_column_column, only: column_type
+   use rbs_solve_run, only: make_column
+   use rbs_spec_analysis, only: analysis_spec
+   use rbs_spec_case, only: case_spec
+   use rbs_spec_check, only: is_given
+   use rbs_spec_column, only: column_spec, most_bodies
+   use rbs_spec_loading, only: loading_spec, units_of
+   use rbs_spec_spring, only: spring_spec, initial_stiffness
+   use rbs_spec_units, only: unit_type, to_si, length_units, force_units, acceleration_units
+   use samples, only: elastic, bilinear, takeda, bilinear_1, takeda_1, column_1, chain, k_c, d_c, k_y, &
+                      d_y, k_u, s_k
+   implicit none
+   private
+
+   public :: collect_spec
+
+contains
+
+   subroutine collect_spec(tests)
+      type(unit_test), allocatable, intent(out) :: tests(:)
+
+      tests = [unit_test('unset is told from any number, NaN included', given), &
+               unit_test('the springs of table 3 are valid', springs_valid), &
+               unit_test('spring: unknown rule', spring_rule), &
+               unit_test('spring: elastic', spring_elastic), &
+               unit_test('spring: bilinear', spring_bilinear), &
+               unit_test('spring: takeda, single numbers', spring_takeda_numbers), &
+               unit_test('spring: takeda, order of the numbers', spring_takeda_order), &
+               unit_test('spring: limits of the rules are valid', spring_limits), &
+               unit_test('spring: NaN and infinity in every number', spring_not_finite), &
+               unit_test('spring: beyond the range of the arithmetic', spring_range), &
+               unit_test('spring: initial stiffness', spring_stiffness), &
+               unit_test('column: valid ones', column_valid), &
+               unit_test('column: single numbers', column_numbers), &
+               unit_test('column: lengths and masses', column_parts), &
+               unit_test('column: number of springs', column_springs), &
+               unit_test('column: finite for one body only', column_finite), &
+               unit_test('loading: drive and source', loading_names), &
+               unit_test('loading: a drive that the analysis cannot take', loading_drive), &
+               unit_test('loading: units', loading_units), &
+               unit_test('loading: protocol', loading_protocol), &
+               unit_test('analysis and output', analysis), &
+               unit_test('case: all faults at once', all_at_once), &
+               unit_test('case: two loadings', two_loadings), &
+               unit_test('units: exact decimals', units)]
+   end subroutine collect_spec
+
+   !> The messages on a spring hold `part`; an empty part: there are none.
+   subroutine expect_spring(error, spec, part)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_spec), intent(in) :: spec
+      character(len=*), intent(in) :: part
+      type(message_list) :: messages
+
+      call spec%validate('shear spring', messages)
+      call expect(error, messages, part)
+   end subroutine expect_spring
+
+   subroutine expect_column(error, spec, part)
+      type(error_type), allocatable, intent(inout) :: error
+      type(column_spec), intent(in) :: spec
+      character(len=*), intent(in) :: part
+      type(message_list) :: messages
+
+      call spec%validate(messages)
+      call expect(error, messages, part)
+   end subroutine expect_column
+
+   subroutine expect_loading(error, spec, dynamic, part)
+      type(error_type), allocatable, intent(inout) :: error
+      type(loading_spec), intent(in) :: spec
+      logical, intent(in) :: dynamic
+      character(len=*), intent(in) :: part
+      type(message_list) :: messages
+
+      call spec%validate(dynamic, messages)
+      call expect(error, messages, part)
+   end subroutine expect_loading
+
+   !> One message that holds `part`, or none if the part is empty.
+   subroutine expect(error, messages, part)
+      type(error_type), allocatable, intent(inout) :: error
+      type(message_list), intent(in) :: messages
+      character(len=*), intent(in) :: part
+
+      if (part == '') then
+         if (messages%count > 0) call check_equal(error, messages%text, '', 'messages')
+      else if (messages%count == 0) then
+         call check_true(error, .false., "no message, expected one with '"//part//"'")
+      else
+         call check_contains(error, messages%text, part, 'message')
+         call check_equal(error, messages%count, 1, "messages in '"//messages%text//"'")
+      end if
+   end subroutine expect
+
+   subroutine given(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      call check_true(error, .not. is_given(unset), 'unset is not given')
+      call check_true(error, all(is_given([0.0_wp, -1.0_wp, huge(1.0_wp)])), 'numbers are given')
+      call check_true(error, is_given(ieee_value(1.0_wp, ieee_quiet_nan)), 'a NaN is given')
+   end subroutine given
+
+   subroutine springs_valid(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      call expect_spring(error, bilinear_1(), '')
+      call expect_spring(error, takeda_1('kc'), '')
+      call expect_spring(error, takeda_1('kr'), '')
+      call expect_spring(error, takeda_1('one'), '')
+      call expect_spring(error, elastic(1.0_wp), '')
+   end subroutine springs_valid
+
+   subroutine spring_rule(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_spec) :: spec
+
+      call expect_spring(error, spec, 'shear spring: rule is missing; it is one of elastic, bilinear, takeda')
+      spec%rule = 'takda'
+      call expect_spring(error, spec, "rule = 'takda' is not known")
+      call expect_spring(error, spec, "did you mean 'takeda'?")
+   end subroutine spring_rule
+
+   subroutine spring_elastic(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      call expect_spring(error, elastic(unset), 'shear spring: k is missing')
+      call expect_spring(error, elastic(0.0_wp), 'shear spring: k = 0 must be above zero')
+      call expect_spring(error, elastic(-2.0_wp), 'shear spring: k = -2 must be above zero')
+   end subroutine spring_elastic
+
+   subroutine spring_bilinear(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      call expect_spring(error, bilinear(-1.0_wp, 1.0_wp, 0.0_wp), 'k = -1 must be above zero')
+      call expect_spring(error, bilinear(1.0_wp, 0.0_wp, 0.0_wp), 'd_y = 0 must be above zero')
+      call expect_spring(error, bilinear(1.0_wp, 1.0_wp, -0.1_wp), 'k_post = -0.1 must not be negative')
+      call expect_spring(error, bilinear(1.0_wp, 1.0_wp, 1.0_wp), 'k_post = 1 must be below k = 1')
+      call expect_spring(error, bilinear(1.0_wp, 1.0_wp, unset), 'k_post is missing')
+   end subroutine spring_bilinear
+
+   subroutine spring_takeda_numbers(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_spec) :: spec
+
+      spec = takeda_1('kc')
+      spec%k_c = 0.0_wp
+      call expect_spring(error, spec, 'k_c = 0 must be above zero')
+      spec = takeda_1('kc')
+      spec%d_c = -1.0_wp
+      call expect_spring(error, spec, 'd_c = -1 must be above zero')
+      spec = takeda_1('kc')
+      spec%k_y = unset
+      call expect_spring(error, spec, 'k_y is missing')
+      spec = takeda_1('kc')
+      spec%k_u = -1.0_wp
+      call expect_spring(error, spec, 'k_u = -1 must not be negative')
+      spec = takeda_1('kc')
+      spec%b0 = -0.1_wp
+      call expect_spring(error, spec, 'b0 = -0.1 must not be negative')
+      spec = takeda_1('kc')
+      spec%b1 = 0.0_wp
+      call expect_spring(error, spec, 'b1 = 0 must be above zero')
+      call expect_spring(error, takeda_1('ko'), "inner = 'ko' is not known; it is one of kc, kr, one")
+   end subroutine spring_takeda_numbers
+
+   subroutine spring_takeda_order(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      call expect_spring(error, takeda(k_c, d_c, k_y, d_c, k_u, 0.4_wp, 1.0_wp, 'kc'), &
+                         'd_y = 0.00031891 must be above d_c = 0.00031891')
+      call expect_spring(error, takeda(k_c, d_c, k_c, d_y, k_u, 0.4_wp, 1.0_wp, 'kc'), &
+                         'k_y = 2.5428e+08 must be below k_c = 2.5428e+08')
+      call expect_spring(error, takeda(k_c, d_c, k_y, d_y, 1.01_wp*k_y, 0.4_wp, 1.0_wp, 'kc'), &
+                         'must not be above k_y')
+   end subroutine spring_takeda_order
+
+   subroutine spring_limits(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      call expect_spring(error, bilinear(1.0_wp, 1.0_wp, 0.0_wp), '')
+      call expect_spring(error, takeda(k_c, d_c, k_y, d_y, 0.0_wp, 0.0_wp, 1.5_wp, 'kr'), '')
+      call expect_spring(error, takeda(k_c, d_c, k_y, d_y, k_y, 1.0_wp, 0.05_wp, 'kc'), '')
+   end subroutine spring_limits
+
+   !> Also under floating-point traps: a NaN is never compared.
+   subroutine spring_not_finite(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_spec) :: spec
+      real(wp) :: numbers(7), bad(2)
+      integer :: i, j
+      character(len=8) :: text(2)
+
+      bad = [ieee_value(1.0_wp, ieee_quiet_nan), ieee_value(1.0_wp, ieee_positive_inf)]
+      text = ['NaN     ', 'Infinity']
+      do j = 1, 2
+         do i = 1, 7
+            numbers = [k_c, d_c, k_y, d_y, k_u, 0.4_wp, 0.2_wp]
+            numbers(i) = bad(j)
+            spec = takeda(numbers(1), numbers(2), numbers(3), numbers(4), numbers(5), numbers(6), &
+                          numbers(7), 'kc')
+            call expect_spring(error, spec, '= '//trim(text(j))//' must be a finite number')
+         end do
+         call expect_spring(error, elastic(bad(j)), 'k = '//trim(text(j)))
+         call expect_spring(error, bilinear(bad(j), 1.0_wp, 0.0_wp), 'k = '//trim(text(j)))
+         call expect_spring(error, bilinear(1.0_wp, bad(j), 0.0_wp), 'd_y = '//trim(text(j)))
+         call expect_spring(error, bilinear(1.0_wp, 1.0_wp, bad(j)), 'k_post = '//trim(text(j)))
+      end do
+   end subroutine spring_not_finite
+
+   subroutine spring_range(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      call expect_spring(error, bilinear(1.0e200_wp, 1.0_wp, 0.0_wp), 'outside the range of the arithmetic')
+      call expect_spring(error, bilinear(1.0_wp, 1.0e-200_wp, 0.0_wp), 'outside the range of the arithmetic')
+      call expect_spring(error, bilinear(1.0e140_wp, 1.0e140_wp, 0.0_wp), 'k d_y = 1e+140 * 1e+140')
+   end subroutine spring_range
+
+   subroutine spring_stiffness(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      call check_close(error, initial_stiffness([elastic(3.0_wp), bilinear_1(), takeda_1('kc')]), &
+                       [3.0_wp, s_k, k_c], 0.0_wp, 0.0_wp, 'elastic, bilinear, takeda')
+   end subroutine spring_stiffness
+
+   subroutine column_valid(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(column_spec) :: spec
+
+      call expect_column(error, column_1('small'), '')
+      call expect_column(error, column_1('finite'), '')
+      call expect_column(error, chain(7, 'pdelta'), '')
+      spec = column_1('pdelta')
+      spec%axial_load = -1.0e5_wp
+      call expect_column(error, spec, '')
+   end subroutine column_valid
+
+   subroutine column_numbers(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(column_spec) :: spec
+
+      spec = column_1('small')
+      spec%n = 0
+      call expect_column(error, spec, 'column: n = 0 bodies; it must be from 1 to 2000')
+      spec%n = most_bodies + 1
+      call expect_column(error, spec, 'column: n = 2001 bodies')
+      spec = column_1('small')
+      spec%height = unset
+      call expect_column(error, spec, 'column: height is missing; give it a value in m')
+      spec = column_1('small')
+      spec%mass = -614.4_wp
+      call expect_column(error, spec, 'column: mass = -614.4 kg must be above zero')
+      call expect_column(error, column_1('large'), "column: kinematics = 'large' is not known")
+      spec = column_1('small')
+      spec%axial_load = ieee_value(1.0_wp, ieee_quiet_nan)
+      call expect_column(error, spec, 'column: axial_load = NaN must be a finite number')
+      spec = column_1('small')
+      spec%gravity = -9.81_wp
+      call expect_column(error, spec, 'column: gravity = -9.81 m/s2 must not be negative')
+      spec = column_1('small')
+      spec%mass_damping = -1.0_wp
+      call expect_column(error, spec, 'column: mass_damping = -1 1/s must not be negative')
+      spec = column_1('small')
+      spec%stiffness_damping = -1.0_wp
+      call expect_column(error, spec, 'column: stiffness_damping = -1 s must not be negative')
+   end subroutine column_numbers
+
+   subroutine column_parts(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(column_spec) :: spec
+
+      spec = chain(3, 'small')
+      spec%lengths(1) = spec%lengths(1) + 0.1_wp
+      call expect_column(error, spec, 'the lengths add up to 2.1 m, the height is 2 m')
+      spec = chain(3, 'small')
+      spec%masses(2) = 0.0_wp
+      call expect_column(error, spec, 'column: masses(2) = 0 kg must be above zero')
+      spec = chain(3, 'small')
+      spec%masses = [100.0_wp, 100.0_wp]
+      call expect_column(error, spec, 'column: masses has 2 values for n = 3 bodies; give one for each')
+      spec = chain(3, 'small')
+      spec%lengths = [1.0_wp, 1.0_wp]
+      call expect_column(error, spec, 'column: lengths has 2 values for n = 3')
+   end subroutine column_parts
+
+   subroutine column_springs(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(column_spec) :: spec
+
+      spec = chain(3, 'small')
+      deallocate (spec%shear)
+      call expect_column(error, spec, 'column: the shear spring is missing')
+      spec = chain(3, 'small')
+      spec%flexure = spec%flexure(:2)
+      call expect_column(error, spec, 'column: 2 flexure springs for 3 joints; give one, or one for each')
+      spec = chain(3, 'small')
+      spec%flexure(2)%k = -1.0_wp
+      call expect_column(error, spec, 'flexure spring of joint 2: k = -1 must be above zero')
+   end subroutine column_springs
+
+   subroutine column_finite(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      call expect_column(error, chain(2, 'finite'), "'finite' is there for n = 1 only, not for n = 2")
+   end subroutine column_finite
+
+   !> A displacement protocol in drift.
+   type(loading_spec) function drift_protocol() result(spec)
+      spec%drive = 'displacement'
+      spec%source = 'protocol'
+      allocate (spec%amplitudes, source=[0.005_wp, 0.01_wp])
+   end function drift_protocol
+
+   subroutine loading_names(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(loading_spec) :: spec
+
+      spec = drift_protocol()
+      call expect_loading(error, spec, .false., '')
+      spec%drive = ''
+      call expect_loading(error, spec, .false., 'loading: drive is missing')
+      spec = drift_protocol()
+      spec%source = 'fil'
+      call expect_loading(error, spec, .false., "did you mean 'file'?")
+      spec%source = 'file'
+      call expect_loading(error, spec, .false., 'loading: file is missing')
+      spec%file = 'history.txt'
+      call expect_loading(error, spec, .false., '')
+      spec%format = 'xls'
+      call expect_loading(error, spec, .false., "loading: format = 'xls' is not known")
+      spec%format = 'peer'
+      spec%scale = ieee_value(1.0_wp, ieee_quiet_nan)
+      call expect_loading(error, spec, .false., 'loading: scale = NaN')
+      spec%scale = 1.0_wp
+      spec%interval = 0.0_wp
+      call expect_loading(error, spec, .false., 'loading: interval = 0 s must be above zero')
+   end subroutine loading_names
+
+   subroutine loading_drive(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(loading_spec) :: spec
+
+      spec = drift_protocol()
+      spec%period = 1.0_wp
+      call expect_loading(error, spec, .true., "drive = 'displacement' needs the static analysis")
+      spec%drive = 'ground'
+      call expect_loading(error, spec, .false., "drive = 'ground' needs a dynamic analysis")
+   end subroutine loading_drive
+
+   subroutine loading_units(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(loading_spec) :: spec
+
+      spec = drift_protocol()
+      spec%unit = 'kN'
+      call expect_loading(error, spec, .false., "unit of the drive 'displacement' = 'kN' is not known")
+      call expect_loading(error, spec, .false., 'drift, m, mm, cm, in')
+      spec%unit = 'mm'
+      call expect_loading(error, spec, .false., '')
+      spec%unit = 'drift'
+      spec%source = 'file'
+      spec%file = 'history.csv'
+      call expect_loading(error, spec, .false., "= 'drift' is not known; it is one of m, mm, cm, in")
+      call check_equal(error, size(units_of('force')), 4, 'units of force')
+      call check_equal(error, size(units_of('ground')), 4, 'units of acceleration')
+   end subroutine loading_units
+
+   subroutine loading_protocol(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(loading_spec) :: spec
+
+      spec = drift_protocol()
+      deallocate (spec%amplitudes)
+      call expect_loading(error, spec, .false., 'loading: amplitudes are missing')
+      spec = drift_protocol()
+      spec%amplitudes(2) = -0.01_wp
+      call expect_loading(error, spec, .false., 'loading: amplitudes(2) = -0.01 must be above zero')
+      spec = drift_protocol()
+      spec%cycles = [2, 2, 2]
+      call expect_loading(error, spec, .false., 'loading: cycles has 3 values for 2 amplitudes')
+      spec%cycles = [2, 0]
+      call expect_loading(error, spec, .false., 'loading: cycles = 0 must be 1 or more')
+      spec = drift_protocol()
+      spec%repeats = 0
+      call expect_loading(error, spec, .false., 'loading: repeats = 0 must be 1 or more')
+      spec = drift_protocol()
+      spec%points = 0
+      call expect_loading(error, spec, .false., 'loading: points = 0 must be 1 or more')
+      spec = drift_protocol()
+      spec%drive = 'force'
+      call expect_loading(error, spec, .true., 'loading: period is missing; give it a value in s')
+   end subroutine loading_protocol
+
+   subroutine analysis(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(analysis_spec) :: spec
+      type(message_list) :: messages
+      type(case_spec) :: whole
+      type(message_list) :: of_case
+
+      spec%method = 'rk5'
+      spec%dt = 0.0_wp
+      spec%duration = ieee_value(1.0_wp, ieee_positive_inf)
+      call spec%validate(messages)
+      call check_equal(error, messages%count, 3, 'messages of a dynamic analysis')
+      call check_contains(error, messages%text, "did you mean 'rk4'?", 'method')
+      call check_contains(error, messages%text, 'analysis: dt = 0 s must be above zero', 'dt')
+      call check_contains(error, messages%text, 'analysis: duration = Infinity', 'duration')
+
+      whole%column = column_1('small')
+      whole%analysis%dt = 0.1_wp
+      whole%analysis%duration = 1.0_wp
+      whole%output%every = 0
+      call whole%validate(of_case)
+      call check_equal(error, of_case%count, 3, 'messages of a static analysis')
+      call check_contains(error, of_case%text, "dt has no meaning for method = 'static'", 'dt')
+      call check_contains(error, of_case%text, 'duration has no meaning', 'duration')
+      call check_contains(error, of_case%text, 'output: every = 0 must be 1 or more', 'every')
+   end subroutine analysis
+
+   subroutine all_at_once(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(column_type) :: column
+
+      spec = column_1('small')
+      spec%height = 0.0_wp
+      spec%mass = unset
+      spec%shear(1)%k_post = 2.0_wp*s_k
+      spec%flexure(1)%d_c = ieee_value(1.0_wp, ieee_quiet_nan)
+      call make_column(spec, column, outcome)
+      call check_failed(error, outcome, bad_input, 'column: height = 0 m must be above zero')
+      call check_failed(error, outcome, bad_input, 'column: mass is missing; give it a value in kg')
+      call check_failed(error, outcome, bad_input, 'shear spring: k_post = 1.40774e+09 must be below k')
+      call check_failed(error, outcome, bad_input, 'flexure spring: d_c = NaN must be a finite number')
+   end subroutine all_at_once
+
+   subroutine two_loadings(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(case_spec) :: spec
+      type(message_list) :: messages(3)
+      integer :: i
+
+      spec%column = column_1('small')
+      spec%loadings = 2
+      do i = 1, 2
+         spec%loading(i) = drift_protocol()
+         spec%loading(i)%drive = 'force'
+         spec%loading(i)%unit = 'kN'
+         spec%loading(i)%period = 1.0_wp
+      end do
+      call spec%validate(messages(1))
+      call expect(error, messages(1), 'two loadings need a dynamic analysis')
+      spec%analysis%method = 'rk4'
+      call spec%validate(messages(2))
+      call expect(error, messages(2), "two loadings with drive = 'force'")
+      spec%loading(2)%drive = 'ground'
+      spec%loading(2)%unit = 'g'
+      call spec%validate(messages(3))
+      call expect(error, messages(3), '')
+   end subroutine two_loadings
+
+   subroutine units(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(unit_type) :: unit
+      integer :: i
+
+      ! 97.854*0.001 is another number than 97.854e-3.
+      call check_same(error, to_si(97.854_wp, length_units(2)), 97.854e-3_wp, '97.854 mm')
+      call check_same(error, to_si(1.23_wp, length_units(3)), 1.23e-2_wp, '1.23 cm')
+      call check_same(error, to_si(2.0_wp, length_units(4)), 0.0508_wp, '2 in')
+      call check_same(error, to_si(-3.3_wp, length_units(1)), -3.3_wp, '-3.3 m')
+      call check_same(error, to_si(120.5_wp, force_units(2)), 120500.0_wp, '120.5 kN')
+      call check_close(error, to_si(1.0_wp, force_units(4)), 0.45359237e3_wp*standard_gravity, &
+                       1.0e-13_wp, 0.0_wp, '1 kip')
+      call check_same(error, to_si(0.5_wp, acceleration_units(2)), 4.903325_wp, '0.5 g')
+      do i = 1, size(length_units)
+         unit = length_units(i)
+         call check_same(error, to_si(0.0_wp, unit), 0.0_wp, '0 '//trim(unit%name))
+      end do
+   end subroutine units
+
+end module test_spec

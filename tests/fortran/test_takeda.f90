@@ -1,0 +1,531 @@
+!> The trilinear Takeda spring: sequences S1 to S4 of takeda.md by hand, rules and properties.
+module test_takeda
+   use check, only: unit_test, check_close, check_same, check_true
+   use rbs_base_error, only: error_type
+   use rbs_base_kinds, only: wp
+   use rbs_hysteresis_springs, only: follow_path, spring_array
+   use rbs_spec_spring, only: spring_spec
+   use samples, only: takeda, takeda_1, k_c, d_c, k_y, d_y, k_u, b0, b1, f_c, f_y, k_0, random_type
+   implicit none
+   private
+
+   public :: collect_takeda
+
+   character(len=3), parameter :: inner(3) = ['kc ', 'kr ', 'one']
+
+   !> The peak at 4 d_y, the slope that it unloads with, the zero force before reloading from the
+   !> opposite peak, and the slope of reloading.
+   real(wp), parameter :: f_4 = f_y + 3.0_wp*k_u*d_y, k_r4 = k_0*(1.0_wp/4.0_wp)**b0
+   real(wp), parameter :: zero_4 = -4.0_wp*d_y + f_4/k_r4, slope_4 = f_4/(4.0_wp*d_y - zero_4)
+
+contains
+
+   subroutine collect_takeda(tests)
+      type(unit_test), allocatable, intent(out) :: tests(:)
+
+      tests = [unit_test('S1 uncracked', s1), &
+               unit_test('S2 cracked, not yielded', s2), &
+               unit_test('S3 yielded, full reversals, with work', s3), &
+               unit_test('S4 partial unloading, inner loops', s4), &
+               unit_test('property 4: the backbone at new extremes', backbone_at_extremes), &
+               unit_test('corners of the backbone are met exactly', corners), &
+               unit_test('rule 1: outer unloading is one line both ways', outer_line), &
+               unit_test('rule 2: the other side uncracked after yield', first_return), &
+               unit_test('rule 3: redirection to a steeper yield point', redirection), &
+               unit_test('equality: an exact return to the peak unloads from the backbone', exact_return), &
+               unit_test('equality: a turn at zero force goes straight to the other side', turn_at_zero), &
+               unit_test('section 2b: the secant is the floor of K_in', secant_floor), &
+               unit_test('property 12: B0 = 0 unloads with K_0', no_degradation), &
+               unit_test('property 2: 1, 7, 1000 increments, to the last bit', increments), &
+               unit_test('property 3: no jump, no slope above k_c', continuity), &
+               unit_test('property 6: the mirror path, to the last bit', mirror), &
+               unit_test('property 9: the work from the virgin state is never negative', work_positive), &
+               unit_test('property 8: 3000 nested loops close exactly', nested_loops), &
+               unit_test('6000 nested peaks: the oldest are forgotten, without a jump', forgotten_peaks)]
+   end subroutine collect_takeda
+
+   !> Backbone force at a positive deformation.
+   elemental real(wp) function backbone(d) result(f)
+      real(wp), intent(in) :: d
+
+      if (d <= d_c) then
+         f = k_c*d
+      else if (d <= d_y) then
+         f = f_c + k_y*(d - d_c)
+      else
+         f = f_y + k_u*(d - d_y)
+      end if
+   end function backbone
+
+   subroutine s1(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: f(4)
+      integer :: i
+
+      do i = 1, 3
+         call follow_path(takeda_1(inner(i)), [2.0e-4_wp, -3.0e-4_wp, 3.0e-4_wp, 0.0_wp], f)
+         call check_close(error, f, [50856.0_wp, -76284.0_wp, 76284.0_wp, 0.0_wp], 1.0e-15_wp, 0.0_wp, &
+                          inner(i))
+      end do
+   end subroutine s1
+
+   subroutine s2(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp), parameter :: d(7) = [1.0e-3_wp, -1.5e-3_wp, 2.0e-3_wp, -2.0e-3_wp, 2.0e-3_wp, -2.0e-3_wp, &
+                                     0.0_wp]
+      real(wp), parameter :: printed(7) = [123958.196_wp, -155426.696_wp, 186895.196_wp, -186895.196_wp, &
+                                           186895.196_wp, -186895.196_wp, 30024.092_wp]
+      real(wp) :: f(7), f_2, k_r, zero, before
+      type(spring_array) :: spring
+      integer :: i, j
+
+      f_2 = f_c + k_y*(2.0e-3_wp - d_c)
+      k_r = (f_2 + f_c)/(2.0e-3_wp + d_c)
+      zero = -2.0e-3_wp + f_2/k_r
+      do i = 1, 3
+         call follow_path(takeda_1(inner(i)), d, f)
+         call check_close(error, f, printed, 0.0_wp, 1.0e-3_wp, inner(i)//' printed')
+         call check_close(error, f, [f_c + k_y*(1.0e-3_wp - d_c), -(f_c + k_y*(1.5e-3_wp - d_c)), f_2, -f_2, &
+                                     f_2, -f_2, -zero*f_2/(2.0e-3_wp - zero)], 1.0e-9_wp, 0.0_wp, &
+                          inner(i)//' by hand')
+         call spring%create([takeda_1(inner(i))])
+         do j = 1, 6
+            call spring%move(1, d(j))
+            if (j == 4) before = spring%work(1)
+         end do
+         ! Of each half cycle the loading triangle less the unloading triangle.
+         call check_close(error, spring%work(1) - before, f_2*(2.0e-3_wp - zero) - f_2**2/k_r, 1.0e-9_wp, &
+                          0.0_wp, inner(i)//' work of the cycle')
+         call check_close(error, spring%work(1) - before, 143.082_wp, 0.0_wp, 1.0e-3_wp, &
+                          inner(i)//' printed work')
+      end do
+   end subroutine s2
+
+   subroutine s3(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp), parameter :: f_2 = f_y + k_u*d_y
+      real(wp), parameter :: d(9) = [2, -2, 2, -2, 4, -4, 4, -4, 0]*d_y
+      real(wp), parameter :: by_hand(9) = [f_2, -f_2, f_2, -f_2, f_4, -f_4, f_4, -f_4, -slope_4*zero_4]
+      real(wp), parameter :: printed(9) = [252699.946_wp, -252699.946_wp, 252699.946_wp, -252699.946_wp, &
+                                           293894.152_wp, -293894.152_wp, 293894.152_wp, -293894.152_wp, &
+                                           103502.562_wp]
+      real(wp), parameter :: printed_work(9) = [1047.589_wp, 1948.207_wp, 2504.922_wp, 3061.638_wp, &
+                                                5104.161_wp, 7294.555_wp, 9031.762_wp, 10768.970_wp, &
+                                                10345.690_wp]
+      real(wp) :: f(9), work(9)
+      type(spring_array) :: spring
+      integer :: i, j
+
+      do i = 1, 3
+         call spring%create([takeda_1(inner(i))])
+         do j = 1, 9
+            call spring%move(1, d(j))
+            f(j) = spring%force(1)
+            work(j) = spring%work(1)
+         end do
+         call check_close(error, f, by_hand, 1.0e-9_wp, 0.0_wp, inner(i)//' by hand')
+         call check_close(error, f, printed, 0.0_wp, 1.0e-3_wp, inner(i)//' printed')
+         call check_close(error, work, printed_work, 0.0_wp, 1.0e-3_wp, inner(i)//' printed work')
+         ! The first leg is the area under the backbone, the last the triangles to zero.
+         call check_close(error, work(1), 0.5_wp*f_c*d_c + 0.5_wp*(f_c + f_y)*(d_y - d_c) &
+                          + 0.5_wp*(f_y + f_2)*d_y, 1.0e-12_wp, 0.0_wp, inner(i)//' work of the first leg')
+         call check_close(error, work(9) - work(8), -0.5_wp*f_4**2/k_r4 + 0.5_wp*slope_4*zero_4**2, &
+                          1.0e-9_wp, 0.0_wp, inner(i)//' work of the last leg')
+      end do
+   end subroutine s3
+
+   subroutine s4(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp), parameter :: d(15) = [4.0_wp, -4.0_wp, 1.0_wp, 0.6_wp, 1.5_wp, -1.0_wp, 0.5_wp, -0.5_wp, &
+                                      0.5_wp, -1.0_wp, 1.5_wp, 2.0_wp, -4.0_wp, 5.0_wp, 0.0_wp]*d_y
+      ! Points 4 to 10 for 'kc', 'kr' and 'one'
+      real(wp), parameter :: printed(4:10, 3) = reshape([ &
+         90274.039_wp, 174899.408_wp, -91201.345_wp, 82859.284_wp, -43457.444_wp, 82859.284_wp, &
+         -91201.345_wp, &
+         132061.300_wp, 174899.408_wp, 55904.664_wp, 127301.510_wp, 79703.613_wp, 127301.510_wp, &
+         55904.664_wp, &
+         86702.254_wp, 174899.408_wp, -94130.951_wp, 83583.356_wp, -46145.804_wp, 83583.356_wp, &
+         -94130.951_wp], [7, 3])
+      real(wp) :: f(15)
+      integer :: i
+
+      do i = 1, 3
+         call follow_path(takeda_1(inner(i)), d, f)
+         call check_close(error, f, s4_by_hand(inner(i)), 1.0e-9_wp, 0.0_wp, inner(i)//' by hand')
+         call check_close(error, f(4:10), printed(:, i), 0.0_wp, 1.0e-3_wp, inner(i)//' printed')
+         call check_close(error, f(11:15), [174899.408_wp, 198698.357_wp, -293894.152_wp, 314491.254_wp, &
+                                            -122632.372_wp], 0.0_wp, 1.0e-3_wp, inner(i)//' printed, end')
+         call check_same(error, f(9:11), [f(7), f(6), f(5)], inner(i)//' closed loops')
+      end do
+   end subroutine s4
+
+   !> Sequence S4, point by point as in the table of takeda.md section 4.
+   pure function s4_by_hand(option) result(f)
+      character(len=*), intent(in) :: option
+      real(wp) :: f(15)
+      real(wp) :: k_in, z(6:9), slope(6:8), f_5, k_r5, z_5
+
+      k_in = k_r4
+      if (option == 'kc') k_in = min(b1*k_c, k_r4)
+      if (option == 'kr') k_in = max(b1*k_r4, slope_4)
+
+      f(1) = f_4
+      f(2) = -f_4
+      f(3) = slope_4*(d_y - zero_4)
+      f(4) = f(3) - k_in*0.4_wp*d_y
+      f(5) = slope_4*(1.5_wp*d_y - zero_4)
+      if (option == 'kr') then
+         ! The secant is the floor: everything stays on the reloading line.
+         f(6:8) = slope_4*([-1.0_wp, 0.5_wp, -0.5_wp]*d_y - zero_4)
+      else
+         z(6) = 1.5_wp*d_y - f(5)/k_in
+         slope(6) = f_4/(z(6) + 4.0_wp*d_y)
+         f(6) = -slope(6)*(z(6) + d_y)
+         z(7) = -d_y - f(6)/k_in
+         slope(7) = f(5)/(1.5_wp*d_y - z(7))
+         f(7) = slope(7)*(0.5_wp*d_y - z(7))
+         z(8) = 0.5_wp*d_y - f(7)/k_in
+         slope(8) = -f(6)/(d_y + z(8))
+         f(8) = -slope(8)*(0.5_wp*d_y + z(8))
+      end if
+      f(9:11) = [f(7), f(6), f(5)]
+      f(12) = slope_4*(2.0_wp*d_y - zero_4)
+      f(13) = -f_4
+      f_5 = f_y + 4.0_wp*k_u*d_y
+      f(14) = f_5
+      k_r5 = k_0*(1.0_wp/5.0_wp)**b0
+      z_5 = 5.0_wp*d_y - f_5/k_r5
+      f(15) = -f_4/(z_5 + 4.0_wp*d_y)*z_5
+   end function s4_by_hand
+
+   subroutine backbone_at_extremes(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_array) :: spring
+      real(wp) :: most(-1:1), d
+      integer :: path, j, s
+
+      do path = 1, 50
+         call spring%create([takeda_1(inner(1 + mod(path, 3)))])
+         most = d_y
+         do j = 1, 60
+            d = random%uniform(-6.0_wp, 6.0_wp)*d_y
+            call spring%move(1, d)
+            s = merge(1, -1, d > 0.0_wp)
+            if (s*d <= most(s)) cycle
+            most(s) = s*d
+            call check_close(error, s*spring%force(1), backbone(s*d), 1.0e-15_wp, 0.0_wp, 'new extreme')
+         end do
+      end do
+   end subroutine backbone_at_extremes
+
+   subroutine corners(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: f(4)
+
+      call follow_path(takeda_1('kc'), [d_c, d_y, 3.0_wp*d_y, 1.0e3_wp*d_y], f)
+      call check_same(error, f, [f_c, f_y, f_y + k_u*(3.0_wp*d_y - d_y), f_y + k_u*(1.0e3_wp*d_y - d_y)], &
+                      'force')
+   end subroutine corners
+
+   !> Property 11, and the floor F/D of K_r under the extreme B0 = 1 with k_u = k_y.
+   subroutine outer_line(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: f(4), f_peak, k_r
+      type(spring_spec) :: spec
+
+      f_peak = f_y + k_u*d_y
+      k_r = k_0*0.5_wp**b0
+      call follow_path(takeda_1('kc'), [2.0_wp*d_y, 1.5_wp*d_y, 2.0_wp*d_y, &
+                       2.0_wp*d_y - 0.9_wp*f_peak/k_r], f)
+      call check_close(error, f, [f_peak, f_peak - 0.5_wp*k_r*d_y, f_peak, 0.1_wp*f_peak], 1.0e-12_wp, &
+                       0.0_wp, 'table 3')
+      spec = takeda(k_c, d_c, k_y, d_y, k_y, 1.0_wp, 1.0_wp, 'kc')
+      call follow_path(spec, [9.0_wp*d_y, 1.0_wp*d_y], f(:2))
+      f_peak = f_y + 8.0_wp*k_y*d_y
+      call check_close(error, f(:2), [f_peak, f_peak/9.0_wp], 1.0e-12_wp, 0.0_wp, 'the secant as floor')
+   end subroutine outer_line
+
+   !> Unloading from 2 d_y goes on to -F_c, then straight to the opposite yield point.
+   subroutine first_return(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: f(3), k_r, crack
+      type(spring_spec) :: spec
+
+      k_r = k_0*0.5_wp**b0
+      crack = 2.0_wp*d_y - (f_y + k_u*d_y + f_c)/k_r
+      call follow_path(takeda_1('kc'), [2.0_wp*d_y, crack, 0.5_wp*(crack - d_y)], f)
+      call check_close(error, f, [f_y + k_u*d_y, -f_c, -0.5_wp*(f_c + f_y)], 1.0e-12_wp, 0.0_wp, 'table 3')
+
+      ! Extreme: the yield point is behind; on with K_r to the yielded backbone.
+      spec = takeda(1.0_wp, 1.0_wp, 0.9_wp, 1.05_wp, 0.5_wp, 1.0_wp, 1.0_wp, 'kc')
+      call follow_path(spec, [9.0_wp, -40.0_wp], f(:2))
+      call check_close(error, f(2), -(1.0_wp + 0.9_wp*0.05_wp + 0.5_wp*38.95_wp), 1.0e-14_wp, 0.0_wp, &
+                       'extreme numbers')
+   end subroutine first_return
+
+   !> S2 with a larger far side: the line to the yield point is steeper than that to the peak.
+   subroutine redirection(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: f(3), f_1, k_r, zero, slope
+
+      f_1 = backbone(1.1_wp*d_c)
+      k_r = k_0*(1.0_wp/8.0_wp)**b0
+      zero = -8.0_wp*d_y + (f_y + 7.0_wp*k_u*d_y)/k_r
+      slope = f_y/(d_y - zero)
+      call check_true(error, slope > f_1/(1.1_wp*d_c - zero), 'the yield point is the steeper one here')
+      call follow_path(takeda_1('kc'), [1.1_wp*d_c, -8.0_wp*d_y, 0.5_wp*d_y], f)
+      call check_close(error, f(3), slope*(0.5_wp*d_y - zero), 1.0e-12_wp, 0.0_wp, 'toward the yield point')
+   end subroutine redirection
+
+   subroutine exact_return(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: f(4)
+
+      call follow_path(takeda_1('kc'), [4.0_wp, -4.0_wp, 4.0_wp, 3.0_wp]*d_y, f)
+      call check_close(error, f(4), f_4 - k_r4*d_y, 1.0e-12_wp, 0.0_wp, 'K_r, not K_in')
+      call follow_path(takeda_1('kc'), [4.0_wp*d_y, -4.0_wp*d_y, nearest(4.0_wp*d_y, -1.0_wp), 3.0_wp*d_y], f)
+      call check_close(error, f(4), f_4 - min(b1*k_c, k_r4)*d_y, 1.0e-12_wp, 0.0_wp, &
+                       'K_in one number below the peak')
+   end subroutine exact_return
+
+   subroutine turn_at_zero(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_array) :: spring
+      real(wp) :: zero
+
+      call spring%create([takeda_1('kc')])
+      call spring%move(1, 4.0_wp*d_y)
+      call spring%move(1, -4.0_wp*d_y)
+      zero = spring%line(1)%d0 - spring%line(1)%f0/k_r4
+      call spring%move(1, zero + 1.0e-16_wp*d_y)
+      call spring%move(1, zero - d_y)
+      call check_true(error, spring%force(1) < 0.0_wp, 'on the other side')
+      call spring%move(1, -4.0_wp*d_y)
+      call check_close(error, spring%force(1), -f_4, 1.0e-12_wp, 0.0_wp, 'back to the peak')
+   end subroutine turn_at_zero
+
+   !> B1 = 0.22 as a factor on K_r lies below the reloading slope: inner loops retrace it.
+   subroutine secant_floor(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_array) :: spring
+      real(wp) :: before
+
+      call check_true(error, b1*k_r4 < slope_4, 'the factor alone would create energy')
+      call spring%create([takeda_1('kr')])
+      call spring%move(1, 4.0_wp*d_y)
+      call spring%move(1, -4.0_wp*d_y)
+      call spring%move(1, 1.0_wp*d_y)
+      before = spring%work(1)
+      call spring%move(1, 0.0_wp)
+      call check_close(error, spring%force(1), -slope_4*zero_4, 1.0e-12_wp, 0.0_wp, 'on the reloading line')
+      call spring%move(1, 1.0_wp*d_y)
+      call check_close(error, spring%work(1) - before, 0.0_wp, 0.0_wp, 1.0e-9_wp, 'no work')
+   end subroutine secant_floor
+
+   subroutine no_degradation(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: f(2)
+      integer :: i
+
+      do i = 2, 10
+         call follow_path(takeda(k_c, d_c, k_y, d_y, k_u, 0.0_wp, 1.0_wp, 'kc'), [i*d_y, (i - 0.5_wp)*d_y], f)
+         call check_close(error, (f(1) - f(2))/(0.5_wp*d_y), k_0, 1.0e-12_wp, 0.0_wp, 'slope')
+      end do
+   end subroutine no_degradation
+
+   !> Numbers over the whole range that takeda.md section 3 was tried on.
+   subroutine random_spring(random, spec)
+      type(random_type), intent(inout) :: random
+      type(spring_spec), intent(out) :: spec
+      real(wp) :: yield, k_yield, k_ultimate, factor
+
+      yield = random%uniform(1.05_wp, 15.0_wp)
+      k_yield = random%uniform(0.05_wp, 0.9_wp)
+      k_ultimate = k_yield*random%uniform(0.0_wp, 0.9_wp)
+      factor = random%uniform(0.05_wp, 1.5_wp)
+      spec = takeda(1.0_wp, 1.0_wp, k_yield, yield, k_ultimate, random%uniform(0.0_wp, 1.0_wp), factor, &
+                    inner(1 + int(random%uniform(0.0_wp, 2.999_wp))))
+   end subroutine random_spring
+
+   !> Points from small to far beyond yield; some exact returns to earlier ones, some to zero.
+   subroutine random_path(random, yield, d)
+      type(random_type), intent(inout) :: random
+      real(wp), intent(in) :: yield
+      real(wp), intent(out) :: d(:)
+      real(wp) :: kind, size_now
+      integer :: j
+
+      size_now = yield*random%uniform(0.3_wp, 6.0_wp)
+      do j = 1, size(d)
+         kind = random%uniform(0.0_wp, 1.0_wp)
+         if (j > 2 .and. kind < 0.2_wp) then
+            d(j) = d(1 + int(random%uniform(0.0_wp, j - 1.001_wp)))
+         else if (kind < 0.25_wp) then
+            d(j) = 0.0_wp
+         else
+            d(j) = random%uniform(-size_now, size_now)
+         end if
+      end do
+   end subroutine random_path
+
+   subroutine increments(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: cuts(2) = [7, 1000]
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      type(spring_array) :: spring
+      real(wp) :: d(40), f(40), f_cut(40), from
+      integer :: path, cut, j, i
+
+      do path = 1, 200
+         call random_spring(random, spec)
+         call random_path(random, spec%d_y, d)
+         call follow_path(spec, d, f)
+         do cut = 1, 2
+            if (cuts(cut) == 1000 .and. mod(path, 10) /= 0) cycle
+            call spring%create([spec])
+            from = 0.0_wp
+            do j = 1, size(d)
+               do i = 1, cuts(cut) - 1
+                  call spring%move(1, from + (d(j) - from)*i/cuts(cut))
+               end do
+               call spring%move(1, d(j))
+               f_cut(j) = spring%force(1)
+               from = d(j)
+            end do
+            call check_same(error, f_cut, f, 'force')
+         end do
+      end do
+   end subroutine increments
+
+   subroutine continuity(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      type(spring_array) :: spring
+      real(wp) :: d(40), from, to, f, change, steepest
+      integer :: path, j, i
+
+      steepest = 0.0_wp
+      do path = 1, 60
+         call random_spring(random, spec)
+         call random_path(random, spec%d_y, d)
+         call spring%create([spec])
+         to = 0.0_wp
+         do j = 1, size(d)
+            from = to
+            do i = 1, 50
+               change = from + (d(j) - from)*i/50 - to
+               f = spring%force(1)
+               to = to + change
+               call spring%move(1, to)
+               if (abs(change) > 1.0e-6_wp) steepest = max(steepest, abs(spring%force(1) - f)/abs(change))
+            end do
+         end do
+      end do
+      call check_true(error, steepest <= 1.0_wp + 1.0e-8_wp, 'a chord is steeper than k_c')
+      call check_true(error, steepest > 0.9_wp, 'the paths begin uncracked')
+   end subroutine continuity
+
+   subroutine mirror(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      real(wp) :: d(40), f(40), f_mirror(40)
+      integer :: path
+
+      do path = 1, 300
+         call random_spring(random, spec)
+         call random_path(random, spec%d_y, d)
+         call follow_path(spec, d, f)
+         call follow_path(spec, -d, f_mirror)
+         ! + 0: a zero of either sign is the same zero.
+         call check_same(error, -f_mirror + 0.0_wp, f + 0.0_wp, 'force')
+      end do
+   end subroutine mirror
+
+   subroutine work_positive(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      type(spring_array) :: spring
+      real(wp) :: d(60), least
+      integer :: path, j
+
+      least = 0.0_wp
+      do path = 1, 300
+         call random_spring(random, spec)
+         call random_path(random, spec%d_y, d)
+         call spring%create([spec])
+         do j = 1, size(d)
+            call spring%move(1, d(j))
+            least = min(least, spring%work(1))
+         end do
+      end do
+      call check_close(error, least, 0.0_wp, 0.0_wp, 1.0e-12_wp, 'least work')
+   end subroutine work_positive
+
+   !> Ever smaller cycles inside +-4 d_y; vertex j alternates in sign.
+   elemental real(wp) function vertex(j, n)
+      integer, intent(in) :: j, n
+
+      vertex = d_y*(3.5_wp - 3.0_wp*j/n)
+      if (mod(j, 2) == 0) vertex = -vertex
+   end function vertex
+
+   subroutine nested_loops(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: n = 3000
+      type(spring_array) :: spring
+      real(wp) :: f(n)
+      integer :: j
+
+      call spring%create([takeda_1('kc')])
+      call spring%move(1, 4.0_wp*d_y)
+      call spring%move(1, -4.0_wp*d_y)
+      do j = 1, n
+         call spring%move(1, vertex(j, n))
+         f(j) = spring%force(1)
+      end do
+      ! Outward on one side: every loop closes where it began.
+      do j = n - 1, 1, -2
+         call spring%move(1, vertex(j, n))
+         call check_same(error, spring%force(1), f(j), 'closed loop')
+      end do
+      call spring%move(1, 4.0_wp*d_y)
+      call check_close(error, spring%force(1), f_4, 1.0e-15_wp, 0.0_wp, 'the peak')
+   end subroutine nested_loops
+
+   !> More than `most_peaks` = 4096: the older half is forgotten when the memory is full.
+   subroutine forgotten_peaks(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: n = 6000, kept = 4096/2 + (n - 4096)
+      type(spring_array) :: spring
+      real(wp) :: f(n), d_before, f_before
+      integer :: j
+
+      call spring%create([takeda_1('kc')])
+      call spring%move(1, 4.0_wp*d_y)
+      call spring%move(1, -4.0_wp*d_y)
+      do j = 1, n
+         call spring%move(1, vertex(j, n))
+         f(j) = spring%force(1)
+      end do
+      do j = n - 1, 1, -2
+         d_before = spring%d(1)
+         f_before = spring%force(1)
+         call spring%move(1, vertex(j, n))
+         if (j > n - kept) call check_same(error, spring%force(1), f(j), 'remembered loop')
+         call check_true(error, abs(spring%force(1) - f_before) &
+                         <= k_c*abs(spring%d(1) - d_before)*(1.0_wp + 1.0e-8_wp), 'a jump of the force')
+      end do
+      call spring%move(1, 4.0_wp*d_y)
+      call check_close(error, spring%force(1), f_4, 1.0e-15_wp, 0.0_wp, 'the peak')
+      call spring%move(1, 5.0_wp*d_y)
+      call check_close(error, spring%force(1), f_y + 4.0_wp*k_u*d_y, 1.0e-15_wp, 0.0_wp, 'the backbone')
+      call spring%move(1, 0.0_wp)
+      call check_close(error, spring%force(1), -122632.372_wp, 0.0_wp, 1.0e-3_wp, 'S4, last point')
+   end subroutine forgotten_peaks
+
+end module test_takeda

@@ -1,0 +1,129 @@
+!> Numbers as text, names compared, messages collected.
+module test_text
+   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf, &
+                                            ieee_negative_inf
+   use check, only: unit_test, check_equal, check_failed, check_true
+   use rbs_base_error, only: error_type, message_list, fatal_error, analysis_failed, bad_input
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text, lower, nearest_name, list_of
+   implicit none
+   private
+
+   public :: collect_text
+
+   character(len=8), parameter :: names(3) = ['elastic ', 'bilinear', 'takeda  ']
+
+contains
+
+   subroutine collect_text(tests)
+      type(unit_test), allocatable, intent(out) :: tests(:)
+
+      tests = [unit_test('reals have six digits and no needless zeros', reals), &
+               unit_test('reals change to powers of ten outside 1e-4 to 1e6', powers), &
+               unit_test('reals are rounded before the form is chosen', rounding), &
+               unit_test('numbers that are none', not_numbers), &
+               unit_test('integers', integers), &
+               unit_test('lower case', lower_case), &
+               unit_test('list of names', lists), &
+               unit_test('nearest name by edit distance', nearest), &
+               unit_test('an error carries code and message', one_error), &
+               unit_test('messages are raised together, in order', collected)]
+   end subroutine collect_text
+
+   subroutine reals(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      call check_equal(error, to_text(0.0_wp), '0', 'zero')
+      call check_equal(error, to_text(1.0_wp), '1', 'one')
+      call check_equal(error, to_text(-0.5_wp), '-0.5', 'minus a half')
+      call check_equal(error, to_text(0.0016_wp), '0.0016', '0.0016')
+      call check_equal(error, to_text(123456.0_wp), '123456', '123456')
+      call check_equal(error, to_text(-120000.0_wp), '-120000', '-120000')
+      call check_equal(error, to_text(1.0_wp/3.0_wp), '0.333333', 'a third')
+      call check_equal(error, to_text(2.0e2_wp/3.0_wp), '66.6667', '200/3')
+   end subroutine reals
+
+   subroutine powers(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      call check_equal(error, to_text(1.0e-4_wp), '0.0001', '1e-4')
+      call check_equal(error, to_text(1.0e-5_wp), '1e-05', '1e-5')
+      call check_equal(error, to_text(1.0e6_wp), '1e+06', '1e6')
+      call check_equal(error, to_text(7.0387e8_wp), '7.0387e+08', '7.0387e8')
+      call check_equal(error, to_text(-2.5e-123_wp), '-2.5e-123', '-2.5e-123')
+      call check_equal(error, to_text(huge(1.0_wp)), '1.79769e+308', 'the largest')
+      call check_equal(error, to_text(tiny(1.0_wp)), '2.22507e-308', 'the smallest')
+   end subroutine powers
+
+   subroutine rounding(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      call check_equal(error, to_text(999999.6_wp), '1e+06', '999999.6')
+      call check_equal(error, to_text(999999.4_wp), '999999', '999999.4')
+      call check_equal(error, to_text(0.99999999_wp), '1', '0.99999999')
+      call check_equal(error, to_text(9.9999999e-5_wp), '0.0001', '9.9999999e-5')
+   end subroutine rounding
+
+   subroutine not_numbers(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      call check_equal(error, to_text(ieee_value(1.0_wp, ieee_quiet_nan)), 'NaN', 'NaN')
+      call check_equal(error, to_text(ieee_value(1.0_wp, ieee_positive_inf)), 'Infinity', '+Inf')
+      call check_equal(error, to_text(ieee_value(1.0_wp, ieee_negative_inf)), '-Infinity', '-Inf')
+   end subroutine not_numbers
+
+   subroutine integers(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      call check_equal(error, to_text(0), '0', 'zero')
+      call check_equal(error, to_text(-42), '-42', '-42')
+      call check_equal(error, to_text(huge(1)), '2147483647', 'the largest')
+   end subroutine integers
+
+   subroutine lower_case(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      call check_equal(error, lower('K_Post [Z@{'), 'k_post [z@{', 'only letters change')
+      call check_equal(error, lower(''), '', 'nothing')
+   end subroutine lower_case
+
+   subroutine lists(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      call check_equal(error, list_of(names), 'elastic, bilinear, takeda', 'three names')
+      call check_equal(error, list_of(names(3:3)), 'takeda', 'one name')
+      call check_equal(error, list_of(names(4:)), '', 'no name')
+   end subroutine lists
+
+   subroutine nearest(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      call check_equal(error, nearest_name('takda', names), 'takeda', 'a letter left out')
+      call check_equal(error, nearest_name('Bi-Linear', names), 'bilinear', 'case and a hyphen')
+      call check_equal(error, nearest_name('elasticc  ', names), 'elastic', 'a letter too many')
+      call check_equal(error, nearest_name('x', names(:0)), '', 'nothing to choose from')
+   end subroutine nearest
+
+   subroutine one_error(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+
+      call fatal_error(outcome, analysis_failed, 'the column stands no longer')
+      call check_failed(error, outcome, analysis_failed, 'the column stands no longer')
+   end subroutine one_error
+
+   subroutine collected(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(message_list) :: messages
+
+      call messages%raise(outcome)
+      call check_true(error, .not. allocated(outcome), 'an empty list is no error')
+      call messages%add('first')
+      call messages%add('second')
+      call messages%raise(outcome)
+      call check_equal(error, messages%count, 2, 'number of messages')
+      call check_failed(error, outcome, bad_input, 'first'//new_line('a')//'second')
+   end subroutine collected
+
+end module test_text

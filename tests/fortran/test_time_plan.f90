@@ -1,0 +1,174 @@
+!> Which steps are taken, and what is refused.
+module test_time_plan
+   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf
+   use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_same, check_true
+   use rbs_base_constants, only: unset, unset_integer
+   use rbs_base_error, only: error_type, bad_input
+   use rbs_base_kinds, only: wp
+   use rbs_solve_time_plan, only: time_plan, new_plan, check_times, auto_share
+   implicit none
+   private
+
+   public :: collect_time_plan
+
+   !> Stability limit of these plans [s]
+   real(wp), parameter :: limit = 0.1_wp
+
+contains
+
+   subroutine collect_time_plan(tests)
+      type(unit_test), allocatable, intent(out) :: tests(:)
+
+      tests = [unit_test('times must be two or more, finite, ascending', times), &
+               unit_test('no dt: equal steps, not above a fifth of the limit', automatic), &
+               unit_test('dt that divides every interval', dividing), &
+               unit_test('dt that divides but for round-off', nearly_dividing), &
+               unit_test('dt that does not divide: free steps to the end', free), &
+               unit_test('dt longer than an interval of the loading: free steps', longer), &
+               unit_test('dt beyond the limit is refused, with the limit', beyond_limit), &
+               unit_test('dt that is no step', no_step), &
+               unit_test('more steps than a lifetime', too_many), &
+               unit_test('number of rows', number_of_rows)]
+   end subroutine collect_time_plan
+
+   subroutine times(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+
+      call check_times([0.0_wp, 1.0_wp, 1.5_wp], outcome)
+      call check_passed(error, outcome, 'ascending times')
+      call check_times([0.0_wp], outcome)
+      call check_failed(error, outcome, bad_input, 'time: 1 point(s); give two or more')
+      call check_times([0.0_wp, 1.0_wp, 1.0_wp], outcome)
+      call check_failed(error, outcome, bad_input, 'value 3 of 3, 1 s, does not come after')
+      call check_times([0.0_wp, -1.0_wp], outcome)
+      call check_failed(error, outcome, bad_input, 'times must ascend strictly')
+      call check_times([0.0_wp, ieee_value(1.0_wp, ieee_quiet_nan), 2.0_wp], outcome)
+      call check_failed(error, outcome, bad_input, 'time: value 2 of 3 is NaN')
+      call check_times([0.0_wp, ieee_value(1.0_wp, ieee_positive_inf)], outcome)
+      call check_failed(error, outcome, bad_input, 'time: value 2 of 2 is Infinity')
+   end subroutine times
+
+   subroutine automatic(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(time_plan) :: plan
+      integer, parameter :: expected(3) = [1, 5, 45]
+      integer :: i
+
+      call new_plan(plan, [1.0_wp, 1.001_wp, 1.1_wp, 2.0_wp], unset, limit, outcome)
+      call check_passed(error, outcome, 'plan')
+      call check_true(error, .not. plan%free, 'steps follow the loading')
+      call check_equal(error, plan%intervals, 3, 'intervals')
+      do i = 1, 3
+         call check_equal(error, plan%parts(i), expected(i), 'steps in an interval')
+      end do
+      call check_equal(error, plan%steps, 51, 'steps')
+      call check_true(error, plan%dt <= auto_share*limit, 'longest step')
+      call check_same(error, [plan%begin, plan%finish], [1.0_wp, 2.0_wp], 'begin and end')
+   end subroutine automatic
+
+   subroutine dividing(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(time_plan) :: plan
+
+      call new_plan(plan, [0.0_wp, 0.5_wp, 0.75_wp], 0.0625_wp, limit, outcome)
+      call check_passed(error, outcome, 'plan')
+      call check_true(error, .not. plan%free, 'steps follow the loading')
+      call check_equal(error, plan%parts(1), 8, 'steps in the first interval')
+      call check_equal(error, plan%parts(2), 4, 'steps in the second')
+      call check_same(error, plan%dt, 0.0625_wp, 'step')
+   end subroutine dividing
+
+   subroutine nearly_dividing(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(time_plan) :: plan
+      real(wp) :: time(1001)
+      integer :: i
+
+      time = [(0.02_wp*(i - 1), i=1, 1001)]
+      call new_plan(plan, time, 0.005_wp, limit, outcome)
+      call check_passed(error, outcome, 'plan')
+      call check_true(error, .not. plan%free, 'steps follow the loading')
+      call check_equal(error, plan%steps, 4000, 'steps')
+   end subroutine nearly_dividing
+
+   subroutine free(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(time_plan) :: plan
+
+      call new_plan(plan, [0.0_wp, 0.25_wp, 1.0_wp], 0.03_wp, limit, outcome)
+      call check_passed(error, outcome, 'plan')
+      call check_true(error, plan%free, 'free steps')
+      call check_equal(error, plan%steps, 34, 'steps: 33 of 0.03 s and a shorter one')
+      call check_equal(error, plan%intervals, 34, 'a row after each')
+      call check_same(error, plan%dt, 0.03_wp, 'step')
+   end subroutine free
+
+   subroutine longer(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(time_plan) :: plan
+      integer :: i
+
+      call new_plan(plan, [(0.01_wp*i, i=0, 100)], 0.02_wp, limit, outcome)
+      call check_passed(error, outcome, 'plan')
+      call check_true(error, plan%free, 'free steps')
+      call check_equal(error, plan%steps, 50, 'steps')
+   end subroutine longer
+
+   subroutine beyond_limit(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(time_plan) :: plan
+
+      call new_plan(plan, [0.0_wp, 1.0_wp], limit, limit, outcome)
+      call check_passed(error, outcome, 'the limit itself')
+      call new_plan(plan, [0.0_wp, 1.0_wp], 0.125_wp, limit, outcome)
+      call check_failed(error, outcome, bad_input, &
+                        'dt = 0.125 s is beyond the stability limit of rk4, 0.1 s; give a dt below it')
+   end subroutine beyond_limit
+
+   subroutine no_step(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(time_plan) :: plan
+
+      call new_plan(plan, [0.0_wp, 1.0_wp], 0.0_wp, limit, outcome)
+      call check_failed(error, outcome, bad_input, 'dt = 0 s must be above zero')
+      call new_plan(plan, [0.0_wp, 1.0_wp], -0.01_wp, limit, outcome)
+      call check_failed(error, outcome, bad_input, 'dt = -0.01 s must be above zero')
+      call new_plan(plan, [0.0_wp, 1.0_wp], ieee_value(1.0_wp, ieee_quiet_nan), limit, outcome)
+      call check_failed(error, outcome, bad_input, 'dt = NaN must be a finite number')
+   end subroutine no_step
+
+   subroutine too_many(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(time_plan) :: plan
+
+      call new_plan(plan, [0.0_wp, 1.0e9_wp], 1.0e-3_wp, limit, outcome)
+      call check_failed(error, outcome, bad_input, '1e+12 steps of 0.001 s are more than 2e+09')
+      call new_plan(plan, [0.0_wp, 1.0e300_wp], 1.0e-100_wp, limit, outcome)
+      call check_failed(error, outcome, bad_input, 'shorten the duration')
+      call check_close(error, auto_share, 0.2_wp, 0.0_wp, 0.0_wp, 'stated share')
+   end subroutine too_many
+
+   subroutine number_of_rows(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(time_plan) :: plan
+
+      call new_plan(plan, [0.0_wp, 0.5_wp, 0.75_wp], 0.0625_wp, limit, outcome)
+      call check_passed(error, outcome, 'plan')
+      call check_equal(error, plan%rows(unset_integer), 3, 'one at each time of the loading')
+      call check_equal(error, plan%rows(1), 13, 'begin and 12 steps')
+      call check_equal(error, plan%rows(4), 4, 'begin, 4, 8, 12')
+      call check_equal(error, plan%rows(5), 4, 'begin, 5, 10, 12')
+      call check_equal(error, plan%rows(100), 2, 'begin and 12')
+   end subroutine number_of_rows
+
+end module test_time_plan
