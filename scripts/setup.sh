@@ -59,7 +59,8 @@ fi
 stamp="$venv/.rbsdem-${RBSDEM_EXTRA:-plot}"
 if [ ! -e "$stamp" ] || [ "$root/pyproject.toml" -nt "$stamp" ]; then
     say "installing Python packages (${RBSDEM_EXTRA:-plot})"
-    "$venv/bin/python" "$root/scripts/requirements.py" "${RBSDEM_EXTRA:-plot}" |
+    # The pip of older distributions cannot pass settings to the build.
+    { echo "pip>=23.1"; "$venv/bin/python" "$root/scripts/requirements.py" "${RBSDEM_EXTRA:-plot}"; } |
         "$venv/bin/python" -m pip install -q --disable-pip-version-check -r /dev/stdin ||
         fail "pip could not install the packages named in pyproject.toml"
     touch "$stamp"
