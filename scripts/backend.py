@@ -39,7 +39,7 @@ def build_editable(
     config_settings: dict[str, str | list[str]] | None = None,
     metadata_directory: str | None = None,
 ) -> str:
-    """Build the wheel, put its compiled parts into the checkout, and write a wheel that points there."""
+    """Build the wheel, put its compiled parts into the checkout, return one that points there."""
     with tempfile.TemporaryDirectory() as folder:
         name = build_wheel(folder, config_settings, metadata_directory)
         with ZipFile(Path(folder) / name) as built:

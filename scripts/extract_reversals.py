@@ -15,6 +15,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+
 from rbsdem.compare import summarise
 from rbsdem.errors import RbsdemError
 from rbsdem.paper import paper_sections

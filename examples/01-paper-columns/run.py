@@ -26,8 +26,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import rbsdem
 from numpy.typing import NDArray
+
+import rbsdem
 from rbsdem import compare
 from rbsdem.peer import FOLDER_VARIABLE, find_history, measured_loops, shipped_reversals
 

@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+
 import rbsdem
 
 hinge = rbsdem.paper_columns()["soesianawati_1"].flexure

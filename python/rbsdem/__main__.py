@@ -18,7 +18,9 @@ def executable() -> str:
     program = "rbsdem.exe" if os.name == "nt" else "rbsdem"
     path = os.fspath(files("rbsdem").joinpath("bin", program))
     if not os.path.isfile(path):
-        raise FileNotFoundError(f"rbsdem: the executable {path} is missing; install the package anew")
+        raise FileNotFoundError(
+            f"rbsdem: the executable {path} is missing; install the package anew"
+        )
     return path
 
 

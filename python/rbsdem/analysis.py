@@ -77,7 +77,7 @@ def cyclic(
     *,
     every: int | None = None,
 ) -> Result:
-    """Static path of a column through displacements of the top, or lateral forces.
+    """Follow the static path of a column through displacements of the top, or lateral forces.
 
     Exact for `kinematics` "small" and "pdelta": the column goes from event to event (end of a line
     of a spring) without increments or tolerance. The path begins at zero.
@@ -110,9 +110,7 @@ def cyclic(
     name = "force" if by_force else "displacement"
     values = _core.vector(force if by_force else displacement, name)
     every = _every(every)
-    rows, summary, error = _core.cyclic(
-        _checked(column)._flat(), by_force, values, every, column.n
-    )
+    rows, summary, error = _core.cyclic(_checked(column)._flat(), by_force, values, every, column.n)
     summary |= {"analysis": "static", "driven": name, "kinematics": column.kinematics}
     return _return(result_from_rows(rows, summary), error)
 
@@ -128,7 +126,7 @@ def time_history(
     *,
     every: int | None = None,
 ) -> Result:
-    """Response in time to a lateral force, a ground motion, or both.
+    """Compute the response in time to a lateral force, a ground motion, or both.
 
     Parameters
     ----------
@@ -141,9 +139,9 @@ def time_history(
     ground_acceleration : array_like, shape (m,), optional
         Acceleration of the ground [m/s2], linear between the times.
     dt : float, optional
-        Step [s]. If it divides every interval of `time`, rows are kept at `time`; else the steps run
-        from the first to the last time and a row is kept after each. Without `dt` every interval is
-        cut into equal steps not longer than a fifth of the stability limit.
+        Step [s]. If it divides every interval of `time`, rows are kept at `time`; else the steps
+        run from the first to the last time and a row is kept after each. Without `dt` every
+        interval is cut into equal steps not longer than a fifth of the stability limit.
     method : {"rk4"}, optional
         Classical Runge-Kutta with fixed step (the paper's scheme). A spring changes its line at the
         end of a step.

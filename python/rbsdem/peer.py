@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+
 from rbsdem.compare import Loop
 from rbsdem.errors import InputError
 from rbsdem.paper import data_text

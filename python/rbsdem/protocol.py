@@ -46,4 +46,6 @@ def protocol(
     counts = np.array([_core.whole(count, "cycles") for count in several.tolist()], dtype=np.int32)
     if counts.size == 0 or steps.size == 0:
         raise InputError("protocol: amplitudes and cycles must not be empty")
-    return _core.protocol(steps, counts, _core.whole(repeats, "repeats"), _core.whole(points, "points"))
+    return _core.protocol(
+        steps, counts, _core.whole(repeats, "repeats"), _core.whole(points, "points")
+    )

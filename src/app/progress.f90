@@ -68,7 +68,9 @@ contains
    subroutine finish(self)
       class(terminal_progress), intent(inout) :: self
 
-      if (self%shown) write (error_unit, '(3a)', advance='no') carriage_return, repeat(' ', 70), carriage_return
+      if (self%shown) then
+         write (error_unit, '(3a)', advance='no') carriage_return, repeat(' ', 70), carriage_return
+      end if
       self%shown = .false.
    end subroutine finish
 

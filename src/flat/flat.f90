@@ -267,7 +267,9 @@ subroutine rbs_read_history(path, most, rows, name, displacement, force, status,
    character(len=4096), intent(out) :: message
    !f2py threadsafe
    type(error_type), allocatable :: error
+   character(len=:), allocatable :: test
 
-   call read_test(path, name, rows, displacement, force, error)
+   call read_test(path, test, rows, displacement, force, error)
+   name = test
    call tell(error, status, message)
 end subroutine rbs_read_history

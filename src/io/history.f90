@@ -3,7 +3,8 @@ module rbs_io_history
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_io_text_file, only: text_file, load_text, read_real, is_integer, number_ok, number_not_finite
+   use rbs_io_text_file, only: text_file, load_text, read_real, is_integer, &
+                               number_ok, number_not_finite, number_wrong
    implicit none
    private
 
@@ -166,8 +167,10 @@ contains
       call split(file%text(first:last), separator, fields)
       named = .true.
       do i = 1, fields%count
-         call read_real(plain(file%text(first + fields%first(i) - 1:first + fields%last(i) - 1)), value, status)
-         if (status /= 1) named = .false.
+         associate (word => file%text(first + fields%first(i) - 1:first + fields%last(i) - 1))
+            call read_real(word, value, status)
+         end associate
+         if (status /= number_wrong) named = .false.
       end do
       allocate (history%labels(fields%count))
       history%labels = ''
@@ -246,7 +249,7 @@ contains
       remedy = 'is not a number'
       if (status == number_not_finite) remedy = 'is not a finite number'
       if (word == '') remedy = 'is empty'
-      call fatal_error(error, bad_input, path//' line '//to_text(line)//", value "//to_text(column)// &
+      call fatal_error(error, bad_input, path//' line '//to_text(line)//', value '//to_text(column)// &
                        ": '"//snippet(word)//"' "//remedy//'; correct the file')
    end subroutine report_number
 

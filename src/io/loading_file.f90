@@ -54,7 +54,7 @@ contains
    subroutine read_test(path, name, rows, displacement, force, error)
       character(len=*), intent(in) :: path
       !> Name of the test
-      character(len=*), intent(out) :: name
+      character(len=:), allocatable, intent(out) :: name
       !> Number of rows; the arrays must have room for as many
       integer(c_int), intent(out) :: rows
       real(wp), intent(out) :: displacement(:), force(:)

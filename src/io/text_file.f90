@@ -65,7 +65,7 @@ contains
          read (unit, iostat=status, iomsg=message) file%text
          if (status /= 0) call fatal_error(error, bad_input, path//': cannot be read ('//trim(message)//')')
       end if
-      close (unit, iostat=status)
+      close (unit)
       if (allocated(error)) return
       if (len(file%text) >= 3) then
          if (file%text(:3) == char(239)//char(187)//char(191)) file%text = file%text(4:)

@@ -162,7 +162,7 @@ contains
          force_correction = 0.0_wp
          where (k > 0.0_wp)
             correction = r/max(k, tiny(1.0_wp))
-         elsewhere
+         else where
             correction = 0.0_wp
          end where
          correction = correction + rate*(gap - sum(self%arm*correction))

@@ -40,7 +40,7 @@ contains
       end do
       if (self%loadings == 2) then
          if (.not. self%analysis%dynamic()) then
-            call messages%add("loading: two loadings need a dynamic analysis; with method = "// &
+            call messages%add('loading: two loadings need a dynamic analysis; with method = '// &
                               "'static' give one")
          else if (self%loading(1)%drive == self%loading(2)%drive) then
             call messages%add("loading: two loadings with drive = '"//trim(self%loading(1)%drive)// &

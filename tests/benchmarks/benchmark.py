@@ -24,6 +24,7 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
+
 import rbsdem
 from rbsdem.__main__ import executable as installed_executable
 

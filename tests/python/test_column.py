@@ -10,9 +10,10 @@ import re
 
 import numpy as np
 import pytest
-import rbsdem
 from scipy.linalg import eigh
 from scipy.optimize import brentq
+
+import rbsdem
 
 ELASTIC = rbsdem.Elastic(1.0e6)
 BILINEAR = rbsdem.Bilinear(7.0387e8, 1.2960e-4, 8.3185e6)

@@ -15,9 +15,10 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-import rbsdem
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
+
+import rbsdem
 
 SHEAR = rbsdem.Bilinear(7.0387e8, 1.2960e-4, 8.3185e6)
 FLEXURE = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import rbsdem
 from scipy.linalg import eigh
+
+import rbsdem
 
 # Three bodies, nothing equal to anything.
 LENGTHS = np.array([0.5, 0.8, 0.3])

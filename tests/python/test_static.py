@@ -12,9 +12,10 @@ import re
 
 import numpy as np
 import pytest
-import rbsdem
 import reference_springs
 from scipy.optimize import brentq
+
+import rbsdem
 
 # Column 1 of table 3 (Soesianawati No 1).
 SHEAR = rbsdem.Bilinear(7.0387e8, 1.2960e-4, 8.3185e6)
