@@ -84,7 +84,9 @@ contains
          call plan_dynamic(column, loads%time, case%analysis%dt, plan, limit, error)
          if (allocated(error)) return
       end if
-      if (.not. quiet) write (output_unit, '(a)') path//': no errors'
+      if (quiet) return
+      write (output_unit, '(a)') path//': no errors'
+      call print_notes(case)
    end subroutine check_case
 
    !> rbsdem modes: frequencies, shapes of few joints, stable step.
@@ -299,6 +301,20 @@ contains
          end do
       end associate
       write (output_unit, '(2x, a, 2x, a)') 'rows in                     ', recorder%path
+      call print_notes(case)
    end subroutine print_summary
+
+   !> What is allowed and perhaps not meant.
+   subroutine print_notes(case)
+      type(case_spec), intent(in) :: case
+
+      associate (column => case%column)
+         if (column%kinematics == 'small' .and. &
+             (abs(column%axial_load) > 0.0_wp .or. column%self_weight)) then
+            write (output_unit, '(a)') 'note: axial load and weight do no work with kinematics = '// &
+               "'small'; 'pdelta' takes them into account"
+         end if
+      end associate
+   end subroutine print_notes
 
 end module rbs_app_run

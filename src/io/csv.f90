@@ -112,8 +112,8 @@ contains
       if (status /= 0) call report_write(self, message, error)
    end subroutine put_line
 
-   !> End the file. If the run went well it gets its name; else `.partial` stays and what had the name
-   !> before is untouched.
+   !> End the file. If the run went well it gets its name; else `.partial` stays, if it has rows, and
+   !> what had the name before is untouched.
    subroutine close_csv(self, whole, error)
       class(csv_recorder), intent(inout) :: self
       !> Whether the run went well
@@ -123,6 +123,13 @@ contains
       integer :: status
 
       if (self%unit == -1) return
+      if (self%count == 0 .and. .not. whole) then
+         ! Nothing to keep.
+         close (self%unit, status='delete', iostat=status, iomsg=message)
+         self%unit = -1
+         if (status /= 0 .and. .not. allocated(error)) call report_write(self, message, error)
+         return
+      end if
       flush (self%unit, iostat=status, iomsg=message)
       if (status /= 0 .and. .not. allocated(error)) call report_write(self, message, error)
       close (self%unit, iostat=status, iomsg=message)
@@ -139,7 +146,7 @@ contains
    subroutine report_write(self, message, error)
       class(csv_recorder), intent(in) :: self
       character(len=*), intent(in) :: message
-      type(error_type), allocatable, intent(out) :: error
+      type(error_type), allocatable, intent(inout) :: error
 
       call fatal_error(error, analysis_failed, 'output: cannot write '//self%path//partial//': '// &
                        trim(message)//'; free some space or choose another file with --output')

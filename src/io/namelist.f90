@@ -216,7 +216,13 @@ contains
       integer :: g, joint, missing
 
       call find_groups(r, name, 1, huge(1), found, messages)
-      if (size(found) == 0 .or. n < 1 .or. n > most_bodies) return
+      if (size(found) == 0) return
+      if (n < 1 .or. n > most_bodies) then
+         ! The number of joints is reported elsewhere; let the first spring stand for all.
+         call read_spring(r, name, found(1), joint, one, messages)
+         springs = [one]
+         return
+      end if
       allocate (group_of(0:n), source=0)
       allocate (springs(0:n))
       do g = 1, size(found)

@@ -292,16 +292,16 @@ contains
       character(len=*), intent(in) :: path, name
       integer, intent(out) :: subscript
       type(message_list), intent(inout) :: messages
+      character(len=:), allocatable :: word
       integer :: length
 
       subscript = 0
       length = index(c%text(c%at:), ')')
       if (length > 2 .and. length < 12) then
-         associate (word => trim(adjustl(c%text(c%at + 1:c%at + length - 2))))
-            if (len(word) > 0 .and. len(word) < 8 .and. verify(word, '0123456789') == 0) then
-               read (word, '(i8)') subscript
-            end if
-         end associate
+         word = trim(adjustl(c%text(c%at + 1:c%at + length - 2)))
+         if (len(word) > 0 .and. len(word) < 8 .and. verify(word, '0123456789') == 0) then
+            read (word, '(i8)') subscript
+         end if
       end if
       if (subscript < 1) then
          call complain(c, path, "the subscript of '"//name//"' must be one whole number from 1", messages)

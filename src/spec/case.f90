@@ -48,6 +48,10 @@ contains
          end if
       end if
       call self%analysis%validate(messages)
+      if (self%column%kinematics == 'finite' .and. self%analysis%method == 'static') then
+         call messages%add("column: kinematics = 'finite' has no static path; set kinematics = "// &
+                           "'small' or 'pdelta', or method = 'rk4' in the group analysis")
+      end if
       call self%output%validate(messages)
    end subroutine validate
 

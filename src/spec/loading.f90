@@ -30,7 +30,8 @@ module rbs_spec_loading
       character(len=64) :: column = ''
       !> csv: name or number of the column with the time [s]; empty: the one named time, if any
       character(len=64) :: time_column = ''
-      !> Unit of the values: of the file (default mm, kN, m/s2) or of the amplitudes (default 'drift')
+      !> Unit of the values. Of a file: empty for the one in the name of the column, else mm and kN for a
+      !> PEER file, SI for a csv. Of the amplitudes: empty for drift (displacement) or SI
       character(len=16) :: unit = ''
       !> Factor on the values
       real(wp) :: scale = 1.0_wp
@@ -88,6 +89,9 @@ contains
       end if
       if (is_given(self%interval)) call check_positive(self%interval, 'loading: interval', 's', messages)
       if (drive > 0) call check_unit(self, messages)
+      if (allocated(self%file) .and. allocated(self%amplitudes)) then
+         call messages%add('loading: both file and amplitudes are given; keep the one that is meant')
+      end if
       select case (self%source)
       case ('file')
          if (.not. allocated(self%file)) then

@@ -8,7 +8,7 @@ module rbs_spec_spring
    use rbs_base_constants, only: unset
    use rbs_base_error, only: message_list
    use rbs_base_text, only: to_text
-   use rbs_spec_check, only: check_positive, check_not_negative, check_name
+   use rbs_spec_check, only: is_given, check_positive, check_not_negative, check_name
    implicit none
    private
 
@@ -66,7 +66,36 @@ contains
       case default
          return                                     ! the rule has been reported
       end select
+      call refuse_unused(self, name, messages)
    end subroutine validate
+
+   !> A number that the rule does not use is a misunderstanding.
+   subroutine refuse_unused(self, name, messages)
+      class(spring_spec), intent(in) :: self
+      character(len=*), intent(in) :: name
+      type(message_list), intent(inout) :: messages
+      character(len=6), parameter :: names(7) = ['k     ', 'd_y   ', 'k_post', 'k_c   ', 'd_c   ', &
+                                                 'k_y   ', 'k_u   ']
+      logical, parameter :: no = .false., yes = .true.
+      logical :: used(7)
+      real(wp) :: values(7)
+      integer :: i
+
+      values = [self%k, self%d_y, self%k_post, self%k_c, self%d_c, self%k_y, self%k_u]
+      select case (self%rule)
+      case ('elastic')
+         used = [yes, no, no, no, no, no, no]
+      case ('bilinear')
+         used = [yes, yes, yes, no, no, no, no]
+      case default
+         used = [no, yes, no, yes, yes, yes, yes]
+      end select
+      do i = 1, size(names)
+         if (used(i) .or. .not. is_given(values(i))) cycle
+         call messages%add(name//': '//trim(names(i))//' is not used by the rule '//trim(self%rule)// &
+                           '; remove it or choose another rule')
+      end do
+   end subroutine refuse_unused
 
    subroutine validate_bilinear(self, name, messages)
       type(spring_spec), intent(in) :: self
