@@ -1,11 +1,17 @@
 !> Numbers as text, names compared: what messages are made of.
+!>
+!> The results have lengths that are known beforehand. For a text of deferred length gfortran keeps the
+!> length in static storage, which threads would share.
 module rbs_base_text
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_is_finite
    use rbs_base_kinds, only: wp
    implicit none
    private
 
-   public :: to_text, lower, nearest_name, list_of
+   public :: to_text, integer_length, lower, nearest_name, list_of
+
+   !> No number is longer than this.
+   integer, parameter :: longest = 32
 
    !> A number as short text for messages and headers.
    interface to_text
@@ -17,15 +23,49 @@ contains
    !> Six significant digits at the most, without blanks and trailing zeros: 0.0016, 7.0387e+08.
    pure function real_to_text(x) result(text)
       real(wp), intent(in) :: x
-      character(len=:), allocatable :: text
-      character(len=32) :: buffer, form
+      character(len=real_length(x)) :: text
+      character(len=longest) :: buffer
+
+      call write_real(x, buffer)
+      text = buffer(:len(text))
+   end function real_to_text
+
+   pure integer function real_length(x)
+      real(wp), intent(in) :: x
+      character(len=longest) :: buffer
+
+      call write_real(x, buffer)
+      real_length = len_trim(buffer)
+   end function real_length
+
+   pure function integer_to_text(i) result(text)
+      integer, intent(in) :: i
+      character(len=integer_length(i)) :: text
+      character(len=longest) :: buffer
+
+      write (buffer, '(i0)') i
+      text = buffer(:len(text))
+   end function integer_to_text
+
+   pure integer function integer_length(i)
+      integer, intent(in) :: i
+      character(len=longest) :: buffer
+
+      write (buffer, '(i0)') i
+      integer_length = len_trim(buffer)
+   end function integer_length
+
+   !> A number at the left of a text.
+   pure subroutine write_real(x, text)
+      real(wp), intent(in) :: x
+      character(len=longest), intent(out) :: text
+      character(len=longest) :: buffer, form
       integer :: mark, power
 
       if (ieee_is_nan(x)) then
          text = 'NaN'
       else if (.not. ieee_is_finite(x)) then
          text = merge('Infinity ', '-Infinity', x > 0.0_wp)
-         text = trim(text)
       else if (.not. abs(x) > 0.0_wp) then
          text = '0'
       else
@@ -35,49 +75,33 @@ contains
          read (buffer(mark + 1:), *) power
          if (power >= -4 .and. power <= 5) then
             write (form, '(a, i0, a)') '(f24.', 5 - power, ')'
-            write (buffer, form) x
-            text = without_zeros(trim(adjustl(buffer)))
-            if (text(1:1) == '.') text = '0'//text
-            if (text(1:2) == '-.') text = '-0'//text(2:)
+            write (text, form) x
+            text = adjustl(text)
+            if (text(1:1) == '.') text = '0'//text(:longest - 1)
+            if (text(1:2) == '-.') text = '-0'//text(2:longest - 1)
+            call cut_zeros(text)
          else
-            text = without_zeros(buffer(:mark - 1))//'e'//exponent_text(power)
+            text = buffer(:mark - 1)
+            call cut_zeros(text)
+            write (form, '(sp, i0.2)') power
+            text = trim(text)//'e'//form
          end if
       end if
-   end function real_to_text
+   end subroutine write_real
 
-   pure function integer_to_text(i) result(text)
-      integer, intent(in) :: i
-      character(len=:), allocatable :: text
-      character(len=16) :: buffer
-
-      write (buffer, '(i0)') i
-      text = trim(buffer)
-   end function integer_to_text
-
-   pure function exponent_text(power) result(text)
-      integer, intent(in) :: power
-      character(len=:), allocatable :: text
-      character(len=8) :: buffer
-
-      write (buffer, '(sp, i0.2)') power
-      text = trim(buffer)
-   end function exponent_text
-
-   !> A decimal number without the zeros (and the point) at its end.
-   pure function without_zeros(number) result(text)
-      character(len=*), intent(in) :: number
-      character(len=:), allocatable :: text
+   !> Take the zeros (and the point) off the end of a decimal number.
+   pure subroutine cut_zeros(number)
+      character(len=longest), intent(inout) :: number
       integer :: last
 
       last = len_trim(number)
-      if (index(number, '.') > 0) then
-         do while (number(last:last) == '0')
-            last = last - 1
-         end do
-         if (number(last:last) == '.') last = last - 1
-      end if
-      text = number(:last)
-   end function without_zeros
+      if (index(number, '.') == 0) return
+      do while (number(last:last) == '0')
+         last = last - 1
+      end do
+      if (number(last:last) == '.') last = last - 1
+      number = number(:last)
+   end subroutine cut_zeros
 
    !> Lower case (ASCII).
    pure function lower(word) result(text)
@@ -95,13 +119,17 @@ contains
    !> The names joined by commas, for "valid names are ...".
    pure function list_of(names) result(text)
       character(len=*), intent(in) :: names(:)
-      character(len=:), allocatable :: text
-      integer :: i
+      character(len=sum(len_trim(names)) + 2*max(size(names) - 1, 0)) :: text
+      integer :: i, at
 
-      text = ''
+      at = 0
       do i = 1, size(names)
-         if (i > 1) text = text//', '
-         text = text//trim(names(i))
+         if (i > 1) then
+            text(at + 1:at + 2) = ', '
+            at = at + 2
+         end if
+         text(at + 1:at + len_trim(names(i))) = trim(names(i))
+         at = at + len_trim(names(i))
       end do
    end function list_of
 
@@ -109,19 +137,26 @@ contains
    pure function nearest_name(word, names) result(name)
       character(len=*), intent(in) :: word
       character(len=*), intent(in) :: names(:)
-      character(len=:), allocatable :: name
+      character(len=len_trim(names(nearest_place(word, names)))) :: name
+
+      name = names(nearest_place(word, names))
+   end function nearest_name
+
+   pure integer function nearest_place(word, names) result(place)
+      character(len=*), intent(in) :: word
+      character(len=*), intent(in) :: names(:)
       integer :: i, distance, least
 
-      name = ''
+      place = 1
       least = huge(1)
       do i = 1, size(names)
          distance = edit_distance(lower(trim(word)), lower(trim(names(i))))
          if (distance < least) then
             least = distance
-            name = trim(names(i))
+            place = i
          end if
       end do
-   end function nearest_name
+   end function nearest_place
 
    !> Levenshtein distance: the least number of letters put in, taken out or changed.
    pure function edit_distance(a, b) result(distance)

@@ -291,7 +291,7 @@ contains
    end subroutine split
 
    !> Leave blanks and quotes out of a field.
-   subroutine trim_field(line, first, last)
+   pure subroutine trim_field(line, first, last)
       character(len=*), intent(in) :: line
       integer, intent(inout) :: first, last
 
@@ -327,9 +327,9 @@ contains
    end function is_blank
 
    !> A text without blanks, tabs and quotes around it.
-   function plain(text)
+   pure function plain(text)
       character(len=*), intent(in) :: text
-      character(len=:), allocatable :: plain
+      character(len=plain_length(text)) :: plain
       integer :: first, last
 
       first = 1
@@ -338,13 +338,23 @@ contains
       plain = text(first:last)
    end function plain
 
+   pure integer function plain_length(text)
+      character(len=*), intent(in) :: text
+      integer :: first, last
+
+      first = 1
+      last = len(text)
+      call trim_field(text, first, last)
+      plain_length = last - first + 1
+   end function plain_length
+
    !> A short piece of a text for a message, without control characters.
    function snippet(text)
       character(len=*), intent(in) :: text
-      character(len=:), allocatable :: snippet
+      character(len=min(len(text), 40)) :: snippet
       integer :: i
 
-      snippet = text(:min(len(text), 40))
+      snippet = text
       do i = 1, len(snippet)
          if (iachar(snippet(i:i)) < 32 .or. iachar(snippet(i:i)) > 126) snippet(i:i) = '?'
       end do

@@ -59,7 +59,7 @@ contains
       do i = 1, r%scanned%groups
          call check_group_name(r%path, r%scanned%group(i), group_names, messages)
       end do
-      case%title = case_title(r, messages)
+      call read_title(r, case%title, messages)
       call read_column(r, case%column, messages)
       call read_axial(r, case%column, messages)
       call read_springs(r, 'shear', case%column%n, case%column%shear, messages)
@@ -103,10 +103,10 @@ contains
                         "' cannot be read ("//trim(iomsg)//')')
    end subroutine check_status
 
-   function case_title(r, messages) result(found_title)
+   subroutine read_title(r, found_title, messages)
       type(reader), intent(in) :: r
+      character(len=:), allocatable, intent(out) :: found_title
       type(message_list), intent(inout) :: messages
-      character(len=:), allocatable :: found_title
       type(key_type), parameter :: keys(1) = [key_type('title', 's', 1)]
       character(len=text_length) :: title, iomsg
       character(len=:), allocatable :: text
@@ -127,7 +127,7 @@ contains
          end associate
       end if
       found_title = trim(title)
-   end function case_title
+   end subroutine read_title
 
    subroutine read_column(r, spec, messages)
       type(reader), intent(in) :: r

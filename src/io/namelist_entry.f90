@@ -2,7 +2,7 @@
 module rbs_io_namelist_entry
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: lower, nearest_name, list_of, to_text
+   use rbs_base_text, only: lower, nearest_name, list_of, to_text, integer_length
    use rbs_io_namelist_scan, only: nml_entry, nml_group, nml_scan
    use rbs_io_text_file, only: read_real, number_wrong
    implicit none
@@ -35,10 +35,10 @@ contains
    end function key
 
    !> 'case.nml line 4', for the begin of a message.
-   function location(path, line) result(text)
+   pure function location(path, line) result(text)
       character(len=*), intent(in) :: path
       integer, intent(in) :: line
-      character(len=:), allocatable :: text
+      character(len=len(path) + 6 + integer_length(line)) :: text
 
       text = path//' line '//to_text(line)
    end function location
@@ -88,7 +88,9 @@ contains
          if (messages%count > known) return
          text = '&'//trim(group%name)//' '//trim(entry%name)
          if (entry%subscript > 0) text = text//'('//to_text(entry%subscript)//')'
-         text = text//' ='//values_text(entry)//' /'
+         text = text//' ='
+         call add_values(entry, text)
+         text = text//' /'
       end associate
    end subroutine entry_text
 
@@ -124,7 +126,7 @@ contains
       total = max(entry%subscript - 1, 0)
       do i = 1, entry%values
          total = total + entry%value(i)%times
-         what = fault_of(entry%value(i)%text, wanted%kind)
+         call find_fault(entry%value(i)%text, wanted%kind, what)
          if (what /= '') then
             call messages%add(location(path, entry%line)//': '//trim(entry%name)//' = '// &
                               clean(entry%value(i)%text)//' '//what)
@@ -133,6 +135,10 @@ contains
       end do
       if (entry%subscript > 0 .and. wanted%most == 1) then
          call messages%add(location(path, entry%line)//": '"//trim(entry%name)//"' takes no subscript")
+      else if (entry%subscript > 0 .and. total >= entry%subscript + 1) then
+         call messages%add(location(path, entry%line)//": '"//trim(entry%name)//'('// &
+                           to_text(entry%subscript)//")' has more than one value; leave the subscript "// &
+                           'out, or give each value its own')
       else if (total > wanted%most) then
          call messages%add(location(path, entry%line)//": '"//trim(entry%name)//"' has "// &
                            to_text(total)//' values; it takes '//to_text(wanted%most)//' at the most')
@@ -140,10 +146,10 @@ contains
    end subroutine check_values
 
    !> What is wrong with a value; empty if nothing is.
-   function fault_of(text, kind) result(what)
+   subroutine find_fault(text, kind, what)
       character(len=*), intent(in) :: text
       character(len=1), intent(in) :: kind
-      character(len=:), allocatable :: what
+      character(len=:), allocatable, intent(out) :: what
       real(wp) :: value
       integer :: status, first
       logical :: quoted
@@ -177,28 +183,27 @@ contains
             what = 'must be .true. or .false.'
          end select
       end select
-   end function fault_of
+   end subroutine find_fault
 
-   !> The values of an entry, separated by commas.
-   function values_text(entry) result(text)
+   !> Put the values of an entry behind a text, separated by commas.
+   subroutine add_values(entry, text)
       type(nml_entry), intent(in) :: entry
-      character(len=:), allocatable :: text
+      character(len=:), allocatable, intent(inout) :: text
       integer :: i
 
-      text = ''
       do i = 1, entry%values
          if (i > 1) text = text//','
          if (entry%value(i)%times > 1) text = text//to_text(entry%value(i)%times)//'*'
          text = text//entry%value(i)%text
       end do
-   end function values_text
+   end subroutine add_values
 
    !> A short piece of a text for a message.
-   function clean(text)
+   pure function clean(text)
       character(len=*), intent(in) :: text
-      character(len=:), allocatable :: clean
+      character(len=min(len(text), 40)) :: clean
 
-      clean = text(:min(len(text), 40))
+      clean = text
    end function clean
 
 end module rbs_io_namelist_entry

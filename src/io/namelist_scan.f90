@@ -251,8 +251,8 @@ contains
 
       quote = c%text(c%at:c%at)
       if (quote == '''' .or. quote == '"') then
-         length = index(c%text(c%at + 1:), quote) + 1
-         if (length == 1) then
+         length = quoted_length(c%text(c%at:))
+         if (length == 0) then
             call complain(c, path, "the text of '"//name//"' has no closing quote", messages)
             return
          end if
@@ -285,6 +285,23 @@ contains
       end associate
       c%at = c%at + length
    end subroutine take_value
+
+   !> Length of a quoted text, quotes included; a quote within is doubled. 0 if it is not closed.
+   pure integer function quoted_length(text) result(length)
+      character(len=*), intent(in) :: text
+      integer :: mark
+
+      length = 1
+      do
+         mark = index(text(length + 1:), text(1:1))
+         length = length + mark
+         if (mark == 0) exit
+         if (length == len(text)) return
+         if (text(length + 1:length + 1) /= text(1:1)) return
+         length = length + 1
+      end do
+      length = 0
+   end function quoted_length
 
    !> A subscript (i).
    subroutine take_subscript(c, path, name, subscript, messages)
@@ -366,17 +383,22 @@ contains
    end function at_letter
 
    !> The word at the present place, for a message.
-   function word_at(c) result(word)
+   pure function word_at(c) result(word)
       type(cursor), intent(in) :: c
-      character(len=:), allocatable :: word
-      integer :: length
+      character(len=word_length(c)) :: word
 
-      word = ''
-      if (c%at > len(c%text)) return
-      length = scan(c%text(c%at:), ' ') - 1
-      if (length < 1) length = len(c%text) - c%at + 1
-      word = c%text(c%at:c%at + min(length, 30) - 1)
+      word = c%text(c%at:c%at + len(word) - 1)
    end function word_at
+
+   pure integer function word_length(c)
+      type(cursor), intent(in) :: c
+
+      word_length = 0
+      if (c%at > len(c%text)) return
+      word_length = scan(c%text(c%at:), ' ') - 1
+      if (word_length < 1) word_length = len(c%text) - c%at + 1
+      word_length = min(word_length, 30)
+   end function word_length
 
    subroutine complain(c, path, what, messages)
       type(cursor), intent(in) :: c

@@ -157,6 +157,7 @@ contains
       integer, intent(in) :: direction
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
+      character(len=:), allocatable :: state
       integer :: changes, i, way
       logical :: found
 
@@ -186,7 +187,8 @@ contains
       if (found) then
          call begin_line(path, direction)
       else
-         call fatal_error(error, analysis_failed, 'the column snaps back at '//state_text(path)// &
+         call describe_state(path, state)
+         call fatal_error(error, analysis_failed, 'the column snaps back at '//state// &
                           ': no combination of loading and unloading springs was found that lets its '// &
                           'top go on. A driven top cannot follow that; use a dynamic analysis')
       end if
@@ -386,10 +388,13 @@ contains
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
       type(error_type), allocatable :: ignored
-      character(len=:), allocatable :: spring
+      character(len=:), allocatable :: spring, state, remark
       real(wp) :: factor
       integer :: i, n
 
+      call describe_state(path, state)
+      remark = ''
+      if (path%equilibrium%coupled) remark = ' above what the axial load takes away'
       n = path%equilibrium%column%n
       i = minloc(path%springs%k/path%equilibrium%initial_stiffness, dim=1)
       spring = 'the shear spring of joint '//to_text(min(i, n))
@@ -397,7 +402,7 @@ contains
       call critical_factor(path%equilibrium%column, factor, ignored)
       if (.not. path%by_force) then
          call fatal_error(error, analysis_failed, 'the column has no single answer to the displacement '// &
-                          to_text(target)//' m at '//state_text(path)//': '//spring// &
+                          to_text(target)//' m at '//state//': '//spring// &
                           ' and the axial load leave it without stiffness. Change the axial load '// &
                           'or the stiffness after yield')
       else if (factor <= 1.0_wp) then
@@ -407,26 +412,19 @@ contains
       else
          call fatal_error(error, analysis_failed, 'the lateral force '//to_text(target)// &
                           ' N is beyond the capacity of the column: '//spring// &
-                          ' has no stiffness left at '//state_text(path)//'. The path up to there is '// &
+                          ' has no stiffness left at '//state//'. The path up to there is '// &
                           'kept; drive the column by displacement, or give the spring a stiffness '// &
-                          'after yield'//axial_remark(path))
+                          'after yield'//remark)
       end if
    end subroutine report_no_line
 
-   function axial_remark(path) result(text)
+   !> Where the path is, for a message.
+   subroutine describe_state(path, text)
       type(path_type), intent(in) :: path
-      character(len=:), allocatable :: text
-
-      text = ''
-      if (path%equilibrium%coupled) text = ' above what the axial load takes away'
-   end function axial_remark
-
-   function state_text(path) result(text)
-      type(path_type), intent(in) :: path
-      character(len=:), allocatable :: text
+      character(len=:), allocatable, intent(out) :: text
 
       text = 'force '//to_text(path%force)//' N, displacement '//to_text(path%displacement)//' m'
-   end function state_text
+   end subroutine describe_state
 
    !> The present state as a row.
    subroutine fill_row(path, row, number)

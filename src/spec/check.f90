@@ -36,7 +36,7 @@ contains
       call check_finite(x, name, unit, messages, passed)
       if (passed) then
          passed = x > 0.0_wp
-         if (.not. passed) call messages%add(name//' = '//with_unit(x, unit)//' must be above zero')
+         if (.not. passed) call messages%add(trim(name//' = '//to_text(x)//' '//unit)//' must be above zero')
       end if
       if (present(ok)) ok = passed
    end subroutine check_positive
@@ -53,7 +53,7 @@ contains
       call check_finite(x, name, unit, messages, passed)
       if (passed) then
          passed = x >= 0.0_wp
-         if (.not. passed) call messages%add(name//' = '//with_unit(x, unit)//' must not be negative')
+         if (.not. passed) call messages%add(trim(name//' = '//to_text(x)//' '//unit)//' must not be negative')
       end if
       if (present(ok)) ok = passed
    end subroutine check_not_negative
@@ -101,13 +101,5 @@ contains
                            list_of(valid)//" (did you mean '"//nearest_name(word, valid)//"'?)")
       end if
    end subroutine check_name
-
-   function with_unit(x, unit) result(text)
-      real(wp), intent(in) :: x
-      character(len=*), intent(in) :: unit
-      character(len=:), allocatable :: text
-
-      text = trim(to_text(x)//' '//unit)
-   end function with_unit
 
 end module rbs_spec_check
