@@ -43,7 +43,8 @@ contains
       class(terminal_progress), intent(inout) :: self
       logical, intent(in) :: quiet
 
-      self%wanted = .not. quiet .and. c_isatty(2_c_int) == 1_c_int
+      self%wanted = .false.
+      if (.not. quiet) self%wanted = c_isatty(2_c_int) == 1_c_int
       self%begin = seconds()
    end subroutine start
 

@@ -1,5 +1,7 @@
 !> The commands: from a case file to a csv and a summary.
 module rbs_app_run
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_null_char, c_ptr
    use, intrinsic :: iso_fortran_env, only: output_unit
    use rbs_app_progress, only: terminal_progress
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
@@ -36,6 +38,17 @@ module rbs_app_run
       type(signal_type) :: force, ground
    end type loads_type
 
+   interface
+      !> C: the path of a file that is there without links and dots; a null pointer if it is not.
+      function c_realpath(path, real_path) bind(c, name='realpath') result(status)
+         import :: c_char, c_ptr
+         implicit none
+         character(kind=c_char), intent(in) :: path(*)
+         character(kind=c_char), intent(out) :: real_path(*)
+         type(c_ptr) :: status
+      end function c_realpath
+   end interface
+
 contains
 
    !> rbsdem run: solve a case and write its rows.
@@ -51,10 +64,14 @@ contains
       type(csv_recorder) :: recorder
       type(summary_type) :: summary
       type(error_type), allocatable :: closing
+      character(len=:), allocatable :: file
 
       call prepare(path, case, column, loads, error)
       if (allocated(error)) return
-      call solve(case, column, loads, output_path(path, case, output), recorder, summary, quiet, error)
+      file = output_path(path, case, output)
+      call check_output(file, path, case, error)
+      if (allocated(error)) return
+      call solve(case, column, loads, file, recorder, summary, quiet, error)
       call recorder%close(.not. allocated(error), closing)
       if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
       if (allocated(error)) then
@@ -98,6 +115,7 @@ contains
       type(modes_type) :: modes
       type(message_list) :: messages
       logical :: understood
+      real(wp) :: period
       integer :: i
 
       call read_case(path, case, messages, understood)
@@ -109,8 +127,11 @@ contains
       if (allocated(error)) return
       write (output_unit, '(a)') 'mode,frequency_Hz,period_s,omega_rad/s'
       do i = 1, column%unknowns
+         ! A column without stiffness to speak of has no period: its frequency is zero.
+         period = 0.0_wp
+         if (modes%omega(i) > tiny(1.0_wp)*1.0e3_wp) period = 2.0_wp*pi/modes%omega(i)
          write (output_unit, '(i0, 3(a, es22.16e2))') i, ',', modes%omega(i)/(2.0_wp*pi), ',', &
-            2.0_wp*pi/modes%omega(i), ',', modes%omega(i)
+            period, ',', modes%omega(i)
       end do
       write (output_unit, '(a, es23.16e2)') '# stable step of rk4 [s]:', modes%stable_step
    end subroutine show_modes
@@ -151,6 +172,9 @@ contains
             call spec%validate(case%analysis%dynamic(), own)
             if (own%count > 0) cycle                ! reported already
             if (spec%source == 'protocol') then
+               ! The height is in the amplitudes; a wrong one has been reported.
+               if (.not. ieee_is_finite(case%column%height)) cycle
+               if (case%column%height <= 0.0_wp) cycle
                call protocol_values(spec, case%column%height, time, value, fault)
             else
                call loading_values(spec, folder, case%analysis%dynamic(), time, value, fault)
@@ -261,6 +285,46 @@ contains
       lines(3) = 'units: SI, in the names of the columns; method: '//trim(case%analysis%method)// &
                  ', kinematics: '//trim(case%column%kinematics)
    end function header
+
+   !> The rows must not go into a file that the case was read from.
+   subroutine check_output(file, case_path, case, error)
+      !> Where the rows are to go
+      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: case_path
+      type(case_spec), intent(in) :: case
+      type(error_type), allocatable, intent(out) :: error
+      character(len=:), allocatable :: input
+      integer :: i
+      logical :: clash
+
+      clash = same_file(file, case_path)
+      do i = 1, case%loadings
+         if (.not. allocated(case%loading(i)%file)) cycle
+         input = case%loading(i)%file
+         if (input(1:1) /= '/') input = case_path(:index(case_path, '/', back=.true.))//input
+         if (same_file(file, input)) clash = .true.
+      end do
+      if (clash) then
+         call fatal_error(error, bad_input, 'output: '//file//' is an input of the case and would '// &
+                          'be written over; choose another file with --output')
+      end if
+   end subroutine check_output
+
+   !> Whether two paths lead to one file that is there.
+   logical function same_file(a, b)
+      character(len=*), intent(in) :: a, b
+      !> POSIX: no path is longer
+      integer, parameter :: longest = 4097
+      character(kind=c_char) :: real_a(longest), real_b(longest)
+
+      real_a = c_null_char
+      real_b = c_null_char
+      same_file = .false.
+      if (.not. c_associated(c_realpath(a//c_null_char, real_a))) return
+      if (.not. c_associated(c_realpath(b//c_null_char, real_b))) return
+      same_file = all(real_a(:findloc(real_a, c_null_char, dim=1)) == &
+                      real_b(:findloc(real_a, c_null_char, dim=1)))
+   end function same_file
 
    !> Where the rows go.
    function output_path(case_path, case, output) result(path)

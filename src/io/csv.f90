@@ -1,6 +1,10 @@
 !> Rows as a csv file: under a temporary name until it is whole.
+!>
+!> Written through C: the Fortran library of gfortran 12 gives status 0 for writes, flush and close on
+!> a full disk, so that a cut file would pass for a whole one.
 module rbs_io_csv
-   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
+   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_null_char, c_null_ptr, &
+                                          c_ptr, c_size_t
    use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
    use rbs_results_recorder, only: recorder_type
@@ -20,7 +24,7 @@ module rbs_io_csv
       integer :: count = 0
       !> Path of the file
       character(len=:), allocatable :: path
-      integer, private :: unit = -1
+      type(c_ptr), private :: stream = c_null_ptr
       character(len=:), allocatable, private :: buffer
    contains
       procedure :: open => open_csv
@@ -29,6 +33,64 @@ module rbs_io_csv
    end type csv_recorder
 
    interface
+      !> C: open a file; a null pointer if that fails.
+      function c_fopen(path, mode) bind(c, name='fopen') result(stream)
+         import :: c_char, c_ptr
+         implicit none
+         character(kind=c_char), intent(in) :: path(*), mode(*)
+         type(c_ptr) :: stream
+      end function c_fopen
+
+      !> C: write `count` pieces of `size` bytes; fewer are written if that fails.
+      function c_fwrite(text, size, count, stream) bind(c, name='fwrite') result(written)
+         import :: c_char, c_ptr, c_size_t
+         implicit none
+         character(kind=c_char), intent(in) :: text(*)
+         integer(c_size_t), value :: size, count
+         type(c_ptr), value :: stream
+         integer(c_size_t) :: written
+      end function c_fwrite
+
+      !> C: write what is still in the buffer; 0 if it went well.
+      function c_fflush(stream) bind(c, name='fflush') result(status)
+         import :: c_int, c_ptr
+         implicit none
+         type(c_ptr), value :: stream
+         integer(c_int) :: status
+      end function c_fflush
+
+      !> C: the descriptor of an open file.
+      function c_fileno(stream) bind(c, name='fileno') result(descriptor)
+         import :: c_int, c_ptr
+         implicit none
+         type(c_ptr), value :: stream
+         integer(c_int) :: descriptor
+      end function c_fileno
+
+      !> C: bring a file to its disk; not 0 if it went wrong or there is no disk behind it.
+      function c_fsync(descriptor) bind(c, name='fsync') result(status)
+         import :: c_int
+         implicit none
+         integer(c_int), value :: descriptor
+         integer(c_int) :: status
+      end function c_fsync
+
+      !> C: close a file; 0 if it went well.
+      function c_fclose(stream) bind(c, name='fclose') result(status)
+         import :: c_int, c_ptr
+         implicit none
+         type(c_ptr), value :: stream
+         integer(c_int) :: status
+      end function c_fclose
+
+      !> C: take a file away; 0 if it went well.
+      function c_remove(path) bind(c, name='remove') result(status)
+         import :: c_char, c_int
+         implicit none
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int) :: status
+      end function c_remove
+
       !> C: give a file another name, in place of what has that name; 0 if it went well.
       function c_rename(from, to) bind(c, name='rename') result(status)
          import :: c_char, c_int
@@ -50,9 +112,8 @@ contains
       !> Names of the columns
       character(len=*), intent(in) :: labels(:)
       type(error_type), allocatable, intent(out) :: error
-      character(len=256) :: message
       character(len=:), allocatable :: line
-      integer :: i, status
+      integer :: i
 
       self%path = path
       self%count = 0
@@ -60,12 +121,15 @@ contains
          call fatal_error(error, bad_input, 'output: '//path//' is a folder; give the path of a file')
          return
       end if
-      open (newunit=self%unit, file=path//partial, status='replace', action='write', iostat=status, &
-            iomsg=message)
-      if (status /= 0) then
-         self%unit = -1
-         call fatal_error(error, bad_input, 'output: cannot write '//path//partial//': '// &
-                          trim(message)//'; choose another file with --output')
+      if (is_special(path)) then
+         call fatal_error(error, bad_input, 'output: '//path//' is a device or a pipe, which a file '// &
+                          'cannot take the place of; choose another file with --output')
+         return
+      end if
+      self%stream = c_fopen(path//partial//c_null_char, 'w'//c_null_char)
+      if (.not. c_associated(self%stream)) then
+         call fatal_error(error, bad_input, 'output: cannot write '//path//partial//'; '// &
+                          'check its folder, name and permissions, or choose another file with --output')
          return
       end if
       do i = 1, size(comments)
@@ -105,11 +169,12 @@ contains
       class(csv_recorder), intent(inout) :: self
       character(len=*), intent(in) :: line
       type(error_type), allocatable, intent(inout) :: error
-      character(len=256) :: message
-      integer :: status
+      integer(c_size_t) :: length
 
-      write (self%unit, '(a)', iostat=status, iomsg=message) line
-      if (status /= 0) call report_write(self, message, error)
+      length = len(line, kind=c_size_t) + 1_c_size_t
+      if (c_fwrite(line//new_line('a'), 1_c_size_t, length, self%stream) /= length) then
+         call report_write(self, error)
+      end if
    end subroutine put_line
 
    !> End the file. If the run went well it gets its name; else `.partial` stays, if it has rows, and
@@ -119,22 +184,18 @@ contains
       !> Whether the run went well
       logical, intent(in) :: whole
       type(error_type), allocatable, intent(inout) :: error
-      character(len=256) :: message
-      integer :: status
+      integer(c_int) :: flushed, status
 
-      if (self%unit == -1) return
+      if (.not. c_associated(self%stream)) return
+      flushed = c_fflush(self%stream)
+      status = c_fclose(self%stream)
+      self%stream = c_null_ptr
+      if ((flushed /= 0 .or. status /= 0) .and. .not. allocated(error)) call report_write(self, error)
       if (self%count == 0 .and. .not. whole) then
          ! Nothing to keep.
-         close (self%unit, status='delete', iostat=status, iomsg=message)
-         self%unit = -1
-         if (status /= 0 .and. .not. allocated(error)) call report_write(self, message, error)
+         status = c_remove(self%path//partial//c_null_char)
          return
       end if
-      flush (self%unit, iostat=status, iomsg=message)
-      if (status /= 0 .and. .not. allocated(error)) call report_write(self, message, error)
-      close (self%unit, iostat=status, iomsg=message)
-      self%unit = -1
-      if (status /= 0 .and. .not. allocated(error)) call report_write(self, message, error)
       if (allocated(error) .or. .not. whole) return
       status = c_rename(self%path//partial//c_null_char, self%path//c_null_char)
       if (status /= 0) then
@@ -143,14 +204,29 @@ contains
       end if
    end subroutine close_csv
 
-   subroutine report_write(self, message, error)
+   subroutine report_write(self, error)
       class(csv_recorder), intent(in) :: self
-      character(len=*), intent(in) :: message
       type(error_type), allocatable, intent(inout) :: error
 
-      call fatal_error(error, analysis_failed, 'output: cannot write '//self%path//partial//': '// &
-                       trim(message)//'; free some space or choose another file with --output')
+      call fatal_error(error, analysis_failed, 'output: cannot write all of '//self%path//partial// &
+                       '; the disk is probably full: free some space or choose another file '// &
+                       'with --output')
    end subroutine report_write
+
+   !> Whether a path is a device or a pipe: these have nothing to bring to a disk.
+   logical function is_special(path)
+      character(len=*), intent(in) :: path
+      type(c_ptr) :: stream
+      integer(c_int) :: status
+
+      is_special = .false.
+      ! For update: this neither cuts a file nor waits for the other end of a pipe.
+      stream = c_fopen(path//c_null_char, 'r+'//c_null_char)
+      if (.not. c_associated(stream)) return
+      status = c_fsync(c_fileno(stream))
+      is_special = status /= 0
+      status = c_fclose(stream)
+   end function is_special
 
    !> Whether a path is a folder.
    logical function is_folder(path)

@@ -3,8 +3,8 @@ module rbs_io_history
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_io_text_file, only: text_file, load_text, read_real, is_integer, &
-                               number_ok, number_not_finite, number_wrong
+   use rbs_io_text_file, only: text_file, load_text, read_real, is_integer, number_ok, number_wrong, &
+                               number_not_finite
    implicit none
    private
 
@@ -34,7 +34,7 @@ module rbs_io_history
    !> Begin and end of the fields of a line.
    type :: field_list
       integer :: count = 0
-      integer :: first(most_columns) = 0, last(most_columns) = 0
+      integer :: first(most_columns + 1) = 0, last(most_columns + 1) = 0
    end type field_list
 
 contains
@@ -65,7 +65,7 @@ contains
       type(text_file), intent(inout) :: file
       type(field_list) :: fields
       real(wp) :: value
-      integer :: first, last, status
+      integer :: first, last, status, i
       logical :: found
 
       is_peer = .false.
@@ -73,11 +73,16 @@ contains
       if (.not. found) return
       call split(file%text(first:last), ' ', fields)
       if (fields%count == 0) return
-      call read_real(file%text(first + fields%first(1) - 1:first + fields%last(1) - 1), value, status)
-      if (status == number_ok) return
+      ! A name may begin with a number; a line of nothing but numbers is no name.
+      do i = 1, fields%count
+         call read_real(file%text(first + fields%first(i) - 1:first + fields%last(i) - 1), value, status)
+         if (status /= number_ok) exit
+      end do
+      if (i > fields%count) return
       call file%next_line(first, last, found)
       if (.not. found) return
-      if (count_of(file%text(first:last)) < 0) return
+      ! A csv with blanks may well have the row `0 0` there.
+      if (count_of(file%text(first:last)) < 1) return
       call file%next_line(first, last, found)
       if (.not. found) return
       call split(file%text(first:last), ' ', fields)
@@ -130,7 +135,7 @@ contains
       else if (history%rows /= declared) then
          call fatal_error(error, bad_input, path//': line 2 declares '//to_text(declared)// &
                           ' pairs, but there are '//to_text(history%rows)//'; the file is cut or '// &
-                          'mixed up, or the number wants correcting')
+                          "mixed up, or the number wants correcting (if it is a csv, set format = 'csv')")
       else
          allocate (history%labels(history%columns))
          do i = 1, history%columns
@@ -150,7 +155,7 @@ contains
       integer :: begin(2)
       real(wp) :: value
       integer :: first, last, status, i
-      logical :: found, named
+      logical :: found, named, worded
 
       history%name = path(index(path, '/', back=.true.) + 1:)
       do
@@ -166,12 +171,13 @@ contains
       separator = separator_of(file%text(first:last))
       call split(file%text(first:last), separator, fields)
       named = .true.
+      worded = .false.
       do i = 1, fields%count
-         associate (word => file%text(first + fields%first(i) - 1:first + fields%last(i) - 1))
-            call read_real(word, value, status)
-         end associate
-         if (status /= number_wrong) named = .false.
+         call read_real(plain(file%text(first + fields%first(i) - 1:first + fields%last(i) - 1)), value, status)
+         if (status == number_ok) named = .false.
+         if (status == number_wrong) worded = .true.
       end do
+      named = named .and. worded
       allocate (history%labels(fields%count))
       history%labels = ''
       if (named) then
@@ -218,6 +224,11 @@ contains
          if (.not. found) exit
          if (is_blank(file%text(first:last))) cycle
          call split(file%text(first:last), separator, fields)
+         if (fields%count > most_columns) then
+            call fatal_error(error, bad_input, path//' line '//to_text(file%line)//': has more than '// &
+                             to_text(most_columns)//' columns; is it a history?')
+            return
+         end if
          if (history%rows == 0) then
             history%columns = fields%count
             allocate (history%values(fields%count, rows))
@@ -253,7 +264,8 @@ contains
                        ": '"//snippet(word)//"' "//remedy//'; correct the file')
    end subroutine report_number
 
-   !> Cut a line into fields. Blanks separate (any number of them, and tabs) where the separator is one.
+   !> Cut a line into fields, `most_columns` + 1 of them at the most. Blanks separate (any number of
+   !> them, and tabs) where the separator is one.
    subroutine split(line, separator, fields)
       character(len=*), intent(in) :: line
       character(len=1), intent(in) :: separator
@@ -267,14 +279,14 @@ contains
          if (scan(line(last:last), ' '//tab) == 0) exit
          last = last - 1
       end do
-      do while (at <= last .and. fields%count < most_columns)
+      do while (at <= last .and. fields%count <= most_columns)
          if (separator == ' ') then
             stop_at = verify(line(at:last), ' '//tab)
             if (stop_at == 0) exit
             at = at + stop_at - 1
             stop_at = scan(line(at:last), ' '//tab)
          else
-            stop_at = index(line(at:last), separator)
+            stop_at = end_of_field(line(at:last), separator)
          end if
          fields%count = fields%count + 1
          fields%first(fields%count) = at
@@ -283,27 +295,56 @@ contains
          if (stop_at == 0) exit
          at = at + stop_at
          if (at > last .and. separator /= ' ') then
-            fields%count = min(fields%count + 1, most_columns)
+            fields%count = min(fields%count + 1, most_columns + 1)
             fields%first(fields%count) = last + 1
             fields%last(fields%count) = last
          end if
       end do
    end subroutine split
 
-   !> Leave blanks and quotes out of a field.
+   !> Place of the separator that ends the first field of a line, 0 if it is the last field; a
+   !> separator between quotes ends nothing.
+   pure integer function end_of_field(line, separator) result(place)
+      character(len=*), intent(in) :: line
+      character(len=1), intent(in) :: separator
+      integer :: quote
+
+      place = index(line, separator)
+      if (place == 0) return
+      quote = index(line(:place), '"')
+      if (quote == 0) return
+      if (verify(line(:quote - 1), ' ') > 0) return
+      quote = quote + index(line(quote + 1:), '"')
+      place = index(line(quote + 1:), separator)
+      if (place > 0) place = place + quote
+   end function end_of_field
+
+   !> Leave blanks, and quotes that stand on both sides, out of a field.
    pure subroutine trim_field(line, first, last)
       character(len=*), intent(in) :: line
       integer, intent(inout) :: first, last
 
+      call trim_blanks(line, first, last)
+      if (last <= first) return
+      if (line(first:first) /= '"' .or. line(last:last) /= '"') return
+      first = first + 1
+      last = last - 1
+      call trim_blanks(line, first, last)
+   end subroutine trim_field
+
+   pure subroutine trim_blanks(line, first, last)
+      character(len=*), intent(in) :: line
+      integer, intent(inout) :: first, last
+
       do while (first <= last)
-         if (scan(line(first:first), ' "'//tab) == 0) exit
+         if (line(first:first) /= ' ' .and. line(first:first) /= tab) exit
          first = first + 1
       end do
       do while (last >= first)
-         if (scan(line(last:last), ' "'//tab) == 0) exit
+         if (line(last:last) /= ' ' .and. line(last:last) /= tab) exit
          last = last - 1
       end do
-   end subroutine trim_field
+   end subroutine trim_blanks
 
    !> The separator of a csv: semicolon, comma, tab or blanks.
    character(len=1) function separator_of(line)
@@ -314,6 +355,8 @@ contains
          separator_of = ';'
       else if (index(line, ',') > 0) then
          separator_of = ','
+      else if (index(trim(line), tab) > 0) then
+         separator_of = tab
       end if
    end function separator_of
 

@@ -92,7 +92,7 @@ contains
       integer, intent(out) :: column
       type(error_type), allocatable, intent(out) :: error
       character(len=64) :: wanted
-      integer :: i
+      integer :: i, found
 
       column = 0
       if (word == '') then
@@ -103,7 +103,7 @@ contains
                 index(lower(history%labels(i)), trim(drive)) == 1) column = i
             if (column > 0) return
          end do
-         if (history%columns == 1) column = 1
+         if (history%columns == 1 .and. .not. is_time(history%labels(1))) column = 1
          if (history%columns == 2 .and. is_time(history%labels(1))) column = 2
          if (column == 0) then
             call fatal_error(error, bad_input, path//": no column is named after '"//trim(drive)// &
@@ -116,6 +116,15 @@ contains
                              'are 1 to '//to_text(history%columns))
          end if
       else
+         found = 0
+         do i = 1, history%columns
+            if (lower(history%labels(i)) == lower(word)) found = found + 1
+         end do
+         if (found > 1) then
+            call fatal_error(error, bad_input, path//': '//key//" = '"//trim(word)//"' is the name of "// &
+                             'more than one column; give the number of the column')
+            return
+         end if
          do column = 1, history%columns
             if (lower(history%labels(column)) == lower(word)) return
          end do
@@ -145,9 +154,12 @@ contains
       real(wp), intent(inout) :: value(:)
       type(error_type), allocatable, intent(out) :: error
       type(unit_type), allocatable :: units(:)
+      character(len=8), allocatable :: names(:)
       character(len=64) :: name
       integer :: i, mark
 
+      call check_range(value, path, column, error)
+      if (allocated(error)) return
       allocate (units, source=units_of(drive))
       name = unit
       if (name == '') then
@@ -161,8 +173,9 @@ contains
             return
          end if
       end do
+      names = units%name
       call fatal_error(error, bad_input, path//": the unit '"//trim(name)//"' of column "// &
-                       trim(history%labels(column))//' is not one of '//list_of(units%name)// &
+                       trim(history%labels(column))//' is not one of '//list_of(names)// &
                        '; give the right one with unit')
    end subroutine convert
 
@@ -179,13 +192,22 @@ contains
       if (spec%time_column /= '') then
          call find_column(history, path, 'time', spec%time_column, 'time_column', column, error)
          if (allocated(error)) return
-      else if (.not. is_given(spec%interval)) then
+      else
          do i = history%columns, 1, -1
             if (is_time(history%labels(i))) column = i
          end do
       end if
       if (column > 0) then
+         if (is_given(spec%interval)) then
+            call fatal_error(error, bad_input, path//': interval is given, and the times are in column '// &
+                             to_text(column)//' '//trim(history%labels(column))//' as well; remove interval')
+            return
+         end if
+         call check_seconds(history%labels(column), path, error)
+         if (allocated(error)) return
          time = history%values(column, :)
+         call check_range(time, path, column, error)
+         if (allocated(error)) return
          do i = 2, size(time)
             if (time(i) > time(i - 1)) cycle
             call fatal_error(error, bad_input, path//': row '//to_text(i)//' of the times, '// &
@@ -200,6 +222,39 @@ contains
                           'row to row with interval, in s, or name the column with time_column')
       end if
    end subroutine find_times
+
+   !> Values must leave room for the arithmetic: units, scale, squares.
+   subroutine check_range(value, path, column, error)
+      real(wp), intent(in) :: value(:)
+      character(len=*), intent(in) :: path
+      integer, intent(in) :: column
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), parameter :: largest = 1.0e100_wp
+      integer :: i
+
+      do i = 1, size(value)
+         if (abs(value(i)) <= largest) cycle
+         call fatal_error(error, bad_input, path//': row '//to_text(i)//' of column '//to_text(column)// &
+                          ', '//to_text(value(i))//', is outside the range of the arithmetic; '// &
+                          'correct the file')
+         return
+      end do
+   end subroutine check_range
+
+   !> Times are in seconds: a name that ends with another unit must not pass for them.
+   subroutine check_seconds(label, path, error)
+      character(len=*), intent(in) :: label, path
+      type(error_type), allocatable, intent(out) :: error
+      character(len=8), parameter :: others(8) = ['ms      ', 'us      ', 'ns      ', 'min     ', &
+                                                  'h       ', 'hr      ', 'hours   ', 'minutes ']
+      integer :: mark
+
+      mark = index(label, '_', back=.true.)
+      if (mark == 0) return
+      if (all(others /= lower(label(mark + 1:)))) return
+      call fatal_error(error, bad_input, path//': the times of column '//trim(label)// &
+                       ' are not in seconds; convert them and name the column time_s')
+   end subroutine check_seconds
 
    !> Whether a column has the name of a time: t, time, time_s.
    pure logical function is_time(label)

@@ -5,7 +5,7 @@ module rbs_io_namelist
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_io_namelist_entry, only: key_type, key, check_group_name, entry_text, location, text_length
-   use rbs_io_namelist_scan, only: nml_group, nml_scan, scan_namelist
+   use rbs_io_namelist_scan, only: nml_group, nml_scan, scan_namelist, most_messages
    use rbs_io_text_file, only: text_file, load_text
    use rbs_spec_analysis, only: analysis_spec, output_spec
    use rbs_spec_case, only: case_spec, most_loadings
@@ -167,7 +167,7 @@ contains
       spec%mass = mass
       spec%mass_damping = mass_damping
       spec%stiffness_damping = stiffness_damping
-      spec%kinematics = kinematics(:len(spec%kinematics))
+      call take_text(r, 'column: kinematics', kinematics, spec%kinematics, messages)
       call given_reals(r, 'column: lengths', lengths, spec%lengths, messages)
       call given_reals(r, 'column: masses', masses, spec%masses, messages)
    end subroutine read_column
@@ -226,6 +226,7 @@ contains
       allocate (group_of(0:n), source=0)
       allocate (springs(0:n))
       do g = 1, size(found)
+         if (messages%count > most_messages) return
          call read_spring(r, name, found(g), joint, one, messages)
          if (joint < 0 .or. joint > n) then
             call messages%add(location(r%path, r%scanned%group(found(g))%line)//': &'//name// &
@@ -296,8 +297,8 @@ contains
          end do
       end associate
       joint_read = joint
-      spec%rule = rule(:len(spec%rule))
-      spec%inner = inner(:len(spec%inner))
+      call take_text(r, name//': rule', rule, spec%rule, messages)
+      call take_text(r, name//': inner', inner, spec%inner, messages)
       spec%k = k
       spec%d_y = d_y
       spec%k_post = k_post
@@ -365,15 +366,19 @@ contains
             call check_status(r, i, status, iomsg, messages)
          end do
       end associate
-      spec%drive = drive(:len(spec%drive))
+      call take_text(r, 'loading: drive', drive, spec%drive, messages)
+      if (source == '' .and. file /= '' .and. any(is_given(amplitudes))) then
+         call messages%add(location(r%path, r%scanned%group(place)%line)//': &loading has a file and '// &
+                           'amplitudes; remove one of them')
+      end if
       if (source == '' .and. file /= '') source = 'file'
       if (source == '' .and. is_given(amplitudes(1))) source = 'protocol'
-      spec%source = source(:len(spec%source))
+      call take_text(r, 'loading: source', source, spec%source, messages)
       if (file /= '') spec%file = trim(file)
-      spec%format = format(:len(spec%format))
-      spec%column = column(:len(spec%column))
-      spec%time_column = time_column(:len(spec%time_column))
-      spec%unit = unit(:len(spec%unit))
+      call take_text(r, 'loading: format', format, spec%format, messages)
+      call take_text(r, 'loading: column', column, spec%column, messages)
+      call take_text(r, 'loading: time_column', time_column, spec%time_column, messages)
+      call take_text(r, 'loading: unit', unit, spec%unit, messages)
       spec%scale = scale
       spec%interval = interval
       spec%repeats = repeats
@@ -409,7 +414,7 @@ contains
             call check_status(r, i, status, iomsg, messages)
          end do
       end associate
-      spec%method = method(:len(spec%method))
+      call take_text(r, 'analysis: method', method, spec%method, messages)
       spec%dt = dt
       spec%duration = duration
    end subroutine read_analysis
@@ -441,6 +446,21 @@ contains
       if (file /= '') spec%file = trim(file)
       spec%every = every
    end subroutine read_output
+
+   !> A text into its place, with a message where it would be cut: what is left may mean something else.
+   subroutine take_text(r, name, given, text, messages)
+      type(reader), intent(in) :: r
+      character(len=*), intent(in) :: name, given
+      character(len=*), intent(out) :: text
+      type(message_list), intent(inout) :: messages
+
+      text = given(:min(len(given), len(text)))
+      if (len_trim(given) > len(text)) then
+         call messages%add(r%path//': '//name//" = '"//trim(given(:40))//"' has "// &
+                           to_text(len_trim(given))//' letters; it has '//to_text(len(text))// &
+                           ' at the most')
+      end if
+   end subroutine take_text
 
    !> The numbers of an array that were given: all up to the last, without holes.
    subroutine given_reals(r, name, values, given, messages)

@@ -3,8 +3,8 @@ module rbs_io_namelist_entry
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: lower, nearest_name, list_of, to_text, integer_length
-   use rbs_io_namelist_scan, only: nml_entry, nml_group, nml_scan
-   use rbs_io_text_file, only: read_real, number_wrong
+   use rbs_io_namelist_scan, only: nml_entry, nml_group, nml_scan, most_messages
+   use rbs_io_text_file, only: read_real, number_wrong, number_not_finite
    implicit none
    private
 
@@ -50,7 +50,7 @@ contains
       character(len=*), intent(in) :: valid(:)
       type(message_list), intent(inout) :: messages
 
-      if (any(valid == group%name)) return
+      if (any(valid == group%name) .or. messages%count > most_messages) return
       call messages%add(location(path, group%line)//': the group &'//trim(group%name)// &
                         " is not known; did you mean '&"//nearest_name(group%name, valid)// &
                         "'? Groups are "//list_of(valid))
@@ -72,6 +72,7 @@ contains
       integer :: place, known
 
       known = messages%count
+      if (known > most_messages) return
       names = keys%name
       associate (entry => scanned%entry(i))
          do place = 1, size(keys)
@@ -135,10 +136,10 @@ contains
       end do
       if (entry%subscript > 0 .and. wanted%most == 1) then
          call messages%add(location(path, entry%line)//": '"//trim(entry%name)//"' takes no subscript")
-      else if (entry%subscript > 0 .and. total >= entry%subscript + 1) then
+      else if (entry%subscript > 0 .and. total > entry%subscript) then
          call messages%add(location(path, entry%line)//": '"//trim(entry%name)//'('// &
-                           to_text(entry%subscript)//")' has more than one value; leave the subscript "// &
-                           'out, or give each value its own')
+                           to_text(entry%subscript)//")' takes one value, not "// &
+                           to_text(total - entry%subscript + 1)//'; give a list without subscript')
       else if (total > wanted%most) then
          call messages%add(location(path, entry%line)//": '"//trim(entry%name)//"' has "// &
                            to_text(total)//' values; it takes '//to_text(wanted%most)//' at the most')
@@ -169,6 +170,8 @@ contains
             what = 'must be a number without quotes'
          else if (status == number_wrong) then
             what = 'is not a number; write it like 1.6 or 7.04e8, without a unit'
+         else if (status == number_not_finite .and. scan(text, '0123456789') > 0) then
+            what = 'is too large to be a finite number; check its exponent'
          end if
       case ('i')
          first = merge(2, 1, scan(text(1:1), '+-') == 1)

@@ -19,7 +19,10 @@ module rbs_io_namelist_scan
    integer, parameter :: most_repeats = 100000
 
    !> Faults of the text beyond this are not listed: the file is none of ours.
-   integer, parameter :: most_messages = 20
+   integer, parameter, public :: most_messages = 20
+
+   !> More groups, and more entries in a group, than any case has.
+   integer, parameter :: most_groups = 100000, most_entries = 5000
 
    !> One value as it stands in the file.
    type :: nml_value
@@ -158,6 +161,11 @@ contains
          call complain(c, path, 'a group has no name behind &', messages)
          return
       end if
+      if (scanned%groups == most_groups) then
+         call complain(c, path, 'there are more than '//to_text(most_groups)//' groups; is it a case?', &
+                       messages)
+         return
+      end if
       call add_group(scanned, name, c%line_of(begin))
       do
          call skip_blanks(c, commas=.true.)
@@ -169,6 +177,11 @@ contains
          if (c%text(c%at:c%at) == '/') then
             c%at = c%at + 1
             scanned%group(scanned%groups)%last = scanned%entries
+            return
+         end if
+         if (scanned%entries - scanned%group(scanned%groups)%first + 1 == most_entries) then
+            call complain(c, path, '&'//name//' has more than '//to_text(most_entries)// &
+                          ' entries; is it a case?', messages)
             return
          end if
          call scan_entry(c, path, name, scanned, messages)
@@ -247,7 +260,7 @@ contains
       type(nml_entry), intent(inout) :: entry
       type(message_list), intent(inout) :: messages
       character(len=1) :: quote
-      integer :: length, star, times
+      integer :: length, last, star, times
 
       quote = c%text(c%at:c%at)
       if (quote == '''' .or. quote == '"') then
@@ -309,14 +322,15 @@ contains
       character(len=*), intent(in) :: path, name
       integer, intent(out) :: subscript
       type(message_list), intent(inout) :: messages
-      character(len=:), allocatable :: word
+      character(len=12) :: word
       integer :: length
 
       subscript = 0
-      length = index(c%text(c%at:), ')')
-      if (length > 2 .and. length < 12) then
-         word = trim(adjustl(c%text(c%at + 1:c%at + length - 2)))
-         if (len(word) > 0 .and. len(word) < 8 .and. verify(word, '0123456789') == 0) then
+      length = index(c%text(c%at:min(c%at + 11, len(c%text))), ')')
+      if (length > 2) then
+         ! Not an associate name: gfortran 12 frees the text of trim(adjustl()) twice.
+         word = adjustl(c%text(c%at + 1:c%at + length - 2))
+         if (len_trim(word) > 0 .and. len_trim(word) < 8 .and. verify(trim(word), '0123456789') == 0) then
             read (word, '(i8)') subscript
          end if
       end if

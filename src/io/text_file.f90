@@ -14,6 +14,9 @@ module rbs_io_text_file
    !> What `read_real` found.
    integer, parameter :: number_ok = 0, number_wrong = 1, number_not_finite = 2
 
+   !> Numbers with more letters than this are none.
+   integer, parameter :: most_digits = 4096
+
    character(len=1), parameter :: cr = achar(13), lf = achar(10)
 
    !> The text of a file and a place in it.
@@ -131,6 +134,7 @@ contains
       !> `number_ok`, `number_wrong`, or `number_not_finite` for NaN, infinity and overflow
       integer, intent(out) :: status
       character(len=64) :: buffer
+      character(len=12) :: form
       integer :: ios
 
       value = 0.0_wp
@@ -140,16 +144,72 @@ contains
          status = number_not_finite
          return
       case default
-         if (len(word) > len(buffer) .or. .not. looks_real(word)) return
+         if (len(word) > most_digits .or. .not. looks_real(word)) return
       end select
-      buffer = word
-      read (buffer, '(f64.0)', iostat=ios) value
+      if (overflows(word)) then
+         status = number_not_finite
+         return
+      end if
+      if (len(word) <= len(buffer)) then
+         buffer = word
+         read (buffer, '(f64.0)', iostat=ios) value
+      else
+         write (form, '(a, i0, a)') '(f', len(word), '.0)'
+         read (word, form, iostat=ios) value
+      end if
       if (ios /= 0) then
          status = number_not_finite
       else
          status = merge(number_ok, number_not_finite, ieee_is_finite(value))
       end if
    end subroutine read_real
+
+   !> Whether a number that `looks_real` is too large for the arithmetic. Asked before the read: that
+   !> overflows inside the C library, which ends a program that traps overflow.
+   pure logical function overflows(word)
+      character(len=*), intent(in) :: word
+      !> Digits of the largest number, rounded down: 1.79769313486231580 e308
+      character(len=*), parameter :: largest = '179769313486231580'
+      integer, parameter :: largest_power = 308
+      character(len=len(largest)) :: digits
+      integer :: mark, at, last, point, count, power, first
+
+      overflows = .false.
+      mark = scan(word, 'eEdD')
+      last = merge(mark - 1, len(word), mark > 0)
+      ! Without an exponent only a very long number can be too large.
+      if (mark == 0 .and. last <= largest_power) return
+      first = scan(word(:last), '123456789')
+      if (first == 0) return
+      point = index(word(:last), '.')
+      if (point == 0) point = last + 1
+      power = merge(point - first - 1, point - first, point > first)
+      if (mark > 0) power = power + exponent_of(word(mark + 1:))
+      overflows = power > largest_power
+      if (power /= largest_power) return
+      digits = repeat('0', len(digits))
+      count = 0
+      do at = first, last
+         if (at == point) cycle
+         count = count + 1
+         if (count > len(digits)) exit
+         digits(count:count) = word(at:at)
+      end do
+      overflows = lge(digits, largest)
+   end function overflows
+
+   !> The exponent of a number, no larger in size than a million.
+   pure integer function exponent_of(word) result(power)
+      character(len=*), intent(in) :: word
+      integer :: at
+
+      power = 0
+      do at = 1, len(word)
+         if (scan(word(at:at), '+-') == 1) cycle
+         power = min(10*power + iachar(word(at:at)) - iachar('0'), 1000000)
+      end do
+      if (word(1:1) == '-') power = -power
+   end function exponent_of
 
    pure logical function looks_real(word)
       character(len=*), intent(in) :: word
