@@ -180,11 +180,15 @@ def protocol(amplitudes: Array, cycles: NDArray[np.int32], repeats: int, points:
 
 def read_history(path: str) -> tuple[str, Array, Array]:
     """Return name, displacements [m] and forces [N] of a history file."""
+    if not path or "\0" in path:
+        raise InputError(f"{path!r} is no path of a file")
     # No row is shorter than two digits, a separator and an end of line.
     most = os.path.getsize(path) // 4 + 1 if os.path.isfile(path) else 1
     if most > np.iinfo(np.int32).max:
         raise InputError(f"{path}: the file is too large")
-    rows, name, displacement, force, status, message = _rbsdem.rbs_read_history(path, most)
+    # As bytes: f2py takes no letters beyond ASCII.
+    answer = _rbsdem.rbs_read_history(os.fsencode(path), most)
+    rows, name, displacement, force, status, message = answer
     _raise(status, message)
     return _text(name), displacement[:rows].copy(), force[:rows].copy()
 

@@ -1,9 +1,10 @@
 !> The executable. Only here errors are printed and the process ends.
 program rbsdem
    use, intrinsic :: iso_c_binding, only: c_int
-   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use, intrinsic :: iso_fortran_env, only: error_unit
    use rbs_app_command_line, only: command_type, read_command_line
    use rbs_app_run, only: run_case, check_case, show_modes
+   use rbs_app_say, only: say
    use rbs_base_error, only: error_type
    use rbs_version, only: version
    implicit none
@@ -31,9 +32,9 @@ program rbsdem
       case ('modes')
          call show_modes(command%case, error)
       case ('version')
-         write (output_unit, '(a)') 'rbsdem '//version
+         call say('rbsdem '//version, error)
       case default
-         call print_help()
+         call print_help(error)
       end select
    end if
    status = 0_c_int
@@ -41,7 +42,6 @@ program rbsdem
       call print_error(error%message)
       status = int(error%code, c_int)
    end if
-   flush (output_unit)
    flush (error_unit)
    ! Not `stop`: it reports floating-point flags on the way out.
    call c_exit(status)
@@ -63,7 +63,8 @@ contains
       write (error_unit, '(a)') 'rbsdem: '//message(first:)
    end subroutine print_error
 
-   subroutine print_help()
+   subroutine print_help(error)
+      type(error_type), allocatable, intent(inout) :: error
       character(len=*), parameter :: text(22) = [character(len=84) :: &
          'rbsdem '//version//': reinforced-concrete columns as rigid bodies and springs', &
          '', &
@@ -90,7 +91,7 @@ contains
       integer :: i
 
       do i = 1, size(text) - 1
-         write (output_unit, '(a)') trim(text(i))
+         call say(trim(text(i)), error)
       end do
    end subroutine print_help
 

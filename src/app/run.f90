@@ -2,8 +2,8 @@
 module rbs_app_run
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_null_char, c_ptr
-   use, intrinsic :: iso_fortran_env, only: output_unit
    use rbs_app_progress, only: terminal_progress
+   use rbs_app_say, only: say
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -17,7 +17,8 @@ module rbs_app_run
    use rbs_results_summary, only: summary_type, summary_names
    use rbs_solve_history, only: initial_state
    use rbs_solve_modal, only: modes_type, find_modes
-   use rbs_solve_run, only: make_column, run_static, plan_dynamic, run_dynamic
+   use rbs_solve_run, only: make_column, run_static, plan_dynamic, run_dynamic, &
+                            check_values
    use rbs_solve_time_plan, only: time_plan
    use rbs_spec_analysis, only: analysis_spec
    use rbs_spec_case, only: case_spec
@@ -81,7 +82,7 @@ contains
          end if
          return
       end if
-      if (.not. quiet) call print_summary(case, recorder, summary)
+      if (.not. quiet) call print_summary(case, recorder, summary, error)
    end subroutine run_case
 
    !> rbsdem check: everything that can be wrong with the input, and nothing else.
@@ -102,8 +103,8 @@ contains
          if (allocated(error)) return
       end if
       if (quiet) return
-      write (output_unit, '(a)') path//': no errors'
-      call print_notes(case)
+      call say(path//': no errors', error)
+      call print_notes(case, error)
    end subroutine check_case
 
    !> rbsdem modes: frequencies, shapes of few joints, stable step.
@@ -115,6 +116,7 @@ contains
       type(modes_type) :: modes
       type(message_list) :: messages
       logical :: understood
+      character(len=96) :: line
       real(wp) :: period
       integer :: i
 
@@ -125,15 +127,17 @@ contains
       if (allocated(error)) return
       call find_modes(column, modes, error)
       if (allocated(error)) return
-      write (output_unit, '(a)') 'mode,frequency_Hz,period_s,omega_rad/s'
+      call say('mode,frequency_Hz,period_s,omega_rad/s', error)
       do i = 1, column%unknowns
          ! A column without stiffness to speak of has no period: its frequency is zero.
          period = 0.0_wp
          if (modes%omega(i) > tiny(1.0_wp)*1.0e3_wp) period = 2.0_wp*pi/modes%omega(i)
-         write (output_unit, '(i0, 3(a, es22.16e2))') i, ',', modes%omega(i)/(2.0_wp*pi), ',', &
-            period, ',', modes%omega(i)
+         write (line, '(i0, 3(a, es22.16e2))') i, ',', modes%omega(i)/(2.0_wp*pi), ',', period, ',', &
+            modes%omega(i)
+         call say(trim(line), error)
       end do
-      write (output_unit, '(a, es23.16e2)') '# stable step of rk4 [s]:', modes%stable_step
+      write (line, '(a, es23.16e2)') '# stable step of rk4 [s]:', modes%stable_step
+      call say(trim(line), error)
    end subroutine show_modes
 
    !> Read a case and its loadings; all their faults come back as one error.
@@ -179,6 +183,7 @@ contains
             else
                call loading_values(spec, folder, case%analysis%dynamic(), time, value, fault)
             end if
+            if (.not. allocated(fault)) call check_values(value, 'loading: '//trim(spec%drive), fault)
             if (allocated(fault)) then
                call messages%add(fault%message)
                cycle
@@ -194,11 +199,12 @@ contains
       end if
    end subroutine load_values
 
-   !> Times of two loadings in one ascending list, each time once.
+   !> Times of two loadings in one ascending list. Times that differ by round-off are one.
    subroutine join_times(all_times, more)
       real(wp), allocatable, intent(inout) :: all_times(:)
       real(wp), intent(in) :: more(:)
       real(wp), allocatable :: joined(:)
+      real(wp) :: same
       integer :: i, j, n
 
       if (.not. allocated(all_times)) then
@@ -206,6 +212,8 @@ contains
          return
       end if
       allocate (joined(size(all_times) + size(more)))
+      same = 1.0e-9_wp*min(minval(all_times(2:) - all_times(:size(all_times) - 1)), &
+                           minval(more(2:) - more(:size(more) - 1)))
       i = 1
       j = 1
       n = 0
@@ -219,8 +227,8 @@ contains
             j = j + 1
          else
             joined(n) = min(all_times(i), more(j))
-            if (.not. all_times(i) > joined(n)) i = i + 1
-            if (.not. more(j) > joined(n)) j = j + 1
+            if (.not. all_times(i) > joined(n) + same) i = i + 1
+            if (.not. more(j) > joined(n) + same) j = j + 1
          end if
       end do
       all_times = joined(:n)
@@ -348,35 +356,38 @@ contains
    end function output_path
 
    !> The figures of a run that say something.
-   subroutine print_summary(case, recorder, summary)
+   subroutine print_summary(case, recorder, summary, error)
       type(case_spec), intent(in) :: case
       type(csv_recorder), intent(in) :: recorder
       type(summary_type), intent(in) :: summary
+      type(error_type), allocatable, intent(inout) :: error
       character(len=28) :: name
       integer :: i
 
-      if (case%title /= '') write (output_unit, '(a)') case%title
+      if (case%title /= '') call say(case%title, error)
       associate (values => summary%as_array())
          do i = 1, size(values)
             ! Times of a static path and the like are no figures of it.
             if (.not. case%analysis%dynamic() .and. index(summary_names(i), 'step_s') > 0) cycle
             name = summary_names(i)
-            write (output_unit, '(2x, a, 2x, a)') name, to_text(values(i))
+            call say('  '//name//'  '//to_text(values(i)), error)
          end do
       end associate
-      write (output_unit, '(2x, a, 2x, a)') 'rows in                     ', recorder%path
-      call print_notes(case)
+      name = 'rows in'
+      call say('  '//name//'  '//recorder%path, error)
+      call print_notes(case, error)
    end subroutine print_summary
 
    !> What is allowed and perhaps not meant.
-   subroutine print_notes(case)
+   subroutine print_notes(case, error)
       type(case_spec), intent(in) :: case
+      type(error_type), allocatable, intent(inout) :: error
 
       associate (column => case%column)
          if (column%kinematics == 'small' .and. &
              (abs(column%axial_load) > 0.0_wp .or. column%self_weight)) then
-            write (output_unit, '(a)') 'note: axial load and weight do no work with kinematics = '// &
-               "'small'; 'pdelta' takes them into account"
+            call say('note: axial load and weight do no work with kinematics = '// &
+                     "'small'; 'pdelta' takes them into account", error)
          end if
       end associate
    end subroutine print_notes

@@ -22,6 +22,9 @@ module rbs_base_error
       character(len=:), allocatable :: message
    end type error_type
 
+   !> More messages than this are only counted.
+   integer, parameter :: most_messages = 25
+
    !> Messages collected on the way, so that one run shows all faults of an input.
    type :: message_list
       !> Number of messages
@@ -54,7 +57,7 @@ contains
       self%count = self%count + 1
       if (self%count == 1) then
          self%text = message
-      else
+      else if (self%count <= most_messages) then
          self%text = self%text//new_line('a')//message
       end if
    end subroutine add
@@ -64,7 +67,13 @@ contains
       class(message_list), intent(in) :: self
       type(error_type), allocatable, intent(out) :: error
 
-      if (self%count > 0) call fatal_error(error, bad_input, self%text)
+      character(len=12) :: rest
+
+      if (self%count == 0) return
+      call fatal_error(error, bad_input, self%text)
+      if (self%count <= most_messages) return
+      write (rest, '(i0)') self%count - most_messages
+      error%message = error%message//new_line('a')//'and '//trim(rest)//' more'
    end subroutine raise
 
 end module rbs_base_error

@@ -119,7 +119,7 @@ contains
    !> The names joined by commas, for "valid names are ...".
    pure function list_of(names) result(text)
       character(len=*), intent(in) :: names(:)
-      character(len=sum(len_trim(names)) + 2*max(size(names) - 1, 0)) :: text
+      character(len=list_length(names)) :: text
       integer :: i, at
 
       at = 0
@@ -133,14 +133,27 @@ contains
       end do
    end function list_of
 
+   pure integer function list_length(names)
+      character(len=*), intent(in) :: names(:)
+
+      list_length = sum(len_trim(names)) + 2*max(size(names) - 1, 0)
+   end function list_length
+
    !> The valid name that a misspelt word comes nearest to by edit distance.
    pure function nearest_name(word, names) result(name)
       character(len=*), intent(in) :: word
       character(len=*), intent(in) :: names(:)
-      character(len=len_trim(names(nearest_place(word, names)))) :: name
+      character(len=nearest_length(word, names)) :: name
 
       name = names(nearest_place(word, names))
    end function nearest_name
+
+   pure integer function nearest_length(word, names)
+      character(len=*), intent(in) :: word
+      character(len=*), intent(in) :: names(:)
+
+      nearest_length = len_trim(names(nearest_place(word, names)))
+   end function nearest_length
 
    pure integer function nearest_place(word, names) result(place)
       character(len=*), intent(in) :: word

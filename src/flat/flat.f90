@@ -21,7 +21,7 @@ subroutine rbs_check_spring(rule, numbers, inner, status, message)
    character(len=*), intent(in) :: rule, inner
    real(c_double), intent(in) :: numbers(9)
    integer(c_int), intent(out) :: status
-   character(len=4096), intent(out) :: message
+   character(len=8192), intent(out) :: message
    !f2py threadsafe
    type(spring_spec) :: spring
    type(message_list) :: messages
@@ -60,7 +60,7 @@ subroutine rbs_check_column(n, kinematics, numbers, nl, lengths, nm, masses, &
    real(c_double), intent(in) :: numbers(7), lengths(nl), masses(nm), shear(9, ns), flexure(9, nf)
    integer(c_int), intent(in) :: codes_shear(2, ns), codes_flexure(2, nf)
    integer(c_int), intent(out) :: status
-   character(len=4096), intent(out) :: message
+   character(len=8192), intent(out) :: message
    !f2py threadsafe
    type(column_type) :: column
    type(error_type), allocatable :: error
@@ -85,7 +85,7 @@ subroutine rbs_modes(n, kinematics, numbers, nl, lengths, nm, masses, &
    integer(c_int), intent(in) :: codes_shear(2, ns), codes_flexure(2, nf)
    real(c_double), intent(out) :: omega(2*n), shapes(2*n, 2*n), stable_step
    integer(c_int), intent(out) :: status
-   character(len=4096), intent(out) :: message
+   character(len=8192), intent(out) :: message
    !f2py threadsafe
    type(column_type) :: column
    type(modes_type) :: modes
@@ -119,7 +119,7 @@ subroutine rbs_mass_matrix(n, kinematics, numbers, nl, lengths, nm, masses, &
    integer(c_int), intent(in) :: codes_shear(2, ns), codes_flexure(2, nf)
    real(c_double), intent(out) :: mass(2*n, 2*n)
    integer(c_int), intent(out) :: status
-   character(len=4096), intent(out) :: message
+   character(len=8192), intent(out) :: message
    !f2py threadsafe
    type(column_type) :: column
    type(error_type), allocatable :: error
@@ -153,7 +153,7 @@ subroutine rbs_cyclic(n, kinematics, numbers, nl, lengths, nm, masses, &
    real(c_double), intent(inout) :: rows(width, height)
    real(c_double), intent(out) :: figures(13)
    integer(c_int), intent(out) :: kept, status
-   character(len=4096), intent(out) :: message
+   character(len=8192), intent(out) :: message
    !f2py threadsafe
    type(column_type) :: column
    type(summary_type) :: summary
@@ -185,7 +185,7 @@ subroutine rbs_plan(n, kinematics, numbers, nl, lengths, nm, masses, &
    integer(c_int), intent(in) :: codes_shear(2, ns), codes_flexure(2, nf)
    real(c_double), intent(in) :: time(m), dt
    integer(c_int), intent(out) :: rows, status
-   character(len=4096), intent(out) :: message
+   character(len=8192), intent(out) :: message
    !f2py threadsafe
    type(column_type) :: column
    type(time_plan) :: plan
@@ -218,7 +218,7 @@ subroutine rbs_time_history(n, kinematics, numbers, nl, lengths, nm, masses, &
    real(c_double), intent(inout) :: rows(width, height)
    real(c_double), intent(out) :: figures(13)
    integer(c_int), intent(out) :: kept, status
-   character(len=4096), intent(out) :: message
+   character(len=8192), intent(out) :: message
    !f2py threadsafe
    type(column_type) :: column
    type(summary_type) :: summary
@@ -245,7 +245,7 @@ subroutine rbs_protocol(na, amplitudes, nc, cycles, repeats, points, m, values, 
    integer(c_int), intent(in) :: cycles(nc)
    real(c_double), intent(out) :: values(m)
    integer(c_int), intent(out) :: status
-   character(len=4096), intent(out) :: message
+   character(len=8192), intent(out) :: message
    !f2py threadsafe
    type(error_type), allocatable :: error
 
@@ -264,7 +264,7 @@ subroutine rbs_read_history(path, most, rows, name, displacement, force, status,
    real(c_double), intent(out) :: displacement(most), force(most)
    integer(c_int), intent(out) :: rows, status
    character(len=256), intent(out) :: name
-   character(len=4096), intent(out) :: message
+   character(len=8192), intent(out) :: message
    !f2py threadsafe
    type(error_type), allocatable :: error
    character(len=:), allocatable :: test

@@ -65,7 +65,7 @@ contains
       type(text_file), intent(inout) :: file
       type(field_list) :: fields
       real(wp) :: value
-      integer :: first, last, status, i
+      integer :: first, last, status, i, numbers
       logical :: found
 
       is_peer = .false.
@@ -73,20 +73,22 @@ contains
       if (.not. found) return
       call split(file%text(first:last), ' ', fields)
       if (fields%count == 0) return
-      ! A name may begin with a number; a line of nothing but numbers is no name.
+      ! A name may be a number; a line of as many numbers as the rows have is a row.
+      numbers = 0
       do i = 1, fields%count
          call read_real(file%text(first + fields%first(i) - 1:first + fields%last(i) - 1), value, status)
-         if (status /= number_ok) exit
+         if (status == number_ok) numbers = numbers + 1
       end do
-      if (i > fields%count) return
+      if (numbers < fields%count) numbers = 0
       call file%next_line(first, last, found)
       if (.not. found) return
       ! A csv with blanks may well have the row `0 0` there.
-      if (count_of(file%text(first:last)) < 1) return
+      call split(file%text(first:last), ' ', fields)
+      if (count_of(file%text(first:last)) < merge(0, 1, fields%count == 1)) return
       call file%next_line(first, last, found)
       if (.not. found) return
       call split(file%text(first:last), ' ', fields)
-      is_peer = fields%count >= 2
+      is_peer = fields%count >= 2 .and. numbers /= fields%count
    end function is_peer
 
    !> The count on the second line of a PEER file, alone or followed by one 0; -1 if it is none.
@@ -173,7 +175,9 @@ contains
       named = .true.
       worded = .false.
       do i = 1, fields%count
-         call read_real(plain(file%text(first + fields%first(i) - 1:first + fields%last(i) - 1)), value, status)
+         associate (word => file%text(first + fields%first(i) - 1:first + fields%last(i) - 1))
+            call read_real(word, value, status)
+         end associate
          if (status == number_ok) named = .false.
          if (status == number_wrong) worded = .true.
       end do

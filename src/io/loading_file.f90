@@ -40,6 +40,8 @@ contains
       call find_column(history, path, spec%drive, spec%column, 'column', column, error)
       if (allocated(error)) return
       value = history%values(column, :)
+      call check_range(value, path, column, error)
+      if (allocated(error)) return
       call convert(history, path, column, spec%drive, spec%unit, value, error)
       if (allocated(error)) return
       value = value*spec%scale
@@ -71,6 +73,11 @@ contains
       call read_history(path, 'auto', history, error)
       if (allocated(error)) return
       name = history%name
+      if (history%columns < 2) then
+         call fatal_error(error, bad_input, path//': has one column; a test has displacements and forces')
+         return
+      end if
+      if (history%columns == 2 .and. is_time(history%labels(1))) history%labels(1) = 'a time'
       do i = 1, 2
          call find_column(history, path, drives(i), '', 'column', column, error)
          if (allocated(error)) return
@@ -92,9 +99,11 @@ contains
       integer, intent(out) :: column
       type(error_type), allocatable, intent(out) :: error
       character(len=64) :: wanted
+      character(len=:), allocatable :: there
       integer :: i, found
 
       column = 0
+      call describe_columns(history, there)
       if (word == '') then
          wanted = drive
          if (drive == 'ground') wanted = 'acceleration'
@@ -107,7 +116,7 @@ contains
          if (history%columns == 2 .and. is_time(history%labels(1))) column = 2
          if (column == 0) then
             call fatal_error(error, bad_input, path//": no column is named after '"//trim(drive)// &
-                             "' ("//labels_text(history)//'); name one with '//key)
+                             "' ("//there//'); name one with '//key)
          end if
       else if (is_integer(trim(word))) then
          read (word, '(i9)') column
@@ -129,21 +138,22 @@ contains
             if (lower(history%labels(column)) == lower(word)) return
          end do
          call fatal_error(error, bad_input, path//': '//key//" = '"//trim(word)//"' is not there ("// &
-                          labels_text(history)//"); did you mean '"// &
+                          there//"); did you mean '"// &
                           nearest_name(word, history%labels)//"'?")
       end if
    end subroutine find_column
 
-   function labels_text(history) result(text)
+   !> The columns that there are, for a message.
+   subroutine describe_columns(history, text)
       type(history_type), intent(in) :: history
-      character(len=:), allocatable :: text
+      character(len=:), allocatable, intent(out) :: text
 
       if (all(history%labels == '')) then
          text = to_text(history%columns)//' columns without names'
       else
          text = 'columns: '//list_of(history%labels)
       end if
-   end function labels_text
+   end subroutine describe_columns
 
    !> Values in SI: the unit that the user gives, else the one behind the column's name, else the one
    !> of PEER files, else SI already.
@@ -156,17 +166,12 @@ contains
       type(unit_type), allocatable :: units(:)
       character(len=8), allocatable :: names(:)
       character(len=64) :: name
-      integer :: i, mark
+      integer :: i
 
-      call check_range(value, path, column, error)
-      if (allocated(error)) return
       allocate (units, source=units_of(drive))
       name = unit
-      if (name == '') then
-         mark = index(history%labels(column), '_', back=.true.)
-         if (mark == 0) return
-         name = history%labels(column) (mark + 1:)
-      end if
+      if (name == '') name = unit_of(history%labels(column))
+      if (name == '') return
       do i = 1, size(units)
          if (lower(units(i)%name) == lower(name)) then
             value = to_si(value, units(i))
@@ -245,16 +250,29 @@ contains
    subroutine check_seconds(label, path, error)
       character(len=*), intent(in) :: label, path
       type(error_type), allocatable, intent(out) :: error
-      character(len=8), parameter :: others(8) = ['ms      ', 'us      ', 'ns      ', 'min     ', &
-                                                  'h       ', 'hr      ', 'hours   ', 'minutes ']
-      integer :: mark
+      character(len=8), parameter :: seconds(5) = ['        ', 's       ', 'sec     ', 'second  ', &
+                                                   'seconds ']
 
-      mark = index(label, '_', back=.true.)
-      if (mark == 0) return
-      if (all(others /= lower(label(mark + 1:)))) return
+      if (any(seconds == lower(unit_of(label)))) return
       call fatal_error(error, bad_input, path//': the times of column '//trim(label)// &
                        ' are not in seconds; convert them and name the column time_s')
    end subroutine check_seconds
+
+   !> What stands behind the name of a column as its unit: `_mm`, ` (mm)`, `[mm]`, `/mm`, `-mm`, ` mm`.
+   pure function unit_of(label) result(unit)
+      character(len=*), intent(in) :: label
+      character(len=len(label)) :: unit
+      integer :: last, mark
+
+      unit = ''
+      last = len_trim(label)
+      if (last == 0) return
+      if (scan(label(last:last), ')]') == 1) last = last - 1
+      mark = scan(label(:last), '_([ ', back=.true.)
+      ! A slash or a dash may belong to the unit itself: m/s2.
+      if (mark == 0) mark = scan(label(:last), '/-')
+      if (mark > 0) unit = adjustl(label(mark + 1:last))
+   end function unit_of
 
    !> Whether a column has the name of a time: t, time, time_s.
    pure logical function is_time(label)

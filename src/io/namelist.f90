@@ -367,10 +367,6 @@ contains
          end do
       end associate
       call take_text(r, 'loading: drive', drive, spec%drive, messages)
-      if (source == '' .and. file /= '' .and. any(is_given(amplitudes))) then
-         call messages%add(location(r%path, r%scanned%group(place)%line)//': &loading has a file and '// &
-                           'amplitudes; remove one of them')
-      end if
       if (source == '' .and. file /= '') source = 'file'
       if (source == '' .and. is_given(amplitudes(1))) source = 'protocol'
       call take_text(r, 'loading: source', source, spec%source, messages)

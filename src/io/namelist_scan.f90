@@ -260,7 +260,7 @@ contains
       type(nml_entry), intent(inout) :: entry
       type(message_list), intent(inout) :: messages
       character(len=1) :: quote
-      integer :: length, last, star, times
+      integer :: length, star, times
 
       quote = c%text(c%at:c%at)
       if (quote == '''' .or. quote == '"') then

@@ -17,6 +17,9 @@ module rbs_solve_modal
    !> The left half of a disc of this radius lies in the stability region; it touches at 122.7 degrees.
    real(wp), parameter :: least_radius = 2.615587_wp
 
+   !> A mode slower than this [rad/s] sets no limit.
+   real(wp), parameter :: slowest = 1.0e-100_wp
+
    type :: modes_type
       !> Circular frequencies, ascending (2 n) [rad/s]
       real(wp), allocatable :: omega(:)
@@ -101,7 +104,7 @@ contains
       real(wp) :: below, above
       integer :: i
 
-      h = 2.0_wp*sqrt(2.0_wp)/omega
+      h = 2.0_wp*sqrt(2.0_wp)/max(omega, slowest)
       if (.not. c > 0.0_wp) return
       root = sqrt(cmplx((c/2.0_wp)**2 - omega**2, 0.0_wp, wp))
       ! The larger real root without cancellation, the other from the product of the roots.

@@ -17,7 +17,10 @@ module rbs_solve_run
    implicit none
    private
 
-   public :: make_column, run_static, plan_dynamic, run_dynamic
+   public :: make_column, run_static, plan_dynamic, run_dynamic, check_values
+
+   !> Larger values have no meaning in any unit, and squares of them would overflow.
+   real(wp), parameter :: beyond_meaning = 1.0e50_wp
 
 contains
 
@@ -109,7 +112,7 @@ contains
       call march(column, plan, time, force, ground, initial, every, recorder, summary, error, progress)
    end subroutine run_dynamic
 
-   !> Values must be finite.
+   !> Values must be finite, and so must what is made of them.
    subroutine check_values(values, name, error)
       real(wp), intent(in) :: values(:)
       character(len=*), intent(in) :: name
@@ -117,10 +120,17 @@ contains
       integer :: i
 
       do i = 1, size(values)
-         if (ieee_is_finite(values(i))) cycle
-         call fatal_error(error, bad_input, name//': value '//to_text(i)//' of '//to_text(size(values))// &
-                          ' is '//to_text(values(i))//'; it must be a finite number')
-         return
+         if (.not. ieee_is_finite(values(i))) then
+            call fatal_error(error, bad_input, name//': value '//to_text(i)//' of '// &
+                             to_text(size(values))//' is '//to_text(values(i))// &
+                             '; it must be a finite number')
+            return
+         else if (abs(values(i)) > beyond_meaning) then
+            call fatal_error(error, bad_input, name//': value '//to_text(i)//' of '// &
+                             to_text(size(values))//' is '//to_text(values(i))// &
+                             '; products of it would not be finite: check its exponent and unit')
+            return
+         end if
       end do
    end subroutine check_values
 

@@ -10,6 +10,10 @@ module rbs_spec_check
    implicit none
    private
 
+   !> Larger numbers, and positive ones below its inverse, have no meaning in any unit; products of them
+   !> would overflow or vanish.
+   real(wp), parameter :: beyond_meaning = 1.0e50_wp
+
    public :: is_given, check_positive, check_not_negative, check_finite, check_name
 
 contains
@@ -36,7 +40,9 @@ contains
       call check_finite(x, name, unit, messages, passed)
       if (passed) then
          passed = x > 0.0_wp
-         if (.not. passed) call messages%add(trim(name//' = '//to_text(x)//' '//unit)//' must be above zero')
+         if (.not. passed) then
+            call messages%add(trim(name//' = '//to_text(x)//' '//unit)//' must be above zero')
+         end if
       end if
       if (present(ok)) ok = passed
    end subroutine check_positive
@@ -53,7 +59,9 @@ contains
       call check_finite(x, name, unit, messages, passed)
       if (passed) then
          passed = x >= 0.0_wp
-         if (.not. passed) call messages%add(trim(name//' = '//to_text(x)//' '//unit)//' must not be negative')
+         if (.not. passed) then
+            call messages%add(trim(name//' = '//to_text(x)//' '//unit)//' must not be negative')
+         end if
       end if
       if (present(ok)) ok = passed
    end subroutine check_not_negative
@@ -76,6 +84,9 @@ contains
          end if
       else if (.not. ieee_is_finite(x)) then
          call messages%add(name//' = '//to_text(x)//' must be a finite number')
+      else if (abs(x) > beyond_meaning .or. (abs(x) > 0.0_wp .and. abs(x) < 1.0_wp/beyond_meaning)) then
+         call messages%add(name//' = '//to_text(x)//' is outside the range in which products of it '// &
+                           'are finite and not zero; check its exponent and unit')
       else
          passed = .true.
       end if
