@@ -91,7 +91,8 @@ class Column:
         shear, flexure = _sequence(self.shear), _sequence(self.flexure)
         return {
             "n": self.n,
-            "kinematics": str(self.kinematics),
+            # Without runs of blanks: the Fortran part reads the first letters of a long word.
+            "kinematics": " ".join(str(self.kinematics).split()),
             "numbers": np.array(
                 [
                     self.height,

@@ -30,6 +30,10 @@ module rbs_hysteresis_takeda
    !> Below this share of the yield force a reversal counts as one at zero force.
    real(wp), parameter :: no_force = 1.0e-12_wp
 
+   !> A line this close to the slope of the yielded backbone does not meet it; K_r comes to it at
+   !> ductilities that only round-off knows.
+   real(wp), parameter :: parallel = 1.0e-9_wp
+
    type, extends(rule_type) :: takeda_rule
       !> Uncracked, cracked and yielded stiffness [N/m or N m/rad]
       real(wp) :: k_c = 0.0_wp, k_y = 0.0_wp, k_u = 0.0_wp
@@ -90,13 +94,13 @@ contains
          call follow_backbone(self, line, direction, direction*self%d_c)
       case (cracked_backbone, yielded_backbone)
          if (outward) then
-            call follow_backbone(self, line, self%side, here%d)
+            call follow_backbone(self, line, (self%side), here%d)
          else
             call unload_from_peak(self, line, here)
          end if
       case (outer_unloading)
          if (outward) then
-            call follow_backbone(self, line, self%side, here%d)
+            call follow_backbone(self, line, (self%side), here%d)
          else if (self%cracked(direction)) then
             call cross_zero_from_peak(self, line, here%d)
          else
@@ -212,7 +216,7 @@ contains
       end associate
       self%peak(s) = point(s*self%d_y, s*self%f_y)
       ahead = s*(self%peak(s)%d - d)
-      if (self%f_y - self%f_c > k_r*ahead) then
+      if (self%f_y - self%f_c > k_r*ahead .and. k_r > (1.0_wp + parallel)*self%k_u) then
          ! The yield point is steeper than K_r or behind: go on with K_r to the yielded backbone.
          d_peak = (self%f_y - self%k_u*self%d_y - self%f_c + k_r*s*d)/(k_r - self%k_u)
          self%peak(s) = point(s*d_peak, s*(self%f_y + self%k_u*(d_peak - self%d_y)))
@@ -235,10 +239,10 @@ contains
       end if
       self%open%count = 0
       if (self%aim%target_serial == 0_int64) then
-         call follow_backbone(self, line, self%side, here%d)
+         call follow_backbone(self, line, (self%side), here%d)
       else
          ! An inner peak so old that it was forgotten: on from it to the backbone.
-         call aim_at_peak(self, line, self%side, here, self%aim%zero)
+         call aim_at_peak(self, line, (self%side), here, (self%aim%zero))
       end if
    end subroutine arrive
 

@@ -40,7 +40,7 @@ contains
       call find_column(history, path, spec%drive, spec%column, 'column', column, error)
       if (allocated(error)) return
       value = history%values(column, :)
-      call check_range(value, path, column, error)
+      call check_range(value, path, column, 1.0e100_wp, error)
       if (allocated(error)) return
       call convert(history, path, column, spec%drive, spec%unit, value, error)
       if (allocated(error)) return
@@ -82,6 +82,8 @@ contains
          call find_column(history, path, drives(i), '', 'column', column, error)
          if (allocated(error)) return
          value = history%values(column, :)
+         call check_range(value, path, column, 1.0e300_wp, error)
+         if (allocated(error)) return
          call convert(history, path, column, drives(i), '', value, error)
          if (allocated(error)) return
          if (i == 1) displacement(:history%rows) = value
@@ -211,7 +213,7 @@ contains
          call check_seconds(history%labels(column), path, error)
          if (allocated(error)) return
          time = history%values(column, :)
-         call check_range(time, path, column, error)
+         call check_range(time, path, column, 1.0e100_wp, error)
          if (allocated(error)) return
          do i = 2, size(time)
             if (time(i) > time(i - 1)) cycle
@@ -229,12 +231,12 @@ contains
    end subroutine find_times
 
    !> Values must leave room for the arithmetic: units, scale, squares.
-   subroutine check_range(value, path, column, error)
+   subroutine check_range(value, path, column, largest, error)
       real(wp), intent(in) :: value(:)
       character(len=*), intent(in) :: path
       integer, intent(in) :: column
+      real(wp), intent(in) :: largest
       type(error_type), allocatable, intent(out) :: error
-      real(wp), parameter :: largest = 1.0e100_wp
       integer :: i
 
       do i = 1, size(value)

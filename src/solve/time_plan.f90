@@ -17,6 +17,9 @@ module rbs_solve_time_plan
    !> Steps this close to a whole number in an interval divide it.
    real(wp), parameter :: whole = 1.0e-9_wp
 
+   !> Times beyond this [s] have no meaning, nor have steps below its inverse.
+   real(wp), parameter :: beyond_meaning = 1.0e50_wp
+
    !> More steps than this do not end in a lifetime.
    real(wp), parameter :: most_steps = 2.0e9_wp
 
@@ -51,9 +54,11 @@ contains
          return
       end if
       do i = 1, size(time)
-         if (ieee_is_finite(time(i))) cycle
+         if (ieee_is_finite(time(i))) then
+            if (abs(time(i)) <= beyond_meaning) cycle
+         end if
          call fatal_error(error, bad_input, 'time: value '//to_text(i)//' of '//to_text(size(time))// &
-                          ' is '//to_text(time(i))//'; it must be a finite number')
+                          ' is '//to_text(time(i))//'; it must be a finite number of seconds')
          return
       end do
       do i = 2, size(time)
@@ -134,6 +139,9 @@ contains
 
       if (.not. ieee_is_finite(dt)) then
          call fatal_error(error, bad_input, 'analysis: dt = '//to_text(dt)//' must be a finite number')
+      else if (dt > 0.0_wp .and. dt < 1.0_wp/beyond_meaning) then
+         call fatal_error(error, bad_input, 'analysis: dt = '//to_text(dt)//' s is too short for any '// &
+                          'number of steps; check its exponent')
       else if (.not. dt > 0.0_wp) then
          call fatal_error(error, bad_input, 'analysis: dt = '//to_text(dt)//' s must be above zero')
       else if (dt > limit) then

@@ -28,8 +28,8 @@ module rbs_spec_units
 
 contains
 
-   !> A value in SI. Millimetres and the like are divided by a whole number: 97.854 mm is then the
-   !> same number as 97.854e-3 m, which a factor of 0.001 does not give.
+   !> A value in SI. Millimetres and the like are divided by a whole number, which rounds once; a factor
+   !> of 0.001 is itself rounded.
    elemental real(wp) function to_si(value, unit)
       real(wp), intent(in) :: value
       type(unit_type), intent(in) :: unit

@@ -621,10 +621,14 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data, fine, thin
       type(column_type) :: column
-      integer :: steps
+      type(random_type) :: random
+      integer :: steps, i
 
       column = made(column_1('small'))
       data%time = times(10, 0.01_wp)
+      do i = 2, 10
+         data%time(i) = data%time(i) + random%uniform(-0.004_wp, 0.004_wp)
+      end do
       data%force = 1.0e4_wp*sin(30.0_wp*data%time)
       call run(data, column)
       call check_passed(error, data%outcome, 'run')

@@ -46,6 +46,8 @@ contains
                unit_test('pdelta: softening column, force-driven capacity', softening_force), &
                unit_test('pdelta: softening column, displacement-driven beyond the peak', softening), &
                unit_test('a mechanism of equal joints shares the motion', mechanism), &
+               unit_test('a mechanism of unequal joints shares it by their stiffness', mechanism_unequal), &
+               unit_test('equal cycles return to the peaks exactly', repeated_cycles), &
                unit_test('beyond the critical load: no answer to a force, one to a displacement', &
                          buckled), &
                unit_test('every n-th row and the last', every), &
@@ -396,6 +398,56 @@ contains
       call check_close(error, abs(rows(row_force, :)), spread(s_k*s_d, 1, 3), 1.0e-12_wp, 0.0_wp, 'force')
    end subroutine mechanism
 
+   !> Joints of unequal stiffness and equal strength: the motion is shared as a hardening in proportion
+   !> to the stiffness would share it.
+   subroutine mechanism_unequal(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      real(wp), allocatable :: rows(:, :)
+      real(wp) :: slip(2)
+
+      spec = column_1('small')
+      spec%n = 2
+      spec%shear = [bilinear(s_k, s_d, 0.0_wp), bilinear(3.0_wp*s_k, s_d/3.0_wp, 0.0_wp)]
+      spec%flexure(1) = elastic(k_c)
+      call run(spec, .false., [0.01_wp, 0.02_wp], rows, outcome)
+      call check_passed(error, outcome, 'static path')
+      if (allocated(error)) return
+      slip = rows(row_joints:row_joints + 1, 2) - rows(row_joints:row_joints + 1, 1)
+      call check_close(error, slip, [0.75_wp, 0.25_wp]*0.01_wp, 1.0e-10_wp, 0.0_wp, 'slips')
+   end subroutine mechanism_unequal
+
+   !> Cycles of equal amplitude return to the peak of each spring, whatever round-off says: unloading is
+   !> outer unloading in every cycle (takeda.md section 2b, the discontinuity in the amplitude).
+   subroutine repeated_cycles(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      real(wp), allocatable :: rows(:, :)
+      real(wp), parameter :: share(4) = [1.0_wp, 0.9_wp, -1.0_wp, -0.9_wp]
+      real(wp) :: slope, first
+      integer :: i, j, level
+
+      do level = 1, 2
+         spec = yielding_chain(3, 'small')
+         if (level == 2) spec%kinematics = 'pdelta'
+         spec%axial_load = 744.0e3_wp
+         do j = 1, 40
+            call run(spec, .false., (0.004_wp + 3.1e-4_wp*j)*[(share(1 + mod(i - 1, 4)), i=1, 24)], rows, &
+                     outcome)
+            call check_passed(error, outcome, 'static path')
+            if (allocated(error)) return
+            do i = 5, 24, 2
+               slope = (rows(row_force, i) - rows(row_force, i + 1))/(rows(row_displacement, i) &
+                                                                      - rows(row_displacement, i + 1))
+               if (i == 5) first = slope
+               call check_close(error, slope, first, 1.0e-6_wp, 0.0_wp, 'unloading stiffness')
+            end do
+         end do
+      end do
+   end subroutine repeated_cycles
+
    subroutine buckled(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -516,6 +568,8 @@ contains
       call run(column_1('small'), .true., values, rows, outcome)
       call check_failed(error, outcome, bad_input, 'force: value 2 of 3 is NaN')
       call check_equal(error, size(rows, 2), 0, 'rows')
+      call run(column_1('small'), .true., [0.0_wp, -1.0e60_wp], rows, outcome)
+      call check_failed(error, outcome, bad_input, 'force: value 2 of 2 is -1e+60')
    end subroutine not_a_number
 
 end module test_static

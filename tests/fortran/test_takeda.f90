@@ -35,6 +35,7 @@ contains
                unit_test('equality: an exact return to the peak unloads from the backbone', exact_return), &
                unit_test('equality: a turn at zero force goes straight to the other side', turn_at_zero), &
                unit_test('section 2b: the secant is the floor of K_in', secant_floor), &
+               unit_test('section 2b: K_r of the other side where this one has none', other_side), &
                unit_test('property 12: B0 = 0 unloads with K_0', no_degradation), &
                unit_test('property 2: 1, 7, 1000 increments, to the last bit', increments), &
                unit_test('property 3: no jump, no slope above k_c', continuity), &
@@ -289,20 +290,40 @@ contains
                        'K_in one number below the peak')
    end subroutine exact_return
 
+   !> Turn a few numbers beyond a crossing of zero force, where force and way are round-off: their
+   !> ratio must not become a slope.
    subroutine turn_at_zero(error)
       type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: spec
       type(spring_array) :: spring
-      real(wp) :: zero
+      real(wp) :: d(12), back
+      integer :: path, j, ulps, direction, found
 
-      call spring%create([takeda_1('kc')])
-      call spring%move(1, 4.0_wp*d_y)
-      call spring%move(1, -4.0_wp*d_y)
-      zero = spring%line(1)%d0 - spring%line(1)%f0/k_r4
-      call spring%move(1, zero + 1.0e-16_wp*d_y)
-      call spring%move(1, zero - d_y)
-      call check_true(error, spring%force(1) < 0.0_wp, 'on the other side')
-      call spring%move(1, -4.0_wp*d_y)
-      call check_close(error, spring%force(1), -f_4, 1.0e-12_wp, 0.0_wp, 'back to the peak')
+      found = 0
+      do path = 1, 400
+         call random_spring(random, spec)
+         call random_path(random, spec%d_y, d)
+         call spring%create([spec])
+         do j = 1, size(d)
+            call spring%move(1, d(j))
+            associate (line => spring%line(1))
+               if (.not. (line%lo_closed .or. line%hi_closed)) cycle
+               if (spring%one_way(1) /= 0) cycle
+               direction = merge(1, -1, line%hi_closed)
+            end associate
+            found = found + 1
+            call spring%arrive(1, direction)
+            back = spring%d(1) - 1.0e-3_wp*direction
+            do ulps = 1, 1 + mod(path, 4)
+               call spring%move(1, nearest(spring%d(1), real(direction, wp)))
+            end do
+            call spring%move(1, back)
+            call check_true(error, spring%k(1) > 0.0_wp .and. spring%k(1) < 1.0_wp, 'slope after the turn')
+            call check_close(error, spring%force(1), 0.0_wp, 0.0_wp, 1.0e-3_wp, 'force after the turn')
+         end do
+      end do
+      call check_true(error, found > 300, 'enough turns')
    end subroutine turn_at_zero
 
    !> B1 = 0.22 as a factor on K_r lies below the reloading slope: inner loops retrace it.
@@ -322,6 +343,24 @@ contains
       call spring%move(1, 1.0_wp*d_y)
       call check_close(error, spring%work(1) - before, 0.0_wp, 0.0_wp, 1.0e-9_wp, 'no work')
    end subroutine secant_floor
+
+   !> A side that never unloaded from the backbone has no K_r yet.
+   subroutine other_side(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: f(3), k_r, crack
+      integer :: i
+
+      k_r = k_0*0.5_wp**b0
+      crack = 2.0_wp*d_y - (f_y + k_u*d_y + f_c)/k_r
+      do i = 1, 3, 2
+         call follow_path(takeda_1(inner(i)), [2.0_wp*d_y, 0.5_wp*(crack - d_y), &
+                                               0.5_wp*(crack - d_y) + 0.1_wp*d_y], f)
+         call check_close(error, f(2), -0.5_wp*(f_c + f_y), 1.0e-12_wp, 0.0_wp, 'inner peak')
+         if (i == 1) k_r = min(b1*k_c, k_r)
+         call check_close(error, f(3), f(2) + k_r*0.1_wp*d_y, 1.0e-12_wp, 0.0_wp, inner(i)//' unloading')
+         k_r = k_0*0.5_wp**b0
+      end do
+   end subroutine other_side
 
    subroutine no_degradation(error)
       type(error_type), allocatable, intent(inout) :: error

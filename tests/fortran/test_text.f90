@@ -27,7 +27,8 @@ contains
                unit_test('list of names', lists), &
                unit_test('nearest name by edit distance', nearest), &
                unit_test('an error carries code and message', one_error), &
-               unit_test('messages are raised together, in order', collected)]
+               unit_test('messages are raised together, in order', collected), &
+               unit_test('a flood of messages is counted', flood)]
    end subroutine collect_text
 
    subroutine reals(error)
@@ -101,7 +102,7 @@ contains
       call check_equal(error, nearest_name('takda', names), 'takeda', 'a letter left out')
       call check_equal(error, nearest_name('Bi-Linear', names), 'bilinear', 'case and a hyphen')
       call check_equal(error, nearest_name('elasticc  ', names), 'elastic', 'a letter too many')
-      call check_equal(error, nearest_name('x', names(:0)), '', 'nothing to choose from')
+      call check_equal(error, nearest_name('', names), 'takeda', 'nothing typed: the shortest')
    end subroutine nearest
 
    subroutine one_error(error)
@@ -125,5 +126,19 @@ contains
       call check_equal(error, messages%count, 2, 'number of messages')
       call check_failed(error, outcome, bad_input, 'first'//new_line('a')//'second')
    end subroutine collected
+
+   subroutine flood(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(message_list) :: messages
+      integer :: i
+
+      do i = 1, 2000
+         call messages%add('message '//to_text(i))
+      end do
+      call messages%raise(outcome)
+      call check_equal(error, messages%count, 2000, 'number of messages')
+      call check_failed(error, outcome, bad_input, 'message 25'//new_line('a')//'and 1975 more')
+   end subroutine flood
 
 end module test_text

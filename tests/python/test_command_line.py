@@ -1,0 +1,1361 @@
+"""The executable: arguments, exit codes, messages, output files, progress, memory (issue 2).
+
+Every fault is looked at through `check` and `run`: both say the same, and nothing is written.
+"""
+
+from __future__ import annotations
+
+import os
+import pty
+import re
+import select
+import signal
+import stat
+import subprocess
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rbsdem
+
+BILINEAR = rbsdem.Bilinear(7.0387e8, 1.296e-4, 8.3185e6)
+TAKEDA = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
+COLUMN = rbsdem.Column(1.6, 614.4, BILINEAR, TAKEDA)
+
+FATAL_WORDS = ("Fortran runtime", "Backtrace", "SIG", "At line", "forrtl", "Traceback")
+
+
+def write(folder: Path, text: str, name: str = "case.nml") -> Path:
+    path = folder / name
+    path.write_bytes(text.encode())
+    return path
+
+
+def faults(result: subprocess.CompletedProcess[str], code: int = 2) -> str:
+    """Text of a failure: the code, silence on stdout, the program's name before every line."""
+    assert result.returncode == code, result
+    assert result.stdout == ""
+    assert result.stderr.endswith("\n")
+    for line in result.stderr.splitlines():
+        assert line.startswith("rbsdem: "), result.stderr
+    assert not any(word in result.stderr for word in FATAL_WORDS)
+    return result.stderr
+
+
+# ---- arguments -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["-h"], ["run", "--help"], ["--help", "run"]])
+def test_help_names_commands_options_and_exit_codes(run_cli, arguments):
+    result = run_cli(arguments)
+    assert result.returncode == 0
+    assert result.stderr == ""
+    for word in ("rbsdem run", "rbsdem check", "rbsdem modes", "--output", "--quiet", "--version"):
+        assert word in result.stdout
+    for line in ("  0  all went well", "  1  the analysis failed", "  2  the input is wrong"):
+        assert line in result.stdout
+    assert max(len(line) for line in result.stdout.splitlines()) <= 84
+    assert rbsdem.__version__ in result.stdout
+
+
+def test_version_is_that_of_the_package(run_cli):
+    result = run_cli(["--version"])
+    assert (result.returncode, result.stderr) == (0, "")
+    assert result.stdout == f"rbsdem {rbsdem.__version__}\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ([], ["no command"]),
+        ([""], ["the command '' is not known"]),
+        (["--quiet"], ["no command"]),
+        (["ruin", "case.nml"], ["'ruin'", "did you mean 'run'"]),
+        (["chek", "case.nml"], ["'chek'", "did you mean 'check'"]),
+        (["mode", "case.nml"], ["'mode'", "did you mean 'modes'"]),
+        (["case.nml"], ["the command 'case.nml' is not known"]),
+        (["run"], ["run needs the path of a case"]),
+        (["check"], ["check needs the path of a case"]),
+        (["modes", "--quiet"], ["modes needs the path of a case"]),
+        (["run", ""], ["path of the case is empty"]),
+        (["run", "case.nml", "more.nml"], ["one argument too many: 'more.nml'"]),
+        (["run", "case.nml", "--ouput", "o.csv"], ["'--ouput'", "did you mean '--output'"]),
+        (["run", "case.nml", "--outputt=o.csv"], ["'--outputt'", "did you mean '--output'"]),
+        (["run", "case.nml", "-x"], ["the option '-x' is not known"]),
+        (["run", "case.nml", "--Quiet"], ["'--Quiet'", "did you mean '--quiet'"]),
+        (["run", "case.nml", "--quiet=yes"], ["'--quiet' takes no value"]),
+        (["run", "case.nml", "--output"], ["--output needs the path of a file"]),
+        (["run", "case.nml", "--output="], ["--output needs the path of a file"]),
+        (["run", "case.nml", "--output", ""], ["--output needs the path of a file"]),
+        (["run", "case.nml", "-o"], ["-o needs the path of a file"]),
+        (["check", "case.nml", "--output", "o.csv"], ["--output is for run only"]),
+        (["modes", "case.nml", "-o", "o.csv"], ["--output is for run only"]),
+    ],
+)
+def test_wrong_arguments_exit_2_with_a_remedy(run_cli, case_text, tmp_path, arguments, words):
+    write(tmp_path, case_text())
+    text = faults(run_cli(arguments, tmp_path))
+    for word in words:
+        assert word in text
+    assert "try 'rbsdem --help'" in text
+    assert len(text.splitlines()) == 1
+    assert os.listdir(tmp_path) == ["case.nml"]
+
+
+def test_argument_of_100_000_letters_is_refused(run_cli):
+    text = faults(run_cli(["x" * 100_000]))
+    assert "is not known" in text
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["run", "case.nml", "--output", "o.csv", "--quiet"],
+        ["run", "case.nml", "-o", "o.csv", "-q"],
+        ["--quiet", "--output=o.csv", "run", "case.nml"],
+        ["-q", "run", "-o=o.csv", "case.nml"],
+    ],
+)
+def test_options_in_any_place_and_spelling(run_cli, case_text, tmp_path, arguments):
+    write(tmp_path, case_text())
+    result = run_cli(arguments, tmp_path)
+    assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
+    assert sorted(os.listdir(tmp_path)) == ["case.nml", "o.csv"]
+
+
+# ---- good cases ----------------------------------------------------------------------------------
+
+
+def test_run_writes_rows_and_prints_a_summary(run_cli, case_text, tmp_path, read_csv):
+    write(tmp_path, case_text())
+    result = run_cli(["run", "case.nml"], tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+    rows = read_csv(tmp_path / "case.csv")
+    figures = dict(re.findall(r"^  (\w+) +(\S+)$", result.stdout, re.MULTILINE))
+    assert result.stdout.startswith("minimal\n")
+    assert int(figures["rows"]) == rows["step"].size == 33
+    assert float(figures["peak_displacement_m"]) == pytest.approx(0.016, rel=1e-5)
+    peak = rows["force_N"][np.argmax(np.abs(rows["force_N"]))]
+    assert float(figures["peak_force_N"]) == pytest.approx(peak, rel=1e-5)
+    assert float(figures["input_energy_J"]) == pytest.approx(rows["input_J"][-1], rel=1e-5)
+    assert "rows in" in result.stdout
+    assert "case.csv" in result.stdout
+    assert "stable_step" not in result.stdout  # no figure of a static path
+
+
+def test_run_in_time_prints_step_and_limit(run_cli, dynamic_text, tmp_path):
+    write(tmp_path, dynamic_text())
+    result = run_cli(["run", "case.nml"], tmp_path)
+    assert result.returncode == 0
+    figures = dict(re.findall(r"^  (\w+) +(\S+)$", result.stdout, re.MULTILINE))
+    limit = rbsdem.modes(COLUMN).stable_step
+    assert float(figures["stable_step_s"]) == pytest.approx(limit, rel=1e-5)
+    assert 0 < float(figures["time_step_s"]) <= 0.2 * limit * (1 + 1e-5)
+
+
+def test_csv_says_version_case_units_and_is_read_by_numpy(run_cli, case_text, tmp_path):
+    write(tmp_path, case_text(case="title = 'Säule, \"Nr 1\"; half'"))
+    assert run_cli(["run", "case.nml", "--quiet"], tmp_path).returncode == 0
+    path = tmp_path / "case.csv"
+    text = path.read_text("utf-8")
+    assert text.endswith("\n")
+    assert "\r" not in text
+    head = text.splitlines()[:4]
+    assert head[0] == f"# rbsdem {rbsdem.__version__}"
+    assert head[1] == '# case: Säule, "Nr 1"; half'
+    assert "SI" in head[2]
+    assert "static" in head[2]
+    assert "small" in head[2]
+    names = head[3].split(",")
+    assert names[:3] == ["step", "displacement_m", "force_N"]
+    assert names[9:] == ["slip_1_m", "rotation_1_rad", "shear_1_N", "moment_1_Nm"]
+    assert len(set(names)) == len(names)
+    for name in names[1:]:
+        assert re.search(r"_(m|N|J|rad|Nm)$", name), name
+    table = np.loadtxt(path, delimiter=",", skiprows=4)
+    assert table.shape == (33, len(names))
+    named = np.genfromtxt(path, delimiter=",", names=True, skip_header=3)
+    assert named.dtype.names == tuple(names)
+    assert np.all(np.isfinite(table))
+    run = rbsdem.cyclic(COLUMN, rbsdem.protocol(np.array([0.005, 0.01]) * 1.6, points=4))
+    assert np.array_equal(table[:, 1], run.displacement)
+    assert np.array_equal(table[:, 2], run.force)
+    assert np.array_equal(named["moment_1_Nm"], run.moment[:, 0])
+
+
+def test_csv_of_a_run_in_time_has_time_and_columns_for_each_joint(
+    run_cli, dynamic_text, tmp_path, read_csv
+):
+    write(tmp_path, dynamic_text(column="n = 3, height = 1.6, mass = 614.4"))
+    assert run_cli(["run", "case.nml", "--quiet"], tmp_path).returncode == 0
+    rows = read_csv(tmp_path / "case.csv")
+    joints = [
+        f"{name}_{i}_{unit}"
+        for name, unit in (("slip", "m"), ("rotation", "rad"), ("shear", "N"), ("moment", "Nm"))
+        for i in (1, 2, 3)
+    ]
+    assert list(rows)[9:] == joints
+    assert next(iter(rows)) == "time_s"
+    assert np.all(np.diff(rows["time_s"]) > 0)
+    assert rows["time_s"][-1] == pytest.approx(0.1, rel=1e-12)
+
+
+def test_quiet_prints_nothing(run_cli, case_text, dynamic_text, tmp_path):
+    write(tmp_path, case_text(), "a.nml")
+    write(tmp_path, dynamic_text(), "b.nml")
+    for arguments in (["run", "a.nml"], ["run", "b.nml"], ["check", "a.nml"], ["check", "b.nml"]):
+        result = run_cli([*arguments, "--quiet"], tmp_path)
+        assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
+
+
+def test_check_writes_nothing(run_cli, case_text, dynamic_text, tmp_path):
+    for text in (case_text(), dynamic_text()):
+        write(tmp_path, text)
+        result = run_cli(["check", "case.nml"], tmp_path)
+        assert (result.returncode, result.stderr) == (0, "")
+        assert result.stdout == "case.nml: no errors\n"
+        assert os.listdir(tmp_path) == ["case.nml"]
+
+
+def test_modes_equal_those_of_python_to_the_last_digit(run_cli, case_text, tmp_path):
+    write(tmp_path, case_text(column="n = 4, height = 1.6, mass = 614.4"))
+    result = run_cli(["modes", "case.nml"], tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+    assert os.listdir(tmp_path) == ["case.nml"]
+    lines = result.stdout.splitlines()
+    assert lines[0] == "mode,frequency_Hz,period_s,omega_rad/s"
+    table = np.array([[float(word) for word in line.split(",")] for line in lines[1:-1]])
+    modes = rbsdem.modes(rbsdem.Column(1.6, 614.4, BILINEAR, TAKEDA, n=4))
+    assert np.array_equal(table[:, 0], np.arange(1, 9))
+    assert np.array_equal(table[:, 1], modes.frequency)
+    np.testing.assert_allclose(table[:, 2] * table[:, 1], 1.0, rtol=1e-15)
+    assert np.array_equal(table[:, 3], modes.omega)
+    assert lines[-1].startswith("# stable step")
+    assert float(lines[-1].rpartition(":")[2]) == modes.stable_step
+
+
+def test_modes_of_table_3_column_1_are_those_of_eq_6_corrected(run_cli, case_text, tmp_path):
+    """theory.md E5: 95.585 and 395.070 Hz."""
+    write(tmp_path, case_text(loading=None))  # modes need no loading
+    lines = run_cli(["modes", "case.nml"], tmp_path).stdout.splitlines()
+    frequencies = [float(line.split(",")[1]) for line in lines[1:3]]
+    np.testing.assert_allclose(frequencies, [95.585, 395.070], rtol=1e-5)
+
+
+# ---- the case file as text -----------------------------------------------------------------------
+
+LAYOUTS = {
+    "windows": lambda t: t.replace("\n", "\r\n"),
+    "old mac": lambda t: t.replace("\n", "\r"),
+    "no newline at the end": lambda t: t.rstrip("\n"),
+    "byte order mark": lambda t: "\ufeff" + t,
+    "tabs": lambda t: t.replace(" ", "\t"),
+    "one line": lambda t: t.replace("\n", " "),
+    "a line for each entry": lambda t: re.sub(r", (?=\w+ =)", ",\n   ", t),
+    "no commas": lambda t: re.sub(r", (?=\w+ =)", "  ", t),
+    "no blanks": lambda t: t.replace(" = ", "="),
+    "capitals": lambda t: re.sub(
+        r"&\w+ |\w+ =", lambda word: word.group().upper(), t, flags=re.ASCII
+    ),
+    "double quotes": lambda t: t.replace("'", '"'),
+    "exponents with d": lambda t: re.sub(r"(\d)e(-?\d)", r"\1D\2", t),
+    "comments": lambda t: "! it's a \"case\n" + t.replace("/\n", "/ ! end & 'so\n! k = 3 /\n"),
+    "blank lines": lambda t: "\n \n" + t.replace("\n", "\n\n\t\n"),
+    "comma at the end": lambda t: t.replace(" /", ", /"),
+    "subscripts": lambda t: t.replace(
+        "amplitudes = 0.005, 0.01", "amplitudes(1) = 0.005, amplitudes( 2 ) = 0.01"
+    ),
+    "defaults said": lambda t: (
+        t.replace("height", "n = 1, kinematics = 'small', height")
+        + "&axial load = 0, self_weight = F / &analysis method = 'static' /\n"
+        + "&output every = +1 /"
+    ),
+}
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_layout_of_the_case_file_does_not_matter(run_cli, case_text, tmp_path, layout):
+    write(tmp_path, case_text(), "plain.nml")
+    write(tmp_path, LAYOUTS[layout](case_text()), "layout.nml")
+    for name in ("plain.nml", "layout.nml"):
+        result = run_cli(["run", name, "--quiet"], tmp_path)
+        assert (result.returncode, result.stderr) == (0, "")
+    assert (tmp_path / "layout.csv").read_bytes() == (tmp_path / "plain.csv").read_bytes()
+
+
+def test_values_from_a_subscript_on_are_taken_or_refused_in_plain_words(
+    run_cli, case_text, tmp_path
+):
+    """Fortran gives an element one value; more of them must not end in words of its runtime."""
+    write(tmp_path, case_text(), "plain.nml")
+    write(tmp_path, case_text().replace("amplitudes =", "amplitudes(1) ="))
+    assert run_cli(["run", "plain.nml", "--quiet"], tmp_path).returncode == 0
+    result = run_cli(["run", "case.nml", "--quiet"], tmp_path)
+    if result.returncode == 0:
+        assert (tmp_path / "case.csv").read_bytes() == (tmp_path / "plain.csv").read_bytes()
+    else:
+        text = faults(result)
+        assert "case.nml line 5" in text
+        assert "amplitudes" in text
+        assert "namelist object" not in text
+
+
+def test_repeat_counts_stand_for_values(run_cli, case_text, tmp_path):
+    loading = "drive = 'displacement', points = 3, amplitudes = "
+    write(tmp_path, case_text(loading=loading + "2*0.01, 0.02, cycles = 3*2"), "a.nml")
+    write(tmp_path, case_text(loading=loading + "0.01, 0.01, 0.02, cycles = 2, 2, 2"), "b.nml")
+    for name in ("a.nml", "b.nml"):
+        assert run_cli(["run", name, "--quiet"], tmp_path).returncode == 0
+    assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
+
+
+def test_quote_within_a_text_is_doubled_or_of_the_other_kind(run_cli, case_text, tmp_path):
+    """Fortran 2008, 4.4.3: a doubled delimiter within a text stands for one."""
+    for title in ("'it''s /&= 1'", '"it\'s /&= 1"'):
+        write(tmp_path, case_text(case=f"title = {title}"))
+        result = run_cli(["run", "case.nml", "--quiet"], tmp_path)
+        assert (result.returncode, result.stderr) == (0, "")
+        assert (tmp_path / "case.csv").read_text("utf-8").splitlines()[1] == "# case: it's /&= 1"
+
+
+# ---- faults of the case --------------------------------------------------------------------------
+
+K = "rule = 'bilinear', k = 7e8, d_y = 1e-4, k_post = 8e6"
+E = "rule = 'elastic', k = 1e8"
+PROTOCOL = "drive = 'displacement', amplitudes = "
+
+# What is put into the minimal case, and what the message must name.
+STATIC_FAULTS = [
+    # names
+    ({"column": "hieght = 1.6, mass = 6"}, ["case.nml line 2", "'hieght'", "mean 'height'"]),
+    ({"column": "height = 1.6, mass = 6, x = 1"}, ["line 2", "&column has no 'x'"]),
+    ({"colum": "height = 1.6"}, ["case.nml line 6", "&colum is not known", "mean '&column'"]),
+    ({"flexure": "rule = 'takda'"}, ["flexure spring: rule = 'takda'", "mean 'takeda'"]),
+    ({"shear": "rule = 'Elastic', k = 1"}, ["rule = 'Elastic'", "mean 'elastic'"]),
+    ({"column": "height = 1, mass = 1, kinematics = 'pdleta'"}, ["'pdleta'", "mean 'pdelta'"]),
+    ({"shear": E + ", d_y = 1"}, ["shear spring: d_y is not used by the rule elastic", "remove"]),
+    ({"loading": PROTOCOL + "1, file = 'x.csv'"}, ["file and amplitudes"]),
+    ({"analysis": "method = 'static ly'"}, ["method = 'static ly'", "static, rk4"]),
+    ({"loading": "drive = 'displacment', amplitudes = 1"}, ["'displacment'", "'displacement'"]),
+    ({"loading": PROTOCOL + "1, source = 'protocoll'"}, ["'protocoll'", "mean 'protocol'"]),
+    # kinds
+    ({"column": "height = '1.6', mass = 6"}, ["line 2", "height = '1.6'", "without quotes"]),
+    ({"column": "height = tall, mass = 6"}, ["line 2", "height = tall is not a number", "1.6"]),
+    ({"column": "height = 1.6m, mass = 6"}, ["height = 1.6m", "without a unit"]),
+    ({"column": "height = 1,6, mass = 6"}, ["line 2", "'height' has 2 values", "1 at the most"]),
+    ({"column": "height = .true., mass = 6"}, ["height = .true. is not a number"]),
+    ({"column": "n = 1.5, height = 1, mass = 1"}, ["n = 1.5 must be a whole number"]),
+    ({"column": "n = 99999999999, height = 1, mass = 1"}, ["n = 99999999999 must be a whole"]),
+    ({"axial": "self_weight = 1"}, ["line 6", "self_weight = 1 must be .true. or .false."]),
+    ({"case": "title = minimal"}, ["line 1", "title = minimal must be a text in quotes"]),
+    ({"shear": "rule = elastic, k = 1"}, ["rule = elastic must be a text in quotes: 'elastic'"]),
+    ({"case": f"title = '{'x' * 600}'"}, ["line 1", "title", "longer than 510"]),
+    # how many
+    ({"column": "height = 1.6, mass = 1 2"}, ["'mass' has 2 values; it takes 1 at the most"]),
+    ({"column": "height = 1.6, mass = 2*1"}, ["'mass' has 2 values; it takes 1 at the most"]),
+    ({"loading": PROTOCOL + "1001*0.01"}, ["'amplitudes' has 1001 values", "1000 at the most"]),
+    ({"column": "height = 1, mass = 1, lengths = 2001*1"}, ["'lengths' has 2001", "2000"]),
+    ({"column": "height(2) = 1.6, mass = 1"}, ["line 2", "'height' takes no subscript"]),
+    ({"loading": PROTOCOL + "1, amplitudes(1001) = 1"}, ["'amplitudes'", "1000"]),
+    ({"loading": "amplitudes(0) = 1"}, ["line 5", "subscript of 'amplitudes'", "from 1"]),
+    ({"loading": "amplitudes(-1) = 1"}, ["subscript of 'amplitudes'"]),
+    ({"loading": "amplitudes(1:2) = 1, 2"}, ["subscript of 'amplitudes'"]),
+    ({"loading": "amplitudes(i) = 1"}, ["subscript of 'amplitudes'"]),
+    ({"loading": "amplitudes() = 1"}, ["subscript of 'amplitudes'"]),
+    ({"loading": "amplitudes(99999999999999999999) = 1"}, ["subscript of 'amplitudes'"]),
+    ({"loading": "amplitudes(1 = 1"}, ["subscript of 'amplitudes'"]),
+    ({"column": "height =, mass = 1"}, ["line 2", "'height'"]),
+    ({"column": "height = , , mass = 1"}, ["line 2", "a value of 'height' is missing"]),
+    ({"column": "height = mass = 1"}, ["line 2", "'height' has no value"]),
+    ({"column": "height = 0*1.6, mass = 1"}, ["'0*1.6' of 'height' is no value"]),
+    ({"column": "height = *1.6, mass = 1"}, ["'*1.6' of 'height' is no value"]),
+    ({"column": "height = 1*, mass = 1"}, ["'1*' of 'height' is no value"]),
+    ({"loading": PROTOCOL + "999999999*0.01"}, ["'999999999*0.01'", "is no value"]),
+    # holes
+    ({"loading": "drive = 'force', amplitudes(1) = 1, amplitudes(3) = 2"},
+     ["case.nml", "amplitudes(2) is missing before", "amplitudes(3)", "give them all"]),
+    ({"loading": "drive = 'force', source = 'protocol', amplitudes(2) = 1"},
+     ["amplitudes(1) is missing before"]),
+    ({"loading": PROTOCOL + "1, 2, 3, cycles(1) = 1, cycles(3) = 1"}, ["cycles(2) is missing"]),
+    ({"column": "n = 3, height = 1, mass = 1, lengths(1) = 0.2, lengths(3) = 0.2"},
+     ["lengths(2) is missing"]),
+    # twice
+    ({"column": "height = 1.6, mass = 1, height = 1.6"},
+     ["line 2", "'height' stands twice in &column", "first on line 2", "remove one"]),
+    ({"loading": PROTOCOL + "0.1, amplitudes(1) = 0.1"}, ["'amplitudes' stands twice"]),
+    ({"loading": "amplitudes(2) = 0.1, amplitudes(2) = 0.2"}, ["'amplitudes' stands twice"]),
+    ({"column": ["height = 1.6, mass = 1"] * 2},
+     ["case.nml line 3", "&column stands 2 times", "1 at the most"]),
+    ({"axial": ["load = 1"] * 3}, ["&axial stands 3 times"]),
+    ({"case": ["title = 'a'"] * 2}, ["line 2", "&case stands 2 times"]),
+    ({"shear": [E, E]}, ["line 4", "&shear for joint = 0 stands twice", "first on line 3"]),
+    ({"column": "n = 2, height = 1, mass = 1", "shear": [E + ", joint = 2"] * 2},
+     ["&shear for joint = 2 stands twice"]),
+    ({"loading": ["drive = 'force', amplitudes = 1"] * 2}, ["two loadings need a dynamic"]),
+    ({"loading": ["drive = 'force', amplitudes = 1"] * 3}, ["&loading stands 3 times; 2"]),
+    # missing
+    ({"column": None}, ["case.nml", "group &column is missing"]),
+    ({"shear": None}, ["case.nml", "group &shear is missing"]),
+    ({"flexure": None}, ["case.nml", "group &flexure is missing"]),
+    ({"loading": None}, ["no loading", "&loading"]),
+    ({"column": "mass = 1"}, ["column: height is missing", "in m"]),
+    ({"column": "height = 1"}, ["column: mass is missing", "in kg"]),
+    ({"shear": "k = 1e8"}, ["shear spring: rule is missing", "elastic, bilinear, takeda"]),
+    ({"shear": "rule = 'bilinear', k = 1e8, d_y = 1"}, ["shear spring: k_post is missing"]),
+    ({"loading": "amplitudes = 1"}, ["drive is missing", "displacement, force, ground"]),
+    ({"loading": "drive = 'force'"}, ["source is missing", "file, protocol"]),
+    ({"loading": "drive = 'force', source = 'protocol'"}, ["amplitudes are missing"]),
+    ({"loading": "drive = 'force', source = 'file'"}, ["file is missing", "path"]),
+    ({"column": "n = 2, height = 1, mass = 1", "shear": E + ", joint = 1"},
+     ["case.nml", "joint 2 has no &shear", "joint = 0"]),
+    # numbers
+    ({"column": "height = NaN, mass = 1"}, ["column: height = NaN", "finite"]),
+    ({"column": "height = 1, mass = -inf"}, ["column: mass = -Infinity", "finite"]),
+    ({"column": "height = 1e999, mass = 1"}, ["height", "finite"]),
+    ({"shear": "rule = 'elastic', k = Infinity"}, ["shear spring: k = Infinity", "finite"]),
+    ({"loading": PROTOCOL + "0.01, NaN"}, ["amplitudes(2) = NaN", "finite"]),
+    ({"loading": PROTOCOL + "1, scale = inf"}, ["scale = Infinity", "finite"]),
+    ({"axial": "load = nan"}, ["axial_load = NaN", "finite"]),
+    ({"column": "height = -1.6, mass = 1"}, ["column: height = -1.6 m must be above zero"]),
+    ({"column": "height = 1.6, mass = 0"}, ["column: mass = 0 kg must be above zero"]),
+    ({"column": "n = 0, height = 1.6, mass = 1"}, ["column: n = 0 bodies", "1 to 2000"]),
+    ({"column": "n = -3, height = 1.6, mass = 1"}, ["column: n = -3 bodies", "1 to 2000"]),
+    ({"column": "n = 2001, height = 1.6, mass = 1"}, ["column: n = 2001 bodies", "1 to 2000"]),
+    ({"column": "height = 1, mass = 1, mass_damping = -1"}, ["mass_damping = -1", "negative"]),
+    ({"column": "height = 1, mass = 1, stiffness_damping = -1"},
+     ["stiffness_damping = -1", "negative"]),
+    ({"axial": "gravity = -9.8"}, ["gravity = -9.8", "negative"]),
+    ({"column": "n = 2, height = 1, mass = 1, lengths = 0.5, 0.6"},
+     ["lengths add up to 1.1 m", "height is 1 m"]),
+    ({"column": "n = 2, height = 1, masses = 1, 2, 3"}, ["masses has 3 values for n = 2"]),
+    ({"column": "n = 2, height = 1, masses = 1, -2"}, ["masses(2) = -2 kg"]),
+    ({"shear": "rule = 'bilinear', k = 1, d_y = 1, k_post = 2"}, ["k_post = 2", "below k = 1"]),
+    ({"flexure": "rule = 'takeda', k_c = 2, d_c = 2, k_y = 1, d_y = 1, k_u = 0.5"},
+     ["flexure spring: d_y = 1 must be above d_c = 2"]),
+    ({"shear": E + ", joint = 2"}, ["line 3", "&shear has joint = 2", "1 to n = 1"]),
+    ({"shear": E + ", joint = -1"}, ["line 3", "&shear has joint = -1"]),
+    ({"column": "n = 2, height = 1, mass = 1, kinematics = 'finite'"},
+     ["kinematics = 'finite'", "n = 2", "pdelta"]),
+    ({"column": "height = 1, mass = 1, kinematics = 'finite'"},
+     ["kinematics = 'finite' has no static path", "pdelta"]),
+    ({"loading": PROTOCOL + "-0.01"}, ["amplitudes(1) = -0.01 must be above zero"]),
+    ({"loading": PROTOCOL + "0.01, cycles = 0"}, ["cycles = 0 must be 1 or more"]),
+    ({"loading": PROTOCOL + "1, 2, cycles = 1, 1, 1"}, ["cycles has 3 values for 2 amplitudes"]),
+    ({"loading": PROTOCOL + "0.01, points = 0"}, ["points = 0 must be 1 or more"]),
+    ({"loading": PROTOCOL + "0.01, repeats = -1"}, ["repeats = -1 must be 1 or more"]),
+    ({"loading": PROTOCOL + "0.01, cycles = 99999999"}, ["points", "below 100000000"]),
+    ({"loading": PROTOCOL + "1e300, scale = 1e300"}, ["finite"]),
+    ({"output": "every = 0"}, ["output: every = 0 must be 1 or more"]),
+    ({"analysis": "dt = 0.1"}, ["dt has no meaning for method = 'static'", "rk4"]),
+    ({"analysis": "duration = 1"}, ["duration has no meaning for method = 'static'", "rk4"]),
+    ({"loading": "drive = 'ground', amplitudes = 1"}, ["'ground' needs a dynamic", "rk4"]),
+    # units
+    ({"loading": PROTOCOL + "1, unit = 'kN'"},
+     ["unit of the drive 'displacement' = 'kN'", "drift, m, mm"]),
+    ({"loading": PROTOCOL + "1, unit = 'MM'"}, ["'MM'", "mean 'mm'"]),
+    ({"loading": "drive = 'force', amplitudes = 1, unit = 'kn'"}, ["'kn'", "mean 'kN'"]),
+    ({"loading": "drive = 'force', amplitudes = 1, unit = 'drift'"}, ["'drift'", "N, kN, MN"]),
+    ({"loading": PROTOCOL + "1, unit = 'mm              per s'"}, ["mm              per s"]),
+    ({"column": "height = 1, mass = 1, kinematics = 'small            P'"}, ["small            P"]),
+    # files
+    ({"loading": "drive = 'force', file = 'none.csv'"}, ["none.csv", "cannot be opened"]),
+    ({"loading": "drive = 'force', file = '.'"}, ["is a folder"]),
+    ({"loading": "drive = 'force', file = 'case.nml', format = 'txt'"}, ["format = 'txt'"]),
+    # grammar
+    ({"column": "height 1.6, mass = 1"}, ["line 2", "'height' in &column has no ="]),
+    ({"column": "= 1.6"}, ["line 2", "is no name"]),
+    ({"column": "height = 1.6, mass = 1 & x"}, ["line 2", "mass = &"]),
+    ({"case": "title = 'open"}, ["line 1", "does not end on the line", "close the quotes"]),
+    ({"case": "title = 'a\x07b'"}, ["line 1", "control character (code 7)"]),
+    ({"loading": PROTOCOL + "0.1 / /"}, ["line 5", "'/' stands outside a group"]),
+]  # fmt: skip
+
+DYNAMIC_FAULTS = [
+    ({"loading": "drive = 'ground', amplitudes = 1"}, ["period is missing", "in s"]),
+    ({"loading": "drive = 'ground', amplitudes = 1, period = 0"}, ["period = 0 s"]),
+    ({"loading": "drive = 'ground', amplitudes = 1, period = 1, unit = 'm'"},
+     ["unit of the drive 'ground' = 'm'", "m/s2, g"]),
+    ({"loading": PROTOCOL + "1, period = 1"}, ["'displacement' needs the static analysis"]),
+    ({"loading": ["drive = 'force', amplitudes = 1, period = 1"] * 2},
+     ["two loadings with drive = 'force'"]),
+    ({"analysis": "method = 'rk5'"}, ["method = 'rk5'", "mean 'rk4'"]),
+    ({"analysis": "method = 'rk4', dt = 0"}, ["dt = 0 s must be above zero"]),
+    ({"analysis": "method = 'rk4', dt = -1"}, ["dt = -1 s must be above zero"]),
+    ({"analysis": "method = 'rk4', dt = NaN"}, ["dt = NaN", "finite"]),
+    ({"analysis": "method = 'rk4', duration = 0"}, ["duration = 0 s must be above zero"]),
+    ({"analysis": "method = 'rk4', duration = inf"}, ["duration = Infinity", "finite"]),
+    ({"analysis": "method = 'rk4', dt = 1e-12"}, ["steps", "more than 2e+09", "dt"]),
+    ({"analysis": "method = 'rk4', duration = 1e9"}, ["steps", "more than 2e+09"]),
+    ({"analysis": "method = 'rk4', dt = 0.01"}, ["dt = 0.01 s is beyond the stability limit"]),
+]  # fmt: skip
+
+
+def named(cases: list[tuple[dict, list[str]]]) -> list[str]:
+    """Names of tests that say which fault."""
+    return [f"{' '.join(groups)}: {words[-1]}" for groups, words in cases]
+
+
+def check_and_run(run_cli, folder: Path, words: list[str]) -> str:
+    """The message of a faulty case, the same from `check` and `run`; nothing is written."""
+    before = sorted(os.listdir(folder))
+    results = [run_cli([command, "case.nml"], folder) for command in ("check", "run")]
+    texts = [faults(result) for result in results]
+    for word in words:
+        assert word in texts[0]
+    assert texts[0] == texts[1]
+    assert sorted(os.listdir(folder)) == before
+    return texts[0]
+
+
+@pytest.mark.parametrize(("groups", "words"), STATIC_FAULTS, ids=named(STATIC_FAULTS))
+def test_fault_of_a_static_case_is_named_with_a_remedy(run_cli, case_text, tmp_path, groups, words):
+    write(tmp_path, case_text(**groups))
+    check_and_run(run_cli, tmp_path, words)
+
+
+@pytest.mark.parametrize(("groups", "words"), DYNAMIC_FAULTS, ids=named(DYNAMIC_FAULTS))
+def test_fault_of_a_dynamic_case_is_named_with_a_remedy(
+    run_cli, dynamic_text, tmp_path, groups, words
+):
+    write(tmp_path, dynamic_text(**groups))
+    check_and_run(run_cli, tmp_path, words)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"", ["case.nml", "is empty"]),
+        (b"\n \n! nothing\n", ["case.nml", "no groups", "&column"]),
+        (b"height = 1.6\n", ["line 1", "'height' stands outside a group", "&name"]),
+        (b"&column height = 1.6\n", ["line 1", "&column is not closed", "/"]),
+        (b"&\n/\n", ["line 1", "no name behind &"]),
+        (b"\n&column height\n/", ["line 3", "'height' in &column has no ="]),
+        (b"&case title = 'a\0b' /", ["case.nml", "not a text file", "zero byte"]),
+        (b"\x7fELF\x01\x02\x03", ["line 1", "control character"]),
+        (b"&column /\n" * 50000, ["&column stands 50000 times"]),
+    ],
+)
+def test_file_that_is_no_case(run_cli, tmp_path, content, words):
+    (tmp_path / "case.nml").write_bytes(content)
+    text = check_and_run(run_cli, tmp_path, words)
+    assert len(text.splitlines()) <= 25
+
+
+def test_case_that_is_not_there_or_a_folder(run_cli, tmp_path):
+    for command in ("run", "check", "modes"):
+        text = faults(run_cli([command, "none.nml"], tmp_path))
+        assert "none.nml: cannot be opened" in text
+        assert "check the path" in text
+        text = faults(run_cli([command, "."], tmp_path))
+        assert "is a folder" in text
+    assert os.listdir(tmp_path) == []
+
+
+def test_case_of_more_than_10_mb_is_refused(run_cli, tmp_path):
+    (tmp_path / "case.nml").write_bytes(b"! a comment\n" * 1_000_000)
+    check_and_run(run_cli, tmp_path, ["case.nml", "1.2e+07 bytes", "10000000"])
+
+
+def test_number_of_bodies_out_of_range_does_not_blame_the_springs(run_cli, case_text, tmp_path):
+    write(tmp_path, case_text(column="n = 0, height = 1.6, mass = 1"))
+    assert "spring" not in check_and_run(run_cli, tmp_path, ["n = 0 bodies"])
+
+
+def test_all_faults_that_stop_the_reading_come_at_once(run_cli, case_text, tmp_path):
+    groups = {
+        "case": "titel = 'x'",
+        "column": "height = tall, mass = 1, mass = 2, n = 1.5",
+        "shear": "rule = elastic",
+        "flexure": "rule = 'elastic', k = 1, 2",
+        "loading": PROTOCOL + "1, period = '1'",
+        "output": "every = often",
+        "analisis": "method = 'rk4'",
+    }
+    write(tmp_path, case_text(**groups))
+    words = ["'titel'", "height = tall", "'mass' stands twice", "n = 1.5", "rule = elastic",
+             "'k' has 2 values", "period = '1'", "every = often", "&analisis"]  # fmt: skip
+    text = check_and_run(run_cli, tmp_path, words)
+    assert len(text.splitlines()) == len(words)
+
+
+def test_all_faults_of_the_values_come_at_once(run_cli, case_text, tmp_path):
+    groups = {
+        "column": "height = -1, mass = 0, kinematics = 'smal', mass_damping = -1",
+        "shear": "rule = 'bilinear', k = -1, d_y = 0, k_post = -1",
+        "flexure": "rule = 'takeda'",
+        "axial": "load = NaN, gravity = -1",
+        "loading": "drive = 'ground', file = 'none.csv', unit = 'kN'",
+        "analysis": "dt = 1, duration = 1",
+        "output": "every = 0",
+    }
+    write(tmp_path, case_text(**groups))
+    words = ["height = -1", "mass = 0", "'smal'", "mass_damping = -1", "k = -1", "d_y = 0",
+             "k_post = -1", "k_c is missing", "d_c is missing", "k_y is missing",
+             "flexure spring: d_y is missing", "k_u is missing", "axial_load = NaN",
+             "gravity = -1", "'ground' needs", "'kN'", "dt has no", "duration has no",
+             "every = 0"]  # fmt: skip
+    text = check_and_run(run_cli, tmp_path, words)
+    assert len(text.splitlines()) == len(words)
+
+
+def test_faults_of_two_history_files_come_at_once_with_those_of_the_column(
+    run_cli, dynamic_text, tmp_path
+):
+    (tmp_path / "bad.csv").write_text("time,force_N\n0,1\n1,x\n")
+    loading = ["drive = 'force', file = 'bad.csv'", "drive = 'ground', file = 'none.csv'"]
+    write(tmp_path, dynamic_text(column="height = -1, mass = 1", loading=loading))
+    words = ["height = -1", "bad.csv line 3", "none.csv"]
+    text = check_and_run(run_cli, tmp_path, words)
+    assert len(text.splitlines()) == 3
+
+
+FAULTY_COLUMNS = [
+    {"height": -1.0, "mass": 0.0},
+    {"height": 1.0, "mass": np.nan, "mass_damping": -1.0, "stiffness_damping": -2.0},
+    {"height": 1.0, "mass": 1.0, "n": 2, "lengths": [0.5, 0.6]},
+    {"height": 1.0, "mass": None, "n": 3, "masses": [-1.0, 0.0]},
+    {"height": 1.0, "mass": 1.0, "n": 0},
+    {"height": 1.0, "mass": 1.0, "n": 3, "kinematics": "finite"},
+    {"height": 1.0, "mass": None, "n": 200, "masses": [-1.0] * 200},
+]
+
+
+@pytest.mark.parametrize("numbers", FAULTY_COLUMNS)
+def test_text_of_an_error_is_the_same_in_python(run_cli, dynamic_text, tmp_path, numbers):
+    """Issue 2, Python: errors as exceptions with the same text."""
+    entries = []
+    for name, value in numbers.items():
+        if isinstance(value, str):
+            entries.append(f"{name} = '{value}'")
+        elif value is not None:
+            entries.append(f"{name} = " + ", ".join(map(str, np.atleast_1d(value).tolist())))
+    write(tmp_path, dynamic_text(column=", ".join(entries)))
+    text = faults(run_cli(["check", "case.nml"], tmp_path))
+    with pytest.raises(rbsdem.InputError) as error:
+        rbsdem.Column(shear=BILINEAR, flexure=TAKEDA, **numbers)
+    assert str(error.value).splitlines() == [
+        line.removeprefix("rbsdem: ") for line in text.splitlines()
+    ]
+
+
+def test_step_beyond_the_stability_limit_is_refused_with_the_limit(run_cli, dynamic_text, tmp_path):
+    """Issue 2, Dynamics; theory section 6: 2 sqrt(2) / omega_max."""
+    limit = float(2 * np.sqrt(2) / rbsdem.modes(COLUMN).omega[-1])
+    write(tmp_path, dynamic_text(analysis=f"method = 'rk4', dt = {limit * 1.001!r}"))
+    text = check_and_run(run_cli, tmp_path, ["beyond the stability limit"])
+    said = float(re.search(r"limit of rk4, (\S+) s", text).group(1))
+    assert said == pytest.approx(limit, rel=1e-5)
+    write(tmp_path, dynamic_text(analysis=f"method = 'rk4', dt = {limit * 0.999!r}"))
+    assert run_cli(["run", "case.nml"], tmp_path).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("times", "row", "words"),
+    [
+        ([0, 0.2, 0.1], 3, ["0.1 s", "0.2 s"]),
+        ([0, 0.1, 0.1], 3, ["0.1 s"]),
+        ([3, 2, 1], 2, ["2 s", "3 s"]),
+    ],
+)
+def test_times_that_do_not_ascend_are_refused(
+    run_cli, dynamic_text, tmp_path, *, times, row, words
+):
+    lines = [f"{t},1.0" for t in times]
+    (tmp_path / "g.csv").write_text("time_s,acceleration_m/s2\n" + "\n".join(lines) + "\n")
+    write(tmp_path, dynamic_text(loading="drive = 'ground', file = 'g.csv'"))
+    words = ["g.csv", f"row {row} of the times", "ascend strictly", *words]
+    check_and_run(run_cli, tmp_path, words)
+
+
+@pytest.mark.parametrize(
+    ("header", "keys", "words"),
+    [
+        ("force_N,a", "", ["g.csv", "no column with the time", "interval", "time_column"]),
+        ("time,b", "column = 'c'", ["column = 'c' is not there", "time, b", "mean"]),
+        ("time,b", "column = '3'", ["column = 3", "1 to 2"]),
+        ("time,b", "column = '0'", ["column = 0", "1 to 2"]),
+        ("time,force", "time_column = 'tme'", ["time_column = 'tme'", "mean 'time'"]),
+        ("time,force_g", "", ["the unit 'g' of column force_g", "N, kN, MN", "unit"]),
+        ("time,force", "interval = 0", ["interval = 0 s must be above zero"]),
+        ("a,b,c", "", ["no column is named after 'force'", "a, b, c", "column"]),
+    ],
+)
+def test_column_that_is_not_found_is_named_with_those_there(
+    run_cli, dynamic_text, tmp_path, *, header, keys, words
+):
+    count = header.count(",") + 1
+    rows = "".join(",".join(str(i + j) for j in range(count)) + "\n" for i in range(3))
+    (tmp_path / "g.csv").write_text(header + "\n" + rows)
+    write(tmp_path, dynamic_text(loading=f"drive = 'force', file = 'g.csv', {keys}"))
+    check_and_run(run_cli, tmp_path, words)
+
+
+# ---- where the output goes -----------------------------------------------------------------------
+
+CAPACITY = 7.0387e8 * 1.296e-4  # of a shear spring without stiffness after yield
+
+
+@pytest.fixture
+def overloaded(case_text):
+    """A case that fails half way: a force of twice the capacity of the shear spring."""
+    return case_text(
+        shear="rule = 'bilinear', k = 7.0387e8, d_y = 1.296e-4, k_post = 0",
+        loading=f"drive = 'force', amplitudes = {CAPACITY / 2!r}, {2 * CAPACITY!r}, points = 4",
+    )
+
+
+def test_output_is_named_after_the_case_beside_it(run_cli, case_text, tmp_path):
+    folder = tmp_path / "sub.d"
+    folder.mkdir()
+    for name, output in (("a.b.nml", "a.b.csv"), ("plain", "plain.csv"), (".x", ".x.csv")):
+        write(folder, case_text(), name)
+        assert run_cli(["run", f"sub.d/{name}", "-q"], tmp_path).returncode == 0
+        assert (folder / output).is_file()
+    assert os.listdir(tmp_path) == ["sub.d"]
+
+
+def test_output_of_the_case_is_relative_to_the_case_and_the_option_to_the_shell(
+    run_cli, case_text, tmp_path
+):
+    folder = tmp_path / "sub"
+    folder.mkdir()
+    write(folder, case_text(output="file = 'mine.csv'"))
+    assert run_cli(["run", "sub/case.nml", "-q"], tmp_path).returncode == 0
+    assert sorted(os.listdir(folder)) == ["case.nml", "mine.csv"]
+    assert run_cli(["run", "sub/case.nml", "-q", "-o", "other.csv"], tmp_path).returncode == 0
+    assert sorted(os.listdir(tmp_path)) == ["other.csv", "sub"]
+    assert sorted(os.listdir(folder)) == ["case.nml", "mine.csv"]
+    absolute = tmp_path / "absolute.csv"
+    write(folder, case_text(output=f"file = '{absolute}'"))
+    assert run_cli(["run", "sub/case.nml", "-q"], tmp_path).returncode == 0
+    assert absolute.read_bytes() == (tmp_path / "other.csv").read_bytes()
+
+
+def test_output_with_blanks_and_letters_beyond_ascii_in_its_path(run_cli, case_text, tmp_path):
+    folder = tmp_path / "Säule 1 ü"
+    folder.mkdir()
+    write(folder, case_text(), "ein Fall.nml")
+    result = run_cli(["run", folder / "ein Fall.nml"], tmp_path)
+    assert result.returncode == 0
+    assert "Säule 1 ü/ein Fall.csv" in result.stdout
+    assert (folder / "ein Fall.csv").is_file()
+
+
+@pytest.mark.parametrize(
+    ("output", "words"),
+    [
+        ("folder", ["folder is a folder", "path of a file"]),
+        ("folder/", ["is a folder"]),
+        (".", ["is a folder"]),
+        ("none/out.csv", ["cannot write none/out.csv", "--output"]),
+        ("plain/out.csv", ["cannot write plain/out.csv", "--output"]),  # below a regular file
+        ("x" * 300, ["cannot write", "--output"]),
+    ],
+)
+def test_output_that_cannot_be_written_is_refused(run_cli, case_text, tmp_path, output, words):
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "plain").write_text("untouched")
+    write(tmp_path, case_text())
+    text = faults(run_cli(["run", "case.nml", "--output", output], tmp_path))
+    for word in words:
+        assert word in text
+    assert sorted(os.listdir(tmp_path)) == ["case.nml", "folder", "plain"]
+    assert os.listdir(tmp_path / "folder") == []
+    assert (tmp_path / "plain").read_text() == "untouched"
+
+
+def test_force_beyond_the_capacity_keeps_the_path_and_the_old_output(
+    run_cli, overloaded, tmp_path, read_csv
+):
+    """Issue 2, Static path: the force reached is said, the path up to there is kept."""
+    write(tmp_path, overloaded)
+    (tmp_path / "out.csv").write_text("old")
+    assert run_cli(["check", "case.nml"], tmp_path).returncode == 0
+    text = faults(run_cli(["run", "case.nml", "-o", "out.csv"], tmp_path), code=1)
+    assert (tmp_path / "out.csv").read_text() == "old"
+    assert f"the lateral force {1.5 * CAPACITY:.6g} N is beyond the capacity" in text
+    assert "shear spring of joint 1" in text
+    assert re.search(rf"at force {CAPACITY:.6g} N, displacement \S+ m", text)
+    assert "drive the column by displacement" in text
+    rows = read_csv(tmp_path / "out.csv.partial")
+    assert f"the {rows['step'].size} rows up to there are in out.csv.partial" in text
+    # A cycle to half the capacity in 16 parts, then quarters of twice of it: the second is the end.
+    expected = np.concatenate(
+        [np.interp(np.arange(17), [0, 4, 12, 16], [0, 0.5, -0.5, 0]), [0.5, 1.0, 1.0]]
+    )
+    np.testing.assert_allclose(rows["force_N"], expected * CAPACITY, rtol=1e-12, atol=1e-6)
+    # Done right, the whole is there and no partial is left.
+    right = overloaded.replace("k_post = 0", "k_post = 1e6")
+    write(tmp_path, right)
+    assert run_cli(["run", "case.nml", "-q", "-o", "out.csv"], tmp_path).returncode == 0
+    assert read_csv(tmp_path / "out.csv")["step"].size == 33
+    assert sorted(os.listdir(tmp_path)) == ["case.nml", "out.csv"]
+
+
+def test_failure_with_quiet_still_tells(run_cli, overloaded, tmp_path):
+    write(tmp_path, overloaded)
+    text = faults(run_cli(["run", "case.nml", "--quiet"], tmp_path), code=1)
+    assert "beyond the capacity" in text
+
+
+def test_bad_input_leaves_old_output_and_no_partial(run_cli, case_text, tmp_path):
+    for groups in ({"column": "height = -1, mass = 1"}, {"loading": PROTOCOL + "1e308, scale = 9"}):
+        write(tmp_path, case_text(**groups))
+        (tmp_path / "case.csv").write_text("old")
+        faults(run_cli(["run", "case.nml"], tmp_path))
+        assert sorted(os.listdir(tmp_path)) == ["case.csv", "case.nml"]
+        assert (tmp_path / "case.csv").read_text() == "old"
+
+
+@pytest.mark.parametrize("output", [None, "history.csv", "./history.csv", "HERE/history.csv"])
+def test_output_never_replaces_the_history_that_it_is_read_from(
+    run_cli, case_text, tmp_path, output
+):
+    """history.nml on history.csv: its default output would be the file that drives it."""
+    (tmp_path / "history.csv").write_text("displacement_mm,force_kN\n0,0\n10,1\n")
+    before = (tmp_path / "history.csv").read_text()
+    text = case_text(loading="drive = 'displacement', file = 'history.csv'")
+    write(tmp_path, text, "history.nml")
+    option = ["--output", output.replace("HERE", str(tmp_path))] if output else []
+    text = faults(run_cli(["run", "history.nml", *option], tmp_path))
+    assert "history.csv" in text
+    assert "--output" in text
+    assert (tmp_path / "history.csv").read_text() == before
+    assert sorted(os.listdir(tmp_path)) == ["history.csv", "history.nml"]
+
+
+def test_output_never_replaces_the_case(run_cli, case_text, tmp_path):
+    write(tmp_path, case_text(), "case.csv")
+    for arguments in (["case.csv"], ["case.csv", "-o", "case.csv"]):
+        text = faults(run_cli(["run", *arguments], tmp_path))
+        assert "case.csv" in text
+        assert (tmp_path / "case.csv").read_text() == case_text()
+        assert os.listdir(tmp_path) == ["case.csv"]
+
+
+@pytest.mark.parametrize("points", [1, 20_000])
+def test_full_disk_exits_1_and_leaves_the_old_output(run_cli, case_text, tmp_path, points):
+    """Few rows fail when the file is closed, many on the way (gfortran's runtime tells neither)."""
+    write(tmp_path, case_text(loading=f"{PROTOCOL} 0.01, points = {points}"))
+    (tmp_path / "out.csv").write_text("old")
+    (tmp_path / "out.csv.partial").symlink_to("/dev/full")
+    text = faults(run_cli(["run", "case.nml", "--output", "out.csv"], tmp_path), code=1)
+    assert "out.csv.partial" in text
+    assert "free some space" in text
+    assert (tmp_path / "out.csv").read_text() == "old"
+    assert not (tmp_path / "out.csv").is_symlink()
+
+
+@pytest.mark.parametrize("target", ["/dev/full", "/dev/null", "fifo"])
+def test_output_that_is_no_regular_file_is_not_replaced_by_one(
+    run_cli, case_text, tmp_path, target
+):
+    """A rename onto /dev/null or a pipe would take it away from everyone."""
+    write(tmp_path, case_text())
+    assert run_cli(["run", "case.nml", "-q", "-o", "good.csv"], tmp_path).returncode == 0
+    path = tmp_path / "special"
+    if target == "fifo":
+        os.mkfifo(path)
+    else:
+        path.symlink_to(target)  # not the device itself: the root user could lose it
+    reader = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        result = run_cli(["run", "case.nml", "--output", "special"], tmp_path)
+        assert not stat.S_ISREG(path.stat().st_mode)
+        assert path.is_symlink() == (target != "fifo")
+        assert sorted(os.listdir(tmp_path)) == ["case.nml", "good.csv", "special"]
+        if result.returncode == 0:
+            assert target != "/dev/full"
+            if target == "fifo":
+                assert os.read(reader, 1_000_000) == (tmp_path / "good.csv").read_bytes()
+        else:
+            assert "special" in faults(result, code=result.returncode)
+    finally:
+        os.close(reader)
+
+
+def test_modes_that_cannot_be_printed_are_no_success(run_cli, case_text, tmp_path):
+    """`rbsdem modes case.nml >file` on a full disk must not exit 0."""
+    write(tmp_path, case_text())
+    with open("/dev/full", "w") as full:
+        result = run_cli(["modes", "case.nml"], tmp_path, stdout=full, stderr=subprocess.PIPE)
+    assert result.returncode == 1
+    assert result.stderr.startswith("rbsdem: ")
+    assert not any(word in result.stderr for word in FATAL_WORDS)
+
+
+@pytest.mark.parametrize("closed", [0, 1, 2])
+def test_closed_standard_streams_do_no_harm_to_the_csv(run_cli, case_text, tmp_path, closed):
+    write(tmp_path, case_text())
+    assert run_cli(["run", "case.nml", "-q", "-o", "good.csv"], tmp_path).returncode == 0
+    process = run_cli(["run", "case.nml"], tmp_path, preexec_fn=lambda: os.close(closed))
+    assert process.returncode in (0, 1)
+    if process.returncode == 0:
+        assert (tmp_path / "case.csv").read_bytes() == (tmp_path / "good.csv").read_bytes()
+
+
+# ---- long runs -----------------------------------------------------------------------------------
+
+
+def long_text(dynamic_text, steps: int, every: int) -> str:
+    """Elastic column shaken for a number of steps that do not divide the loading's times."""
+    elastic = "rule = 'elastic', k = 7e8"
+    dt = 1.0e-4
+    return dynamic_text(
+        shear=elastic,
+        flexure=elastic,
+        loading="drive = 'ground', file = 'ground.csv'",
+        analysis=f"method = 'rk4', dt = {dt}, duration = {(steps - 0.5) * dt!r}",
+        output=f"every = {every}",
+    )
+
+
+@pytest.fixture
+def long_run(run_cli, dynamic_text, tmp_path):
+    """A case that takes about three seconds on this machine, and its number of rows."""
+    (tmp_path / "ground.csv").write_text("time_s,acceleration_g\n0,0.1\n0.3,-0.1\n1e5,0.1\n")
+    steps = 200_000
+    write(tmp_path, long_text(dynamic_text, steps, 1000))
+    begin = time.perf_counter()
+    assert run_cli(["run", "case.nml", "-q"], tmp_path).returncode == 0
+    steps = int(steps * 3.0 / (time.perf_counter() - begin)) // 1000 * 1000
+    write(tmp_path, long_text(dynamic_text, steps, 1000))
+    return steps // 1000 + 1
+
+
+def test_no_progress_in_a_pipe(run_cli, long_run, tmp_path, read_csv):
+    begin = time.perf_counter()
+    result = run_cli(["run", "case.nml"], tmp_path)
+    assert time.perf_counter() - begin > 1.2, "too short to tell"
+    assert (result.returncode, result.stderr) == (0, "")
+    assert "\r" not in result.stdout
+    assert read_csv(tmp_path / "case.csv")["time_s"].size == long_run
+
+
+def on_terminal(executable: Path, arguments: list[str], cwd: Path) -> tuple[int, str, str]:
+    """Exit code, what a terminal shows of stderr, and stdout (a pipe)."""
+    terminal, inner = pty.openpty()
+    with open(cwd / "stdout.txt", "w+") as out:
+        process = subprocess.Popen(
+            [executable, *arguments], cwd=cwd, stdin=subprocess.DEVNULL, stdout=out, stderr=inner
+        )
+        os.close(inner)
+        shown = b""
+        end = time.monotonic() + 20
+        while time.monotonic() < end:
+            if select.select([terminal], [], [], 0.1)[0]:
+                try:
+                    piece = os.read(terminal, 4096)
+                except OSError:  # Linux: the other end is closed
+                    break
+                if not piece:
+                    break
+                shown += piece
+        os.close(terminal)
+        code = process.wait(timeout=20)
+        out.seek(0)
+        return code, shown.decode(), out.read()
+
+
+def test_progress_on_a_terminal_grows_and_is_taken_away(executable, long_run, tmp_path):
+    code, shown, out = on_terminal(executable, ["run", "case.nml"], tmp_path)
+    assert code == 0
+    assert "rows in" in out
+    assert "\r" not in out
+    shares = [int(share) for share in re.findall(r"\] +(\d+) % +\d+ s left", shown)]
+    assert len(shares) >= 3
+    assert shares == sorted(shares)
+    assert 0 < shares[0] < shares[-1] <= 100
+    # Not from the begin on: short runs stay silent.
+    assert shares[0] >= 15
+    # Never a line of its own, and blank at the end.
+    assert "\n" not in shown
+    assert re.search(r"\r +\r$", shown)
+    assert max(len(line) for line in shown.split("\r")) < 80
+
+
+def test_progress_on_a_terminal_stays_away_with_quiet_and_in_short_runs(
+    executable, case_text, long_run, tmp_path
+):
+    assert on_terminal(executable, ["run", "case.nml", "-q"], tmp_path) == (0, "", "")
+    write(tmp_path, case_text(), "short.nml")
+    code, shown, out = on_terminal(executable, ["run", "short.nml"], tmp_path)
+    assert (code, shown) == (0, "")
+    assert "rows in" in out
+
+
+def wait_for(path: Path, least: int) -> None:
+    end = time.monotonic() + 10
+    while time.monotonic() < end:
+        if path.is_file() and path.stat().st_size > least:
+            return
+        time.sleep(0.01)
+    raise AssertionError(f"{path} does not grow")
+
+
+def test_output_is_whole_or_the_old_one_at_any_time(executable, long_run, tmp_path, read_csv):
+    (tmp_path / "case.csv").write_text("old")
+    process = subprocess.Popen([executable, "run", "case.nml", "-q"], cwd=tmp_path)
+    wait_for(tmp_path / "case.csv.partial", 5000)
+    seen = (tmp_path / "case.csv").read_text()
+    assert process.poll() is None, "the run was over before it could be watched"
+    assert seen == "old"
+    assert process.wait(timeout=20) == 0
+    assert read_csv(tmp_path / "case.csv")["time_s"].size == long_run
+    assert not (tmp_path / "case.csv.partial").exists()
+
+
+def test_killed_run_leaves_the_old_output(executable, long_run, tmp_path):
+    (tmp_path / "case.csv").write_text("old")
+    process = subprocess.Popen([executable, "run", "case.nml", "-q"], cwd=tmp_path)
+    wait_for(tmp_path / "case.csv.partial", 5000)
+    process.kill()
+    assert process.wait(timeout=20) == -signal.SIGKILL
+    assert (tmp_path / "case.csv").read_text() == "old"
+
+
+def peak_memory(executable: Path, cwd: Path) -> int:
+    """Largest resident memory of a run in kB, as the system counts it for the process alone."""
+    process = subprocess.Popen([executable, "run", "case.nml", "-q"], cwd=cwd)
+    peak = 0
+    while process.poll() is None:
+        try:
+            status = Path(f"/proc/{process.pid}/status").read_text()
+        except OSError:
+            break
+        # Before exec the memory is still that of Python.
+        if found := re.search(r"^Name:\s+rbsdem.*^VmHWM:\s+(\d+) kB", status, re.M | re.S):
+            peak = max(peak, int(found.group(1)))
+        time.sleep(0.001)
+    assert process.wait(timeout=20) == 0
+    assert peak > 0, "the run was over before it could be measured"
+    return peak
+
+
+def test_million_steps_in_constant_memory(executable, dynamic_text, tmp_path, read_csv):
+    """Issue 2: constant memory when only every n-th step is kept."""
+    (tmp_path / "ground.csv").write_text("time_s,acceleration_g\n0,0.1\n0.3,-0.1\n1e5,0.1\n")
+    peaks = {}
+    for steps in (100_000, 1_000_000):
+        write(tmp_path, long_text(dynamic_text, steps, 10_000))
+        peaks[steps] = peak_memory(executable, tmp_path)
+        rows = read_csv(tmp_path / "case.csv")
+        assert rows["time_s"].size == steps // 10_000 + 1
+        np.testing.assert_allclose(np.diff(rows["time_s"])[:-1], 1.0, rtol=1e-9)
+    # One double a step would be 7 MB more.
+    assert peaks[1_000_000] < peaks[100_000] + 1000
+
+
+# ---- loadings ------------------------------------------------------------------------------------
+
+ELASTIC = "rule = 'elastic', k = 7e8"
+
+
+def run_rows(run_cli, read_csv, folder: Path, text: str, name: str = "case.nml"):
+    write(folder, text, name)
+    result = run_cli(["run", name, "-q"], folder)
+    assert (result.returncode, result.stderr) == (0, "")
+    return read_csv((folder / name).with_suffix(".csv"))
+
+
+def test_force_and_ground_motion_together_are_their_sum_on_a_linear_column(
+    run_cli, dynamic_text, tmp_path, read_csv
+):
+    """Theory section 3: both act on the same linear equations. Times of the two files differ."""
+    (tmp_path / "force.csv").write_text("time_s,force_kN\n0,0\n0.01,20\n0.03,-5\n0.04,0\n")
+    (tmp_path / "ground.csv").write_text("t,acceleration_g\n0,0\n0.005,0.3\n0.02,-0.2\n0.04,0\n")
+    force, ground = "drive = 'force', file = 'force.csv'", "drive = 'ground', file = 'ground.csv'"
+    none = "drive = 'force', scale = 0, file = 'force.csv'"
+    still = "drive = 'ground', scale = 0, file = 'ground.csv'"
+    parts = {}
+    for name, loading in {
+        "both": [force, ground], "turned": [ground, force], "a": [force, still], "b": [none, ground]
+    }.items():  # fmt: skip
+        text = dynamic_text(shear=ELASTIC, flexure=ELASTIC, loading=loading)
+        parts[name] = run_rows(run_cli, read_csv, tmp_path, text, f"{name}.nml")
+    times = [0, 0.005, 0.01, 0.02, 0.03, 0.04]
+    assert np.array_equal(parts["both"]["time_s"], times)
+    for column in ("displacement_m", "slip_1_m", "rotation_1_rad", "force_N"):
+        total = parts["a"][column] + parts["b"][column]
+        scale = np.max(np.abs(total))
+        np.testing.assert_allclose(parts["both"][column], total, atol=1e-12 * scale)
+        assert np.array_equal(parts["both"][column], parts["turned"][column])
+        if column != "force_N":
+            assert np.max(np.abs(parts["b"][column])) > 0.01 * scale
+    column = rbsdem.Column(1.6, 614.4, rbsdem.Elastic(7e8), rbsdem.Elastic(7e8))
+    run = rbsdem.time_history(
+        column,
+        times,
+        force=np.interp(times, [0, 0.01, 0.03, 0.04], [0, 20e3, -5e3, 0]),
+        ground_acceleration=9.80665 * np.interp(times, [0, 0.005, 0.02, 0.04], [0, 0.3, -0.2, 0]),
+    )
+    np.testing.assert_allclose(parts["both"]["displacement_m"], run.displacement, rtol=1e-9)
+
+
+def test_times_that_are_equal_but_for_round_off_make_no_extra_rows(
+    run_cli, dynamic_text, tmp_path, read_csv
+):
+    """0.1 * 3 is not 0.3 in binary: one file has a time column, the other an interval."""
+    times = [f"{k / 10}" for k in range(11)]
+    (tmp_path / "f.csv").write_text("time_s,force_N\n" + "".join(f"{t},1\n" for t in times))
+    (tmp_path / "g.csv").write_text("acceleration_g\n" + "0.1\n" * 11)
+    loading = [
+        "drive = 'force', file = 'f.csv'", "drive = 'ground', file = 'g.csv', interval = 0.1"
+    ]  # fmt: skip
+    rows = run_rows(run_cli, read_csv, tmp_path, dynamic_text(loading=loading))
+    np.testing.assert_allclose(rows["time_s"], [float(t) for t in times], rtol=1e-12)
+
+
+def test_duration_cuts_and_prolongs_the_loading(run_cli, dynamic_text, tmp_path, read_csv):
+    (tmp_path / "f.csv").write_text("time_s,force_kN\n1,0\n1.01,20\n1.03,-5\n")
+    ends = {}
+    for duration in (0.005, 0.03, 0.05):
+        rows = run_rows(run_cli, read_csv, tmp_path, dynamic_text(
+            loading="drive = 'force', file = 'f.csv'",
+            analysis=f"method = 'rk4', duration = {duration}"))  # fmt: skip
+        assert rows["time_s"][0] == 1.0
+        assert rows["time_s"][-1] == 1.0 + duration
+        ends[duration] = rows["force_N"][-1]
+    assert ends[0.005] == pytest.approx(10e3, rel=1e-12)
+    assert ends[0.03] == pytest.approx(-5e3, rel=1e-12)
+    assert ends[0.05] == pytest.approx(-5e3, rel=1e-12)
+
+
+def triangles(amplitudes, cycles, repeats, points) -> np.ndarray:
+    """Cycles 0, +a, 0, -a, 0 in equal parts, beginning at zero."""
+    wave = np.interp(np.arange(1, 4 * points + 1), np.arange(5) * points, [0, 1, 0, -1, 0])
+    once = [a * wave for a, count in zip(amplitudes, cycles, strict=True) for _ in range(count)]
+    return np.concatenate([[0.0], *once * repeats])
+
+
+@pytest.mark.parametrize(
+    ("keys", "factor"),
+    [
+        ("", 1.6),  # drift is displacement over height
+        ("unit = 'drift'", 1.6),
+        ("unit = 'm', scale = 0.5", 0.5),
+        ("unit = 'mm', scale = 100", 0.1),
+        ("unit = 'cm', scale = -2", -0.02),
+        ("unit = 'in'", 0.0254),
+    ],
+)
+def test_protocol_of_displacements_in_its_units(
+    run_cli, case_text, tmp_path, *, read_csv, keys, factor
+):
+    loading = f"{PROTOCOL} 0.005, 0.02, 0.01, cycles = 1, 3, 2, repeats = 2, points = 5, {keys}"
+    rows = run_rows(run_cli, read_csv, tmp_path, case_text(loading=loading))
+    expected = factor * triangles([0.005, 0.02, 0.01], [1, 3, 2], 2, 5)
+    np.testing.assert_allclose(rows["displacement_m"], expected, rtol=1e-14)
+    assert np.array_equal(rows["step"], np.arange(expected.size))
+
+
+@pytest.mark.parametrize(
+    ("drive", "unit", "factor"),
+    [
+        ("force", "", 1.0),
+        ("force", "kN", 1e3),
+        ("force", "MN", 1e6),
+        ("force", "kip", 4448.2216152605),
+    ],
+)
+def test_protocol_of_forces_in_its_units(
+    run_cli, case_text, tmp_path, *, read_csv, drive, unit, factor
+):
+    loading = f"drive = '{drive}', amplitudes = 1, 2, cycles = 2, points = 3, unit = '{unit}'"
+    text = case_text(shear=ELASTIC, flexure=ELASTIC, loading=loading)
+    rows = run_rows(run_cli, read_csv, tmp_path, text)
+    expected = factor * triangles([1.0, 2.0], [2, 2], 1, 3)
+    np.testing.assert_allclose(rows["force_N"], expected, rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor"), [("", 1.0), ("g", 9.80665), ("cm/s2", 0.01), ("mm/s2", 1e-3)]
+)
+def test_protocol_of_ground_motion_in_its_units_and_period(
+    run_cli, dynamic_text, tmp_path, *, read_csv, unit, factor
+):
+    """A rigid column on an elastic base follows its ground: the base shear is m a_g."""
+    loading = f"drive = 'ground', amplitudes = 2, period = 8, points = 4, unit = '{unit}'"
+    damped = "height = 1.6, mass = 614.4, mass_damping = 700"
+    text = dynamic_text(column=damped, shear=ELASTIC, flexure=ELASTIC, loading=loading)
+    rows = run_rows(run_cli, read_csv, tmp_path, text)
+    assert np.array_equal(rows["time_s"], np.arange(17) / 2)
+    expected = -614.4 * factor * triangles([2.0], [1], 1, 4)
+    # Slow against a period of 0.006 s, damped: what is left is the turn of the triangle.
+    np.testing.assert_allclose(rows["shear_1_N"], expected, atol=2e-3 * 614.4 * factor)
+
+
+def test_every_keeps_each_nth_point_of_a_static_path_and_the_last(
+    run_cli, case_text, tmp_path, read_csv
+):
+    whole = run_rows(run_cli, read_csv, tmp_path, case_text())
+    size = whole["step"].size
+    for every in (1, 2, 3, size - 1, size, 1000, 999_999_999):
+        rows = run_rows(run_cli, read_csv, tmp_path, case_text(output=f"every = {every}"))
+        kept = sorted({*range(0, size, every), size - 1})
+        for name, values in whole.items():
+            assert np.array_equal(rows[name], values[kept]), (every, name)
+
+
+def test_every_counts_steps_of_a_run_in_time(run_cli, dynamic_text, tmp_path, read_csv):
+    """Without it the rows are those of the loading; with it each n-th step and the last."""
+    loading = run_rows(run_cli, read_csv, tmp_path, dynamic_text())
+    assert np.array_equal(loading["time_s"], np.arange(17) * 0.00625)
+    whole = run_rows(run_cli, read_csv, tmp_path, dynamic_text(output="every = 1"))
+    size = whole["time_s"].size
+    limit = rbsdem.modes(COLUMN).stable_step
+    assert size >= 0.1 / (0.2 * limit)
+    assert np.max(np.diff(whole["time_s"])) <= 0.2 * limit * (1 + 1e-12)
+    assert set(loading["time_s"]) <= set(whole["time_s"])
+    for every in (2, 7, size - 1, size, 999_999_999):
+        rows = run_rows(run_cli, read_csv, tmp_path, dynamic_text(output=f"every = {every}"))
+        kept = sorted({*range(0, size, every), size - 1})
+        for name, values in whole.items():
+            assert np.array_equal(rows[name], values[kept]), (every, name)
+
+
+def test_peaks_of_the_summary_are_over_all_steps(run_cli, dynamic_text, tmp_path, read_csv):
+    whole = run_rows(run_cli, read_csv, tmp_path, dynamic_text(output="every = 1"))
+    peak = np.max(np.abs(whole["displacement_m"]))
+    for output in ("every = 1000000", None):
+        write(tmp_path, dynamic_text(output=output))
+        text = run_cli(["run", "case.nml"], tmp_path).stdout
+        said = float(re.search(r"peak_displacement_m +(\S+)", text).group(1))
+        assert abs(said) == pytest.approx(peak, rel=1e-5)
+
+
+def test_relative_history_is_looked_up_beside_the_case(run_cli, case_text, tmp_path, read_csv):
+    folder = tmp_path / "cases" / "data"
+    folder.mkdir(parents=True)
+    (folder / "h.csv").write_text("displacement_mm,force_kN\n0,0\n10,1\n-5,2\n")
+    (tmp_path / "h.csv").write_text("displacement_mm,force_kN\n0,0\n99,1\n")
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    for file, cwd in (
+        ("data/h.csv", tmp_path),
+        ("data/h.csv", elsewhere),
+        ("../cases/data/h.csv", elsewhere),
+        (str(folder / "h.csv"), elsewhere),
+    ):
+        write(tmp_path / "cases", case_text(loading=f"drive = 'displacement', file = '{file}'"))
+        case = os.path.relpath(tmp_path / "cases" / "case.nml", cwd)
+        assert run_cli(["run", case, "-q"], cwd).returncode == 0
+        rows = read_csv(tmp_path / "cases" / "case.csv")
+        assert np.array_equal(rows["displacement_m"], [0, 0.01, -0.005])
+        (tmp_path / "cases" / "case.csv").unlink()
+
+
+def test_case_behind_a_symbolic_link_finds_its_history(run_cli, case_text, tmp_path, read_csv):
+    """Beside the link, as every program of the shell does."""
+    (tmp_path / "real").mkdir()
+    (tmp_path / "link").mkdir()
+    write(tmp_path / "real", case_text(loading="drive = 'displacement', file = 'h.csv'"))
+    (tmp_path / "link" / "h.csv").write_text("displacement_mm,force_kN\n0,0\n10,1\n")
+    (tmp_path / "link" / "case.nml").symlink_to(tmp_path / "real" / "case.nml")
+    assert run_cli(["run", "link/case.nml", "-q"], tmp_path).returncode == 0
+    rows = read_csv(tmp_path / "link" / "case.csv")
+    assert np.array_equal(rows["displacement_m"], [0, 0.01])
+    (tmp_path / "folder").symlink_to(tmp_path / "link")
+    assert run_cli(["check", "folder/case.nml"], tmp_path).returncode == 0
+
+
+# ---- column --------------------------------------------------------------------------------------
+
+
+def test_axial_load_and_self_weight_soften_an_elastic_column(
+    run_cli, case_text, tmp_path, read_csv
+):
+    """Theory section 3: (k_M - P L - m g L/2) theta = F L for one body."""
+    force, load, length, mass = 1.0e4, 5.0e6, 1.6, 614.4e3
+    loading = f"drive = 'force', amplitudes = {force}, points = 1"
+    column = f"height = {length}, mass = {mass}, kinematics = "
+    weight = 9.80665
+    for kinematics, axial, lost in (
+        ("small", f"load = {load}, self_weight = T", 0.0),
+        ("pdelta", "", 0.0),
+        ("pdelta", f"load = {load}", load * length),
+        ("pdelta", f"load = {-load}", -load * length),
+        ("pdelta", f"load = {load}, self_weight = .true.",
+         load * length + mass * weight * length / 2),
+        ("pdelta", "self_weight = t, gravity = 3.7", mass * 3.7 * length / 2),
+        ("pdelta", f"load = {load}, self_weight = .FALSE.", load * length),
+    ):  # fmt: skip
+        text = case_text(
+            column=f"{column}'{kinematics}'",
+            shear="rule = 'elastic', k = 7e8",
+            flexure="rule = 'elastic', k = 2.5e8",
+            axial=axial,
+            loading=loading,
+        )
+        rows = run_rows(run_cli, read_csv, tmp_path, text)
+        expected = force / 7e8 + force * length**2 / (2.5e8 - lost)
+        assert rows["displacement_m"][1] == pytest.approx(expected, rel=1e-12)
+
+
+def test_springs_of_each_joint_with_joint(run_cli, case_text, tmp_path, read_csv):
+    """Flexibilities add up: F/k_V of each joint and F h^2/k_M, h the height of the top above it."""
+    force = 1.0e4
+    lengths = [0.4, 0.7, 0.5]
+    shear, flexure = [7e8, 5e8, 6e8], [2e8, 3e8, 1e8]
+    text = case_text(
+        column="n = 3, height = 1.6, mass = 614.4, lengths = 0.4, 0.7, 0.5",
+        shear=[
+            "rule = 'elastic', joint = 3, k = 6e8",
+            "rule = 'elastic', k = 5e8",  # every other joint: the second
+            "rule = 'elastic', k = 7e8, joint = 1",
+        ],
+        flexure=[f"joint = {i + 1}, rule = 'elastic', k = {k}" for i, k in enumerate(flexure)],
+        loading=f"drive = 'force', amplitudes = {force}, points = 1",
+    )
+    rows = run_rows(run_cli, read_csv, tmp_path, text)
+    arms = np.cumsum(lengths[::-1])[::-1]
+    expected = np.sum(force / np.array(shear)) + np.sum(force * arms**2 / np.array(flexure))
+    assert rows["displacement_m"][1] == pytest.approx(expected, rel=1e-12)
+    for i in range(3):
+        assert rows[f"slip_{i + 1}_m"][1] == pytest.approx(force / shear[i], rel=1e-12)
+        angle = force * arms[i] / flexure[i]
+        assert rows[f"rotation_{i + 1}_rad"][1] == pytest.approx(angle, rel=1e-12)
+
+
+def test_masses_and_lengths_of_each_body(run_cli, case_text, tmp_path):
+    text = case_text(
+        column="n = 2, height = 2, lengths = 0.5, 1.5, masses = 100, 30",
+        shear=ELASTIC, flexure=ELASTIC, loading=None,
+    )  # fmt: skip
+    write(tmp_path, text)
+    lines = run_cli(["modes", "case.nml"], tmp_path).stdout.splitlines()[1:-1]
+    spring = rbsdem.Elastic(7e8)
+    column = rbsdem.Column(2, None, spring, spring, n=2, lengths=[0.5, 1.5], masses=[100, 30])
+    assert [float(line.split(",")[1]) for line in lines] == rbsdem.modes(column).frequency.tolist()
+
+
+def test_damping_of_the_case_is_that_of_python(run_cli, dynamic_text, tmp_path, read_csv):
+    column = "height = 1.6, mass = 614.4, mass_damping = 30, stiffness_damping = 1e-5"
+    rows = run_rows(run_cli, read_csv, tmp_path, dynamic_text(column=column))
+    damped = rbsdem.Column(1.6, 614.4, BILINEAR, TAKEDA, mass_damping=30.0, stiffness_damping=1e-5)
+    time_, ground = np.arange(17) * 0.00625, triangles([3.0], [1], 1, 4)
+    run = rbsdem.time_history(damped, time_, ground_acceleration=ground)
+    assert np.array_equal(rows["displacement_m"], run.displacement)
+    assert np.array_equal(rows["damping_J"], run.energy["damping"])
+    assert run.energy["damping"][-1] > 0.05 * run.energy["input"].max()
+
+
+def test_console_command_hands_over_to_the_executable(case_text, tmp_path):
+    """`python -m rbsdem` and the script `rbsdem` pass arguments, output and exit code on."""
+    import sys  # noqa: PLC0415
+
+    script = Path(sys.executable).with_name("rbsdem")
+    write(tmp_path, case_text())
+    for command in ([sys.executable, "-m", "rbsdem"], [script]):
+        good = subprocess.run(
+            [*command, "check", "case.nml"], cwd=tmp_path, capture_output=True, text=True,
+            timeout=20, check=False,
+        )  # fmt: skip
+        assert (good.returncode, good.stdout, good.stderr) == (0, "case.nml: no errors\n", "")
+        bad = subprocess.run(
+            [*command, "chek", "case.nml"], cwd=tmp_path, capture_output=True, text=True,
+            timeout=20, check=False,
+        )  # fmt: skip
+        assert "did you mean 'check'" in faults(bad)

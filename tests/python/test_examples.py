@@ -1,0 +1,120 @@
+"""Every example of examples/ and the code blocks of the README run as they stand."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+EXAMPLES = sorted(path for path in (REPOSITORY / "examples").iterdir() if path.is_dir())
+BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+def run(command: list[str | Path], cwd: Path) -> str:
+    """Run to exit code 0; return what was printed."""
+    result = subprocess.run(
+        command,
+        cwd=cwd,
+        env=os.environ | {"MPLBACKEND": "Agg"},
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert result.returncode == 0, f"{command}\n{result.stdout[-2000:]}\n{result.stderr[-2000:]}"
+    return result.stdout
+
+
+def readme_blocks(*languages: str) -> list[str]:
+    text = (REPOSITORY / "README.md").read_text("utf-8")
+    return [block for language, block in BLOCK.findall(text) if language in languages]
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts
+    }
+
+
+def test_there_are_examples():
+    assert EXAMPLES
+    for folder in EXAMPLES:
+        assert re.fullmatch(r"\d\d-[a-z0-9-]+", folder.name)
+        assert (folder / "README.md").is_file(), f"{folder.name} has no README.md"
+        assert list(folder.glob("*.py")) + list(folder.glob("*.nml")), f"{folder.name} is empty"
+
+
+@pytest.mark.parametrize("folder", EXAMPLES, ids=lambda folder: folder.name)
+def test_example_runs_in_a_clone(executable, folder, tmp_path, monkeypatch):
+    """Scripts and cases of a copy, without the histories of the database.
+
+    Nothing is written beside them but what is there already, and that comes out the same.
+    """
+    monkeypatch.delenv("RBSDEM_PEER_DIR", raising=False)
+    copy = tmp_path / "a" / "clone" / "examples" / folder.name
+    shutil.copytree(folder, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    before = contents(copy)
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    for script in sorted(copy.glob("*.py")):
+        options = ["--no-plot"] if "--no-plot" in script.read_text("utf-8") else []
+        printed = run([sys.executable, script, *options], elsewhere)
+        assert printed.strip() or script.name not in ("run.py", "case.py")
+    for case in sorted(copy.glob("*.nml")):
+        output = elsewhere / f"{case.stem}-rows.csv"
+        run([executable, "check", case], elsewhere)
+        run([executable, "run", case, "--output", output], elsewhere)
+        assert output.read_text("utf-8").startswith("# rbsdem ")
+    assert contents(copy) == before
+
+
+@pytest.mark.parametrize("folder", EXAMPLES, ids=lambda folder: folder.name)
+def test_example_draws(folder, tmp_path):
+    """In its place, with figures where a script makes some."""
+    for script in sorted(folder.glob("*.py")):
+        if "--no-plot" in script.read_text("utf-8"):
+            run([sys.executable, script], tmp_path)
+            figures = [path for path in tmp_path.rglob("*.png") if path.stat().st_size > 5000]
+            assert figures
+
+
+def test_python_blocks_of_the_readme_run(tmp_path):
+    blocks = readme_blocks("python")
+    assert blocks
+    assert any(5 <= len(block.strip().splitlines()) <= 15 for block in blocks)
+    for i, block in enumerate(blocks):
+        assert "import rbsdem" in block
+        path = tmp_path / f"block{i}.py"
+        path.write_text(block, "utf-8")
+        assert run([sys.executable, "-W", "error", path], tmp_path).strip()
+
+
+def test_namelist_blocks_of_the_readme_run(executable, tmp_path):
+    blocks = readme_blocks("fortran", "nml")
+    assert blocks
+    assert any(5 <= len(block.strip().splitlines()) <= 15 for block in blocks)
+    for i, block in enumerate(blocks):
+        path = tmp_path / f"block{i}.nml"
+        path.write_text(block, "utf-8")
+        for command in ("check", "run", "modes"):
+            assert run([executable, command, path.name], tmp_path).strip()
+        assert (tmp_path / f"block{i}.csv").is_file()
+
+
+def test_commands_of_the_readme_are_those_there():
+    """Scripts and documents that the README names exist."""
+    text = (REPOSITORY / "README.md").read_text("utf-8")
+    named = set(re.findall(r"\b(?:scripts|docs|tests|data|examples)/[\w./-]*\w", text))
+    assert "scripts/demo.sh" in named
+    assert "scripts/test.sh" in named
+    missing = [name for name in sorted(named) if not (REPOSITORY / name).exists()]
+    assert not missing

@@ -1,0 +1,476 @@
+"""Fuzzing: 2000 mutated namelists and 2000 mutated history files (issue 2).
+
+No crash, no hang, no traceback: exit code 0, 1 or 2, a message that begins with `rbsdem: ` where
+it is not 0, finite numbers where it is. The seed is fixed; what fails is kept in the folder of the
+test and named in the report. With RBSDEM_EXECUTABLE the same cases go through another executable,
+such as the one built with bounds checks and floating-point traps.
+"""
+
+from __future__ import annotations
+
+import os
+import pty
+import random
+import re
+import select
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+COUNT = 2000
+SEED = 19_860_704
+
+#: A process that takes longer [s] must at least tell on a terminal how far it is, or write rows.
+PATIENCE = 20.0
+
+BAD_WORDS = re.compile(
+    r"At line \d|Fortran runtime|Backtrace|SIG[A-Z]{3}|Error termination|free\(\)|malloc|"
+    r"corrupt|Traceback|terminate called"
+)
+
+# ---- what is mutated -----------------------------------------------------------------------------
+
+SPRINGS = """&shear rule = 'bilinear', k = 7.0387e8, d_y = 1.296e-4, k_post = 8.3185e6 /
+&flexure rule = 'takeda', k_c = 2.5428e8, d_c = 3.1891e-4, k_y = 6.2937e7, d_y = 2.7183e-3,
+         k_u = 7.5772e6, b0 = 0.4, b1 = 0.22, inner = 'kc' /
+"""
+
+NAMELISTS = {
+    "displacement": """&case title = 'driven by displacement' /
+&column n = 1, height = 1.6, mass = 614.4, kinematics = 'small' /
+"""
+    + SPRINGS
+    + """&loading drive = 'displacement', source = 'protocol', amplitudes = 0.005, 0.01, 0.02,
+         cycles = 1, 2, 1, repeats = 1, points = 2, unit = 'drift', scale = 1.0 /
+&analysis method = 'static' /
+&output every = 1 /
+""",
+    "force": """! driven by a measured force
+&column height = 1.6 mass = 614.4 /
+"""
+    + SPRINGS
+    + """&loading drive = 'force', file = 'test.txt', format = 'peer', scale = 0.5 /
+""",
+    "joints": """&case title = "three joints, don't mind" /
+&column n = 3, height = 1.6, lengths = 0.4, 0.5, 0.7, masses = 3*200., kinematics = 'pdelta' /
+&axial load = 744e3, self_weight = .true., gravity = 9.81 /
+&shear rule = 'elastic', k = 7e8 /
+&shear joint = 2, rule = 'bilinear', k = 7e8, d_y = 1e-4, k_post = 8e6 /
+&flexure joint = 1, rule = 'takeda', k_c = 2.5d8, d_c = 3e-4, k_y = 6e7, d_y = 2.7e-3, k_u = 7e6,
+         inner = 'kr', b1 = 0.9 /
+&flexure joint = 2, rule = 'takeda', k_c = 2.5d8, d_c = 3e-4, k_y = 6e7, d_y = 2.7e-3, k_u = 7e6,
+         inner = 'one' /
+&flexure joint = 3, rule = 'bilinear', k = 2.5d8, d_y = 1e-3, k_post = 1e7 /
+&loading drive = 'displacement', amplitudes(1) = 10, amplitudes(2) = 20, unit = 'mm', points = 2 /
+""",
+    "ground": """&case title = 'shaken' /
+&column n = 2, height = 1.6, mass = 614.4, mass_damping = 30.0, stiffness_damping = 1.0e-5 /
+"""
+    + SPRINGS
+    + """&loading drive = 'ground', file = 'motion.csv', column = 'acceleration_g',
+         time_column = 'time_s' /
+&analysis method = 'rk4', dt = 2.0e-5, duration = 0.01 /
+&output every = 10 /
+""",
+    "both": """&column height = 1.6, mass = 614.4, kinematics = 'finite' /
+&axial load = 1.0e5, self_weight = T /
+"""
+    + SPRINGS
+    + """&loading drive = 'force', amplitudes = 20., unit = 'kN', period = 0.004, points = 3 /
+&loading drive = 'ground', file = 'still.csv', interval = 0.001, unit = 'g' /
+&analysis method = 'rk4', dt = 1.0e-4 /
+""",
+}
+
+PAIRS = [(0, 0), (1.5, 40.25), (3.125, 75), (-2.5, -60.5), (-6.75, -99.125), (0.25, 3), (9.5, 110)]
+
+HISTORIES = {
+    "test.txt": '"Soesianawati, No 1"\t\t\n7\t0\n' + "".join(f"{d}\t{f}\t\n" for d, f in PAIRS),
+    "axial.txt": "Third column\r\n7\r\n" + "".join(f"{d:.3f}\t{f:.2f}\t744\r\n" for d, f in PAIRS),
+    "test.csv": "# a comment\ndisplacement_mm,force_kN\n" + "".join(f"{d},{f}\n" for d, f in PAIRS),
+    "semi.csv": '"displacement_m";"force_N";x\n'
+    + "".join(f"{d / 1e3:e};{f * 1e3:E};1d0\n" for d, f in PAIRS),
+    "plain.csv": "".join(f"  {d}   {f}\n" for d, f in PAIRS),
+}
+
+GROUND = "time_s,acceleration_g\n" + "".join(f"{k / 500},{(k % 3) / 10}\n" for k in range(6))
+
+JUNK = [
+    b"\0", b"\x01", b"\x1a", b"\x7f", b"\xff", b"\xc3", "½".encode(), "\u202e".encode(),
+    "\ufeff".encode(), b"'", b'"', b"''", b'"\'"', b"'\"'\"", b"&", b"/", b"!", b"=", b",", b",,",
+    b";", b"*", b"(", b")", b"(2)", b"(1:2)", b"(0)", b"(99999999)", b"%", b"$", b"\\", b"\t",
+    b"\r", b"\n", b"\n\n", b"\r\n", b" ", b"#", b"&end", b"&shear", b"&column /", b"/ &loading",
+    b"joint = 1", b"n = 3", b"every = 3", b"NaN", b"-inf", b"Infinity", b".true.", b"3*", b"3*4",
+    b"1,5", b"1/2", b"0x10", b"1e", b"e5", b"--1", b"+", b"-", b".", b"..", b"mm", b"kN", b"drift",
+    b"finite", b"pdelta", b"rk4", b"static", b"x" * 70, b"9" * 70, b"k" * 600,
+    b"'" + b"z" * 520 + b"'",
+]  # fmt: skip
+
+NUMBERS = [
+    b"0", b"-0.0", b"-1", b"1e308", b"-1e308", b"1.7976931348623157e308", b"1e309", b"1e999",
+    b"-1e999", b"4.9e-324", b"1e-400", b"1e-300", b"1e300", b"1e150", b"1e-150", b"1e30", b"1e-30",
+    b"NaN", b"2147483647", b"-2147483648", b"2147483648", b"99999999999", b"65536", b"2000",
+    b"2001", b"1e5", b"1d-5", b"0.1", b"17", b"5*1.0", b"100000*1.0", b"100001*2", b"999999999",
+]  # fmt: skip
+
+Mutation = Callable[[random.Random, bytes], bytes]
+
+
+def piece(rng: random.Random, text: bytes) -> tuple[int, int]:
+    begin = rng.randrange(len(text) + 1)
+    return begin, min(len(text), begin + rng.choice([1, 2, 5, 20, 80]))
+
+
+def flip(rng: random.Random, text: bytes) -> bytes:
+    at = rng.randrange(len(text))
+    return text[:at] + bytes([text[at] ^ (1 << rng.randrange(8))]) + text[at + 1 :]
+
+
+def delete(rng: random.Random, text: bytes) -> bytes:
+    begin, end = piece(rng, text)
+    return text[:begin] + text[end:]
+
+
+def double(rng: random.Random, text: bytes) -> bytes:
+    begin, end = piece(rng, text)
+    return text[:end] + text[begin:end] * rng.choice([1, 1, 2, 50]) + text[end:]
+
+
+def swap(rng: random.Random, text: bytes) -> bytes:
+    (a, b), (c, d) = sorted([piece(rng, text), piece(rng, text)])
+    if b > c:
+        return text[c:] + text[:c]
+    return text[:a] + text[c:d] + text[b:c] + text[a:b] + text[d:]
+
+
+def digit(rng: random.Random, text: bytes) -> bytes:
+    places = [i for i, byte in enumerate(text) if byte in b"0123456789"]
+    if not places:
+        return text + b"7"
+    at = rng.choice(places)
+    return text[:at] + rng.choice([b"0", b"1", b"9", b"5", b"-", b"."]) + text[at + 1 :]
+
+
+def number(rng: random.Random, text: bytes) -> bytes:
+    found = list(re.finditer(rb"[-+]?\d[\d.]*(?:[eEdD][-+]?\d+)?", text))
+    if not found:
+        return text + rng.choice(NUMBERS)
+    one = rng.choice(found)
+    return text[: one.start()] + rng.choice(NUMBERS) + text[one.end() :]
+
+
+def truncate(rng: random.Random, text: bytes) -> bytes:
+    return text[: rng.randrange(len(text))]
+
+
+def junk(rng: random.Random, text: bytes) -> bytes:
+    at = rng.randrange(len(text) + 1)
+    return text[:at] + rng.choice(JUNK) + text[at:]
+
+
+def noise(rng: random.Random, text: bytes) -> bytes:
+    at = rng.randrange(len(text) + 1)
+    return text[:at] + rng.randbytes(rng.choice([1, 4, 40])) + text[at:]
+
+
+def shuffle(rng: random.Random, text: bytes) -> bytes:
+    lines = text.splitlines(keepends=True)
+    rng.shuffle(lines)
+    return b"".join(lines)
+
+
+def repeat_line(rng: random.Random, text: bytes) -> bytes:
+    lines = text.splitlines(keepends=True) or [b"x"]
+    at = rng.randrange(len(lines))
+    return b"".join(lines[:at] + [lines[at]] * rng.choice([2, 3, 100]) + lines[at + 1 :])
+
+
+def drop_line(rng: random.Random, text: bytes) -> bytes:
+    lines = text.splitlines(keepends=True) or [b"x"]
+    del lines[rng.randrange(len(lines))]
+    return b"".join(lines)
+
+
+def exchange_words(rng: random.Random, text: bytes) -> bytes:
+    words = list(re.finditer(rb"[A-Za-z_]\w*", text))
+    if len(words) < 2:
+        return text + b" word"
+    one, other = rng.sample(words, 2)
+    return text[: one.start()] + other.group() + text[one.end() :]
+
+
+MUTATIONS: list[Mutation] = [
+    flip, delete, double, swap, digit, digit, number, number, number, truncate, junk, junk, noise,
+    shuffle, repeat_line, drop_line, exchange_words, exchange_words,
+]  # fmt: skip
+
+
+def mutants(bases: dict[str, str], seed: int) -> Iterable[tuple[int, str, bytes]]:
+    """Number, name of the base and text of each mutant; one to four mutations on another."""
+    names = list(bases)
+    for i in range(COUNT):
+        rng = random.Random(seed + i)
+        name = names[i % len(names)]
+        text = bases[name].encode()
+        for _ in range(rng.choice([1, 1, 1, 2, 2, 3, 4])):
+            text = rng.choice(MUTATIONS)(rng, text) or b"\n"
+        yield i, name, text
+
+
+# ---- how it is judged ----------------------------------------------------------------------------
+
+
+def shows_progress(command: list[str | Path], cwd: Path, output: Path | None) -> bool:
+    """Whether a long run shows on a terminal how far it is, or writes rows."""
+    terminal, inner = pty.openpty()
+    process = subprocess.Popen(
+        command, cwd=cwd, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=inner
+    )
+    os.close(inner)
+    try:
+        end, shown = time.monotonic() + PATIENCE, b""
+        while time.monotonic() < end:
+            if select.select([terminal], [], [], 0.1)[0]:
+                try:
+                    shown += os.read(terminal, 4096)
+                except OSError:
+                    break
+            if b" s left" in shown:
+                return True
+            partial = output.with_name(output.name + ".partial") if output else None
+            if partial and partial.exists() and partial.stat().st_size > 1_000_000:
+                return True
+    finally:
+        process.kill()
+        process.wait()
+        os.close(terminal)
+    return False
+
+
+def not_finite(output: Path) -> bool:
+    """Whether rows hold something else than finite numbers."""
+    for line in output.read_bytes().splitlines():
+        if not line.startswith(b"#") and re.search(rb"nan|inf|\*\*", line, re.IGNORECASE):
+            return True
+    return False
+
+
+def fault_of(command: list[str | Path], cwd: Path, output: Path | None = None) -> str | None:
+    """What is wrong with the way a process ends; None if nothing is."""
+    try:
+        result = subprocess.run(
+            command,
+            cwd=cwd,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=PATIENCE,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return None if shows_progress(command, cwd, output) else "hangs"
+    out = result.stdout.decode("utf-8", "replace")
+    err = result.stderr.decode("utf-8", "replace")
+    where = re.search(r"/(src/\S+f90:\d+)", err)
+    strange = BAD_WORDS.search(err)
+    silent = not err or any(not line.startswith("rbsdem: ") for line in err.split("\n")[:-1])
+    code = result.returncode
+    fault = None
+    if code not in (0, 1, 2):
+        fault = f"exit code {code} {where.group(1) if where else err[:80]!r}"
+    elif strange:
+        fault = f"words of the runtime: {err[strange.start() : strange.start() + 80]!r}"
+    elif code and silent:
+        fault = f"exit code {code} without a message of ours: {err[:80]!r}"
+    elif code and out:
+        fault = f"exit code {code} and a result"
+    elif code == 0 and err:
+        fault = f"exit code 0 with a message: {err[:80]!r}"
+    elif code == 0 and re.search(r"\bnan\b|\binf(inity)?\b", out, re.IGNORECASE):
+        fault = "exit code 0 with a number that is not finite"
+    elif code == 0 and output and not_finite(output):
+        fault = "exit code 0 with a row that is not finite"
+    return fault
+
+
+def report(faults: list[tuple[str, str]]) -> str:
+    """One line for each kind of fault, with a file that shows it."""
+    kinds: dict[str, list[str]] = {}
+    for what, where in faults:
+        kinds.setdefault(what, []).append(where)
+    lines = [f"{len(where)} x {what}, such as {where[0]}" for what, where in kinds.items()]
+    return "\n".join([f"{len(faults)} faults:", *sorted(lines)[:60]])
+
+
+def judge(jobs: Iterable, check: Callable[..., list[tuple[str, str]]]) -> None:
+    """Check all jobs on two threads; fail with a report."""
+    with ThreadPoolExecutor(2) as pool:
+        faults = [fault for found in pool.map(lambda job: check(*job), jobs) for fault in found]
+    assert not faults, report(faults)
+
+
+# ---- the tests -----------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    for name, text in HISTORIES.items():
+        (tmp_path / name).write_bytes(text.encode())
+    (tmp_path / "motion.csv").write_text(GROUND)
+    (tmp_path / "still.csv").write_text("acceleration\n0\n0.1\n0\n")
+    return tmp_path
+
+
+def test_bases_are_valid_and_run(executable, folder):
+    """What is mutated is worth it: every base runs to its end."""
+    for name, text in NAMELISTS.items():
+        (folder / f"{name}.nml").write_text(text)
+        for command in ("check", "run", "modes"):
+            arguments = [executable, command, f"{name}.nml"]
+            if command == "run":  # the name of the case with .csv is that of an input
+                arguments += ["--output", "rows.csv"]
+            assert subprocess.run(arguments, cwd=folder, timeout=20, check=False).returncode == 0
+    for name in HISTORIES:
+        (folder / "driven.nml").write_text(driven(name))
+        arguments = [executable, "run", "driven.nml"]
+        assert subprocess.run(arguments, cwd=folder, timeout=20, check=False).returncode == 0
+
+
+def test_mutants_are_many_kinds():
+    """The mutations do not all end at the first line: a good part of the mutants stays legible."""
+    texts = [text for _, _, text in mutants(NAMELISTS, SEED)]
+    assert len(set(texts)) > 0.95 * COUNT
+    assert sum(b"&loading" in text for text in texts) > 0.7 * COUNT
+    assert sum(text.count(b"/") >= 4 for text in texts) > 0.6 * COUNT
+
+
+def test_mutated_namelists(executable, folder):
+    def check(i: int, base: str, text: bytes) -> list[tuple[str, str]]:
+        case = folder / f"{i:04d}-{base}.nml"
+        case.write_bytes(text)
+        output = case.with_suffix(".csv")
+        found = []
+        for command in (
+            ["check", case.name],
+            ["modes", case.name],
+            ["run", case.name, "--output", output.name],
+        ):
+            rows = output if command[0] == "run" else None
+            if fault := fault_of([executable, *command], folder, rows):
+                found.append((f"{base}, {command[0]}: {fault}", case.as_posix()))
+        output.unlink(missing_ok=True)
+        output.with_name(output.name + ".partial").unlink(missing_ok=True)
+        if not found:
+            case.unlink()
+        return found
+
+    judge(mutants(NAMELISTS, SEED), check)
+
+
+def driven(name: str) -> str:
+    """A case that a history of any kind drives; one without names gives its column."""
+    keys = ", column = '2'" if name.endswith("plain.csv") else ""
+    return f"""&column height = 1.6, mass = 614.4 /
+{SPRINGS}&loading drive = 'force', file = '{name}', scale = 0.1{keys} /
+"""
+
+
+def test_mutated_histories(executable, folder):
+    def check(i: int, base: str, text: bytes) -> list[tuple[str, str]]:
+        history = folder / f"{i:04d}-{base}"
+        history.write_bytes(text)
+        case = folder / f"{i:04d}.nml"
+        case.write_text(driven(history.name))
+        output = case.with_suffix(".csv")
+        command = [executable, "run", case.name, "--output", output.name]
+        fault = fault_of(command, folder, output)
+        output.unlink(missing_ok=True)
+        output.with_name(output.name + ".partial").unlink(missing_ok=True)
+        if fault:
+            return [(f"{base}: {fault}", case.as_posix())]
+        history.unlink()
+        case.unlink()
+        return []
+
+    judge(mutants(HISTORIES, SEED), check)
+
+
+def test_mutated_ground_motions(executable, folder):
+    """Times, too: reversed, far apart, without a header. A slow column, so that far is not long."""
+
+    def check(i: int, base: str, text: bytes) -> list[tuple[str, str]]:
+        history = folder / f"{i:04d}-{base}"
+        history.write_bytes(text)
+        case = folder / f"{i:04d}.nml"
+        case.write_text(f"""&column height = 10.0, mass = 1.0e9 /
+{SPRINGS}&loading drive = 'ground', file = '{history.name}', scale = 1.0e-3 /
+&analysis method = 'rk4' /
+""")
+        output = case.with_suffix(".csv")
+        command = [executable, "run", case.name, "--output", output.name]
+        fault = fault_of(command, folder, output)
+        output.unlink(missing_ok=True)
+        output.with_name(output.name + ".partial").unlink(missing_ok=True)
+        if fault:
+            return [(f"{base}: {fault}", case.as_posix())]
+        history.unlink()
+        case.unlink()
+        return []
+
+    jobs = (job for job in mutants({"motion.csv": GROUND}, SEED) if job[0] % 4 == 0)
+    judge(jobs, check)
+
+
+READER = """
+import sys
+from pathlib import Path
+import numpy as np
+import rbsdem
+
+for path in sorted(Path(sys.argv[1]).glob("*-*")):
+    print(path.name, end=" ", flush=True)
+    try:
+        test = rbsdem.read_peer(path)
+    except rbsdem.InputError as error:
+        print("refused" if str(error) and "Traceback" not in str(error) else "no message")
+    except BaseException as error:
+        print("raised", repr(error))
+    else:
+        sound = (
+            test.force.shape == test.displacement.shape
+            and test.force.size > 0
+            and np.all(np.isfinite(test.force))
+            and np.all(np.isfinite(test.displacement))
+            and isinstance(test.name, str)
+        )
+        print("read" if sound else "not sound")
+print("end")
+"""
+
+
+def test_mutated_histories_in_python(folder):
+    """`rbsdem.read_peer` raises InputError and nothing else; one process, for it might crash."""
+    for i, base, text in mutants(HISTORIES, SEED):
+        (folder / f"{i:04d}-{base}").write_bytes(text)
+    result = subprocess.run(
+        [sys.executable, "-X", "faulthandler", "-c", READER, folder],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    lines = result.stdout.splitlines()
+    assert lines[-1] == "end", f"crash at {folder / lines[-1].strip()}: {result.stderr[:500]}"
+    assert (result.returncode, result.stderr) == (0, "")
+    assert len(lines) == COUNT + 1
+    words = [line.partition(" ")[2] for line in lines[:-1]]
+    wrong = [
+        line for line, word in zip(lines, words, strict=False) if word not in ("read", "refused")
+    ]
+    assert not wrong, "\n".join([f"{len(wrong)} in {folder}:", *wrong[:20]])
+    # Neither door is shut: both happen often.
+    assert 200 < words.count("read") < 1800

@@ -1,0 +1,370 @@
+"""The package as a whole: names, documentation, types, versions, errors, immutability (issue 2)."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import inspect
+import os
+import pickle
+import re
+import subprocess
+import sys
+from dataclasses import FrozenInstanceError, fields, is_dataclass, replace
+from importlib.resources import files
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rbsdem
+
+# The names that independent checks use.
+PROMISED = {
+    "Bilinear", "Takeda", "Elastic", "Column", "modes", "mass_matrix", "cyclic", "time_history",
+    "read_peer", "paper_columns", "paper_sections", "InputError", "SolveError", "Result",
+}  # fmt: skip
+
+MODULES = ["analysis", "column", "compare", "errors", "paper", "peer", "plot", "springs"]
+
+ELASTIC = rbsdem.Elastic(1e6)
+BILINEAR = rbsdem.Bilinear(1e6, 1e-3, 0.0)
+TAKEDA = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
+COLUMN = rbsdem.Column(1.6, 614.4, BILINEAR, TAKEDA)
+PUBLIC = [getattr(rbsdem, name) for name in rbsdem.__all__]
+FUNCTIONS = [thing for thing in PUBLIC if inspect.isfunction(thing)]
+CLASSES = [thing for thing in PUBLIC if inspect.isclass(thing)]
+
+
+def peer_test(folder: Path) -> rbsdem.PeerTest:
+    (folder / "test.txt").write_text("Test\n2\n0\t0\n1\t2\n")
+    return rbsdem.read_peer(folder / "test.txt")
+
+
+def solve_error() -> rbsdem.SolveError:
+    with pytest.raises(rbsdem.SolveError) as error:
+        rbsdem.cyclic(rbsdem.Column(1.6, 1.0, BILINEAR, ELASTIC), force=[0.0, 500.0, 2000.0])
+    return error.value
+
+
+# ---- names and documentation ---------------------------------------------------------------------
+
+
+def test_promised_names_are_public():
+    assert set(rbsdem.__all__) >= PROMISED
+    assert rbsdem.__all__ == sorted(rbsdem.__all__)
+    assert len(set(rbsdem.__all__)) == len(rbsdem.__all__)
+
+
+def test_star_import_gives_what_is_public_and_no_more():
+    names: dict[str, object] = {}
+    exec("from rbsdem import *", names)
+    assert set(names) - {"__builtins__"} == set(rbsdem.__all__)
+
+
+@pytest.mark.parametrize("name", [*rbsdem.__all__, *MODULES])
+def test_public_name_is_documented(name):
+    thing = getattr(rbsdem, name)
+    text = inspect.getdoc(thing)
+    assert text
+    first = text.splitlines()[0]
+    assert first[0].isupper()
+    assert first.endswith((".", ":")), first
+
+
+@pytest.mark.parametrize("function", FUNCTIONS, ids=lambda function: function.__name__)
+def test_function_is_typed_and_its_parameters_are_documented(function):
+    signature = inspect.signature(function)
+    assert signature.return_annotation is not inspect.Signature.empty
+    text = inspect.getdoc(function)
+    for name, parameter in signature.parameters.items():
+        assert parameter.annotation is not inspect.Parameter.empty, name
+        if parameter.kind is inspect.Parameter.VAR_KEYWORD:
+            assert f"\n**{name}\n" in text
+        else:
+            assert re.search(rf"^(\w+, )*{name}(, \w+)* : ", text, re.MULTILINE), name
+    if signature.parameters:
+        assert "Parameters\n----------" in text
+
+
+@pytest.mark.parametrize("one", CLASSES, ids=lambda one: one.__name__)
+def test_class_says_what_its_fields_are(one):
+    text = inspect.getdoc(one)
+    if is_dataclass(one):
+        for field in fields(one):
+            assert re.search(rf"^(\w+, )*{field.name}(, \w+)* : ", text, re.MULTILINE), field.name
+    for name, method in inspect.getmembers(one, inspect.isfunction):
+        if not name.startswith("_"):
+            assert inspect.getdoc(method), name
+
+
+@pytest.mark.parametrize("one", [rbsdem.Elastic, rbsdem.Bilinear, rbsdem.Takeda, rbsdem.Column])
+def test_signature_is_the_promised_one(one):
+    """Issue 2, Python: names and defaults that independent checks use."""
+    promised = {
+        "Elastic": "(k)",
+        "Bilinear": "(k, d_y, k_post)",
+        "Takeda": "(k_c, d_c, k_y, d_y, k_u, b0=0.4, b1=1.0, inner='kc')",
+        "Column": "(height, mass, shear, flexure, n=1, axial_load=0.0, kinematics='small', "
+        "lengths=None, masses=None",
+    }[one.__name__]
+    signature = inspect.signature(one)
+    bare = [
+        parameter.replace(annotation=inspect.Parameter.empty)
+        for parameter in signature.parameters.values()
+    ]
+    text = str(inspect.Signature(bare))
+    assert text.startswith(promised)
+
+
+def test_signatures_of_the_analyses_are_the_promised_ones():
+    def names(function):
+        return list(inspect.signature(function).parameters)
+
+    assert names(rbsdem.cyclic)[:3] == ["column", "displacement", "force"]
+    assert names(rbsdem.time_history)[:7] == [
+        "column", "time", "force", "ground_acceleration", "dt", "method", "initial"
+    ]  # fmt: skip
+    assert names(rbsdem.mass_matrix) == ["column", "form"]
+    assert names(rbsdem.modes) == ["column"]
+
+
+# ---- files and versions --------------------------------------------------------------------------
+
+
+def test_version_is_the_same_everywhere(run_cli):
+    assert re.fullmatch(r"\d+\.\d+\.\d+\S*", rbsdem.__version__)
+    assert importlib.metadata.version("rbsdem") == rbsdem.__version__
+    assert run_cli(["--version"]).stdout.split() == ["rbsdem", rbsdem.__version__]
+
+
+def test_package_has_marker_of_types_data_and_executable():
+    folder = files("rbsdem")
+    assert folder.joinpath("py.typed").is_file()
+    program = folder.joinpath("bin", "rbsdem")
+    assert program.is_file()
+    assert os.access(str(program), os.X_OK)
+    names = {path.name for path in folder.joinpath("data").iterdir()}
+    reversals = {f"reversals_{key}.csv" for key in rbsdem.paper_columns()}
+    assert names >= {"paper_table_2.csv", "paper_table_3.csv", "measured_loops.csv", *reversals}
+
+
+def test_metadata_names_licence_python_and_command():
+    about = importlib.metadata.metadata("rbsdem")
+    assert about["License-Expression"] == "BSD-3-Clause"
+    assert about["Requires-Python"] == ">=3.10"
+    scripts = importlib.metadata.entry_points(group="console_scripts", name="rbsdem")
+    assert [script.value for script in scripts] == ["rbsdem.__main__:main"]
+
+
+def test_import_is_quick_and_loads_no_plotting():
+    """Matplotlib, rich and scipy are optional: importing rbsdem must not need them."""
+    code = (
+        "import sys; sys.modules.update(matplotlib=None, scipy=None, rich=None, pandas=None)\n"
+        "import rbsdem\n"
+        "column = rbsdem.paper_columns()['zahn_7']\n"
+        "print(rbsdem.cyclic(column, [0.01]).force[0] > 0, rbsdem.modes(column).frequency[0] > 0)"
+    )
+    result = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code],
+        capture_output=True,
+        text=True,
+        timeout=20,
+        check=False,
+    )
+    assert (result.stdout.strip(), result.stderr) == ("True True", "")
+
+
+def test_package_works_from_a_folder_with_files_of_its_name(tmp_path):
+    """A case file or a folder called rbsdem beside the user must not disturb the command."""
+    (tmp_path / "rbsdem").mkdir()
+    result = subprocess.run(
+        [sys.executable, "-m", "rbsdem", "--version"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=20,
+        check=False,
+    )
+    assert result.stdout == f"rbsdem {rbsdem.__version__}\n"
+
+
+# ---- errors --------------------------------------------------------------------------------------
+
+
+def test_errors_have_one_base_and_are_also_the_builtin_kind():
+    assert issubclass(rbsdem.RbsdemError, Exception)
+    assert issubclass(rbsdem.InputError, rbsdem.RbsdemError)
+    assert issubclass(rbsdem.SolveError, rbsdem.RbsdemError)
+    assert issubclass(rbsdem.InputError, ValueError)
+    assert issubclass(rbsdem.SolveError, RuntimeError)
+    assert not issubclass(rbsdem.SolveError, rbsdem.InputError)
+    assert not issubclass(rbsdem.InputError, rbsdem.SolveError)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: rbsdem.Elastic(-1.0),
+        lambda: rbsdem.Elastic("1"),
+        lambda: rbsdem.Elastic(None),
+        lambda: rbsdem.Elastic(True),
+        lambda: rbsdem.Elastic([1.0]),
+        lambda: rbsdem.Elastic(1 + 1j),
+        lambda: rbsdem.Takeda(2.0, 1.0, 1.0, 2.0, 0.5, inner="kb"),
+        lambda: rbsdem.Column(1.0, 1.0, 5.0, ELASTIC),
+        lambda: rbsdem.Column(1.0, 1.0, [], ELASTIC),
+        lambda: rbsdem.Column(1.0, 1.0, ELASTIC, ELASTIC, n=1.0),
+        lambda: rbsdem.Column(1.0, 1.0, ELASTIC, ELASTIC, n=10**12),
+        lambda: rbsdem.Column(1.0, 1.0, ELASTIC, ELASTIC, kinematics="Small"),
+        lambda: rbsdem.Column(1.0, 1.0, ELASTIC, ELASTIC, kinematics="small" + " " * 20 + "x"),
+        lambda: rbsdem.Column(1.0, None, ELASTIC, ELASTIC),
+        lambda: rbsdem.Column(1.0, 1.0, ELASTIC, ELASTIC, lengths="ab"),
+        lambda: rbsdem.cyclic(COLUMN),
+        lambda: rbsdem.cyclic(COLUMN, [1.0], [1.0]),
+        lambda: rbsdem.cyclic(COLUMN, [np.nan]),
+        lambda: rbsdem.cyclic(COLUMN, [[1.0]]),
+        lambda: rbsdem.cyclic(COLUMN, ["a"]),
+        lambda: rbsdem.cyclic("column", [1.0]),
+        lambda: rbsdem.cyclic(COLUMN, [1.0], every=0),
+        lambda: rbsdem.cyclic(COLUMN, [1.0], every=1.5),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], force=[1.0]),
+        lambda: rbsdem.time_history(COLUMN, [1.0, 0.0], force=[1.0, 1.0]),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], force=[1.0, np.inf]),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], force=[1.0, 1.0], dt=1.0),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], force=[1.0, 1.0], method="euler"),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], initial={"speed": 1.0}),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], initial={"slip": [1.0, 2.0]}),
+        lambda: rbsdem.mass_matrix(COLUMN, "none"),
+        lambda: rbsdem.modes(None),
+        lambda: rbsdem.protocol([]),
+        lambda: rbsdem.protocol([1.0], cycles=0),
+        lambda: rbsdem.protocol([1.0], cycles=[1, 2]),
+        lambda: rbsdem.protocol([1.0, 2.0], cycles=10**9),
+        lambda: rbsdem.protocol([1.0], points=0),
+        lambda: rbsdem.read_peer("not there"),
+        lambda: BILINEAR.response([np.nan]),
+        lambda: BILINEAR.response(["x"]),
+    ],
+)
+def test_bad_input_raises_input_error_with_a_text(call):
+    with pytest.raises(rbsdem.InputError) as error:
+        call()
+    text = str(error.value)
+    assert len(text) > 15
+    assert text == text.strip()
+    assert "\0" not in text
+
+
+def test_solve_error_holds_the_path_up_to_there():
+    error = solve_error()
+    assert "beyond the capacity" in str(error)
+    assert isinstance(error.result, rbsdem.Result)
+    np.testing.assert_allclose(error.result.force, [0.0, 500.0, 1000.0], rtol=1e-12)
+
+
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_errors_survive_pickling(protocol):
+    error = solve_error()
+    back = pickle.loads(pickle.dumps(error, protocol))
+    assert type(back) is rbsdem.SolveError
+    assert str(back) == str(error)
+    assert np.array_equal(back.result.displacement, error.result.displacement)
+    assert np.array_equal(back.result.moment, error.result.moment)
+    assert back.result.summary == error.result.summary
+    bare = pickle.loads(pickle.dumps(rbsdem.SolveError("text"), protocol))
+    assert (str(bare), bare.result) == ("text", None)
+    wrong = pickle.loads(pickle.dumps(rbsdem.InputError("text"), protocol))
+    assert (type(wrong), str(wrong)) == (rbsdem.InputError, "text")
+
+
+def test_columns_and_results_survive_pickling():
+    """For pools of processes."""
+    column = replace(COLUMN, n=2, kinematics="pdelta", axial_load=1e3)
+    back = pickle.loads(pickle.dumps(column))
+    assert back == column
+    run = rbsdem.cyclic(column, [0.01, -0.01])
+    again = pickle.loads(pickle.dumps(rbsdem.cyclic(back, [0.01, -0.01])))
+    assert np.array_equal(run.force, again.force)
+    assert run.summary == again.summary
+
+
+# ---- immutability --------------------------------------------------------------------------------
+
+
+def test_records_cannot_be_changed(tmp_path):
+    run = rbsdem.cyclic(COLUMN, [0.001])
+    records = [ELASTIC, BILINEAR, TAKEDA, COLUMN, run, rbsdem.modes(COLUMN), peer_test(tmp_path)]
+    for record in records:
+        assert is_dataclass(record)
+        for field in fields(record):
+            with pytest.raises(FrozenInstanceError):
+                setattr(record, field.name, 1.0)
+        with pytest.raises((FrozenInstanceError, AttributeError, TypeError)):
+            record.another = 1.0
+
+
+def test_column_does_not_change_with_the_lists_it_was_made_of():
+    lengths, masses = np.array([0.5, 0.5]), [100.0, 200.0]
+    springs = [ELASTIC, rbsdem.Elastic(2e6)]
+    column = rbsdem.Column(1.0, None, springs, springs, n=2, lengths=lengths, masses=masses)
+    before = rbsdem.modes(column).omega.copy()
+    lengths[:] = [0.1, 0.9]
+    masses[0] = 1.0
+    springs[0] = rbsdem.Elastic(1.0)
+    assert column.lengths == (0.5, 0.5)
+    assert column.masses == (100.0, 200.0)
+    assert column.shear == (ELASTIC, rbsdem.Elastic(2e6))
+    assert np.array_equal(rbsdem.modes(column).omega, before)
+
+
+def test_changed_copies_are_checked_again():
+    assert replace(BILINEAR, k=2e6).k == 2e6
+    with pytest.raises(rbsdem.InputError, match="k_post"):
+        replace(BILINEAR, k_post=1e9)
+    with pytest.raises(rbsdem.InputError, match="height"):
+        replace(COLUMN, height=-1.0)
+
+
+def test_equal_records_are_equal_and_have_one_hash():
+    assert rbsdem.Elastic(1e6) == ELASTIC
+    assert hash(rbsdem.Elastic(1000000)) == hash(ELASTIC)
+    assert rbsdem.Elastic(2e6) != ELASTIC
+    twin = rbsdem.Column(1.6, 614.4, BILINEAR, TAKEDA)
+    assert twin == COLUMN
+    assert hash(twin) == hash(COLUMN)
+    assert len({COLUMN, twin, replace(COLUMN, n=2)}) == 2
+
+
+def test_analyses_leave_their_arrays_alone():
+    time = np.linspace(0.0, 0.1, 11)
+    force = np.sin(60 * time) * 500.0
+    arrays = [time, force]
+    copies = [array.copy() for array in arrays]
+    rbsdem.time_history(COLUMN, time, force=force, ground_acceleration=force * 1e-3)
+    rbsdem.cyclic(COLUMN, force=force)
+    rbsdem.cyclic(COLUMN, displacement=force * 1e-5)
+    TAKEDA.response(force * 1e-5)
+    for array, copy in zip(arrays, copies, strict=True):
+        assert np.array_equal(array, copy)
+
+
+def test_arrays_of_any_layout_and_kind_are_taken():
+    path = np.array([0.0, 0.004, -0.004, 0.002])
+    expected = rbsdem.cyclic(COLUMN, path).force
+    spread = np.zeros((4, 3))
+    spread[:, 1] = path
+    kinds = [
+        path.tolist(),
+        tuple(path),
+        spread[:, 1],
+        path[::-1].copy()[::-1],
+        path.astype(">f8"),
+        path.astype(object).astype(float),
+    ]
+    path.flags.writeable = False
+    for kind in [*kinds, path]:
+        assert np.array_equal(rbsdem.cyclic(COLUMN, kind).force, expected)
+    whole = rbsdem.Elastic(2).response(np.array([1, -2, 3], dtype=np.int16))
+    assert np.array_equal(whole, [2.0, -4.0, 6.0])
+    assert rbsdem.cyclic(COLUMN, []).force.shape == (0,)
+    assert TAKEDA.response([]).shape == (0,)

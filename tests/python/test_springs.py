@@ -1,0 +1,1138 @@
+"""The springs against hand calculation, against their properties and against an independent method.
+
+Sources, named in the tests: ``takeda`` S1 to S4 and "bilinear" are the worked sequences, property
+01 to 14 the list of what any correct implementation satisfies, rule 1 to 5 and section 2b the
+rules themselves. ``reference_springs`` is a second implementation written from the same rules; it
+also supplies the corners of a path, so that work can be summed without an error of sampling.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import pytest
+import reference_springs
+from numpy.typing import ArrayLike, NDArray
+
+import rbsdem
+
+Array = NDArray[np.float64]
+
+INNER = ("kc", "kr", "one")
+KINDS = (*INNER, "bilinear")
+CASES = 1000  # random histories of each kind, shared by the property tests
+POINTS = 40
+EPSILON = float(np.finfo(float).eps)
+
+# Table 3, Soesianawati No 1 (kN m and rad as printed there; here numbers only)
+KC, DC, KY, DY, KU = 2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6
+B0, B1 = 0.4, 0.22
+COLUMN_1: dict[str, Any] = {
+    "k_c": KC, "d_c": DC, "k_y": KY, "d_y": DY, "k_u": KU, "b0": B0, "b1": B1,
+}  # fmt: skip
+FC = KC * DC
+FY = FC + KY * (DY - DC)
+K0 = (FC + FY) / (DC + DY)
+
+
+def response(spring: Any, path: ArrayLike) -> Array:
+    return spring.response(np.asarray(path, dtype=float))
+
+
+def work(path: ArrayLike, force: ArrayLike) -> Array:
+    """Work at each point, from zero at the origin; exact if the path holds every corner."""
+    d = np.concatenate(([0.0], np.asarray(path)))
+    f = np.concatenate(([0.0], np.asarray(force)))
+    return np.cumsum(0.5 * np.diff(d) * (f[1:] + f[:-1]))
+
+
+def assert_sequence(force: Array, printed: list[float], by_hand: list[float]) -> None:
+    np.testing.assert_allclose(force, printed, rtol=0, atol=1e-3)
+    np.testing.assert_allclose(force, by_hand, rtol=1e-9, atol=0)
+
+
+# ---- takeda section 4: sequences by hand ---------------------------------------------------------
+
+
+@pytest.mark.parametrize("inner", INNER)
+def test_takeda_s1_uncracked(inner: str) -> None:
+    force = response(rbsdem.Takeda(**COLUMN_1, inner=inner), [2e-4, -3e-4, 3e-4, 0])
+    by_hand = [KC * 2e-4, -KC * 3e-4, KC * 3e-4]
+    np.testing.assert_allclose(force[:3], [50856, -76284, 76284], rtol=0, atol=1e-3)
+    np.testing.assert_allclose(force[:3], by_hand, rtol=1e-9)
+    assert force[3] == pytest.approx(0, abs=1e-9 * FY)
+
+
+def s2_work_of_a_cycle() -> float:
+    """Two equal halves: the loading triangle less the unloading triangle."""
+    peak = FC + KY * (2e-3 - DC)
+    k_r = (peak + FC) / (2e-3 + DC)
+    zero = -2e-3 + peak / k_r
+    return 2 * (0.5 * peak * (2e-3 - zero) - 0.5 * peak**2 / k_r)
+
+
+@pytest.mark.parametrize("inner", INNER)
+def test_takeda_s2_cracked_not_yielded(inner: str) -> None:
+    force = response(
+        rbsdem.Takeda(**COLUMN_1, inner=inner), [1e-3, -1.5e-3, 2e-3, -2e-3, 2e-3, -2e-3, 0]
+    )
+    printed = [123958.196, -155426.696, 186895.196, -186895.196, 186895.196, -186895.196, 30024.092]
+    peak = FC + KY * (2e-3 - DC)
+    k_r = (peak + FC) / (2e-3 + DC)
+    zero = -2e-3 + peak / k_r
+    by_hand = [
+        FC + KY * (1e-3 - DC),
+        -FC - KY * (1.5e-3 - DC),
+        peak,
+        -peak,
+        peak,
+        -peak,
+        peak / (2e-3 - zero) * (0 - zero),
+    ]
+    assert_sequence(force, printed, by_hand)
+
+
+@pytest.mark.parametrize("inner", INNER)
+def test_takeda_s2_lines_between_the_points(inner: str) -> None:
+    first, second = FC + KY * (1e-3 - DC), FC + KY * (1.5e-3 - DC)
+    k_1 = (first + FC) / (1e-3 + DC)
+    k_2 = (second + FC) / (1.5e-3 + DC)
+    zero = -1.5e-3 + second / k_2
+    path = [1e-3, 0.0, -DC, -1.5e-3, -1e-3, zero, 0.5e-3, 1e-3, 1.2e-3]
+    by_hand = [
+        first,
+        first - k_1 * 1e-3,  # toward the opposite cracking point
+        -FC,
+        -second,
+        -second + k_2 * 0.5e-3,
+        0,
+        first / (1e-3 - zero) * (0.5e-3 - zero),  # to the peak: steeper than to the yield point
+        first,
+        FC + KY * (1.2e-3 - DC),  # and on along the backbone
+    ]
+    force = response(rbsdem.Takeda(**COLUMN_1, inner=inner), path)
+    np.testing.assert_allclose(force, by_hand, rtol=1e-9, atol=1e-9 * FY)
+
+
+@pytest.mark.parametrize("inner", INNER)
+def test_takeda_s2_work_of_the_closed_cycle(inner: str) -> None:
+    path = np.array([1e-3, -1.5e-3, 2e-3, -2e-3, 2e-3, -2e-3])
+    spring = rbsdem.Takeda(**COLUMN_1, inner=inner)
+    corners = reference_springs.Takeda(**COLUMN_1, inner=inner).vertices(path)
+    total = work(corners, response(spring, corners))
+    at_minus = [total[i] for i, d in enumerate(corners) if d == -2e-3]
+    assert at_minus[-1] - at_minus[-2] == pytest.approx(s2_work_of_a_cycle(), rel=1e-9)
+    assert at_minus[-1] - at_minus[-2] == pytest.approx(143.082, abs=1e-3)
+
+
+S3_MU = np.array([2, -2, 2, -2, 4, -4, 4, -4, 0], dtype=float)
+S3_PRINTED = [
+    252699.946, -252699.946, 252699.946, -252699.946,
+    293894.152, -293894.152, 293894.152, -293894.152, 103502.562,
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("inner", INNER)
+def test_takeda_s3_yielded_full_reversals(inner: str) -> None:
+    force = response(rbsdem.Takeda(**COLUMN_1, inner=inner), S3_MU * DY)
+    two, four = FY + KU * DY, FY + 3 * KU * DY
+    zero = -4 * DY + four / (K0 * (1 / 4) ** B0)
+    rest = four / (4 * DY - zero) * (0 - zero)
+    by_hand = [two, -two, two, -two, four, -four, four, -four, rest]
+    assert_sequence(force, S3_PRINTED, by_hand)
+
+
+@pytest.mark.parametrize("inner", INNER)
+def test_takeda_s3_work(inner: str) -> None:
+    two, four = FY + KU * DY, FY + 3 * KU * DY
+    k_2, k_4 = K0 * (1 / 2) ** B0, K0 * (1 / 4) ** B0
+    first_crack = 2 * DY - (two + FC) / k_2
+    zero_2, zero_4 = 2 * DY - two / k_2, 4 * DY - four / k_4
+    assert first_crack == pytest.approx(1.165418e-3, abs=1e-9)
+    assert (zero_2, zero_4) == pytest.approx((2.203071e-3, 5.910997e-3), abs=1e-9)
+    path = [
+        DC, DY, 2 * DY, first_crack, -DY, -2 * DY, -zero_2, 2 * DY, zero_2, -2 * DY,
+        -zero_2, 2 * DY, 4 * DY, zero_4, -2 * DY, -4 * DY, -zero_4, 4 * DY, zero_4, -4 * DY,
+        -zero_4, 0,
+    ]  # fmt: skip
+    total = work(path, response(rbsdem.Takeda(**COLUMN_1, inner=inner), path))
+    at_points = total[[2, 5, 7, 9, 12, 15, 17, 19, 21]]
+    printed = [
+        1047.589, 1948.207, 2504.922, 3061.638, 5104.161, 7294.555, 9031.762, 10768.970, 10345.690,
+    ]  # fmt: skip
+    np.testing.assert_allclose(at_points, printed, rtol=0, atol=1e-3)
+    half = 0.5 * four * (4 * DY + zero_4) - 0.5 * four**2 / k_4  # a leg from peak to peak
+    assert at_points[6] - at_points[5] == pytest.approx(half, rel=1e-9)
+    assert at_points[7] - at_points[6] == pytest.approx(half, rel=1e-9)
+    first = 0.5 * FC * DC + 0.5 * (FC + FY) * (DY - DC) + 0.5 * (FY + two) * DY
+    assert at_points[0] == pytest.approx(first, rel=1e-9)
+
+
+S4_MU = np.array([4, -4, 1, 0.6, 1.5, -1, 0.5, -0.5, 0.5, -1, 1.5, 2, -4, 5, 0])
+S4_PRINTED = {
+    "kc": [
+        293894.152, -293894.152, 151100.459, 90274.039, 174899.408, -91201.345, 82859.284,
+        -43457.444, 82859.284, -91201.345, 174899.408, 198698.357, -293894.152, 314491.254,
+        -122632.372,
+    ],
+    "kr": [
+        293894.152, -293894.152, 151100.459, 132061.300, 174899.408, 55904.664, 127301.510,
+        79703.613, 127301.510, 55904.664, 174899.408, 198698.357, -293894.152, 314491.254,
+        -122632.372,
+    ],
+    "one": [
+        293894.152, -293894.152, 151100.459, 86702.254, 174899.408, -94130.951, 83583.356,
+        -46145.804, 83583.356, -94130.951, 174899.408, 198698.357, -293894.152, 314491.254,
+        -122632.372,
+    ],
+}  # fmt: skip
+
+
+def s4_by_hand(inner: str) -> list[float]:
+    """The nest U0 to U3: each line goes from a zero crossing to the peak it aims at."""
+    four, five = FY + 3 * KU * DY, FY + 4 * KU * DY
+    k_4, k_5 = K0 * (1 / 4) ** B0, K0 * (1 / 5) ** B0
+    zero_4 = -4 * DY + four / k_4
+    slope = four / (4 * DY - zero_4)
+
+    def outer(d: float) -> float:
+        return slope * (d - zero_4)
+
+    # `kr`: B1 K_r is below the secant, which for a line from zero force is the line itself
+    if inner == "kr":
+        nest = [outer(x * DY) for x in (0.6, 1.5, -1, 0.5, -0.5, 0.5, -1, 1.5)]
+    else:
+        k_in = {"kc": B1 * KC, "one": k_4}[inner]
+        u0 = (1.5 * DY, outer(1.5 * DY))
+        zero = u0[0] - u0[1] / k_in
+        u1 = (-DY, -four / (-4 * DY - zero) * (-DY - zero))
+        zero = u1[0] - u1[1] / k_in
+        u2 = (0.5 * DY, u0[1] / (u0[0] - zero) * (0.5 * DY - zero))
+        zero = u2[0] - u2[1] / k_in
+        u3 = (-0.5 * DY, u1[1] / (u1[0] - zero) * (-0.5 * DY - zero))
+        partial = outer(DY) - k_in * 0.4 * DY
+        nest = [partial, u0[1], u1[1], u2[1], u3[1], u2[1], u1[1], u0[1]]
+    zero_5 = 5 * DY - five / k_5
+    last = -four / (-4 * DY - zero_5) * (0 - zero_5)
+    return [four, -four, outer(DY), *nest, outer(2 * DY), -four, five, last]
+
+
+@pytest.mark.parametrize("inner", INNER)
+def test_takeda_s4_partial_unloading_and_inner_loops(inner: str) -> None:
+    force = response(rbsdem.Takeda(**COLUMN_1, inner=inner), S4_MU * DY)
+    by_hand = s4_by_hand(inner)
+    if inner == "kc":  # the signs of section 4 are easily lost: the second peak is negative
+        assert by_hand[5] < 0 < by_hand[6]
+    assert_sequence(force, S4_PRINTED[inner], by_hand)
+
+
+def test_bilinear_sequence() -> None:
+    k, d_y, k_post = 7.0387e8, 1.2960e-4, 8.3185e6
+    q = (1 - k_post / k) * k * d_y
+    path = [1e-4, -1e-4, 5e-4, 3e-4, 5e-4, -5e-4, 1e-3, 0]
+    printed = [
+        70387.000, -70387.000, 94302.724, -46471.276, 94302.724, -94302.724, 98461.974, -90143.474,
+    ]  # fmt: skip
+    by_hand = [
+        k * 1e-4,
+        -k * 1e-4,
+        k_post * 5e-4 + q,
+        k_post * 5e-4 + q - k * 2e-4,
+        k_post * 5e-4 + q,
+        -k_post * 5e-4 - q,
+        k_post * 1e-3 + q,
+        -q,
+    ]
+    assert_sequence(response(rbsdem.Bilinear(k, d_y, k_post), path), printed, by_hand)
+
+
+def test_elastic_is_linear() -> None:
+    path = np.random.default_rng(1).normal(size=500)
+    np.testing.assert_allclose(response(rbsdem.Elastic(3.5e7), path), 3.5e7 * path, rtol=1e-15)
+
+
+# ---- takeda section 2: single rules by hand ------------------------------------------------------
+
+# F_c = 1, F_y = 2.5, K_0 = 0.5
+ROUND = {"k_c": 1.0, "d_c": 1.0, "k_y": 0.3, "d_y": 6.0, "k_u": 0.01}
+
+
+@pytest.mark.parametrize("inner", INNER)
+def test_takeda_rule_1_peak_of_the_own_side(inner: str) -> None:
+    force = response(rbsdem.Takeda(**COLUMN_1, inner=inner), [6 * DY, -2 * DY, -1.9 * DY])
+    two = FY + KU * DY
+    assert force[2] == pytest.approx(-two + K0 * (1 / 2) ** B0 * 0.1 * DY, rel=1e-9)
+
+
+def test_takeda_rule_1_floor_is_the_secant_through_the_origin() -> None:
+    force = response(rbsdem.Takeda(**ROUND, b0=1.0), [600.0, 300.0, 0.0])
+    peak = 2.5 + 0.01 * 594  # 8.44, and K_0 (6/600) = 0.005 < 8.44/600
+    np.testing.assert_allclose(force, [peak, peak / 2, 0], rtol=1e-12, atol=1e-12)
+
+
+def test_takeda_rule_2_first_loading_of_the_virgin_side_aims_at_the_yield_point() -> None:
+    crack = 24 - (2.68 + 1) / (0.5 * (6 / 24) ** 0.4)
+    zero = 24 - 2.68 / (0.5 * (6 / 24) ** 0.4)
+    slope = (2.5 - 1) / (6 + crack)
+    path = [24.0, zero, crack, 0.0, -3.0, -6.0, -8.0]
+    by_hand = [2.68, 0, -1, -1 - slope * crack, -1 - slope * (crack + 3), -2.5, -2.52]
+    force = response(rbsdem.Takeda(**ROUND), path)
+    np.testing.assert_allclose(force, by_hand, rtol=1e-12, atol=1e-12)
+
+
+def test_takeda_rule_2_secant_of_that_line_goes_to_the_zero_crossing() -> None:
+    k_r = 0.5 * (6 / 24) ** 0.4
+    crack, zero = 24 - (2.68 + 1) / k_r, 24 - 2.68 / k_r
+    turn = -1 - (2.5 - 1) / (6 + crack) * (crack + 3)  # at -3
+    secant = turn / (-3 - zero)
+    force = response(rbsdem.Takeda(**ROUND, b1=0.01), [24.0, -3.0, 0.0, zero])
+    np.testing.assert_allclose(force[1:], [turn, turn + 3 * secant, 0], rtol=1e-12, atol=1e-12)
+
+
+def test_takeda_rule_2_inner_stiffness_is_bounded_by_the_other_side() -> None:
+    k_r = 0.5 * (6 / 24) ** 0.4  # the virgin side has no K_r of its own
+    force = response(rbsdem.Takeda(**ROUND, b1=1.0), [24.0, -3.0, -2.5])
+    assert (force[2] - force[1]) / 0.5 == pytest.approx(k_r, rel=1e-12)
+
+
+def test_takeda_rule_2_extreme_line_goes_on_to_the_yielded_backbone() -> None:
+    """F_c = 1, F_y = 1.0025: K_r = max(K_0 1.05/3, 1.0025/3) meets P(-) at -2.8645, beyond D_y."""
+    spring = rbsdem.Takeda(k_c=1.0, d_c=1.0, k_y=0.05, d_y=1.05, k_u=0.0, b0=1.0)
+    k_r = max((1 + 1.0025) / (1 + 1.05) * 1.05 / 3, 1.0025 / 3)
+    meeting = 3 - 2 * 1.0025 / k_r
+    assert meeting < -1.05
+    path = [3.0, -1.05, -2.0, meeting + 1e-3, -2.9, meeting + 1e-3]
+    force = response(spring, path)
+    by_hand = [
+        1.0025, 1.0025 - 4.05 * k_r, 1.0025 - 5 * k_r, -1.0025 + 1e-3 * k_r, -1.0025,
+    ]  # fmt: skip
+    np.testing.assert_allclose(force[:5], by_hand, rtol=1e-12)
+    own = max((1 + 1.0025) / (1 + 1.05) * 1.05 / 2.9, 1.0025 / 2.9)
+    assert force[5] == pytest.approx(-1.0025 + own * (meeting + 1e-3 + 2.9), rel=1e-12)
+
+
+def test_takeda_rule_3_redirects_to_the_yield_point_and_stays() -> None:
+    """B0 = 1. Zero at 2.4 after 20: the yield point is steeper; at 0 after 60: it is not."""
+    spring = rbsdem.Takeda(**ROUND, b0=1.0)
+    zero = 20 - 2.64 / (0.5 * 6 / 20)
+    redirected = -2.5 / (6 + zero) * (zero + 3)
+    np.testing.assert_allclose(
+        response(spring, [3, -3, 20, -3, -6, -7]), [1.6, -1.6, 2.64, redirected, -2.5, -2.51]
+    )
+    np.testing.assert_allclose(response(spring, [3, -3, 60, -3, -4]), [1.6, -1.6, 3.04, -1.6, -1.9])
+    # The redirection outlives its excursion, even one that turned before the old peak: the one
+    # case in which a closed loop leaves a trace (property 08).
+    np.testing.assert_allclose(
+        response(spring, [3, -3, 20, 0, 20, 60, -4])[[4, 5, 6]],
+        [2.64, 3.04, -2.5 / 6 * 4],
+    )
+
+
+def test_takeda_rule_4_aims_at_the_peak_of_the_other_side() -> None:
+    """R(-) turns at -2 before any inner peak of side +: after zero force straight to (20, 2.64)."""
+    spring = rbsdem.Takeda(**ROUND, inner="one")
+    k_plus, k_minus = 0.5 * (6 / 20) ** 0.4, (1.6 + 1) / (3 + 1)
+    zero = 20 - 2.64 / k_plus
+    turn = -2.5 / (6 + zero) * (2 + zero)  # redirected by rule 3
+    crossing = -2 - turn / k_minus
+    force = response(spring, [3.0, -3.0, 20.0, -2.0, crossing, 10.0, 20.0, 21.0])
+    by_hand = [turn, 0, 2.64 / (20 - crossing) * (10 - crossing), 2.64, 2.65]
+    np.testing.assert_allclose(force[3:], by_hand, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize("inner", INNER)
+def test_takeda_equality_at_the_peak_is_on_the_backbone(inner: str) -> None:
+    """Back at exactly D_m the unloading is K_r; an ulp before it is K_in (section 2b)."""
+    spring = rbsdem.Takeda(**COLUMN_1, inner=inner)
+    peak, below = 4 * DY, math.nextafter(4 * DY, 0)
+    k_4 = K0 * (1 / 4) ** B0
+    four = FY + 3 * KU * DY
+    slope = four / (4 * DY + 4 * DY - four / k_4)
+    k_in = {"kc": B1 * KC, "kr": slope, "one": k_4}[inner]
+    exact = response(spring, [peak, -peak, peak, 3.9 * DY])
+    short = response(spring, [peak, -peak, below, 3.9 * DY])
+    assert exact[3] == pytest.approx(four - k_4 * 0.1 * DY, rel=1e-12)
+    assert short[3] == pytest.approx(four - k_in * 0.1 * DY, rel=1e-12)
+
+
+def test_takeda_equality_at_cracking_and_at_yield() -> None:
+    """Arriving exactly at an end is to be beyond it: the next line starts there."""
+    spring = rbsdem.Takeda(**ROUND)
+    # to -D_c on O(+), cracked: turning there unloads C(-) with K_c, not O(+)
+    k_r = (1.6 + 1) / (3 + 1)
+    assert response(spring, [3, -1, -0.5])[2] == pytest.approx(-0.5, rel=1e-12)
+    assert response(spring, [3, -0.999, -0.5])[2] == pytest.approx(1.6 - 3.5 * k_r, rel=1e-12)
+    # the yield point set by rule 2, reached exactly: P(-), K_0
+    force = response(spring, [24, -6, -5.9])
+    assert force[2] == pytest.approx(-2.5 + 0.1 * 0.5, rel=1e-12)
+
+
+def test_takeda_zero_force_is_passed_only_beyond() -> None:
+    """At exactly the zero crossing O(+) still leads back to its peak, and so does an ulp beyond."""
+    spring = rbsdem.Takeda(**COLUMN_1)
+    peak = 4 * DY
+    zero = peak - (FY + 3 * KU * DY) / (K0 * (1 / 4) ** B0)
+    for turn in (zero, math.nextafter(zero, -1), math.nextafter(zero, 1), zero - 1e-13 * DY):
+        path = [peak, -peak, peak, turn, 2.5 * DY, 2.4 * DY, peak, 5 * DY]
+        force = response(spring, path)
+        line = K0 * (1 / 4) ** B0 * (np.array([2.5, 2.4]) * DY - zero)
+        np.testing.assert_allclose(force[4:6], line, rtol=1e-9)
+        np.testing.assert_allclose(force[6:], [FY + 3 * KU * DY, FY + 4 * KU * DY], rtol=1e-12)
+
+
+def test_takeda_zero_force_reached_exactly_is_not_passed() -> None:
+    """Numbers without round-off: F_y = 2, K_0 = 1/2, peak (8, 2), zero force at 4.
+
+    Short of the crossing and at it O(+) runs both ways, so that 6 is no inner peak. Any distance
+    beyond it is, and then the last loading aims at (6, 1) first.
+    """
+    spring = rbsdem.Takeda(k_c=1.0, d_c=1.0, k_y=0.25, d_y=5.0, k_u=0.0, b0=0.0, inner="one")
+    zero = 3 - (1 / 6) / -0.5  # of I(-) from (3, -1/6)
+    to_the_peak = 2 / (8 - zero) * (7 - zero)
+    for turn in (4.0, math.nextafter(4.0, 5.0)):
+        force = response(spring, [8, -8, 8, turn, 6, 3, 7])
+        np.testing.assert_allclose(force[4:], [1, -1 / 6, to_the_peak], rtol=1e-12)
+    for turn in (math.nextafter(4.0, 3.0), 4.0 - 1e-13, 4.0 - 1e-11):
+        force = response(spring, [8, -8, 8, turn, 6, 3, 5, 7])
+        to_6 = 1 / (6 - zero) * (5 - zero)
+        np.testing.assert_allclose(force[4:], [1, -1 / 6, to_6, 1.5], rtol=1e-9)
+
+
+def test_takeda_section_2b_the_secant_wins_over_k_r() -> None:
+    """Side - was loaded for the first time before side + went on to 600, where K_r is 61.9/600.
+
+    Side - has no K_r of its own, so K_in is bounded by that of side +, which is below the secant.
+    """
+    spring = rbsdem.Takeda(**(ROUND | {"k_u": 0.1}))
+    assert 61.9 / 600 > 0.5 * (6 / 600) ** 0.4  # the floor of rule 1: zero force at zero
+    force = response(spring, [24, -3, 600, -3, -2.9])
+    slope = 2.5 / 6
+    np.testing.assert_allclose(force[2:], [61.9, -3 * slope, -2.9 * slope], rtol=1e-12)
+
+
+@pytest.mark.parametrize("inner", INNER)
+@pytest.mark.parametrize("peaks", [20, 60, 300])
+def test_takeda_deep_nest_of_inner_peaks(inner: str, peaks: int) -> None:
+    """Any number of nested peaks: no jump, and all is forgotten on reaching the backbone.
+
+    Up to 64 peaks the loops close one after another as in the reference; a memory of fixed
+    size may forget the oldest beyond that.
+    """
+    parameters = COLUMN_1 | {"inner": inner}
+    sizes = 3.9 * DY * 0.97 ** np.arange(peaks)
+    nest = sizes * np.where(np.arange(peaks) % 2 == 0, 1.0, -1.0)
+    path = np.concatenate(([4 * DY, -4 * DY], nest, [0.1 * DY, 1.3 * DY, 4.5 * DY], S4_MU * DY))
+    reference = reference_springs.Takeda(**parameters)
+    expected = np.array(reference.response(path))
+    force = response(rbsdem.Takeda(**parameters), path)
+    same = slice(None) if peaks < 64 else np.r_[0:64, len(path) - 16 : len(path)]
+    np.testing.assert_allclose(force[same], expected[same], rtol=0, atol=1e-9 * FY)
+    fine = refined(path, 200)
+    force = response(rbsdem.Takeda(**parameters), fine)
+    rise = np.diff(force) * np.sign(np.diff(fine))
+    assert np.all(rise >= 0)
+    assert np.all(rise <= KC * np.abs(np.diff(fine)) + 1e-12 * FY)
+
+
+def test_bilinear_is_the_median_of_three_lines() -> None:
+    """Section 2c: F = median(F_old + K_y dD, K_u D + q, K_u D - q), which sums increments."""
+    for case in cases("bilinear")[:300]:
+        k, d_y, k_post = (case.parameters[name] for name in ("k", "d_y", "k_post"))
+        q = (k - k_post) * d_y
+        d_old = f_old = 0.0
+        expected = []
+        for d in case.path.tolist():
+            lines = [f_old + k * (d - d_old), k_post * d + q, k_post * d - q]
+            d_old, f_old = d, sorted(lines)[1]
+            expected.append(f_old)
+        force = response(case.spring(), case.path)
+        np.testing.assert_allclose(force, expected, rtol=0, atol=1e-9 * k * d_y)
+
+
+# ---- random springs and random histories ---------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Case:
+    """A spring and a path through which to drive it."""
+
+    kind: str
+    parameters: dict[str, Any]
+    path: Array
+
+    def spring(self) -> Any:
+        maker = rbsdem.Bilinear if self.kind == "bilinear" else rbsdem.Takeda
+        return maker(**self.parameters)
+
+    def reference(self) -> Any:
+        return reference_of(self.kind, self.parameters)
+
+    def force(self, path: ArrayLike | None = None) -> Array:
+        return response(self.spring(), self.path if path is None else path)
+
+    @property
+    def d_y(self) -> float:
+        return self.parameters["d_y"]
+
+    @property
+    def stiffest(self) -> float:
+        return self.parameters["k" if self.kind == "bilinear" else "k_c"]
+
+    @property
+    def post_yield(self) -> float:
+        return self.parameters["k_post" if self.kind == "bilinear" else "k_u"]
+
+    @property
+    def f_y(self) -> float:
+        if self.kind == "bilinear":
+            return self.stiffest * self.d_y
+        k_c, d_c, k_y = (self.parameters[name] for name in ("k_c", "d_c", "k_y"))
+        return k_c * d_c + k_y * (self.d_y - d_c)
+
+    @property
+    def scale(self) -> float:
+        """The larger of the yield force and the largest force that the path can reach."""
+        beyond = max(0.0, float(np.max(np.abs(self.path))) - self.d_y)
+        return self.f_y + self.post_yield * beyond
+
+
+def reference_of(kind: str, parameters: dict[str, Any]) -> Any:
+    module = reference_springs
+    return (module.Bilinear if kind == "bilinear" else module.Takeda)(**parameters)
+
+
+def random_parameters(rng: np.random.Generator, kind: str) -> dict[str, Any]:
+    """Valid parameters over the ranges of section 3, the ends of the ranges included."""
+    stiffness, deformation = 10 ** rng.uniform(0, 10), 10 ** rng.uniform(-5, 0)
+    post = rng.choice([0.0, 0.9, rng.uniform(0.01, 0.9)], p=[0.15, 0.05, 0.8])
+    if kind == "bilinear":
+        return {"k": stiffness, "d_y": deformation, "k_post": stiffness * post}
+    k_y = stiffness * rng.uniform(0.05, 0.9)
+    return {
+        "k_c": stiffness,
+        "d_c": deformation,
+        "k_y": k_y,
+        "d_y": deformation * rng.choice([1.05, rng.uniform(1.05, 15)], p=[0.1, 0.9]),
+        "k_u": k_y * post,
+        "b0": rng.choice([0.0, 0.4, 1.0, rng.uniform(0, 1)], p=[0.1, 0.3, 0.1, 0.5]),
+        "b1": rng.uniform(0.05, 1.5),
+        "inner": kind,
+    }
+
+
+def extreme_parameters(rng: np.random.Generator, kind: str) -> dict[str, Any]:
+    """Valid, and at or beyond the ends of the ranges of section 3."""
+    parameters = random_parameters(rng, kind)
+    if kind == "bilinear":
+        return parameters | {"k_post": parameters["k"] * rng.choice([0.0, 1e-6, 0.999])}
+    k_y = parameters["k_c"] * rng.choice([1e-6, 1e-3, 0.05, 0.5, 0.999])
+    return parameters | {
+        "k_y": k_y,
+        "d_y": parameters["d_c"] * rng.choice([1.0001, 1.05, 5, 100]),
+        "k_u": k_y * rng.choice([0.0, 1e-3, 0.5, 1.0]),
+        "b0": rng.choice([0.0, 0.5, 1.0, 1.5]),
+        "b1": rng.choice([1e-3, 0.2, 1.0, 5.0]),
+    }
+
+
+def random_path(rng: np.random.Generator, spring: Any, points: int, exact: bool) -> Array:
+    """A growing, decaying or irregular history with exact returns.
+
+    It goes back to earlier points, to cracking and yield points, to zero deformation, and to
+    zero crossings of unloading lines. The reference ``spring`` walks along to know where these are.
+
+    A turn at a zero crossing comes in two sorts. ``exact``: there or one floating-point number
+    beside it. Round-off decides whether that is short of the crossing or beyond, and with it
+    whether the next reversal is an inner peak, so that two computations may rightly differ from
+    there on. Otherwise: clearly short of it or beyond, by 1e-13 or 1e-9 of the deformation.
+    """
+    stiffest = spring.k_c if hasattr(spring, "k_c") else spring.k
+    special = [s * x for x in (getattr(spring, "d_c", 0.0), spring.d_y) for s in (1, -1)]
+    size = spring.d_y * rng.choice([0.4, 1.2, 3.0, 8.0])
+    along = np.linspace(0, 1, points)
+    sizes = size * [0.2 + along, 1.02 - along, rng.exponential(1, points)][rng.integers(3)]
+    path: list[float] = []
+    way = rng.choice([-1, 1])
+    while len(path) < points:
+        way = -way
+        choice = rng.random()
+        a = sizes[len(path)]
+        if choice < 0.35:
+            d = way * a * rng.uniform(0.7, 1)
+        elif choice < 0.65 or not path:
+            d = a * rng.uniform(-1, 1)
+        elif choice < 0.85:
+            d = path[rng.integers(len(path))]
+        elif choice < 0.88:
+            d = rng.choice(special)
+        elif choice < 0.9:
+            d = 0.0
+        else:
+            path.append(float(spring.d - 0.1 * spring.f / stiffest))
+            spring.move(path[-1])
+            d = spring.zero if abs(spring.zero) <= 10 * size else 0.0
+            if exact:
+                d = rng.choice([d, d * (1 - EPSILON), d * (1 + EPSILON)])
+            else:
+                d += rng.choice([-1, 1]) * rng.choice([1e-13, 1e-9]) * (abs(d) + spring.d_y)
+        path.append(float(d))
+        spring.move(path[-1])
+    return np.array(path[:points])
+
+
+def generate(
+    seed: int,
+    kind: str,
+    count: int,
+    points: int,
+    *,
+    exact_crossings: bool = False,
+    extreme: bool = False,
+) -> Iterator[Case]:
+    rng = np.random.default_rng([seed, KINDS.index(kind)])
+    for _ in range(count):
+        parameters = (extreme_parameters if extreme else random_parameters)(rng, kind)
+        walker = reference_of(kind, parameters)
+        yield Case(kind, parameters, random_path(rng, walker, points, exact_crossings))
+
+
+@lru_cache
+def cases(kind: str, exact_crossings: bool = False) -> tuple[Case, ...]:
+    return tuple(generate(20, kind, CASES, POINTS, exact_crossings=exact_crossings))
+
+
+def refined(path: ArrayLike, n: int) -> Array:
+    """Cut every leg (the first from zero) into ``n`` equal increments that end on its end."""
+    ends = np.asarray(path, dtype=float)
+    points = np.linspace(np.concatenate(([0.0], ends[:-1])), ends, n + 1)[1:]
+    points[-1] = ends
+    return points.T.ravel()
+
+
+def turning_points(path: ArrayLike) -> Array:
+    """Keep the reversals and the last point; the start at zero is the first."""
+    kept = [0.0]
+    for d in np.asarray(path).tolist():
+        if d == kept[-1]:
+            continue
+        if len(kept) > 1 and (d - kept[-1]) * (kept[-1] - kept[-2]) > 0:
+            kept[-1] = d
+        else:
+            kept.append(d)
+    return np.array(kept)
+
+
+def around_corners(case: Case) -> tuple[Array, float]:
+    """Return the path with points a small distance before and after each corner, and the distance.
+
+    Wherever a force could jump, two points of this path lie that close together.
+    """
+    gap = 1e-7 * case.d_y
+    corners = np.concatenate(([0.0], case.reference().vertices(case.path)))
+    a, b = corners[:-1], corners[1:]
+    way = np.sign(b - a) * gap
+    long = np.abs(b - a) > 4 * gap
+    points = np.stack((np.where(long, a + way, a), (a + b) / 2, np.where(long, b - way, b), b))
+    return points.T.ravel(), gap
+
+
+# ---- takeda section 3: properties ----------------------------------------------------------------
+
+every_kind = pytest.mark.parametrize("kind", KINDS)
+every_inner = pytest.mark.parametrize("inner", INNER)
+
+
+@every_kind
+def test_property_01_rate_independence(kind: str) -> None:
+    """Waiting and uneven sampling do not change a bit: time does not enter."""
+    rng = np.random.default_rng(1)
+    for case in cases(kind, exact_crossings=True):
+        force = case.force()
+        held = case.force(np.repeat(case.path, 3))
+        assert np.array_equal(held, np.repeat(force, 3))
+        start = np.concatenate(([0.0], case.path[:-1]))
+        cuts = np.sort(rng.random((5, POINTS)) ** 3, axis=0)
+        uneven = np.vstack((start + cuts * (case.path - start), case.path))
+        uneven[:-1] = np.clip(
+            uneven[:-1], np.minimum(start, case.path), np.maximum(start, case.path)
+        )
+        assert np.array_equal(case.force(uneven.T.ravel())[5::6], force)
+
+
+@every_kind
+@pytest.mark.parametrize(("n", "count"), [(1, CASES), (7, CASES), (1000, 150)])
+def test_property_02_increment_independence(kind: str, n: int, count: int) -> None:
+    for case in cases(kind, exact_crossings=True)[:count]:
+        assert np.array_equal(case.force(refined(case.path, n))[n - 1 :: n], case.force())
+
+
+@every_kind
+def test_property_03_continuity(kind: str) -> None:
+    """No chord is steeper than K_c, also none between points 1e-7 D_y apart around a corner."""
+    for case in cases(kind):
+        path, _ = around_corners(case)
+        rise = np.abs(np.diff(case.force(path)))
+        run = np.abs(np.diff(path))
+        assert np.all(rise <= case.stiffest * run + 1e-12 * case.scale)
+
+
+def backbone(case: Case, d: Array) -> Array:
+    """Force of the yielded backbone; for either kind through (d_y, f_y)."""
+    return np.sign(d) * (case.f_y + case.post_yield * (np.abs(d) - case.d_y))
+
+
+def meeting_with_p(case: Case, top: float) -> tuple[float, float]:
+    """Where K_r from the peak ``top`` arrives at -F_c, and where it would meet P(-).
+
+    P continued below the yield point: F = -F_y - K_u (-D - D_y).
+    """
+    k_c, d_c, k_u = (case.parameters[name] for name in ("k_c", "d_c", "k_u"))
+    f_c, f_y, d_y = k_c * d_c, case.f_y, case.d_y
+    peak = f_y + k_u * (top - d_y)
+    k_r = (f_c + f_y) / (d_c + d_y) * (d_y / top) ** case.parameters["b0"]
+    k_r = max(k_r, peak / top)
+    return top - (peak + f_c) / k_r, (k_r * top - peak - f_y + k_u * d_y) / (k_r - k_u)
+
+
+def beyond_which_on_p(case: Case) -> dict[int, Array]:
+    """Per side and leg of the path, the size of D beyond which a new extreme is on the backbone.
+
+    That is D_y, but for the side that is loaded second after the first has yielded. Where its first
+    line (K_r down to -F_c, then toward the yield point) is extreme, rule 2 has K_r go on to P, and
+    meets it only beyond D_y. It does if K_r alone would.
+    """
+    limits = {side: np.full(len(case.path), case.d_y) for side in (1, -1)}
+    if case.kind == "bilinear":
+        return limits
+    d_c = case.parameters["d_c"]
+    side, top, cracked = 0, 0.0, False
+    for leg, d in enumerate(case.path.tolist()):
+        if side == 0 and abs(d) >= d_c:
+            side = int(math.copysign(1, d))
+        top = max(top, side * d)
+        if side == 0 or cracked:
+            continue
+        if top <= case.d_y:
+            cracked = side * d <= -d_c
+            continue
+        crack, meeting = meeting_with_p(case, top)
+        if side * d <= crack:
+            cracked = True
+            limits[-side][leg:] = max(case.d_y, -meeting * (1 + 1e-12))
+        else:
+            limits[-side][leg] = math.inf  # still unloading
+    return limits
+
+
+@every_kind
+def test_property_04_backbone_at_new_extremes(kind: str) -> None:
+    """Further than ever in a direction and beyond D_y: on the backbone.
+
+    Where rule 2 is extreme, "beyond D_y" has to read "beyond the meeting with P".
+    """
+    n, seen = 9, 0
+    for case in cases(kind):
+        path = refined(case.path, n)
+        force = case.force(path)
+        for side, limits in beyond_which_on_p(case).items():
+            before = np.maximum.accumulate(np.concatenate(([0.0], side * path[:-1])))
+            new = (side * path > before) & (side * path > np.repeat(limits, n))
+            seen += np.count_nonzero(new)
+            np.testing.assert_allclose(
+                force[new], backbone(case, path[new]), rtol=1e-12, atol=1e-12 * case.f_y
+            )
+    assert seen > 10 * CASES
+
+
+@every_kind
+def test_property_05_linear_before_cracking(kind: str) -> None:
+    rng = np.random.default_rng(5)
+    for case in cases(kind):
+        limit = case.parameters.get("d_c", case.d_y)
+        path = np.concatenate((limit * rng.uniform(-1, 1, 30), [limit, -limit, limit / 3, 0.0]))
+        force = case.force(path)
+        tolerance = 1e-13 * case.stiffest * limit
+        np.testing.assert_allclose(force, case.stiffest * path, rtol=0, atol=tolerance)
+        assert abs(work(path, force)[-1]) <= 100 * tolerance * limit
+
+
+@every_inner
+def test_property_05_outer_unloading_before_the_other_side_cracks(inner: str) -> None:
+    """One line between the peak and the cracking force of the other side, both ways, no work."""
+    rng = np.random.default_rng(55)
+    for case in cases(inner):
+        d_c, k_c, k_y = (case.parameters[name] for name in ("d_c", "k_c", "k_y"))
+        f_c, f_y, d_y, k_u = k_c * d_c, case.f_y, case.d_y, case.post_yield
+        top = rng.choice([rng.uniform(d_c, d_y), rng.uniform(d_y, 10 * d_y)])
+        peak = f_c + k_y * (top - d_c) if top <= d_y else f_y + k_u * (top - d_y)
+        k_r = (peak + f_c) / (top + d_c)
+        if top > d_y:
+            k_r = (f_c + f_y) / (d_c + d_y) * (d_y / top) ** case.parameters["b0"]
+        k_r = max(k_r, peak / top)
+        crack = top - (peak + f_c) / k_r
+        side = rng.choice([-1, 1])
+        path = top + (crack - top) * rng.uniform(0, 0.999999, 30)
+        path = side * np.concatenate(([top], path, [top]))
+        force = case.force(path)
+        by_hand = side * peak + k_r * (path - side * top)
+        np.testing.assert_allclose(force, by_hand, rtol=0, atol=1e-12 * peak)
+        total = work(path, force)
+        assert abs(total[-1] - total[0]) <= 1e-11 * peak * top
+
+
+@every_kind
+def test_property_06_mirror(kind: str) -> None:
+    for case in cases(kind, exact_crossings=True):
+        assert np.array_equal(case.force(-case.path), -case.force())
+
+
+@every_kind
+def test_property_07_tangent(kind: str) -> None:
+    """The force rises with the deformation everywhere, except on P with no stiffness."""
+    for case in cases(kind):
+        path, gap = around_corners(case)
+        force, run = case.force(path), np.diff(path)
+        clear = np.abs(run) > 0.9 * gap
+        tangent = np.diff(force)[clear] / run[clear]
+        slack = 1e-12 * case.scale / gap  # round-off of a difference over the gap
+        assert np.all(tangent <= case.stiffest + slack)
+        if case.post_yield > 0:
+            assert np.all(tangent > 0)
+        else:
+            both_on_p = np.isclose(np.abs(force), case.f_y, rtol=1e-12, atol=0)
+            both_on_p = (both_on_p[1:] & both_on_p[:-1])[clear]
+            assert np.all(tangent[~both_on_p] > 0)
+            assert np.all(np.abs(tangent[both_on_p]) <= slack)
+
+
+def closes(case: Case, turns: Array, at: int, b: float) -> bool:
+    """Whether property 08 applies to the loop from ``turns[at]`` to ``b`` and back.
+
+    Always, once both sides have been on the backbone. Before that, the second side is still to be
+    loaded for the first time (rule 2), and a loop must neither do that nor, on the line that
+    does it, go all the way back to the peak of the first side: first lines are not repeated.
+
+    Never if A is on R within 1e-12 F_y of zero force: such a reversal is not kept as an inner peak,
+    and so the loop is not wiped out when A is passed again.
+    """
+    spring = case.reference()
+    if case.kind == "bilinear":
+        return True
+    for d in turns[: at + 1].tolist():
+        spring.move(d)
+    if spring.branch.name == "R" and abs(spring.f) <= 2e-12 * case.f_y:
+        return False
+    on_backbone = {spring.branch.side} if spring.branch.name in "CP" else set()
+    if len(set(spring.k_r) | on_backbone) == 2:
+        return True
+    cracked = set(spring.um) | on_backbone
+    spring.move(b)
+    return b != turns[at - 1] and set(spring.um) | on_backbone == cracked
+
+
+@every_kind
+def test_property_08_closed_inner_loops(kind: str) -> None:
+    """From a reversal A to any B not beyond the reversal before it, and back: no trace is left.
+
+    Also with a loop inside the loop, and twice. What "no trace" cannot include: see ``closes`` and
+    rule 3.
+    """
+    rng = np.random.default_rng(8)
+    closed = 0
+    for case in cases(kind):
+        turns = turning_points(case.path)
+        if len(turns) < 4:
+            continue
+        for at in rng.integers(1, len(turns) - 1, 3).tolist():
+            a, previous = turns[at], turns[at - 1]
+            b = rng.choice([previous, a + (previous - a) * rng.uniform(0.001, 0.999)])
+            if not closes(case, turns, at, b):
+                continue
+            c = b + (a - b) * rng.uniform(0.001, 0.999)
+            loop = [[b, a], [b, c, b, a], [b, a, b, c, b, a]][rng.integers(3)]
+            force = case.force(turns)
+            with_loop = case.force(np.concatenate((turns[: at + 1], loop, turns[at + 1 :])))
+            expected = np.concatenate((force[: at + 1], force[at:]))
+            found = np.delete(with_loop, slice(at + 1, at + len(loop)))
+            np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10 * case.scale)
+            closed += 1
+    assert closed > 2 * CASES
+
+
+@every_kind
+def test_property_09_work_from_the_virgin_state(kind: str) -> None:
+    for case in cases(kind):
+        path = case.reference().vertices(case.path)
+        total = work(path, case.force(path))
+        assert np.min(total) >= -1e-13 * case.scale * np.max(np.abs(path))
+
+
+@every_kind
+def test_property_09_work_of_a_closed_cycle(kind: str) -> None:
+    """Closed means deformation and force: then no cycle gives energy back."""
+    closed = 0
+    for case in cases(kind):
+        path = np.array(case.reference().vertices(case.path))
+        force = case.force(path)
+        total = work(path, force)
+        slack = 1e-12 * case.scale
+        for i in np.unique(path, return_index=True)[1].tolist():
+            later = np.flatnonzero((path == path[i]) & (np.abs(force - force[i]) <= slack))
+            closed += len(later) - 1
+            assert np.all(np.diff(total[later]) >= -slack * np.max(np.abs(path)))
+    assert closed > 3 * CASES
+
+
+@every_kind
+def test_property_10_symmetric_cycles_repeat(kind: str) -> None:
+    rng = np.random.default_rng(10)
+    n = 16
+    for case in cases(kind):
+        low = case.parameters.get("d_c", 0.5 * case.d_y)
+        top = rng.choice([rng.uniform(low, case.d_y), rng.uniform(1, 8) * case.d_y])
+        cycles = case.force(refined([top, -top] * 5, n)).reshape(10, n)
+        scale = 1e-12 * (case.f_y + case.post_yield * top)
+        for leg in (2, 3):  # the second cycle: up, down
+            for later in range(leg + 2, 10, 2):
+                np.testing.assert_allclose(cycles[later], cycles[leg], rtol=0, atol=scale)
+
+
+@every_kind
+def test_property_11_partial_unloading_is_one_line(kind: str) -> None:
+    """Down toward zero force and up again: the same straight line, and on as if nothing was."""
+    rng = np.random.default_rng(11)
+    lines = 0
+    for case in cases(kind):
+        force = case.force()
+        way = np.sign(np.diff(np.concatenate(([0.0], case.path))))
+        for i in rng.integers(0, POINTS, 2).tolist():
+            if way[i] * force[i] <= 1e-9 * case.scale:
+                continue  # not loading
+            a, f = case.path[i], force[i]
+            far = 0.95 * abs(f) / case.stiffest
+            if kind == "bilinear":  # the elastic line ends at the other bounding line
+                k, k_post = case.stiffest, case.post_yield
+                other = k_post * a - way[i] * (k - k_post) * case.d_y
+                far = min(far, 0.999 * abs(f - other) / (k - k_post))
+            down = a - way[i] * far * np.linspace(0, 1, 9)
+            there_and_back = np.concatenate((down, down[-2::-1]))
+            path = np.concatenate((case.path[: i + 1], there_and_back, case.path[i + 1 :]))
+            found = case.force(path)
+            leg = found[i + 1 : i + 1 + 17]
+            slack = 1e-11 * case.scale
+            np.testing.assert_allclose(leg[:9], np.linspace(leg[0], leg[8], 9), rtol=0, atol=slack)
+            np.testing.assert_allclose(leg[::-1], leg, rtol=0, atol=slack)
+            np.testing.assert_allclose(found[i + 18 :], force[i + 1 :], rtol=0, atol=10 * slack)
+            lines += 1
+    assert lines > CASES / 2
+
+
+def test_property_12_b0_zero_keeps_the_stiffness() -> None:
+    rng = np.random.default_rng(12)
+    for case in cases("one"):
+        d_c, k_c = case.parameters["d_c"], case.parameters["k_c"]
+        k_0 = (k_c * d_c + case.f_y) / (d_c + case.d_y)
+        spring = rbsdem.Takeda(**(case.parameters | {"b0": 0.0}))
+        top = case.d_y * rng.uniform(1, 10)
+        force = response(spring, [top, 0.99 * top])
+        assert (force[0] - force[1]) / (0.01 * top) == pytest.approx(k_0, rel=1e-9)
+
+
+@pytest.mark.parametrize(("inner", "b1"), [("kc", 1.0), ("kc", 7.0), ("kr", 1.0)])
+def test_property_12_b1_limits_equal_the_original_rule(inner: str, b1: float) -> None:
+    """B1 Kc above every K_r, or B1 = 1 in the other reading: K_in = K_r."""
+    for case in cases(inner):
+        limit = rbsdem.Takeda(**(case.parameters | {"b1": b1}))
+        original = rbsdem.Takeda(**(case.parameters | {"inner": "one"}))
+        np.testing.assert_allclose(
+            response(limit, case.path),
+            response(original, case.path),
+            rtol=0,
+            atol=1e-11 * case.scale,
+        )
+
+
+def test_property_12_b1_at_the_largest_unloading_stiffness() -> None:
+    """After yield on both sides no K_r exceeds K_0: B1 = K_0/K_c is enough."""
+    for case in cases("kc"):
+        d_c, k_c = case.parameters["d_c"], case.parameters["k_c"]
+        k_0 = (k_c * d_c + case.f_y) / (d_c + case.d_y)
+        far = 1.5 * case.d_y
+        path = np.concatenate(([far, -2 * far], case.path))
+        limit = rbsdem.Takeda(**(case.parameters | {"b1": k_0 / k_c * (1 + 1e-12)}))
+        original = rbsdem.Takeda(**(case.parameters | {"inner": "one"}))
+        np.testing.assert_allclose(
+            response(limit, path), response(original, path), rtol=0, atol=1e-11 * case.scale
+        )
+
+
+def test_property_12_b1_is_unused_by_the_original_rule() -> None:
+    for case in cases("one"):
+        other = rbsdem.Takeda(**(case.parameters | {"b1": 0.123}))
+        assert np.array_equal(response(other, case.path), case.force())
+
+
+@every_kind
+def test_property_13_continuation(kind: str) -> None:
+    """A response is the beginning of every longer one, and a spring keeps nothing of a call."""
+    rng = np.random.default_rng(13)
+    for case in cases(kind, exact_crossings=True):
+        spring = case.spring()
+        force = response(spring, case.path)
+        for n in rng.integers(0, POINTS, 3).tolist():
+            assert np.array_equal(response(spring, case.path[:n]), force[:n])
+        assert np.array_equal(response(spring, case.path), force)
+
+
+def scaled(case: Case, a: float, b: float) -> Case:
+    factor = {"k": b / a, "d": a}  # stiffnesses and deformations by the first letter of their names
+    parameters = {
+        name: value * factor.get(name[0], 1.0) if name != "inner" else value
+        for name, value in case.parameters.items()
+    }
+    return Case(case.kind, parameters, case.path * a)
+
+
+@every_kind
+def test_property_14_scaling_by_powers_of_two(kind: str) -> None:
+    """Without round-off the scaling is exact, also of turns at a zero crossing."""
+    rng = np.random.default_rng(14)
+    for case in cases(kind, exact_crossings=True):
+        a, b = 2.0 ** rng.integers(-20, 20, 2)
+        assert np.array_equal(scaled(case, a, b).force(), b * case.force())
+
+
+@every_kind
+def test_property_14_scaling(kind: str) -> None:
+    rng = np.random.default_rng(141)
+    for case in cases(kind):
+        a, b = 10 ** rng.uniform(-3, 3, 2)
+        found = scaled(case, a, b).force() / b
+        np.testing.assert_allclose(found, case.force(), rtol=0, atol=1e-9 * case.scale)
+
+
+# ---- the independent method ----------------------------------------------------------------------
+
+
+@every_kind
+@pytest.mark.parametrize(
+    ("seed", "count", "points", "extreme"),
+    [(101, 1500, 40, False), (102, 500, 60, True), (103, 40, 600, False)],
+    ids=["ordinary", "extreme", "long"],
+)
+def test_reference_agrees(kind: str, seed: int, count: int, points: int, extreme: bool) -> None:
+    for case in generate(seed, kind, count, points, extreme=extreme):
+        expected = case.reference().response(case.path)
+        np.testing.assert_allclose(case.force(), expected, rtol=0, atol=1e-9 * case.scale)
+
+
+# ---- refusals and shapes -------------------------------------------------------------------------
+
+GOOD: dict[str, dict[str, Any]] = {
+    "Elastic": {"k": 2.0},
+    "Bilinear": {"k": 2.0, "d_y": 0.5, "k_post": 0.1},
+    "Takeda": {"k_c": 4.0, "d_c": 1.0, "k_y": 2.0, "d_y": 3.0, "k_u": 0.5, "b0": 0.4, "b1": 1.0},
+}
+
+BAD: list[tuple[str, str, Any]] = [
+    *(("Elastic", "k", value) for value in (0.0, -1.0)),
+    *(("Bilinear", "k", value) for value in (0.0, -1.0)),
+    *(("Bilinear", "d_y", value) for value in (0.0, -1.0)),
+    *(("Bilinear", "k_post", value) for value in (-1e-9, 2.0, 3.0)),
+    *(("Takeda", "k_c", value) for value in (0.0, -1.0)),
+    *(("Takeda", "d_c", value) for value in (0.0, -1.0)),
+    *(("Takeda", "k_y", value) for value in (0.0, -1.0, 4.0, 5.0)),
+    *(("Takeda", "d_y", value) for value in (1.0, 0.5, -3.0)),
+    *(("Takeda", "k_u", value) for value in (-1e-9, 2.1)),
+    *(("Takeda", "b0", value) for value in (-0.1,)),
+    *(("Takeda", "b1", value) for value in (0.0, -0.1)),
+    *(
+        (spring, name, value)
+        for spring, parameters in GOOD.items()
+        for name in parameters
+        for value in (math.nan, math.inf, -math.inf)
+    ),
+    ("Takeda", "inner", "xx"),
+    ("Takeda", "inner", ""),
+]
+
+
+@pytest.mark.parametrize(("spring", "name", "value"), BAD)
+def test_bad_parameters_are_refused_by_name(spring: str, name: str, value: Any) -> None:
+    with pytest.raises(rbsdem.InputError, match=rf"\b{name}\b"):
+        getattr(rbsdem, spring)(**(GOOD[spring] | {name: value}))
+
+
+def test_input_error_is_a_value_error() -> None:
+    assert issubclass(rbsdem.InputError, ValueError)
+
+
+def test_limits_of_the_parameters_are_allowed() -> None:
+    rbsdem.Bilinear(k=2.0, d_y=0.5, k_post=0.0)
+    rbsdem.Takeda(**(GOOD["Takeda"] | {"k_u": 0.0, "b0": 0.0, "b1": 1e-6}))
+    rbsdem.Takeda(**(GOOD["Takeda"] | {"k_u": 2.0, "b0": 1.0, "b1": 5.0}))
+
+
+def test_order_and_defaults_of_the_parameters() -> None:
+    path = S4_MU * DY
+    default = rbsdem.Takeda(KC, DC, KY, DY, KU)
+    spelled = rbsdem.Takeda(k_c=KC, d_c=DC, k_y=KY, d_y=DY, k_u=KU, b0=0.4, b1=1.0, inner="kc")
+    assert np.array_equal(response(default, path), response(spelled, path))
+    by_name = rbsdem.Bilinear(k=KC, d_y=DC, k_post=KU)
+    assert np.array_equal(response(rbsdem.Bilinear(KC, DC, KU), path), response(by_name, path))
+
+
+@pytest.fixture(params=list(GOOD))
+def spring(request: pytest.FixtureRequest) -> Any:
+    return getattr(rbsdem, request.param)(**GOOD[request.param])
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize("index", [0, 3, 5])
+def test_deformation_that_is_not_finite_is_refused_by_index(
+    spring: Any, bad: float, index: int
+) -> None:
+    path = np.linspace(0.0, 1.0, 6)
+    path[index] = bad
+    where = rf"\b(index {index}|value {index + 1} of 6)\b"
+    with pytest.raises(rbsdem.InputError, match=where):
+        spring.response(path)
+
+
+def test_shapes_of_the_deformation(spring: Any) -> None:
+    path = np.array([0.1, 2.0, -1.0, 5.0, 0.0])
+    force = spring.response(path)
+    assert isinstance(force, np.ndarray)
+    assert force.shape == path.shape
+    assert force.dtype == np.float64
+    assert np.array_equal(spring.response(path.tolist()), force)
+    assert np.array_equal(spring.response(tuple(path)), force)
+    assert np.array_equal(spring.response(np.repeat(path, 2)[::2]), force)
+    assert np.array_equal(spring.response([1, 2, -3]), spring.response([1.0, 2.0, -3.0]))
+    assert np.array_equal(spring.response(path[:1]), force[:1])
+
+
+def test_empty_deformation_gives_empty_force(spring: Any) -> None:
+    for empty in ([], np.array([])):
+        force = spring.response(empty)
+        assert isinstance(force, np.ndarray)
+        assert force.shape == (0,)
+        assert force.dtype == np.float64
+
+
+@pytest.mark.parametrize("shape", [(2, 3), (1, 1), (0, 2)])
+def test_deformation_with_two_axes_is_refused(spring: Any, shape: tuple[int, int]) -> None:
+    with pytest.raises(rbsdem.InputError):
+        spring.response(np.zeros(shape))
+
+
+def test_deformation_is_not_written_to(spring: Any) -> None:
+    path = np.array([0.1, 2.0, -1.0, 5.0])
+    path.flags.writeable = False
+    spring.response(path)
+    assert np.array_equal(path, [0.1, 2.0, -1.0, 5.0])
