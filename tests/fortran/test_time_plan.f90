@@ -152,8 +152,13 @@ contains
 
       call new_plan(plan, [0.0_wp, 1.0e9_wp], 1.0e-3_wp, limit, outcome)
       call check_failed(error, outcome, bad_input, '1e+12 steps of 0.001 s are more than 2e+09')
-      call new_plan(plan, [0.0_wp, 1.0e300_wp], 1.0e-100_wp, limit, outcome)
+      call new_plan(plan, [0.0_wp, 1.0e50_wp], 1.0e-50_wp, limit, outcome)
       call check_failed(error, outcome, bad_input, 'shorten the duration')
+      ! Beyond that the number of steps itself would overflow.
+      call new_plan(plan, [0.0_wp, 1.0e50_wp], 1.0e-300_wp, limit, outcome)
+      call check_failed(error, outcome, bad_input, 'too short for any number of steps')
+      call check_times([0.0_wp, 1.0e300_wp], outcome)
+      call check_failed(error, outcome, bad_input, 'value 2 of 2 is 1e+300')
       call check_close(error, auto_share, 0.2_wp, 0.0_wp, 0.0_wp, 'stated share')
    end subroutine too_many
 
