@@ -49,7 +49,7 @@ contains
       integer, intent(in) :: s
       !> Ends, `far` further in the direction s than `near`
       real(wp), intent(in) :: near, far
-      !> Whether the near end is closed
+      !> Whether the near end is closed; that of a one-way line always is, the spring stands on it
       logical, intent(in) :: near_closed
       !> Whether the line is left when the motion turns back from s
       logical, intent(in) :: one_way
@@ -58,11 +58,11 @@ contains
       if (s > 0) then
          line%lo = near
          line%hi = far
-         line%lo_closed = near_closed
+         line%lo_closed = near_closed .or. one_way
       else
          line%lo = far
          line%hi = near
-         line%hi_closed = near_closed
+         line%hi_closed = near_closed .or. one_way
       end if
       if (one_way) line%one_way = s
    end function outward

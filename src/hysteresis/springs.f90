@@ -1,5 +1,6 @@
 !> The springs of a column: rules off the hot path, their present lines as plain arrays on it.
 module rbs_hysteresis_springs
+   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_factory, only: new_rule
@@ -11,8 +12,9 @@ module rbs_hysteresis_springs
 
    public :: spring_array, follow_path
 
-   !> More lines than this within one move are a fault of a rule (lines without length in a circle).
-   integer, parameter :: most_lines = 100000
+   !> More lines than this within one move are a circle of lines without length: a fault of a rule. The
+   !> longest honest move closes all the open inner loops that a rule remembers.
+   integer, parameter :: most_lines = 10000
 
    !> Holds one rule. Arrays of a polymorphic type are kept out of the program; arrays of this are fine.
    type :: rule_slot
@@ -35,6 +37,8 @@ module rbs_hysteresis_springs
       real(wp), allocatable :: work(:)
       !> Number of lines left so far
       integer :: events = 0
+      !> Whether a rule has gone in a circle; the state is then of no use
+      logical :: stuck = .false.
       !> The lines themselves (count), with the ends as the rules gave them
       type(segment), allocatable :: line(:)
       type(rule_slot), allocatable, private :: slot(:)
@@ -103,10 +107,11 @@ contains
          else if (d < self%first(i)) then
             call change_line(self, i, -1)
          else
-            exit
+            call walk(self, i, d)
+            return
          end if
       end do
-      call walk(self, i, d)
+      self%stuck = .true.
    end subroutine move
 
    !> Go on the present line to d; the rear end of a one-way line comes along.
@@ -202,6 +207,7 @@ contains
       do j = 1, size(d)
          call spring%move(1, d(j))
          f(j) = spring%force(1)
+         if (spring%stuck) f(j) = ieee_value(f(j), ieee_quiet_nan)
       end do
    end subroutine follow_path
 

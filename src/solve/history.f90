@@ -85,6 +85,11 @@ contains
             if (.not. maxval(abs(run%q)) < out_of_bounds) then
                call report_unbounded(run, error)
                return
+            else if (run%springs%stuck) then
+               call fatal_error(error, analysis_failed, 'a hysteresis rule goes in a circle at time '// &
+                                to_text(run%time)//' s; the parameters of a spring are too extreme '// &
+                                'for the arithmetic. Rows up to there are kept')
+               return
             end if
             if (is_kept(summary%steps, part == 1, plan%steps, every)) then
                call keep(run, row, recorder, summary, error)

@@ -13,6 +13,7 @@ import signal
 import stat
 import subprocess
 import time
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -928,62 +929,74 @@ def long_run(run_cli, dynamic_text, tmp_path):
 def test_no_progress_in_a_pipe(run_cli, long_run, tmp_path, read_csv):
     begin = time.perf_counter()
     result = run_cli(["run", "case.nml"], tmp_path)
-    assert time.perf_counter() - begin > 1.2, "too short to tell"
+    assert time.perf_counter() - begin > 1.1, "too short to tell"
     assert (result.returncode, result.stderr) == (0, "")
     assert "\r" not in result.stdout
     assert read_csv(tmp_path / "case.csv")["time_s"].size == long_run
 
 
-def on_terminal(executable: Path, arguments: list[str], cwd: Path) -> tuple[int, str, str]:
-    """Exit code, what a terminal shows of stderr, and stdout (a pipe)."""
+@dataclass(frozen=True)
+class Shown:
+    """What a run leaves: exit code, text on the terminal (stderr), stdout (a pipe)."""
+
+    code: int
+    text: str
+    out: str
+    silence: float  # before the first letter on the terminal [s]
+
+
+def on_terminal(executable: Path, arguments: list[str], cwd: Path) -> Shown:
     terminal, inner = pty.openpty()
     with open(cwd / "stdout.txt", "w+") as out:
+        begin = time.monotonic()
         process = subprocess.Popen(
             [executable, *arguments], cwd=cwd, stdin=subprocess.DEVNULL, stdout=out, stderr=inner
         )
         os.close(inner)
-        shown = b""
-        end = time.monotonic() + 20
-        while time.monotonic() < end:
-            if select.select([terminal], [], [], 0.1)[0]:
-                try:
-                    piece = os.read(terminal, 4096)
-                except OSError:  # Linux: the other end is closed
-                    break
-                if not piece:
-                    break
-                shown += piece
+        text, silence = b"", 0.0
+        while time.monotonic() < begin + 20:
+            if not select.select([terminal], [], [], 0.1)[0]:
+                continue
+            try:
+                piece = os.read(terminal, 4096)
+            except OSError:  # Linux: the other end is closed
+                break
+            if not piece:
+                break
+            if not text:
+                silence = time.monotonic() - begin
+            text += piece
         os.close(terminal)
         code = process.wait(timeout=20)
         out.seek(0)
-        return code, shown.decode(), out.read()
+        return Shown(code, text.decode(), out.read(), silence)
 
 
 def test_progress_on_a_terminal_grows_and_is_taken_away(executable, long_run, tmp_path):
-    code, shown, out = on_terminal(executable, ["run", "case.nml"], tmp_path)
-    assert code == 0
-    assert "rows in" in out
-    assert "\r" not in out
-    shares = [int(share) for share in re.findall(r"\] +(\d+) % +\d+ s left", shown)]
-    assert len(shares) >= 3
+    shown = on_terminal(executable, ["run", "case.nml"], tmp_path)
+    assert shown.code == 0
+    assert "rows in" in shown.out
+    assert "\r" not in shown.out
+    shares = [int(share) for share in re.findall(r"\] +(\d+) % +\d+ s left", shown.text)]
+    assert len(shares) >= 2
     assert shares == sorted(shares)
     assert 0 < shares[0] < shares[-1] <= 100
-    # Not from the begin on: short runs stay silent.
-    assert shares[0] >= 15
+    assert shown.silence > 1.0  # short runs stay silent
     # Never a line of its own, and blank at the end.
-    assert "\n" not in shown
-    assert re.search(r"\r +\r$", shown)
-    assert max(len(line) for line in shown.split("\r")) < 80
+    assert "\n" not in shown.text
+    assert re.search(r"\r +\r$", shown.text)
+    assert max(len(line) for line in shown.text.split("\r")) < 80
 
 
 def test_progress_on_a_terminal_stays_away_with_quiet_and_in_short_runs(
     executable, case_text, long_run, tmp_path
 ):
-    assert on_terminal(executable, ["run", "case.nml", "-q"], tmp_path) == (0, "", "")
+    shown = on_terminal(executable, ["run", "case.nml", "-q"], tmp_path)
+    assert (shown.code, shown.text, shown.out) == (0, "", "")
     write(tmp_path, case_text(), "short.nml")
-    code, shown, out = on_terminal(executable, ["run", "short.nml"], tmp_path)
-    assert (code, shown) == (0, "")
-    assert "rows in" in out
+    shown = on_terminal(executable, ["run", "short.nml"], tmp_path)
+    assert (shown.code, shown.text) == (0, "")
+    assert "rows in" in shown.out
 
 
 def wait_for(path: Path, least: int) -> None:
