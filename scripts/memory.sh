@@ -1,12 +1,18 @@
 #!/usr/bin/env bash
-# Leaks and invalid reads: valgrind on every suite of unit tests and on one run of each analysis.
+# Leaks and invalid reads: valgrind on one run of each analysis, and with --all on every suite of unit
+# tests.
 #
-#   bash scripts/memory.sh [folder of the build]         default: build/memory
+#   bash scripts/memory.sh [--all] [folder of the build]         default: build/memory
 #
 # An executable must also end with the exit code that its input calls for.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+all=0
+if [ "${1:-}" = --all ]; then
+    all=1
+    shift
+fi
 build=${1:-$root/build/memory}
 if ! command -v meson >/dev/null 2>&1 || ! command -v valgrind >/dev/null 2>&1; then
     RBSDEM_WITH_VALGRIND=1 . "$root/scripts/setup.sh"
@@ -81,8 +87,9 @@ case_file refused <<'NML'
 NML
 
 # The form of the list depends on the version of meson; the suite is its last word.
-suites=$(meson test -C "$build" --list --suite fortran 2>/dev/null | sed -n 's/.*[:/] *\([a-z_0-9]*\)$/\1/p')
-[ -n "$suites" ] || { echo 'memory: meson lists no tests' >&2; exit 1; }
+suites=
+[ "$all" = 0 ] || suites=$(meson test -C "$build" --list --suite fortran 2>/dev/null | sed -n 's/.*[:/] *\([a-z_0-9]*\)$/\1/p')
+[ "$all" = 0 ] || [ -n "$suites" ] || { echo 'memory: meson lists no tests' >&2; exit 1; }
 for suite in $suites; do
     watch "unit tests: $suite" 0 "$build/tests/fortran/unit_tests" "$suite"
 done

@@ -15,15 +15,20 @@ ruff check .
 ruff format --check -q .
 fortitude check -q
 
-say "Fortran tests, built as for use"
+say "Fortran tests, built alone as for use"
 [ -e build/fortran/build.ninja ] || meson setup build/fortran >/dev/null
-meson test -C build/fortran --quiet
-
-say "Fortran tests with bounds checks and floating-point traps"
-bash scripts/checked.sh
+meson test -C build/fortran --quiet --print-errorlogs
 
 say "leaks, one run of each analysis"
-bash scripts/memory.sh
+bash scripts/memory.sh build/fortran
 
-say "Python tests, regression and fuzzing, with the checked executable too"
-MPLBACKEND=Agg python -m pytest -q
+say "Python tests, fuzzing, regression; examples of the documentation"
+export MPLBACKEND=Agg
+python -m pytest -q -n 2
+python docs/check.py
+
+say "all of it once more with bounds checks and floating-point traps"
+python -m pip install -q --disable-pip-version-check --no-build-isolation --no-deps --upgrade \
+    --target build/checked-site -Cbuild-dir=build/checked -Csetup-args=-Dchecked=true .
+meson test -C build/checked --quiet --print-errorlogs
+PYTHONPATH="$root/build/checked-site" python -m pytest -q -n 2 --ignore tests/python/test_examples.py

@@ -272,15 +272,15 @@ contains
       end if
       call recorder%open(path, header(case), row_labels(column%n, case%analysis%dynamic()), error)
       if (allocated(error)) return
+      call progress%start(quiet)
       if (case%analysis%dynamic()) then
-         call progress%start(quiet)
          call run_dynamic(column, plan, limit, loads%time, loads%force, loads%ground, at_rest, &
                           case%output%every, recorder, summary, error, progress)
-         call progress%finish()
       else
          call run_static(column, case%loading(1)%drive == 'force', loads%target, case%output%every, &
-                         recorder, summary, error)
+                         recorder, summary, error, progress)
       end if
+      call progress%finish()
    end subroutine solve
 
    !> Comment lines of the csv.

@@ -272,7 +272,7 @@ contains
    pure real(wp) function inner_stiffness(self, peak) result(k_in)
       type(takeda_rule), intent(in) :: self
       type(point), intent(in) :: peak
-      real(wp) :: k_r
+      real(wp) :: k_r, way
 
       k_r = self%k_r(self%side)
       if (.not. k_r > 0.0_wp) k_r = self%k_r(-self%side)
@@ -284,7 +284,10 @@ contains
       case default
          k_in = k_r
       end select
-      k_in = max(min(k_in, k_r), peak%f/(peak%d - self%aim%zero))
+      k_in = min(k_in, k_r)
+      ! At ductilities of 1e16 round-off leaves no way from the zero crossing.
+      way = self%side*(peak%d - self%aim%zero)
+      if (way > 0.0_wp) k_in = max(k_in, self%side*peak%f/way)
    end function inner_stiffness
 
    !> Take up the reloading line that was left at an inner peak; it and all newer ones are closed.

@@ -37,7 +37,7 @@ contains
    end subroutine make_column
 
    !> Static path through displacements of the top or lateral forces.
-   subroutine run_static(column, by_force, target, every, recorder, summary, error)
+   subroutine run_static(column, by_force, target, every, recorder, summary, error, progress)
       type(column_type), intent(in) :: column
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
@@ -48,6 +48,7 @@ contains
       class(recorder_type), intent(inout) :: recorder
       type(summary_type), intent(out) :: summary
       type(error_type), allocatable, intent(out) :: error
+      class(progress_type), intent(inout), optional :: progress
 
       if (column%kinematics == finite) then
          call fatal_error(error, bad_input, "column: kinematics = 'finite' has no static path; use "// &
@@ -60,7 +61,7 @@ contains
          call check_values(target, 'displacement', error)
       end if
       if (allocated(error)) return
-      call trace(column, by_force, target, every, recorder, summary, error)
+      call trace(column, by_force, target, every, recorder, summary, error, progress)
    end subroutine run_static
 
    !> Stability limit and plan of the steps of a dynamic analysis.

@@ -9,6 +9,7 @@ module rbs_solve_static
    use rbs_column_column, only: column_type
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_springs, only: spring_array
+   use rbs_results_progress, only: progress_type
    use rbs_results_recorder, only: recorder_type
    use rbs_results_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
                               row_spring, row_damping, row_axial, row_residual, row_joints
@@ -67,7 +68,7 @@ contains
    end function kept_rows
 
    !> Follow the targets one after the other from the virgin state.
-   subroutine trace(column, by_force, target, every, recorder, summary, error)
+   subroutine trace(column, by_force, target, every, recorder, summary, error, progress)
       type(column_type), intent(in) :: column
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
@@ -79,6 +80,8 @@ contains
       type(summary_type), intent(out) :: summary
       !> On failure everything up to the last good state has been recorded
       type(error_type), allocatable, intent(out) :: error
+      !> Told now and then how far the path is
+      class(progress_type), intent(inout), optional :: progress
       type(path_type) :: path
       type(error_type), allocatable :: failure
       real(wp), allocatable :: row(:)
@@ -99,6 +102,7 @@ contains
             if (allocated(error)) return
          end if
          summary%steps = i
+         if (mod(i, 8192) == 0 .and. present(progress)) call progress%update(real(i, wp)/size(target))
          summary%events = path%springs%events
          if (allocated(failure)) then
             call move_alloc(failure, error)

@@ -1,5 +1,6 @@
 !> What the user asked of the column: geometry, mass, joints, axial load, damping.
 module rbs_spec_column
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unset, standard_gravity
    use rbs_base_error, only: message_list
@@ -13,8 +14,8 @@ module rbs_spec_column
 
    character(len=6), parameter :: kinematics_names(3) = ['small ', 'pdelta', 'finite']
 
-   !> The solvers work on dense matrices of twice this size at the most.
-   integer, parameter :: most_bodies = 2000
+   !> The solvers work on dense matrices of twice this size at the most; their modes take seconds.
+   integer, parameter :: most_bodies = 500
 
    !> A column of `n` rigid bodies; joint i is at the bottom of body i, counted from the ground.
    type :: column_spec
@@ -104,7 +105,7 @@ contains
       type(message_list), intent(inout) :: messages
       real(wp) :: total
 
-      if (.not. all(self%lengths > 0.0_wp .and. self%lengths < huge(1.0_wp))) return
+      if (.not. all(ieee_is_finite(self%lengths))) return
       total = sum(self%lengths)
       if (abs(total - self%height) > 1.0e-9_wp*self%height) then
          call messages%add('column: the lengths add up to '//to_text(total)//' m, the height is '// &

@@ -249,7 +249,7 @@ contains
 
       spec = column_1('small')
       spec%n = 0
-      call expect_column(error, spec, 'column: n = 0 bodies; it must be from 1 to 2000')
+      call expect_column(error, spec, 'column: n = 0 bodies; it must be from 1 to 500')
       spec%n = most_bodies + 1
       call expect_column(error, spec, 'column: n = 2001 bodies')
       spec = column_1('small')
