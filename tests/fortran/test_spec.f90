@@ -251,7 +251,7 @@ contains
       spec%n = 0
       call expect_column(error, spec, 'column: n = 0 bodies; it must be from 1 to 500')
       spec%n = most_bodies + 1
-      call expect_column(error, spec, 'column: n = 2001 bodies')
+      call expect_column(error, spec, 'column: n = 501 bodies')
       spec = column_1('small')
       spec%height = unset
       call expect_column(error, spec, 'column: height is missing; give it a value in m')
