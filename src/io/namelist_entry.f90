@@ -3,7 +3,8 @@ module rbs_io_namelist_entry
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: lower, nearest_name, list_of, to_text, integer_length
-   use rbs_io_namelist_scan, only: nml_entry, nml_group, nml_scan, most_messages
+   use rbs_io_namelist_pieces, only: nml_entry, nml_group, nml_scan
+   use rbs_io_namelist_scan, only: most_messages
    use rbs_io_text_file, only: read_real, number_wrong, number_not_finite
    implicit none
    private
