@@ -35,7 +35,7 @@ NAME = re.compile(r"`(test_\w+)(\.py|…)?`")
 
 def tests() -> str:
     """Return the text of all Python tests, and the names of their files."""
-    files = sorted((HERE.parent / "tests" / "python").glob("*.py"))
+    files = sorted((HERE.parent / "tests").rglob("*.py"))
     return "\n".join(f"file {file.name}\n{file.read_text(encoding='utf-8')}" for file in files)
 
 
