@@ -131,9 +131,11 @@ contains
       !> Displacement [m] or force [N]
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
-      integer :: direction
+      character(len=:), allocatable :: state
+      integer :: direction, lines
 
-      do while (abs(target - path%control) > 0.0_wp)
+      do lines = 1, 10000 + 1000*path%springs%count
+         if (.not. abs(target - path%control) > 0.0_wp) return
          direction = merge(1, -1, target > path%control)
          if (path%direction /= direction) then
             call find_line(path, direction, target, error)
@@ -149,6 +151,9 @@ contains
             call end_line(path)
          end if
       end do
+      call describe_state(path, state)
+      call fatal_error(error, analysis_failed, 'the static path makes no way at '//state//'; the '// &
+                       'parameters of the springs or the targets are too extreme for the arithmetic')
    end subroutine advance
 
    !> Find the line of the column that leads on in a direction.
