@@ -131,7 +131,7 @@ def cyclic(
     column: Mapping[str, Any], by_force: bool, values: Array, every: int, n: int
 ) -> tuple[Array, dict[str, float], SolveError | None]:
     """Return rows, figures, and the error that ended the static path early."""
-    rows = _empty_rows(n, _kept(values.size, every))
+    rows = _empty_rows(n, _rbsdem.rbs_kept_rows(values.size, every))
     kept, figures, status, message = _rbsdem.rbs_cyclic(
         **column, by_force=int(by_force), values=values, every=every, rows=rows
     )
@@ -191,13 +191,6 @@ def read_history(path: str) -> tuple[str, Array, Array]:
     rows, name, displacement, force, status, message = answer
     _raise(status, message)
     return _text(name), displacement[:rows].copy(), force[:rows].copy()
-
-
-def _kept(points: int, every: int) -> int:
-    """Return the number of rows of `points` when every n-th and the last are kept."""
-    if points == 0 or every == UNSET_INTEGER:
-        return points
-    return (points - 1) // every + 1 + ((points - 1) % every > 0)
 
 
 def _empty_rows(n: int, rows: int) -> Array:

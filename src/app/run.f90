@@ -4,6 +4,7 @@ module rbs_app_run
    use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_null_char, c_ptr
    use rbs_app_progress, only: terminal_progress
    use rbs_app_say, only: say
+   use rbs_base_constants, only: pi
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -28,8 +29,6 @@ module rbs_app_run
    private
 
    public :: run_case, check_case, show_modes
-
-   real(wp), parameter :: pi = 3.141592653589793238462643383279502884_wp
 
    !> The loadings of a case on common times.
    type :: loads_type

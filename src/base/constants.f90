@@ -12,6 +12,10 @@ module rbs_base_constants
    !> A deformation that is never reached: the end of a line without end.
    real(wp), parameter, public :: unbounded = huge(1.0_wp)
 
+   !> Larger numbers, and positive ones below its inverse, have no meaning in any unit; products of them
+   !> would overflow or vanish.
+   real(wp), parameter, public :: beyond_meaning = 1.0e50_wp
+
    !> Marks a number that the user has not given. Not a NaN: a NaN from the user must be refused as
    !> such, and comparing a NaN traps in builds with floating-point traps.
    real(wp), parameter, public :: unset = -huge(1.0_wp)

@@ -273,3 +273,14 @@ subroutine rbs_read_history(path, most, rows, name, displacement, force, status,
    name = test
    call tell(error, status, message)
 end subroutine rbs_read_history
+
+subroutine rbs_kept_rows(points, every, rows)
+   use iso_c_binding, only: c_int
+   use rbs_solve_static, only: kept_rows
+   implicit none
+   integer(c_int), intent(in) :: points, every
+   integer(c_int), intent(out) :: rows
+   !f2py threadsafe
+
+   rows = kept_rows(points, every)
+end subroutine rbs_kept_rows

@@ -26,6 +26,7 @@ module rbs_hysteresis_segment
       integer :: one_way = 0
    contains
       procedure :: force
+      procedure :: end_toward
       procedure :: outward
    end type segment
 
@@ -39,6 +40,14 @@ contains
 
       force = self%f0 + self%k*(d - self%d0)
    end function force
+
+   !> The end that the line has in a direction, +1 or -1 [m or rad].
+   elemental real(wp) function end_toward(self, direction)
+      class(segment), intent(in) :: self
+      integer, intent(in) :: direction
+
+      end_toward = merge(self%hi, self%lo, direction > 0)
+   end function end_toward
 
    !> A line through (d0, f0) seen from side s: it leads outward to `far`, and back to `near`.
    !> Rules are written for the positive side once; this is where the mirror stands.

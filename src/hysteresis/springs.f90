@@ -139,7 +139,7 @@ contains
       integer, intent(in) :: i, direction
 
       if (self%one_way(i) == direction .or. self%one_way(i) == 0) then
-         call walk(self, i, merge(self%line(i)%hi, self%line(i)%lo, direction > 0))
+         call walk(self, i, self%line(i)%end_toward(direction))
       else if (direction < 0) then
          self%line(i)%lo = self%d(i)
       else
@@ -188,7 +188,7 @@ contains
       logical :: closed
 
       closed = merge(self%line(i)%hi_closed, self%line(i)%lo_closed, direction > 0)
-      call walk(self, i, merge(self%line(i)%hi, self%line(i)%lo, direction > 0))
+      call walk(self, i, self%line(i)%end_toward(direction))
       if (.not. closed) call self%leave(i, direction)
    end subroutine arrive
 

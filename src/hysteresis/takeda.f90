@@ -84,7 +84,7 @@ contains
       type(point) :: here
       logical :: outward
 
-      here%d = merge(line%hi, line%lo, direction > 0)
+      here%d = line%end_toward(direction)
       here%f = line%force(here%d)
       outward = direction == self%side
 

@@ -1,6 +1,7 @@
 !> The two analyses, from what the user asked for to rows: where both doors meet.
 module rbs_solve_run
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use rbs_base_constants, only: beyond_meaning
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -18,9 +19,6 @@ module rbs_solve_run
    private
 
    public :: make_column, run_static, plan_dynamic, run_dynamic, check_values
-
-   !> Larger values have no meaning in any unit, and squares of them would overflow.
-   real(wp), parameter :: beyond_meaning = 1.0e50_wp
 
 contains
 

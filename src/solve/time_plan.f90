@@ -1,7 +1,7 @@
 !> Which steps are taken from which time to which, and after which of them a row is kept.
 module rbs_solve_time_plan
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use rbs_base_constants, only: unset_integer
+   use rbs_base_constants, only: beyond_meaning, unset_integer
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -16,9 +16,6 @@ module rbs_solve_time_plan
 
    !> Steps this close to a whole number in an interval divide it.
    real(wp), parameter :: whole = 1.0e-9_wp
-
-   !> Times beyond this [s] have no meaning, nor have steps below its inverse.
-   real(wp), parameter :: beyond_meaning = 1.0e50_wp
 
    !> More steps than this do not end in a lifetime.
    real(wp), parameter :: most_steps = 2.0e9_wp

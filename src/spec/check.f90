@@ -4,15 +4,11 @@ module rbs_spec_check
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_kinds, only: wp
-   use rbs_base_constants, only: unset
+   use rbs_base_constants, only: unset, beyond_meaning
    use rbs_base_error, only: message_list
    use rbs_base_text, only: to_text, nearest_name, list_of
    implicit none
    private
-
-   !> Larger numbers, and positive ones below its inverse, have no meaning in any unit; products of them
-   !> would overflow or vanish.
-   real(wp), parameter :: beyond_meaning = 1.0e50_wp
 
    public :: is_given, check_positive, check_not_negative, check_finite, check_name
 
