@@ -1,4 +1,7 @@
-"""The command `rbsdem`: hands over to the executable that was built with the package."""
+"""The command `rbsdem`: hands over to the executable that was built with the package.
+
+`rbsdem trade` is done here, by Python.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +28,11 @@ def executable() -> str:
 
 
 def main() -> int:
-    """Run the executable with the arguments of the command line."""
+    """Run the executable with the arguments of the command line, or `trade`."""
+    if sys.argv[1:2] == ["trade"]:
+        from rbsdem.trade.command import main as trade  # noqa: PLC0415
+
+        return trade(sys.argv[2:])
     try:
         program = executable()
     except FileNotFoundError as error:

@@ -6,7 +6,6 @@ Numbers go in as plain arrays, a status and a message come back; here they becom
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -25,10 +24,11 @@ UNSET_INTEGER = -int(np.iinfo(np.int32).max)
 
 #: Order of the numbers of a spring, and of the names of rules (`rule_names`, `inner_names`).
 SPRING_NUMBERS = ("k", "d_y", "k_post", "k_c", "d_c", "k_y", "k_u", "b0", "b1")
-RULES = ("elastic", "bilinear", "takeda")
+RULES = ("elastic", "bilinear", "takeda", "compression")
 INNER = ("kc", "kr", "one")
 
 _ANALYSIS_FAILED = 1
+_LITTLE_ROOM = 3
 
 #: Names of the figures of a run, in the order of the Fortran summary.
 FIGURES = (
@@ -45,7 +45,18 @@ FIGURES = (
     "damping_energy",
     "energy_residual",
     "relative_energy_residual",
+    "peak_rotation",
+    "cut_steps",
+    "collapsed",
 )
+
+_COUNTS = ("steps", "rows", "events", "cut_steps")
+
+#: Letters of the name of a method; why the program chose it comes behind.
+_METHOD_LENGTH = 20
+
+#: Values of a row before those of the joints (`rbs_results_row`).
+ROW_JOINTS = 10
 
 
 def version() -> str:
@@ -61,6 +72,22 @@ def number(value: Any, name: str) -> float:
         return float(value)
     except (TypeError, ValueError):
         raise InputError(f"{name} = {value!r} must be a number") from None
+
+
+def word(value: Any) -> str:
+    """Return a name for the Fortran part, which knows valid names and refuses all others.
+
+    Without runs of blanks, as Fortran reads only the first letters of a long word, and without
+    letters that f2py does not take.
+    """
+    return " ".join(str(value).split()).encode("ascii", "replace").decode()
+
+
+def switch(value: Any, name: str) -> bool:
+    """Return `value` as a bool, or raise `InputError` naming it."""
+    if isinstance(value, (bool, np.bool_, int, np.integer)) and value in (0, 1):
+        return bool(value)
+    raise InputError(f"{name} = {value!r} must be True or False")
 
 
 def whole(value: Any, name: str) -> int:
@@ -108,63 +135,92 @@ def spring_response(rule: str, numbers: Array, inner: str, deformation: Array) -
     return _rbsdem.rbs_spring_response(rule, numbers, inner, deformation)
 
 
-def check_column(column: Mapping[str, Any]) -> None:
+#: A column on its way to Fortran (`rbs_flat_pack`): whole numbers, reals, name of the kinematics.
+Packed = tuple[NDArray[np.int32], Array, str]
+
+#: Rows, figures, the error that ended a run early and what is to be noted of it.
+Run = tuple[Array, dict[str, Any], SolveError | None, str]
+
+
+def check_column(column: Packed) -> None:
     """Raise `InputError` for everything that is wrong with a column."""
-    _raise(*_rbsdem.rbs_check_column(**column))
+    _raise(*_rbsdem.rbs_check_column(*column))
 
 
-def modes(column: Mapping[str, Any]) -> tuple[Array, Array, float]:
-    """Return circular frequencies, shapes (one a column) and the stable step of RK4."""
-    omega, shapes, stable_step, status, message = _rbsdem.rbs_modes(**column)
+def modes(column: Packed, unknowns: int) -> tuple[Array, Array, float, str]:
+    """Return circular frequencies, shapes (one a column), the stable step of RK4, and a note."""
+    omega, shapes, stable_step, status, message = _rbsdem.rbs_modes(*column, unknowns)
     _raise(status, message)
-    return omega, shapes, stable_step
+    return omega, shapes, stable_step, _text(message)
 
 
-def mass_matrix(column: Mapping[str, Any], paper: bool) -> Array:
+def mass_matrix(column: Packed, unknowns: int, paper: bool) -> Array:
     """Return the mass matrix in the paper's or in the symmetric form."""
-    mass, status, message = _rbsdem.rbs_mass_matrix(**column, paper=int(paper))
+    mass, status, message = _rbsdem.rbs_mass_matrix(*column, unknowns, int(paper))
     _raise(status, message)
     return mass
 
 
 def cyclic(
-    column: Mapping[str, Any], by_force: bool, values: Array, every: int, n: int
-) -> tuple[Array, dict[str, float], SolveError | None]:
-    """Return rows, figures, and the error that ended the static path early."""
-    rows = _empty_rows(n, _rbsdem.rbs_kept_rows(values.size, every))
-    kept, figures, status, message = _rbsdem.rbs_cyclic(
-        **column, by_force=int(by_force), values=values, every=every, rows=rows
+    column: Packed, unknowns: int, by_force: bool, values: Array, every: int, collapse_drift: float
+) -> Run:
+    """Follow a static path."""
+    rows = _empty_rows(unknowns, _rbsdem.rbs_kept_rows(values.size, every))
+    return _finish(
+        rows, *_rbsdem.rbs_cyclic(*column, int(by_force), values, every, collapse_drift, rows)
     )
-    return _finish(rows, kept, figures, status, message)
 
 
 def time_history(
-    column: Mapping[str, Any],
+    column: Packed,
+    unknowns: int,
     time: Array,
-    force: Array,
-    ground: Array,
-    dt: float,
-    deformation: Array,
-    velocity: Array,
+    loads: tuple[Array, Array, Array, Array],
+    method: str,
+    events: str,
+    settings: Array,
+    initial: Array,
+    opening_given: bool,
     every: int,
-    n: int,
-) -> tuple[Array, dict[str, float], SolveError | None]:
-    """Return rows, figures, and the error that ended the response early."""
-    kept, status, message = _rbsdem.rbs_plan(**column, time=time, dt=dt, every=every)
-    _raise(status, message)
-    rows = _empty_rows(n, kept)
-    kept, figures, status, message = _rbsdem.rbs_time_history(
-        **column,
-        time=time,
-        force=force,
-        ground=ground,
-        dt=dt,
-        initial_deformation=deformation,
-        initial_velocity=velocity,
-        every=every,
-        rows=rows,
-    )
-    return _finish(rows, kept, figures, status, message)
+) -> Run:
+    """March through time.
+
+    How many rows there will be is known to the Fortran part only, once it has planned the steps.
+    Without `every`, and without a step that does not divide the intervals, there is one for each of
+    `time`; else a first call asks for more room.
+    """
+    wanted = time.size if every == UNSET_INTEGER else 0
+    while True:
+        rows = _empty_rows(unknowns, wanted)
+        wanted, *rest = _rbsdem.rbs_time_history(
+            *column,
+            time,
+            *loads,
+            method,
+            events,
+            settings,
+            initial,
+            int(opening_given),
+            every,
+            rows,
+        )
+        if rest[2] != _LITTLE_ROOM:
+            return _finish(rows, wanted, *rest)
+
+
+def read_case(path: str) -> tuple[Any, ...]:
+    """Return column, title, analysis and loadings of a case file, as `rbsdem.case` takes them."""
+    sizes = (0, 0, 0)
+    while True:
+        answer = _rbsdem.rbs_read_case(os.fsencode(_path(path)), *sizes)
+        *found, status, message = answer
+        _raise(status, message)
+        wanted = tuple(int(size) for size in found.pop())
+        if wanted == sizes:
+            codes, numbers, kinematics, title, method, events, *rest = found
+            texts = (_text(text) for text in (kinematics, title, method, events))
+            return codes, numbers, *texts, *rest
+        sizes = wanted
 
 
 def protocol(amplitudes: Array, cycles: NDArray[np.int32], repeats: int, points: int) -> Array:
@@ -180,8 +236,7 @@ def protocol(amplitudes: Array, cycles: NDArray[np.int32], repeats: int, points:
 
 def read_history(path: str) -> tuple[str, Array, Array]:
     """Return name, displacements [m] and forces [N] of a history file."""
-    if not path or "\0" in path:
-        raise InputError(f"{path!r} is no path of a file")
+    path = _path(path)
     # No row is shorter than two digits, a separator and an end of line.
     most = os.path.getsize(path) // 4 + 1 if os.path.isfile(path) else 1
     if most > np.iinfo(np.int32).max:
@@ -193,24 +248,36 @@ def read_history(path: str) -> tuple[str, Array, Array]:
     return _text(name), displacement[:rows].copy(), force[:rows].copy()
 
 
-def _empty_rows(n: int, rows: int) -> Array:
+def _path(path: str) -> str:
+    if not path or "\0" in path:
+        raise InputError(f"{path!r} is no path of a file")
+    return path
+
+
+def _empty_rows(unknowns: int, rows: int) -> Array:
     """Return the array that Fortran fills, one row of the result a column."""
-    return np.empty((9 + 4 * n, rows), order="F")
+    return np.empty((ROW_JOINTS + 2 * unknowns, rows), order="F")
 
 
 def _finish(
-    rows: Array, kept: int, figures: Array, status: int, message: bytes
-) -> tuple[Array, dict[str, float], SolveError | None]:
+    rows: Array, kept: int, figures: Array, method: bytes, status: int, message: bytes
+) -> Run:
     """Cut the rows to those kept; turn bad input into an exception, a failure into an error."""
-    error = None
+    error, note = None, ""
     if status == _ANALYSIS_FAILED:
         error = SolveError(_text(message))
-    else:
+    elif status:
         _raise(status, message)
-    named = {name: float(value) for name, value in zip(FIGURES, figures, strict=True)}
-    for name in ("steps", "rows", "events"):
+    elif not message.startswith(b" "):
+        note = _text(message)
+    named: dict[str, Any] = dict(zip(FIGURES, figures.tolist(), strict=True))
+    for name in _COUNTS:
         named[name] = int(named[name])
-    return rows[:, :kept].T, named, error
+    collapsed = named.pop("collapsed")
+    named["method"] = _text(method[:_METHOD_LENGTH])
+    named["reason"] = _text(method[_METHOD_LENGTH:])
+    named["status"] = "failed" if error else ("collapsed" if collapsed else "completed")
+    return rows[:, :kept].T, named, error, note
 
 
 def _raise(status: int, message: bytes) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -11,10 +12,15 @@ from numpy.typing import ArrayLike
 from rbsdem import _core
 from rbsdem._core import Array
 from rbsdem.column import Column
-from rbsdem.errors import InputError
+from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.results import Result, result_from_rows
 
-_INITIAL = ("slip", "rotation", "slip_velocity", "rotation_velocity")
+#: Methods in time, as in the Fortran part (`method_names`).
+METHODS = ("auto", "rk4", "rk45", "newmark", "hht", "generalised_alpha")
+
+_DEFORMATIONS = ("slip", "rotation", "opening")
+_NONE = np.empty(0)
+_NONE.flags.writeable = False
 
 
 @dataclass(frozen=True)
@@ -23,10 +29,11 @@ class Modes:
 
     Attributes
     ----------
-    omega, frequency : ndarray, shape (2n,)
+    omega, frequency : ndarray, shape (2n,), or (3n,) where the joints open
         Circular frequencies [rad/s] and frequencies [Hz], ascending.
-    shapes : ndarray, shape (2n, 2n)
-        Shapes in (slip 1..n, relative rotation 1..n), one a column, with shape' M shape = 1.
+    shapes : ndarray, shape (2n, 2n) or (3n, 3n)
+        Shapes in (slip 1..n, relative rotation 1..n, opening 1..n), one a column, with
+        shape' M shape = 1.
     stable_step : float
         Longest step for which RK4 is stable, damping included [s].
     """
@@ -43,19 +50,26 @@ def modes(column: Column) -> Modes:
     Parameters
     ----------
     column : Column
-        The axial load counts with `kinematics` "pdelta" and "finite".
+        Up to 500 bodies. The axial load counts with `kinematics` "pdelta" and "finite".
 
     Raises
     ------
     InputError
         If the axial load is above the critical one; the message gives it.
+
+    Warns
+    -----
+    AccuracyWarning
+        If the axial load is so near the critical one that low frequencies hang on its last digits.
     """
-    omega, shapes, stable_step = _core.modes(_checked(column)._flat())
+    omega, shapes, stable_step, note = _core.modes(_checked(column)._packed, column.unknowns)
+    if note:
+        warnings.warn(note, AccuracyWarning, stacklevel=2)
     return Modes(omega, omega / (2 * np.pi), shapes, stable_step)
 
 
 def mass_matrix(column: Column, form: str = "symmetric") -> Array:
-    """Return the mass matrix for small rotations, shape (2n, 2n).
+    """Return the mass matrix for small rotations, shape (2n, 2n), or (3n, 3n) with openings.
 
     Parameters
     ----------
@@ -67,7 +81,7 @@ def mass_matrix(column: Column, form: str = "symmetric") -> Array:
     """
     if form not in ("symmetric", "paper"):
         raise InputError(f"form = {form!r} is not known; it is 'symmetric' or 'paper'")
-    return _core.mass_matrix(_checked(column)._flat(), form == "paper")
+    return _core.mass_matrix(_checked(column)._packed, column.unknowns, form == "paper")
 
 
 def cyclic(
@@ -76,11 +90,13 @@ def cyclic(
     force: ArrayLike | None = None,
     *,
     every: int | None = None,
+    collapse_drift: float | None = None,
 ) -> Result:
     """Follow the static path of a column through displacements of the top, or lateral forces.
 
     Exact for `kinematics` "small" and "pdelta": the column goes from event to event (end of a line
-    of a spring) without increments or tolerance. The path begins at zero.
+    of a spring) without increments or tolerance. With "finite" each increment is solved for
+    equilibrium, events included. The path begins at zero.
 
     Parameters
     ----------
@@ -90,6 +106,9 @@ def cyclic(
         What is driven, exactly one of the two: displacement of the top [m] or lateral force [N].
     every : int, optional
         Every n-th point is kept, and the last; without it all are.
+    collapse_drift : float, optional
+        Displacement of the top over the height at which the column counts as collapsed: the path
+        ends there, and `summary["status"]` is "collapsed".
 
     Returns
     -------
@@ -103,16 +122,26 @@ def cyclic(
     SolveError
         If the path cannot be carried on (a force beyond the capacity); its attribute `result` holds
         the path up to there, with the last good state as last row.
+
+    Warns
+    -----
+    AccuracyWarning
+        If a body turns by more than 0.1 rad with `kinematics` "small" or "pdelta".
     """
     if (displacement is None) == (force is None):
         raise InputError("cyclic: give exactly one of displacement and force")
     by_force = displacement is None
     name = "force" if by_force else "displacement"
     values = _core.vector(force if by_force else displacement, name)
-    every = _every(every)
-    rows, summary, error = _core.cyclic(_checked(column)._flat(), by_force, values, every, column.n)
-    summary |= {"analysis": "static", "driven": name, "kinematics": column.kinematics}
-    return _return(result_from_rows(rows, summary), error)
+    run = _core.cyclic(
+        _checked(column)._packed,
+        column.unknowns,
+        by_force,
+        values,
+        _every(every),
+        _optional(collapse_drift, "collapse_drift"),
+    )
+    return _return(column, run, {"analysis": "static", "driven": name})
 
 
 def time_history(
@@ -124,9 +153,16 @@ def time_history(
     method: str = "rk4",
     initial: Mapping[str, ArrayLike] | None = None,
     *,
+    vertical_acceleration: ArrayLike | None = None,
+    axial_load: ArrayLike | None = None,
+    events: str | None = None,
+    tolerance: float | None = None,
+    rho_infinity: float | None = None,
+    collapse_drift: float | None = None,
+    allow_unstable: bool = False,
     every: int | None = None,
 ) -> Result:
-    """Compute the response in time to a lateral force, a ground motion, or both.
+    """Compute the response in time to forces at the top and motions of the ground.
 
     Parameters
     ----------
@@ -140,14 +176,34 @@ def time_history(
         Acceleration of the ground [m/s2], linear between the times.
     dt : float, optional
         Step [s]. If it divides every interval of `time`, rows are kept at `time`; else the steps
-        run from the first to the last time and a row is kept after each. Without `dt` every
-        interval is cut into equal steps not longer than a fifth of the stability limit.
-    method : {"rk4"}, optional
-        Classical Runge-Kutta with fixed step (the paper's scheme). A spring changes its line at the
-        end of a step.
+        run from the first to the last time and a row is kept after each. Without `dt` the method
+        chooses; with "rk4" every interval is cut into equal steps not longer than a fifth of the
+        stability limit.
+    method : {"rk4", "auto", "rk45", "newmark", "hht", "generalised_alpha"}, optional
+        Classical Runge-Kutta with fixed step (the paper's scheme); the choice of the program, which
+        `summary["method"]` and `summary["reason"]` tell; Runge-Kutta 5(4) with error control;
+        implicit methods: average acceleration, Hilber-Hughes-Taylor, generalised-alpha.
     initial : mapping, optional
-        State at the begin: "slip" [m], "rotation" [rad], "slip_velocity", "rotation_velocity", each
-        of shape (n,). The springs get there from zero.
+        State at the begin: "slip" [m], "rotation" [rad], "opening" [m], and "slip_velocity",
+        "rotation_velocity", "opening_velocity", each of shape (n,). The springs get there from
+        zero. Without "opening" the joints begin in equilibrium under axial load and weight.
+    vertical_acceleration : array_like, shape (m,), optional
+        Vertical acceleration of the ground, upward positive [m/s2].
+    axial_load : array_like, shape (m,), optional
+        Axial load at the top besides that of the column, compression positive [N].
+    events : {"step", "located"}, optional
+        "rk4": whether a spring changes its line at the end of a step (the default), or the step is
+        cut where the line ends.
+    tolerance : float, optional
+        "rk45" and "auto": wanted relative error of a step, in energy norm. The default is 1e-6.
+    rho_infinity : float, optional
+        "hht" and "generalised_alpha": spectral radius at infinite frequency, 1 without numerical
+        damping. The default is 0.8.
+    collapse_drift : float, optional
+        Displacement of the top over the height at which the column counts as collapsed: the
+        analysis ends there, and `summary["status"]` is "collapsed".
+    allow_unstable : bool, optional
+        "rk4": take a `dt` beyond the stability limit all the same.
     every : int, optional
         Every n-th step is kept, and the last. Without it rows are kept as said for `dt`.
 
@@ -161,23 +217,43 @@ def time_history(
     InputError
         For bad input, and for a step beyond the stability limit; the message gives the limit.
     SolveError
-        If the motion loses all bounds; its attribute `result` holds the rows up to there.
+        If the motion loses all bounds, or a step does not converge; its attribute `result` holds
+        the rows up to there.
+
+    Warns
+    -----
+    AccuracyWarning
+        If a body turns by more than 0.1 rad with `kinematics` "small" or "pdelta", and if vertical
+        loads have nothing to act on.
     """
-    if method != "rk4":
-        raise InputError(f"method = {method!r} is not known; it is 'rk4'")
-    flat = _checked(column)._flat()
-    rows, summary, error = _core.time_history(
-        flat,
-        _core.vector(time, "time"),
+    packed = _checked(column)._packed
+    settings = np.array(
+        [
+            _optional(dt, "dt"),
+            _optional(tolerance, "tolerance"),
+            _optional(rho_infinity, "rho_infinity"),
+            _optional(collapse_drift, "collapse_drift"),
+            _core.switch(allow_unstable, "allow_unstable"),
+        ]
+    )
+    loads = (
         _loading(force, "force"),
         _loading(ground_acceleration, "ground_acceleration"),
-        _core.UNSET if dt is None else _core.number(dt, "dt"),
-        *_initial_state(initial, column.n),
-        _every(every),
-        column.n,
+        _loading(vertical_acceleration, "vertical_acceleration"),
+        _loading(axial_load, "axial_load"),
     )
-    summary |= {"analysis": "dynamic", "method": method, "kinematics": column.kinematics}
-    return _return(result_from_rows(rows, summary), error)
+    run = _core.time_history(
+        packed,
+        column.unknowns,
+        _core.vector(time, "time"),
+        loads,
+        _core.word(method),
+        "" if events is None else _core.word(events),
+        settings,
+        *_initial_state(initial, column),
+        _every(every),
+    )
+    return _return(column, run, {"analysis": "dynamic"})
 
 
 def _checked(column: Column) -> Column:
@@ -194,34 +270,50 @@ def _every(every: int | None) -> int:
     return every
 
 
+def _optional(value: float | None, name: str) -> float:
+    return _core.UNSET if value is None else _core.number(value, name)
+
+
 def _loading(values: ArrayLike | None, name: str) -> Array:
     """Return the values of a loading; an empty array stands for none."""
     if values is None:
-        return np.empty(0)
+        return _NONE
     array = _core.vector(values, name)
     if array.size == 0:
         raise InputError(f"{name} is empty; give one value for each time")
     return array
 
 
-def _initial_state(initial: Mapping[str, ArrayLike] | None, n: int) -> tuple[Array, Array]:
-    """Return deformations and velocities (2n) at the begin."""
-    parts = {name: np.zeros(n) for name in _INITIAL}
-    for name, values in (initial or {}).items():
+def _initial_state(initial: Mapping[str, ArrayLike] | None, column: Column) -> tuple[Array, bool]:
+    """Return deformations and velocities at the begin, and whether openings are given.
+
+    An empty array stands for a column at rest.
+    """
+    if not initial:
+        return _NONE, False
+    n = column.n
+    known = _DEFORMATIONS if column.axial is not None else _DEFORMATIONS[:2]
+    parts = {name: np.zeros(n) for name in (*known, *(f"{name}_velocity" for name in known))}
+    for name, values in initial.items():
         if name not in parts:
-            raise InputError(f"initial: {name!r} is not known; it is one of {', '.join(_INITIAL)}")
+            if name in ("opening", "opening_velocity"):
+                raise InputError(f"initial: {name!r} needs joints that open; give the column axial")
+            raise InputError(f"initial: {name!r} is not known; it is one of {', '.join(parts)}")
         array = _core.finite_vector(np.atleast_1d(values), f"initial: {name}")
         if array.shape != (n,):
             raise InputError(f"initial: {name} has {array.size} values for n = {n} joints")
         parts[name] = array
-    return (
-        np.concatenate([parts["slip"], parts["rotation"]]),
-        np.concatenate([parts["slip_velocity"], parts["rotation_velocity"]]),
-    )
+    return np.concatenate([*parts.values()]), "opening" in initial
 
 
-def _return(result: Result, error: Exception | None) -> Result:
+def _return(column: Column, run: _core.Run, about: dict[str, str]) -> Result:
+    rows, summary, error, note = run
+    summary |= about
+    summary["kinematics"] = column.kinematics
+    result = result_from_rows(rows, column, summary)
     if error is not None:
         error.result = result
         raise error
+    if note:
+        warnings.warn(note, AccuracyWarning, stacklevel=3)
     return result

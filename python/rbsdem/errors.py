@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rbsdem.analysis import Result
 
-__all__ = ["InputError", "RbsdemError", "SolveError"]
+__all__ = ["AccuracyWarning", "InputError", "RbsdemError", "SolveError"]
 
 
 class RbsdemError(Exception):
@@ -41,3 +41,7 @@ class SolveError(RbsdemError, RuntimeError):
     def __reduce__(self) -> tuple[type[SolveError], tuple[str, Result | None]]:
         """Keep `result` when the error crosses a process (pickle)."""
         return type(self), (str(self), self.result)
+
+
+class AccuracyWarning(UserWarning):
+    """A result of valid input that may mislead: the message says why, and what to use instead."""

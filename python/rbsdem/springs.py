@@ -25,7 +25,9 @@ class Spring:
 
     def __post_init__(self) -> None:
         if not self.rule:
-            raise TypeError("Spring is the base of Elastic, Bilinear and Takeda; use one of them")
+            raise TypeError(
+                "Spring is the base of Elastic, Bilinear, Takeda and Compression; use one of them"
+            )
         for field in fields(self):
             if field.name != "inner":
                 name = f"{self.rule} spring: {field.name}"
@@ -149,3 +151,23 @@ class Takeda(Spring):
     b0: float = 0.4
     b1: float = 1.0
     inner: str = "kc"
+
+
+@dataclass(frozen=True)
+class Compression(Spring):
+    """Axial spring that carries compression only: an open joint without tension.
+
+    Parameters
+    ----------
+    k : float
+        Stiffness in compression [N/m]. Opening and tension are positive: the force is k w for
+        w < 0, else 0.
+
+    Raises
+    ------
+    InputError
+        If the stiffness is not positive.
+    """
+
+    rule: ClassVar[str] = "compression"
+    k: float

@@ -65,7 +65,7 @@ contains
 
    subroutine print_help(error)
       type(error_type), allocatable, intent(inout) :: error
-      character(len=*), parameter :: text(22) = [character(len=84) :: &
+      character(len=*), parameter :: text(25) = [character(len=84) :: &
          'rbsdem '//version//': reinforced-concrete columns as rigid bodies and springs', &
          '', &
          'usage:', &
@@ -73,6 +73,8 @@ contains
          '  rbsdem check CASE.nml [--quiet]                 find all errors of the input', &
          '  rbsdem modes CASE.nml                           natural frequencies, stable step', &
          '  rbsdem --help | --version', &
+         '', &
+         'rbsdem trade CASE.nml needs the command that comes with the Python package.', &
          '', &
          'options:', &
          '  -o, --output FILE   where the rows go (default: what &output says, or the', &
@@ -83,10 +85,11 @@ contains
          '  0  all went well', &
          '  1  the analysis failed; rows up to there are in FILE.partial', &
          '  2  the input is wrong; all its errors are listed', &
+         '  3  the column collapsed: collapse_drift was reached; the rows are whole', &
          '', &
-         'A case has the groups &case, &column, &axial, &shear, &flexure, &loading,', &
-         '&analysis and &output. The input reference is docs/input.md, examples are in', &
-         'examples/.', &
+         'A case has the groups &case, &column, &axial, &shear, &flexure, &opening,', &
+         '&loading, &analysis and &output. The input reference is docs/input.md, examples', &
+         'are in examples/.', &
          '']
       integer :: i
 

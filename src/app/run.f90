@@ -1,6 +1,5 @@
 !> The commands: from a case file to a csv and a summary.
 module rbs_app_run
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_null_char, c_ptr
    use rbs_app_progress, only: terminal_progress
    use rbs_app_say, only: say
@@ -8,35 +7,26 @@ module rbs_app_run
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type
+   use rbs_column_column, only: column_type, small
+   use rbs_io_case, only: case_history, load_case
    use rbs_io_csv, only: csv_recorder
-   use rbs_io_loading_file, only: loading_values
    use rbs_io_namelist, only: read_case
-   use rbs_loading_protocol, only: protocol_values
-   use rbs_loading_signal, only: signal_type
+   use rbs_results_notes, only: rotation_note
    use rbs_results_row, only: row_labels
    use rbs_results_summary, only: summary_type, summary_names
    use rbs_solve_history, only: initial_state
    use rbs_solve_modal, only: modes_type, find_modes
-   use rbs_solve_run, only: make_column, run_static, plan_dynamic, run_dynamic, &
-                            check_values
+   use rbs_solve_run, only: make_column, run_static, plan_dynamic, run_dynamic
    use rbs_solve_time_plan, only: time_plan
-   use rbs_spec_analysis, only: analysis_spec
    use rbs_spec_case, only: case_spec
-   use rbs_spec_check, only: is_given
    use rbs_version, only: version
    implicit none
    private
 
    public :: run_case, check_case, show_modes
 
-   !> The loadings of a case on common times.
-   type :: loads_type
-      real(wp), allocatable :: time(:)
-      !> What is driven on a static path
-      real(wp), allocatable :: target(:)
-      type(signal_type) :: force, ground
-   end type loads_type
+   !> Exit code of a run that ended where the user's criterion of collapse was met.
+   integer, parameter :: column_collapsed = 3
 
    interface
       !> C: the path of a file that is there without links and dots; a null pointer if it is not.
@@ -59,19 +49,19 @@ contains
       logical, intent(in) :: quiet
       type(error_type), allocatable, intent(out) :: error
       type(case_spec) :: case
-      type(loads_type) :: loads
+      type(case_history) :: history
       type(column_type) :: column
       type(csv_recorder) :: recorder
       type(summary_type) :: summary
       type(error_type), allocatable :: closing
       character(len=:), allocatable :: file
 
-      call prepare(path, case, column, loads, error)
+      call prepare(path, case, column, history, error)
       if (allocated(error)) return
       file = output_path(path, case, output)
       call check_output(file, path, case, error)
       if (allocated(error)) return
-      call solve(case, column, loads, file, recorder, summary, quiet, error)
+      call solve(case, column, history, file, recorder, summary, quiet, error)
       call recorder%close(.not. allocated(error), closing)
       if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
       if (allocated(error)) then
@@ -81,8 +71,31 @@ contains
          end if
          return
       end if
-      if (.not. quiet) call print_summary(case, recorder, summary, error)
+      if (.not. quiet) then
+         call print_summary(case, recorder, summary, error)
+         call print_notes(case, column, error)
+         call print_rotation(column, summary, error)
+      end if
+      if (summary%collapsed .and. .not. allocated(error)) then
+         call report_collapse(case, recorder, summary, error)
+      end if
    end subroutine run_case
+
+   !> No fault of the run: it ended where the user wanted it to.
+   subroutine report_collapse(case, recorder, summary, error)
+      type(case_spec), intent(in) :: case
+      type(csv_recorder), intent(in) :: recorder
+      type(summary_type), intent(in) :: summary
+      type(error_type), allocatable, intent(out) :: error
+      character(len=:), allocatable :: place
+
+      place = 'step '//to_text(nint(recorder%last_time))
+      if (case%analysis%dynamic()) place = 'time '//to_text(recorder%last_time)//' s'
+      call fatal_error(error, column_collapsed, 'collapsed at '//place//': the top is at '// &
+                       to_text(summary%peak_displacement)//' m, beyond collapse_drift = '// &
+                       to_text(case%analysis%collapse_drift)//' of the height; the rows up to there '// &
+                       'are in '//recorder%path)
+   end subroutine report_collapse
 
    !> rbsdem check: everything that can be wrong with the input, and nothing else.
    subroutine check_case(path, quiet, error)
@@ -90,20 +103,20 @@ contains
       logical, intent(in) :: quiet
       type(error_type), allocatable, intent(out) :: error
       type(case_spec) :: case
-      type(loads_type) :: loads
+      type(case_history) :: history
       type(column_type) :: column
       type(time_plan) :: plan
-      real(wp) :: limit
 
-      call prepare(path, case, column, loads, error)
+      call prepare(path, case, column, history, error)
       if (allocated(error)) return
       if (case%analysis%dynamic()) then
-         call plan_dynamic(column, loads%time, case%analysis%dt, plan, limit, error)
+         call plan_dynamic(column, case%analysis, history%time, history%loads, plan, error)
          if (allocated(error)) return
       end if
       if (quiet) return
       call say(path//': no errors', error)
-      call print_notes(case, error)
+      if (plan%reason /= '') call say('method: '//method_text(plan%method, plan%reason), error)
+      call print_notes(case, column, error)
    end subroutine check_case
 
    !> rbsdem modes: frequencies, shapes of few joints, stable step.
@@ -135,126 +148,28 @@ contains
             modes%omega(i)
          call say(trim(line), error)
       end do
+      if (modes%warning /= '') call say('# note: '//trim(modes%warning), error)
       write (line, '(a, es23.16e2)') '# stable step of rk4 [s]:', modes%stable_step
       call say(trim(line), error)
    end subroutine show_modes
 
    !> Read a case and its loadings; all their faults come back as one error.
-   subroutine prepare(path, case, column, loads, error)
+   subroutine prepare(path, case, column, history, error)
       character(len=*), intent(in) :: path
       type(case_spec), intent(out) :: case
       type(column_type), intent(out) :: column
-      type(loads_type), intent(out) :: loads
+      type(case_history), intent(out) :: history
       type(error_type), allocatable, intent(out) :: error
-      type(message_list) :: messages
-      logical :: understood
 
-      call read_case(path, case, messages, understood)
-      if (understood) call load_values(case, path(:index(path, '/', back=.true.)), loads, messages)
-      call messages%raise(error)
-      if (allocated(error)) return
-      call make_column(case%column, column, error)
-      if (allocated(error)) return
-      call cut_duration(case%analysis, loads, error)
+      call load_case(path, case, history, error)
+      if (.not. allocated(error)) call make_column(case%column, column, error)
    end subroutine prepare
 
-   !> Values of all loadings that are sound in themselves.
-   subroutine load_values(case, folder, loads, messages)
-      type(case_spec), intent(in) :: case
-      character(len=*), intent(in) :: folder
-      type(loads_type), intent(inout) :: loads
-      type(message_list), intent(inout) :: messages
-      type(error_type), allocatable :: fault
-      type(message_list) :: own
-      real(wp), allocatable :: time(:), value(:)
-      integer :: i
-
-      do i = 1, case%loadings
-         associate (spec => case%loading(i))
-            own = message_list()
-            call spec%validate(case%analysis%dynamic(), own)
-            if (own%count > 0) cycle                ! reported already
-            if (spec%source == 'protocol') then
-               ! The height is in the amplitudes; a wrong one has been reported.
-               if (.not. ieee_is_finite(case%column%height)) cycle
-               if (case%column%height <= 0.0_wp) cycle
-               call protocol_values(spec, case%column%height, time, value, fault)
-            else
-               call loading_values(spec, folder, case%analysis%dynamic(), time, value, fault)
-            end if
-            if (.not. allocated(fault)) call check_values(value, 'loading: '//trim(spec%drive), fault)
-            if (allocated(fault)) then
-               call messages%add(fault%message)
-               cycle
-            end if
-            if (spec%drive == 'force') loads%force = signal_type(time=time, value=value)
-            if (spec%drive == 'ground') loads%ground = signal_type(time=time, value=value)
-            call move_alloc(value, loads%target)
-            call join_times(loads%time, time)
-         end associate
-      end do
-      if (case%loadings == 0) then
-         call messages%add('the case has no loading; give it a group &loading')
-      end if
-   end subroutine load_values
-
-   !> Times of two loadings in one ascending list. Times that differ by round-off are one.
-   subroutine join_times(all_times, more)
-      real(wp), allocatable, intent(inout) :: all_times(:)
-      real(wp), intent(in) :: more(:)
-      real(wp), allocatable :: joined(:)
-      real(wp) :: same
-      integer :: i, j, n
-
-      if (.not. allocated(all_times)) then
-         all_times = more
-         return
-      end if
-      allocate (joined(size(all_times) + size(more)))
-      same = 1.0e-9_wp*min(minval(all_times(2:) - all_times(:size(all_times) - 1)), &
-                           minval(more(2:) - more(:size(more) - 1)))
-      i = 1
-      j = 1
-      n = 0
-      do while (i <= size(all_times) .or. j <= size(more))
-         n = n + 1
-         if (j > size(more)) then
-            joined(n) = all_times(i)
-            i = i + 1
-         else if (i > size(all_times)) then
-            joined(n) = more(j)
-            j = j + 1
-         else
-            joined(n) = min(all_times(i), more(j))
-            if (.not. all_times(i) > joined(n) + same) i = i + 1
-            if (.not. more(j) > joined(n) + same) j = j + 1
-         end if
-      end do
-      all_times = joined(:n)
-   end subroutine join_times
-
-   !> End the times where the user wants: earlier, or later with the last value held.
-   subroutine cut_duration(spec, loads, error)
-      type(analysis_spec), intent(in) :: spec
-      type(loads_type), intent(inout) :: loads
-      type(error_type), allocatable, intent(out) :: error
-      real(wp) :: finish
-
-      if (.not. spec%dynamic() .or. .not. is_given(spec%duration)) return
-      finish = loads%time(1) + spec%duration
-      if (.not. finish > loads%time(1)) then
-         call fatal_error(error, bad_input, 'analysis: duration = '//to_text(spec%duration)// &
-                          ' s is lost beside the time of the begin, '//to_text(loads%time(1))//' s')
-         return
-      end if
-      loads%time = [pack(loads%time, loads%time < finish), finish]
-   end subroutine cut_duration
-
    !> Solve into a csv.
-   subroutine solve(case, column, loads, path, recorder, summary, quiet, error)
+   subroutine solve(case, column, history, path, recorder, summary, quiet, error)
       type(case_spec), intent(in) :: case
       type(column_type), intent(in) :: column
-      type(loads_type), intent(in) :: loads
+      type(case_history), intent(in) :: history
       character(len=*), intent(in) :: path
       type(csv_recorder), intent(inout) :: recorder
       type(summary_type), intent(out) :: summary
@@ -263,33 +178,36 @@ contains
       type(terminal_progress) :: progress
       type(time_plan) :: plan
       type(initial_state) :: at_rest
-      real(wp) :: limit
 
+      plan%method = 'static'
       if (case%analysis%dynamic()) then
-         call plan_dynamic(column, loads%time, case%analysis%dt, plan, limit, error)
+         call plan_dynamic(column, case%analysis, history%time, history%loads, plan, error)
          if (allocated(error)) return
       end if
-      call recorder%open(path, header(case), row_labels(column%n, case%analysis%dynamic()), error)
+      call recorder%open(path, header(case, plan%method), &
+                         row_labels(column%n, column%opens, case%analysis%dynamic()), error)
       if (allocated(error)) return
       call progress%start(quiet)
       if (case%analysis%dynamic()) then
-         call run_dynamic(column, plan, limit, loads%time, loads%force, loads%ground, at_rest, &
+         call run_dynamic(column, case%analysis, plan, history%time, history%loads, at_rest, &
                           case%output%every, recorder, summary, error, progress)
       else
-         call run_static(column, case%loading(1)%drive == 'force', loads%target, case%output%every, &
-                         recorder, summary, error, progress)
+         call run_static(column, case%loading(1)%drive == 'force', history%target, case%output%every, &
+                         case%analysis%collapse_drift, recorder, summary, error, progress)
       end if
       call progress%finish()
    end subroutine solve
 
    !> Comment lines of the csv.
-   function header(case) result(lines)
+   function header(case, method) result(lines)
       type(case_spec), intent(in) :: case
+      !> The one that is used, where the program chooses
+      character(len=*), intent(in) :: method
       character(len=600) :: lines(3)
 
       lines(1) = 'rbsdem '//version
       lines(2) = 'case: '//case%title
-      lines(3) = 'units: SI, in the names of the columns; method: '//trim(case%analysis%method)// &
+      lines(3) = 'units: SI, in the names of the columns; method: '//trim(method)// &
                  ', kinematics: '//trim(case%column%kinematics)
    end function header
 
@@ -364,31 +282,53 @@ contains
       integer :: i
 
       if (case%title /= '') call say(case%title, error)
+      name = 'method'
+      call say('  '//name//'  '//method_text(summary%method, summary%reason), error)
       associate (values => summary%as_array())
          do i = 1, size(values)
-            ! Times of a static path and the like are no figures of it.
-            if (.not. case%analysis%dynamic() .and. index(summary_names(i), 'step_s') > 0) cycle
+            ! Steps in time that are zero are no figures of the run: a static path has none, and an
+            ! implicit method no stability limit. A collapse is told apart.
+            if (index(summary_names(i), 'step_s') > 0 .and. .not. values(i) > 0.0_wp) cycle
+            if (summary_names(i) == 'collapsed') cycle
             name = summary_names(i)
             call say('  '//name//'  '//to_text(values(i)), error)
          end do
       end associate
       name = 'rows in'
       call say('  '//name//'  '//recorder%path, error)
-      call print_notes(case, error)
    end subroutine print_summary
 
+   !> A method, and why the program chose it.
+   function method_text(method, reason) result(text)
+      character(len=*), intent(in) :: method, reason
+      character(len=:), allocatable :: text
+
+      text = trim(method)
+      if (reason /= '') text = text//' ('//trim(reason)//')'
+   end function method_text
+
    !> What is allowed and perhaps not meant.
-   subroutine print_notes(case, error)
+   subroutine print_notes(case, column, error)
       type(case_spec), intent(in) :: case
+      type(column_type), intent(in) :: column
       type(error_type), allocatable, intent(inout) :: error
 
-      associate (column => case%column)
-         if (column%kinematics == 'small' .and. &
-             (abs(column%axial_load) > 0.0_wp .or. column%self_weight)) then
-            call say('note: axial load and weight do no work with kinematics = '// &
-                     "'small'; 'pdelta' takes them into account", error)
-         end if
-      end associate
+      if (column%kinematics == small .and. .not. column%opens .and. &
+          (abs(case%column%axial_load) > 0.0_wp .or. case%column%self_weight)) then
+         call say('note: axial load and weight do no work with kinematics = '// &
+                  "'small'; 'pdelta' takes them into account", error)
+      end if
    end subroutine print_notes
+
+   !> Rotations that the kinematics do not stand for.
+   subroutine print_rotation(column, summary, error)
+      type(column_type), intent(in) :: column
+      type(summary_type), intent(in) :: summary
+      type(error_type), allocatable, intent(inout) :: error
+      character(len=:), allocatable :: text
+
+      call rotation_note(column, summary, text)
+      if (text /= '') call say('note: '//text, error)
+   end subroutine print_rotation
 
 end module rbs_app_run

@@ -2,7 +2,6 @@
 module rbs_column_axial
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_base_linalg, only: solve_eigen
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
    implicit none
@@ -20,7 +19,7 @@ contains
    !> alone it is P times the height of the top; slips above a joint belong to the lever arm too.
    subroutine geometric_stiffness(column, stiffness)
       type(column_type), intent(in) :: column
-      !> Matrix (2 n, 2 n) in (slip, relative rotation) [N/m, N, N m]
+      !> Matrix (unknowns, unknowns) in (slip, relative rotation [, opening]) [N/m, N, N m]
       real(wp), intent(out) :: stiffness(:, :)
       real(wp) :: above(column%n + 1)
       integer :: i, j, n
@@ -30,7 +29,7 @@ contains
       do i = n, 1, -1
          above(i) = above(i + 1) + column%axial_body(i)*column%length(i)
       end do
-      stiffness(:n, :n) = 0.0_wp
+      stiffness = 0.0_wp
       do j = 1, n
          do i = 1, n
             stiffness(n + i, n + j) = -above(max(i, j))
@@ -43,14 +42,15 @@ contains
    !> Geometric stiffness times deformations, in a number of operations proportional to n.
    pure subroutine geometric_forces(column, q, g)
       type(column_type), intent(in) :: column
-      !> Deformations (2 n)
+      !> Deformations (unknowns)
       real(wp), intent(in) :: q(:)
-      !> Forces (2 n) [N, N m]
+      !> Forces (unknowns) [N, N m]
       real(wp), intent(out) :: g(:)
       real(wp) :: rotation, above
       integer :: i, n
 
       n = column%n
+      if (column%opens) g(2*n + 1:) = 0.0_wp
       rotation = 0.0_wp
       do i = 1, n
          g(i) = -column%axial_joint(i)*rotation
@@ -85,27 +85,87 @@ contains
    !> The number by which all axial forces must be multiplied to make the uncracked column lose its
    !> stiffness; `huge` if no multiple does. Tension too can buckle a column of several bodies, by slip
    !> against rotation.
+   !>
+   !> The multiples that the column carries are an interval from zero, so it is bisected; whether it carries
+   !> one is asked in O(n) operations, from the top down, and to the last digit.
    subroutine critical_factor(column, factor, error)
       type(column_type), intent(in) :: column
       real(wp), intent(out) :: factor
+      !> Never allocated: no column is beyond this method
       type(error_type), allocatable, intent(out) :: error
-      real(wp), allocatable :: softening(:, :), stiffness(:, :), w(:)
-      integer :: i, m
+      !> Beyond 2**200 times the scale of the problem nothing buckles.
+      integer, parameter :: most_doublings = 200
+      real(wp), allocatable :: turning(:), sliding(:), stiffer(:)
+      real(wp) :: scale, below, above, between
+      integer :: i, n
 
       factor = huge(1.0_wp)
       if (.not. column%axially_loaded) return
-      m = column%unknowns
-      allocate (softening(m, m), w(m))
-      allocate (stiffness(m, m), source=0.0_wp)
-      call geometric_stiffness(column, softening)
-      softening = -softening
-      do i = 1, m
-         stiffness(i, i) = column%initial_stiffness(i)
+      n = column%n
+      allocate (turning(n), sliding(n), stiffer(n))
+      turning(n) = column%axial_body(n)*column%length(n)/column%initial_stiffness(2*n)
+      sliding(n) = 0.0_wp
+      stiffer(n) = 0.0_wp
+      do i = 1, n - 1
+         associate (shear => column%initial_stiffness(i + 1), flexure => column%initial_stiffness(n + i))
+            turning(i) = column%axial_body(i)*column%length(i)/flexure
+            sliding(i) = abs(column%axial_joint(i + 1))/sqrt(shear)/sqrt(flexure)
+            stiffer(i) = column%initial_stiffness(n + i + 1)/flexure
+         end associate
       end do
-      call solve_eigen(softening, stiffness, w, error)
-      if (allocated(error)) return
-      if (w(m) > 1.0_wp/huge(1.0_wp)) factor = 1.0_wp/w(m)
+      scale = max(maxval(abs(turning)), maxval(sliding))
+      if (.not. scale > 0.0_wp) return
+      turning = turning/scale
+      sliding = (sliding/scale)**2
+
+      below = 1.0_wp
+      if (carries(below, turning, sliding, stiffer)) then
+         do i = 1, most_doublings
+            if (.not. carries(2.0_wp*below, turning, sliding, stiffer)) exit
+            below = 2.0_wp*below
+         end do
+         if (i > most_doublings) return
+      else
+         do i = 1, most_doublings
+            below = 0.5_wp*below
+            if (carries(below, turning, sliding, stiffer)) exit
+         end do
+      end if
+      above = 2.0_wp*below
+      do i = 1, digits(1.0_wp)
+         between = 0.5_wp*(below + above)
+         if (carries(between, turning, sliding, stiffer)) then
+            below = between
+         else
+            above = between
+         end if
+      end do
+      factor = below/scale
    end subroutine critical_factor
+
+   !> Whether the column is stable under a multiple of its axial forces: whether K + multiple K_G is
+   !> positive definite.
+   !>
+   !> All bodies above joint i, in equilibrium on it, push over the one below it with a negative rotational
+   !> stiffness -t_i. A body adds a l; a flexural spring in series makes of t the stiffness t k_M/(k_M - t)
+   !> and must be stiffer than t; the slip of the joint adds b^2/k_V. With compression all terms have one
+   !> sign: nothing cancels. Here as tau_i = t_i/k_Mi.
+   pure logical function carries(multiple, turning, sliding, stiffer)
+      real(wp), intent(in) :: multiple
+      !> a_i l_i/k_Mi, b_{i+1}^2/(k_V,i+1 k_Mi) and k_M,i+1/k_Mi
+      real(wp), intent(in), contiguous :: turning(:), sliding(:), stiffer(:)
+      real(wp) :: tau
+      integer :: i, n
+
+      n = size(turning)
+      carries = .false.
+      tau = multiple*turning(n)
+      do i = n - 1, 1, -1
+         if (.not. tau < 1.0_wp) return
+         tau = multiple*turning(i) + multiple**2*sliding(i) + stiffer(i)*tau/(1.0_wp - tau)
+      end do
+      carries = tau < 1.0_wp
+   end function carries
 
    !> Refuse an axial load that the unloaded column cannot carry.
    subroutine check_stable(column, error)

@@ -1,44 +1,64 @@
 !> The chain of rigid bodies: geometry, mass, axial load, and the springs of its joints.
 !>
-!> Unknowns q = (slip of joint 1..n, relative rotation of joint 1..n). Joint i is at the bottom of
-!> body i; rotations are clockwise, so that a positive one moves the top to +x.
+!> Unknowns q = (slip of joint 1..n, relative rotation of joint 1..n [, opening of joint 1..n]); openings
+!> take part only where the joints have axial springs. Joint i is at the bottom of body i; rotations are
+!> clockwise, so that a positive one moves the top to +x. A mass lumped at the top is part of the last
+!> body: it moves its centroid and adds to its inertia, and costs nothing.
 module rbs_column_column
    use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
    use rbs_spec_column, only: column_spec
    use rbs_spec_spring, only: spring_spec, initial_stiffness
    implicit none
    private
 
-   public :: column_type, new_column
+   public :: column_type, new_column, joint_name
    public :: small, pdelta, finite
 
    !> Levels of kinematics.
    integer, parameter :: small = 1, pdelta = 2, finite = 3
 
    type :: column_type
-      !> Number of bodies, number of unknowns 2 n
+      !> Number of bodies, number of unknowns 2 n or, with axial springs, 3 n
       integer :: n = 0, unknowns = 0
       !> `small`, `pdelta` or `finite`
       integer :: kinematics = small
+      !> Whether joints have axial springs and open
+      logical :: opens = .false.
       !> Lengths [m], masses [kg] and rotary inertias about the centroid [kg m2] of the bodies (n)
       real(wp), allocatable :: length(:), mass(:), inertia(:)
+      !> Distance of the centroid from the bottom and from the top of its body (n) [m]
+      real(wp), allocatable :: lower(:), upper(:)
       !> Height of the joints above the ground (n + 1) [m]; the last is the top
       real(wp), allocatable :: joint_height(:)
-      !> Displacement of the top per unknown, for small rotations (2 n) [1, m]
+      !> Displacement of the top per unknown, for small rotations (unknowns) [1, m, 0]
       real(wp), allocatable :: arm(:)
-      !> Inertia load per acceleration of the ground, for small rotations (2 n) [kg, kg m]
+      !> Inertia load per acceleration of the ground, for small rotations (unknowns) [kg, kg m, 0]
       real(wp), allocatable :: ground_arm(:)
       !> Sums over the bodies from i up (n + 1): mass, first and second moment of mass about joint i,
       !> rotary inertia included [kg, kg m, kg m2]
       real(wp), allocatable :: mass_above(:), moment_above(:), inertia_above(:)
-      !> Whether an axial force acts, from the load or from the weight
+      !> Whether an axial force does second-order work, from the load or from the weight
       logical :: axially_loaded = .false.
-      !> Axial force for the rotation of body i, and across the slip of joint i, compression
-      !> positive (n) [N]
+      !> Axial load at the top, compression positive [N], and acceleration of gravity that gives the bodies
+      !> their weight, 0 without self-weight [m/s2]
+      real(wp) :: axial_load = 0.0_wp, gravity = 0.0_wp
+      !> Weight of the bodies (n) [N]
+      real(wp), allocatable :: weight(:)
+      !> Axial force of load and weight for the rotation of body i, and across the slip of joint i,
+      !> compression positive (n) [N]
       real(wp), allocatable :: axial_body(:), axial_joint(:)
-      !> Damping in proportion to the mass [1/s] and to the initial stiffness [s]
+      !> The same per vertical acceleration of the ground, from all masses (n) [kg]
+      real(wp), allocatable :: lifted_body(:), lifted_joint(:)
+      !> Whether the axial load, and the lateral force, turn with the top body
+      logical :: axial_follows = .false., force_follows = .false.
+      !> Damping in proportion to the mass [1/s] and to the stiffness of the joints [s], the initial one
+      !> or that of the present line
       real(wp) :: mass_damping = 0.0_wp, stiffness_damping = 0.0_wp
-      !> Numbers of the springs (2 n), shear first, and their initial stiffness
+      logical :: tangent_damping = .false.
+      !> Damping ratios of the modes (first modes, or one for all); not allocated: none
+      real(wp), allocatable :: modal_damping(:)
+      !> Numbers of the springs (unknowns), shear first, and their initial stiffness
       type(spring_spec), allocatable :: spring(:)
       real(wp), allocatable :: initial_stiffness(:)
    end type column_type
@@ -53,7 +73,8 @@ contains
 
       n = spec%n
       column%n = n
-      column%unknowns = 2*n
+      column%opens = allocated(spec%axial)
+      column%unknowns = merge(3, 2, column%opens)*n
       select case (spec%kinematics)
       case ('pdelta')
          column%kinematics = pdelta
@@ -74,13 +95,18 @@ contains
       else
          column%mass = spec%mass*(column%length/spec%height)
       end if
-      column%inertia = column%mass*column%length**2/12.0_wp
       column%mass_damping = spec%mass_damping
       column%stiffness_damping = spec%stiffness_damping
+      column%tangent_damping = spec%tangent_damping
+      if (allocated(spec%modal_damping)) column%modal_damping = spec%modal_damping
+      column%axial_follows = spec%axial_follows
+      column%force_follows = spec%force_follows
 
       call set_heights(column)
+      call set_weights(column, spec)
+      call set_bodies(column, spec)
       call set_mass_sums(column)
-      call set_axial_forces(column, spec)
+      call set_lifted_masses(column)
       call set_springs(column, spec)
    end subroutine new_column
 
@@ -89,7 +115,8 @@ contains
       integer :: i, n
 
       n = column%n
-      allocate (column%joint_height(n + 1), column%arm(2*n))
+      allocate (column%joint_height(n + 1))
+      allocate (column%arm(column%unknowns), source=0.0_wp)
       column%joint_height(1) = 0.0_wp
       do i = 1, n
          column%joint_height(i + 1) = column%joint_height(i) + column%length(i)
@@ -102,6 +129,51 @@ contains
       end do
    end subroutine set_heights
 
+   !> Axial forces of load and weight of the bodies.
+   subroutine set_weights(column, spec)
+      type(column_type), intent(inout) :: column
+      type(column_spec), intent(in) :: spec
+      real(wp) :: above(column%n + 1)
+      integer :: i, n
+
+      n = column%n
+      column%axial_load = spec%axial_load
+      if (spec%self_weight) column%gravity = spec%gravity
+      above(n + 1) = 0.0_wp
+      do i = n, 1, -1
+         above(i) = above(i + 1) + column%mass(i)
+      end do
+      column%weight = column%gravity*column%mass
+      column%axial_body = column%axial_load + column%gravity*(column%mass/2.0_wp + above(2:))
+      column%axial_joint = column%axial_load + column%gravity*above(:n)
+      column%axially_loaded = column%kinematics /= small .and. &
+                              (abs(column%axial_load) > 0.0_wp .or. column%gravity > 0.0_wp)
+   end subroutine set_weights
+
+   !> Centroids and rotary inertias, the lumped mass included.
+   subroutine set_bodies(column, spec)
+      type(column_type), intent(inout) :: column
+      type(column_spec), intent(in) :: spec
+      real(wp) :: own, shift
+      integer :: i, n
+
+      n = column%n
+      if (allocated(spec%rotary_inertia)) then
+         column%inertia = spec%rotary_inertia(min([(i, i=1, n)], size(spec%rotary_inertia)))
+      else
+         column%inertia = column%mass*(column%length**2 + spec%depth**2)/12.0_wp
+      end if
+      column%lower = column%length/2.0_wp
+      column%upper = column%length/2.0_wp
+      if (.not. spec%top_mass > 0.0_wp .and. .not. spec%top_inertia > 0.0_wp) return
+      own = column%mass(n)
+      shift = spec%top_mass/(own + spec%top_mass)*column%upper(n)
+      column%inertia(n) = column%inertia(n) + spec%top_inertia + own*shift*column%upper(n)
+      column%mass(n) = own + spec%top_mass
+      column%upper(n) = own/column%mass(n)*column%upper(n)
+      column%lower(n) = column%length(n) - column%upper(n)
+   end subroutine set_bodies
+
    !> Sums over the bodies above each joint; every term is positive, so nothing cancels.
    subroutine set_mass_sums(column)
       type(column_type), intent(inout) :: column
@@ -111,33 +183,29 @@ contains
       allocate (column%mass_above(n + 1), column%moment_above(n + 1), column%inertia_above(n + 1), &
                 source=0.0_wp)
       do i = n, 1, -1
-         associate (m => column%mass(i), l => column%length(i))
+         associate (m => column%mass(i), l => column%length(i), s => column%lower(i))
             column%mass_above(i) = column%mass_above(i + 1) + m
-            column%moment_above(i) = column%moment_above(i + 1) + l*column%mass_above(i + 1) + m*l/2.0_wp
+            column%moment_above(i) = column%moment_above(i + 1) + l*column%mass_above(i + 1) + m*s
             column%inertia_above(i) = column%inertia_above(i + 1) &
                                       + 2.0_wp*l*column%moment_above(i + 1) &
                                       + l**2*column%mass_above(i + 1) &
-                                      + m*l**2/4.0_wp + column%inertia(i)
+                                      + m*s**2 + column%inertia(i)
          end associate
       end do
-      column%ground_arm = [column%mass_above(:n), column%moment_above(:n)]
+      allocate (column%ground_arm(column%unknowns), source=0.0_wp)
+      column%ground_arm(:n) = column%mass_above(:n)
+      column%ground_arm(n + 1:2*n) = column%moment_above(:n)
    end subroutine set_mass_sums
 
-   !> Axial forces of load and weight; with small kinematics they do no work.
-   subroutine set_axial_forces(column, spec)
+   !> Axial forces per vertical acceleration of the ground.
+   subroutine set_lifted_masses(column)
       type(column_type), intent(inout) :: column
-      type(column_spec), intent(in) :: spec
-      real(wp) :: g
       integer :: n
 
       n = column%n
-      g = 0.0_wp
-      if (spec%self_weight) g = spec%gravity
-      column%axial_body = spec%axial_load + g*(column%mass/2.0_wp + column%mass_above(2:))
-      column%axial_joint = spec%axial_load + g*column%mass_above(:n)
-      column%axially_loaded = column%kinematics /= small .and. &
-                              (abs(spec%axial_load) > 0.0_wp .or. g > 0.0_wp)
-   end subroutine set_axial_forces
+      column%lifted_body = column%mass*column%lower/column%length + column%mass_above(2:)
+      column%lifted_joint = column%mass_above(:n)
+   end subroutine set_lifted_masses
 
    subroutine set_springs(column, spec)
       type(column_type), intent(inout) :: column
@@ -145,12 +213,25 @@ contains
       integer :: i, n
 
       n = column%n
-      allocate (column%spring(2*n))
+      allocate (column%spring(column%unknowns))
       do i = 1, n
          column%spring(i) = spec%shear(min(i, size(spec%shear)))
          column%spring(n + i) = spec%flexure(min(i, size(spec%flexure)))
+         if (column%opens) column%spring(2*n + i) = spec%axial(min(i, size(spec%axial)))
       end do
       column%initial_stiffness = initial_stiffness(column%spring)
    end subroutine set_springs
+
+   !> Which spring an unknown is, for messages: 'the shear spring of joint 3'.
+   function joint_name(column, i) result(name)
+      type(column_type), intent(in) :: column
+      !> Number of the unknown
+      integer, intent(in) :: i
+      character(len=40) :: name
+      character(len=9), parameter :: kinds(3) = ['shear    ', 'flexural ', 'axial    ']
+
+      name = 'the '//trim(kinds((i - 1)/column%n + 1))//' spring of joint '// &
+             to_text(mod(i - 1, column%n) + 1)
+   end function joint_name
 
 end module rbs_column_column

@@ -13,14 +13,17 @@ contains
    !> paper leaves to future work; with k >= max(i, j) and h_ki the height of centroid k over joint i
    !>
    !>     M_uu = sum m_k,  M_uphi = sum m_k h_kj,  M_phiphi = sum (m_k h_ki h_kj + I_k)
+   !>
+   !> and M_ww = M_uu for the openings, which nothing couples to the others while rotations are small.
    subroutine symmetric_mass(column, mass)
       type(column_type), intent(in) :: column
-      !> Matrix (2 n, 2 n) [kg, kg m, kg m2]
+      !> Matrix (unknowns, unknowns) [kg, kg m, kg m2]
       real(wp), intent(out) :: mass(:, :)
       real(wp) :: between
       integer :: i, j, p, n
 
       n = column%n
+      if (column%opens) mass = 0.0_wp
       do j = 1, n
          do i = 1, n
             p = max(i, j)
@@ -30,6 +33,7 @@ contains
                              + (column%joint_height(p) - column%joint_height(j))*column%mass_above(p)
             mass(n + j, i) = mass(i, n + j)
             mass(n + i, n + j) = column%inertia_above(p) + between*column%moment_above(p)
+            if (column%opens) mass(2*n + i, 2*n + j) = column%mass_above(p)
          end do
       end do
    end subroutine symmetric_mass
@@ -46,7 +50,7 @@ contains
 
       n = column%n
       do j = 1, n
-         associate (l => column%length(j), m => column%mass(j))
+         associate (l => column%length(j), m => column%mass(j), s => column%lower(j))
             do i = 1, n
                p = max(i, j)
                mass(i, j) = column%mass_above(p)
@@ -57,8 +61,8 @@ contains
                   mass(n + i, n + j) = l*column%moment_above(i)
                else
                   to_joint = column%joint_height(j) - column%joint_height(i)
-                  mass(i, n + j) = m*l/2.0_wp + l*column%mass_above(j + 1)
-                  mass(n + i, n + j) = column%inertia(j) + m*(to_joint + l/2.0_wp)*l/2.0_wp &
+                  mass(i, n + j) = m*s + l*column%mass_above(j + 1)
+                  mass(n + i, n + j) = column%inertia(j) + m*(to_joint + s)*s &
                                        + l*(column%moment_above(j + 1) &
                                             + (to_joint + l)*column%mass_above(j + 1))
                end if

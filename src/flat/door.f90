@@ -7,132 +7,105 @@ module rbs_flat_door
    use rbs_column_column, only: column_type
    use rbs_loading_protocol, only: protocol_values
    use rbs_loading_signal, only: signal_type
+   use rbs_results_notes, only: rotation_note
    use rbs_results_recorder, only: array_recorder
    use rbs_results_summary, only: summary_type
    use rbs_solve_history, only: initial_state
-   use rbs_solve_run, only: make_column, run_static, run_dynamic, plan_dynamic
+   use rbs_solve_loads, only: loads_type
+   use rbs_solve_run, only: run_static, run_dynamic, plan_dynamic
    use rbs_solve_time_plan, only: time_plan
-   use rbs_spec_check, only: is_given
-   use rbs_spec_column, only: column_spec
+   use rbs_spec_analysis, only: analysis_spec
    use rbs_spec_loading, only: loading_spec
-   use rbs_spec_spring, only: spring_spec, rule_names, inner_names
    implicit none
    private
 
-   public :: spring_from_numbers, column_from_numbers, into_rows_static, into_rows_dynamic, &
-             protocol_from_numbers, tell
+   public :: into_rows_static, into_rows_dynamic, make_loads, analysis_from_numbers, &
+             protocol_from_numbers, tell, tell_run
+
+   !> Status of a run that needs more rows than it was given room for; 0 to 2 are those of an error.
+   integer(c_int), parameter, public :: little_room = 3
 
 contains
 
-   !> A spring from its numbers k, d_y, k_post, k_c, d_c, k_y, k_u, b0, b1.
-   pure function spring_from_numbers(rule, numbers, inner) result(spring)
-      character(len=*), intent(in) :: rule, inner
-      real(c_double), intent(in) :: numbers(9)
-      type(spring_spec) :: spring
-
-      spring%rule = rule
-      spring%inner = inner
-      spring%k = numbers(1)
-      spring%d_y = numbers(2)
-      spring%k_post = numbers(3)
-      spring%k_c = numbers(4)
-      spring%d_c = numbers(5)
-      spring%k_y = numbers(6)
-      spring%k_u = numbers(7)
-      spring%b0 = numbers(8)
-      spring%b1 = numbers(9)
-   end function spring_from_numbers
-
-   !> A column from its numbers height, mass, axial_load, self_weight (0 or 1), gravity, mass_damping,
-   !> stiffness_damping; lengths and masses are given if their first value is.
-   subroutine column_from_numbers(column, n, kinematics, numbers, lengths, masses, shear, flexure, &
-                                  codes_shear, codes_flexure, error)
-      type(column_type), intent(out) :: column
-      integer(c_int), intent(in) :: n
-      character(len=*), intent(in) :: kinematics
-      real(c_double), intent(in) :: numbers(7), lengths(:), masses(:)
-      !> Numbers of the springs, one a column, with the places of their rules and inner rules
-      real(c_double), intent(in) :: shear(:, :), flexure(:, :)
-      integer(c_int), intent(in) :: codes_shear(:, :), codes_flexure(:, :)
-      type(error_type), allocatable, intent(out) :: error
-      type(column_spec) :: spec
-
-      spec%n = n
-      spec%kinematics = kinematics
-      spec%height = numbers(1)
-      spec%mass = numbers(2)
-      spec%axial_load = numbers(3)
-      spec%self_weight = abs(numbers(4)) > 0.0_wp
-      spec%gravity = numbers(5)
-      spec%mass_damping = numbers(6)
-      spec%stiffness_damping = numbers(7)
-      if (is_given(lengths(1))) spec%lengths = lengths
-      if (is_given(masses(1))) spec%masses = masses
-      call springs_from_numbers(spec%shear, shear, codes_shear)
-      call springs_from_numbers(spec%flexure, flexure, codes_flexure)
-      call make_column(spec, column, error)
-   end subroutine column_from_numbers
-
-   subroutine springs_from_numbers(springs, numbers, codes)
-      type(spring_spec), allocatable, intent(out) :: springs(:)
-      real(c_double), intent(in) :: numbers(:, :)
-      integer(c_int), intent(in) :: codes(:, :)
-      integer :: i
-
-      allocate (springs(size(numbers, 2)))
-      do i = 1, size(springs)
-         springs(i) = spring_from_numbers(rule_names(codes(1, i)), numbers(:, i), inner_names(codes(2, i)))
-      end do
-   end subroutine springs_from_numbers
-
    !> Static path into an array of rows.
-   subroutine into_rows_static(column, by_force, target_values, every, rows, count, summary, error)
+   subroutine into_rows_static(column, by_force, target_values, every, collapse_drift, rows, count, &
+                               summary, error)
       type(column_type), intent(in) :: column
       logical, intent(in) :: by_force
       real(c_double), intent(in) :: target_values(:)
       integer(c_int), intent(in) :: every
+      real(c_double), intent(in) :: collapse_drift
       real(c_double), intent(inout), target, contiguous :: rows(:, :)
       integer, intent(out) :: count
       type(summary_type), intent(out) :: summary
       type(error_type), allocatable, intent(out) :: error
       type(array_recorder) :: recorder
+      type(analysis_spec) :: analysis
+      type(message_list) :: messages
 
+      count = 0
+      analysis%collapse_drift = collapse_drift
+      call analysis%validate(messages)
+      call messages%raise(error)
+      if (allocated(error)) return
       recorder%rows => rows
-      call run_static(column, by_force, target_values, every, recorder, summary, error)
+      call run_static(column, by_force, target_values, every, collapse_drift, recorder, summary, error)
       count = recorder%count
    end subroutine into_rows_static
 
-   !> Response in time into an array of rows; a loading without points is none.
-   subroutine into_rows_dynamic(column, time, force, ground, dt, initial_deformation, initial_velocity, &
-                                every, rows, count, summary, error)
+   !> Response in time into an array of rows.
+   subroutine into_rows_dynamic(column, analysis, time, loads, initial_values, opening_given, every, rows, &
+                                count, summary, enough, error)
       type(column_type), intent(in) :: column
-      real(c_double), intent(in) :: time(:), force(:), ground(:), dt
-      real(c_double), intent(in) :: initial_deformation(:), initial_velocity(:)
+      type(analysis_spec), intent(in) :: analysis
+      real(c_double), intent(in) :: time(:)
+      type(loads_type), intent(in) :: loads
+      !> Deformations, then velocities (2 unknowns), or nothing: at rest
+      real(c_double), intent(in) :: initial_values(:)
+      logical, intent(in) :: opening_given
       integer(c_int), intent(in) :: every
       real(c_double), intent(inout), target, contiguous :: rows(:, :)
+      !> Rows kept; without enough room nothing is solved, and it is the number of rows wanted
       integer, intent(out) :: count
       type(summary_type), intent(out) :: summary
+      logical, intent(out) :: enough
       type(error_type), allocatable, intent(out) :: error
       type(array_recorder) :: recorder
       type(initial_state) :: initial
       type(time_plan) :: plan
-      type(signal_type) :: force_signal, ground_signal
-      real(wp) :: limit
 
       count = 0
-      call plan_dynamic(column, time, dt, plan, limit, error)
+      enough = .true.
+      call plan_dynamic(column, analysis, time, loads, plan, error)
       if (allocated(error)) return
-      call make_signal(force_signal, 'force', time, force, error)
-      if (allocated(error)) return
-      call make_signal(ground_signal, 'ground_acceleration', time, ground, error)
-      if (allocated(error)) return
-      initial%deformation = initial_deformation
-      initial%velocity = initial_velocity
+      enough = size(rows, 2) >= plan%rows(every)
+      if (.not. enough) then
+         count = plan%rows(every)
+         return
+      end if
+      if (size(initial_values) > 0) then
+         initial%deformation = initial_values(:column%unknowns)
+         initial%velocity = initial_values(column%unknowns + 1:)
+         initial%opening_given = opening_given
+      end if
       recorder%rows => rows
-      call run_dynamic(column, plan, limit, time, force_signal, ground_signal, initial, every, recorder, &
-                       summary, error)
+      call run_dynamic(column, analysis, plan, time, loads, initial, every, recorder, summary, error)
       count = recorder%count
    end subroutine into_rows_dynamic
+
+   !> What acts, from one array each; an array without values is none.
+   subroutine make_loads(loads, time, force, ground, vertical, axial, error)
+      type(loads_type), intent(out) :: loads
+      real(c_double), intent(in) :: time(:), force(:), ground(:), vertical(:), axial(:)
+      type(error_type), allocatable, intent(out) :: error
+
+      call make_signal(loads%force, 'force', time, force, error)
+      if (.not. allocated(error)) call make_signal(loads%ground, 'ground_acceleration', time, ground, error)
+      if (.not. allocated(error)) then
+         call make_signal(loads%vertical, 'vertical_acceleration', time, vertical, error)
+      end if
+      if (.not. allocated(error)) call make_signal(loads%axial, 'axial_load', time, axial, error)
+   end subroutine make_loads
 
    subroutine make_signal(made, name, time, value, error)
       type(signal_type), intent(out) :: made
@@ -149,6 +122,30 @@ contains
       made%time = time
       made%value = value
    end subroutine make_signal
+
+   !> An analysis in time from its names and its numbers dt, tolerance, rho_infinity, collapse_drift,
+   !> allow_unstable (0 or 1).
+   subroutine analysis_from_numbers(analysis, method, events, numbers, error)
+      type(analysis_spec), intent(out) :: analysis
+      character(len=*), intent(in) :: method, events
+      real(c_double), intent(in) :: numbers(5)
+      type(error_type), allocatable, intent(out) :: error
+      type(message_list) :: messages
+
+      analysis%method = method
+      analysis%events = events
+      analysis%dt = numbers(1)
+      analysis%tolerance = numbers(2)
+      analysis%rho_infinity = numbers(3)
+      analysis%collapse_drift = numbers(4)
+      analysis%allow_unstable = abs(numbers(5)) > 0.0_wp
+      if (analysis%method == 'static') then
+         call messages%add("analysis: method = 'static' takes no time; call cyclic, or set method = 'auto'")
+      else
+         call analysis%validate(messages)
+      end if
+      call messages%raise(error)
+   end subroutine analysis_from_numbers
 
    !> Points of a cyclic protocol, in the unit of the amplitudes.
    subroutine protocol_from_numbers(amplitudes, cycles, repeats, points, values, error)
@@ -187,5 +184,25 @@ contains
       status = error%code
       message = error%message
    end subroutine tell
+
+   !> The same for a run; one that went well may have a note as its message.
+   subroutine tell_run(column, summary, error, figures, method, status, message)
+      type(column_type), intent(in) :: column
+      type(summary_type), intent(in) :: summary
+      type(error_type), allocatable, intent(in) :: error
+      real(c_double), intent(out) :: figures(:)
+      !> Method that was used, and behind it why the program chose it
+      character(len=*), intent(out) :: method
+      integer(c_int), intent(out) :: status
+      character(len=*), intent(out) :: message
+      character(len=:), allocatable :: note
+
+      figures = summary%as_array()
+      method = summary%method//summary%reason
+      call tell(error, status, message)
+      if (status /= 0) return
+      call rotation_note(column, summary, note)
+      message = note
+   end subroutine tell_run
 
 end module rbs_flat_door

@@ -15,7 +15,8 @@ end subroutine rbs_version_text
 subroutine rbs_check_spring(rule, numbers, inner, status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list
-   use rbs_flat_door, only: spring_from_numbers, tell
+   use rbs_flat_door, only: tell
+   use rbs_flat_pack, only: spring_from_numbers
    use rbs_spec_spring, only: spring_spec
    implicit none
    character(len=*), intent(in) :: rule, inner
@@ -35,7 +36,7 @@ end subroutine rbs_check_spring
 
 subroutine rbs_spring_response(rule, numbers, inner, m, deformation, force)
    use iso_c_binding, only: c_double, c_int
-   use rbs_flat_door, only: spring_from_numbers
+   use rbs_flat_pack, only: spring_from_numbers
    use rbs_hysteresis_springs, only: follow_path
    implicit none
    character(len=*), intent(in) :: rule, inner
@@ -48,42 +49,39 @@ subroutine rbs_spring_response(rule, numbers, inner, m, deformation, force)
    call follow_path(spring_from_numbers(rule, numbers, inner), deformation, force)
 end subroutine rbs_spring_response
 
-subroutine rbs_check_column(n, kinematics, numbers, nl, lengths, nm, masses, &
-                            ns, shear, codes_shear, nf, flexure, codes_flexure, status, message)
+subroutine rbs_check_column(nc, codes, nn, numbers, kinematics, status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_column_column, only: column_type
-   use rbs_flat_door, only: column_from_numbers, tell
+   use rbs_flat_door, only: tell
+   use rbs_flat_pack, only: column_from_numbers
    implicit none
-   integer(c_int), intent(in) :: n, nl, nm, ns, nf
+   integer(c_int), intent(in) :: nc, nn, codes(nc)
+   real(c_double), intent(in) :: numbers(nn)
    character(len=*), intent(in) :: kinematics
-   real(c_double), intent(in) :: numbers(7), lengths(nl), masses(nm), shear(9, ns), flexure(9, nf)
-   integer(c_int), intent(in) :: codes_shear(2, ns), codes_flexure(2, nf)
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
    type(column_type) :: column
    type(error_type), allocatable :: error
 
-   call column_from_numbers(column, n, kinematics, numbers, lengths, masses, shear, flexure, &
-                            codes_shear, codes_flexure, error)
+   call column_from_numbers(column, codes, numbers, kinematics, error)
    call tell(error, status, message)
 end subroutine rbs_check_column
 
-subroutine rbs_modes(n, kinematics, numbers, nl, lengths, nm, masses, &
-                     ns, shear, codes_shear, nf, flexure, codes_flexure, &
-                     omega, shapes, stable_step, status, message)
+subroutine rbs_modes(nc, codes, nn, numbers, kinematics, unknowns, omega, shapes, stable_step, &
+                     status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_column_column, only: column_type
-   use rbs_flat_door, only: column_from_numbers, tell
+   use rbs_flat_door, only: tell
+   use rbs_flat_pack, only: column_from_numbers
    use rbs_solve_modal, only: modes_type, find_modes
    implicit none
-   integer(c_int), intent(in) :: n, nl, nm, ns, nf
+   integer(c_int), intent(in) :: nc, nn, unknowns, codes(nc)
+   real(c_double), intent(in) :: numbers(nn)
    character(len=*), intent(in) :: kinematics
-   real(c_double), intent(in) :: numbers(7), lengths(nl), masses(nm), shear(9, ns), flexure(9, nf)
-   integer(c_int), intent(in) :: codes_shear(2, ns), codes_flexure(2, nf)
-   real(c_double), intent(out) :: omega(2*n), shapes(2*n, 2*n), stable_step
+   real(c_double), intent(out) :: omega(unknowns), shapes(unknowns, unknowns), stable_step
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
@@ -94,30 +92,28 @@ subroutine rbs_modes(n, kinematics, numbers, nl, lengths, nm, masses, &
    omega = 0.0_c_double
    shapes = 0.0_c_double
    stable_step = 0.0_c_double
-   call column_from_numbers(column, n, kinematics, numbers, lengths, masses, shear, flexure, &
-                            codes_shear, codes_flexure, error)
+   call column_from_numbers(column, codes, numbers, kinematics, error)
    if (.not. allocated(error)) call find_modes(column, modes, error)
    call tell(error, status, message)
    if (status /= 0) return
    omega = modes%omega
    shapes = modes%shapes
    stable_step = modes%stable_step
+   message = modes%warning
 end subroutine rbs_modes
 
-subroutine rbs_mass_matrix(n, kinematics, numbers, nl, lengths, nm, masses, &
-                           ns, shear, codes_shear, nf, flexure, codes_flexure, &
-                           paper, mass, status, message)
+subroutine rbs_mass_matrix(nc, codes, nn, numbers, kinematics, unknowns, paper, mass, status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_column_column, only: column_type
    use rbs_column_mass, only: paper_mass, symmetric_mass
-   use rbs_flat_door, only: column_from_numbers, tell
+   use rbs_flat_door, only: tell
+   use rbs_flat_pack, only: column_from_numbers
    implicit none
-   integer(c_int), intent(in) :: n, nl, nm, ns, nf, paper
+   integer(c_int), intent(in) :: nc, nn, unknowns, paper, codes(nc)
+   real(c_double), intent(in) :: numbers(nn)
    character(len=*), intent(in) :: kinematics
-   real(c_double), intent(in) :: numbers(7), lengths(nl), masses(nm), shear(9, ns), flexure(9, nf)
-   integer(c_int), intent(in) :: codes_shear(2, ns), codes_flexure(2, nf)
-   real(c_double), intent(out) :: mass(2*n, 2*n)
+   real(c_double), intent(out) :: mass(unknowns, unknowns)
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
@@ -125,8 +121,7 @@ subroutine rbs_mass_matrix(n, kinematics, numbers, nl, lengths, nm, masses, &
    type(error_type), allocatable :: error
 
    mass = 0.0_c_double
-   call column_from_numbers(column, n, kinematics, numbers, lengths, masses, shear, flexure, &
-                            codes_shear, codes_flexure, error)
+   call column_from_numbers(column, codes, numbers, kinematics, error)
    call tell(error, status, message)
    if (status /= 0) return
    if (paper /= 0) then
@@ -136,23 +131,22 @@ subroutine rbs_mass_matrix(n, kinematics, numbers, nl, lengths, nm, masses, &
    end if
 end subroutine rbs_mass_matrix
 
-subroutine rbs_cyclic(n, kinematics, numbers, nl, lengths, nm, masses, &
-                      ns, shear, codes_shear, nf, flexure, codes_flexure, &
-                      by_force, m, values, every, width, height, rows, kept, figures, status, message)
+subroutine rbs_cyclic(nc, codes, nn, numbers, kinematics, by_force, m, values, every, collapse_drift, &
+                      width, height, rows, kept, figures, method, status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_column_column, only: column_type
-   use rbs_flat_door, only: column_from_numbers, into_rows_static, tell
+   use rbs_flat_door, only: into_rows_static, tell_run
+   use rbs_flat_pack, only: column_from_numbers
    use rbs_results_summary, only: summary_type
    implicit none
-   integer(c_int), intent(in) :: n, nl, nm, ns, nf, by_force, m, every, width, height
+   integer(c_int), intent(in) :: nc, nn, by_force, m, every, width, height, codes(nc)
+   real(c_double), intent(in) :: numbers(nn), values(m), collapse_drift
    character(len=*), intent(in) :: kinematics
-   real(c_double), intent(in) :: numbers(7), lengths(nl), masses(nm), shear(9, ns), flexure(9, nf)
-   integer(c_int), intent(in) :: codes_shear(2, ns), codes_flexure(2, nf)
-   real(c_double), intent(in) :: values(m)
    real(c_double), intent(inout) :: rows(width, height)
-   real(c_double), intent(out) :: figures(13)
+   real(c_double), intent(out) :: figures(16)
    integer(c_int), intent(out) :: kept, status
+   character(len=220), intent(out) :: method
    character(len=8192), intent(out) :: message
    !f2py threadsafe
    type(column_type) :: column
@@ -160,80 +154,109 @@ subroutine rbs_cyclic(n, kinematics, numbers, nl, lengths, nm, masses, &
    type(error_type), allocatable :: error
 
    kept = 0
-   call column_from_numbers(column, n, kinematics, numbers, lengths, masses, shear, flexure, &
-                            codes_shear, codes_flexure, error)
+   call column_from_numbers(column, codes, numbers, kinematics, error)
    if (.not. allocated(error)) then
-      call into_rows_static(column, by_force /= 0, values, every, rows, kept, summary, error)
+      call into_rows_static(column, by_force /= 0, values, every, collapse_drift, rows, kept, summary, error)
    end if
-   figures = summary%as_array()
-   call tell(error, status, message)
+   call tell_run(column, summary, error, figures, method, status, message)
 end subroutine rbs_cyclic
 
-subroutine rbs_plan(n, kinematics, numbers, nl, lengths, nm, masses, &
-                    ns, shear, codes_shear, nf, flexure, codes_flexure, &
-                    m, time, dt, every, rows, status, message)
+subroutine rbs_time_history(nc, codes, nn, numbers, kinematics, m, time, mf, force, mg, ground, &
+                            mv, vertical, ma, axial, method, events, settings, mi, initial, &
+                            opening_given, every, width, height, rows, kept, figures, used, status, message)
+   ! status 3: there is too little room for the rows; `kept` of them are wanted, and nothing was solved.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_column_column, only: column_type
-   use rbs_flat_door, only: column_from_numbers, tell
-   use rbs_solve_run, only: plan_dynamic
-   use rbs_solve_time_plan, only: time_plan
-   implicit none
-   integer(c_int), intent(in) :: n, nl, nm, ns, nf, m, every
-   character(len=*), intent(in) :: kinematics
-   real(c_double), intent(in) :: numbers(7), lengths(nl), masses(nm), shear(9, ns), flexure(9, nf)
-   integer(c_int), intent(in) :: codes_shear(2, ns), codes_flexure(2, nf)
-   real(c_double), intent(in) :: time(m), dt
-   integer(c_int), intent(out) :: rows, status
-   character(len=8192), intent(out) :: message
-   !f2py threadsafe
-   type(column_type) :: column
-   type(time_plan) :: plan
-   type(error_type), allocatable :: error
-   real(c_double) :: limit
-
-   call column_from_numbers(column, n, kinematics, numbers, lengths, masses, shear, flexure, &
-                            codes_shear, codes_flexure, error)
-   if (.not. allocated(error)) call plan_dynamic(column, time, dt, plan, limit, error)
-   rows = plan%rows(every)
-   call tell(error, status, message)
-end subroutine rbs_plan
-
-subroutine rbs_time_history(n, kinematics, numbers, nl, lengths, nm, masses, &
-                            ns, shear, codes_shear, nf, flexure, codes_flexure, &
-                            m, time, mf, force, mg, ground, dt, initial_deformation, initial_velocity, &
-                            every, width, height, rows, kept, figures, status, message)
-   use iso_c_binding, only: c_double, c_int
-   use rbs_base_error, only: error_type
-   use rbs_column_column, only: column_type
-   use rbs_flat_door, only: column_from_numbers, into_rows_dynamic, tell
+   use rbs_flat_door, only: analysis_from_numbers, into_rows_dynamic, little_room, make_loads, tell_run
+   use rbs_flat_pack, only: column_from_numbers
    use rbs_results_summary, only: summary_type
+   use rbs_solve_loads, only: loads_type
+   use rbs_spec_analysis, only: analysis_spec
    implicit none
-   integer(c_int), intent(in) :: n, nl, nm, ns, nf, m, mf, mg, every, width, height
-   character(len=*), intent(in) :: kinematics
-   real(c_double), intent(in) :: numbers(7), lengths(nl), masses(nm), shear(9, ns), flexure(9, nf)
-   integer(c_int), intent(in) :: codes_shear(2, ns), codes_flexure(2, nf)
-   real(c_double), intent(in) :: time(m), force(mf), ground(mg), dt
-   real(c_double), intent(in) :: initial_deformation(2*n), initial_velocity(2*n)
+   integer(c_int), intent(in) :: nc, nn, m, mf, mg, mv, ma, mi, opening_given, every, width, height
+   integer(c_int), intent(in) :: codes(nc)
+   real(c_double), intent(in) :: numbers(nn), settings(5), time(m), force(mf), ground(mg), vertical(mv)
+   real(c_double), intent(in) :: axial(ma), initial(mi)
+   character(len=*), intent(in) :: kinematics, method, events
    real(c_double), intent(inout) :: rows(width, height)
-   real(c_double), intent(out) :: figures(13)
+   real(c_double), intent(out) :: figures(16)
    integer(c_int), intent(out) :: kept, status
+   character(len=220), intent(out) :: used
    character(len=8192), intent(out) :: message
    !f2py threadsafe
    type(column_type) :: column
+   type(analysis_spec) :: analysis
+   type(loads_type) :: loads
    type(summary_type) :: summary
    type(error_type), allocatable :: error
+   logical :: enough
 
    kept = 0
-   call column_from_numbers(column, n, kinematics, numbers, lengths, masses, shear, flexure, &
-                            codes_shear, codes_flexure, error)
+   enough = .true.
+   call column_from_numbers(column, codes, numbers, kinematics, error)
+   if (.not. allocated(error)) call analysis_from_numbers(analysis, method, events, settings, error)
+   if (.not. allocated(error)) call make_loads(loads, time, force, ground, vertical, axial, error)
    if (.not. allocated(error)) then
-      call into_rows_dynamic(column, time, force, ground, dt, initial_deformation, initial_velocity, &
-                             every, rows, kept, summary, error)
+      call into_rows_dynamic(column, analysis, time, loads, initial, opening_given /= 0, every, rows, kept, &
+                             summary, enough, error)
    end if
-   figures = summary%as_array()
-   call tell(error, status, message)
+   call tell_run(column, summary, error, figures, used, status, message)
+   if (.not. enough) status = little_room
 end subroutine rbs_time_history
+
+subroutine rbs_read_case(path, nc, nn, m, codes, numbers, kinematics, title, method, events, settings, &
+                         every, time, values, acting, sizes, status, message)
+   ! Sizes of codes, numbers and time come back in `sizes`; the arrays are filled if theirs are these.
+   use iso_c_binding, only: c_double, c_int
+   use rbs_base_error, only: error_type
+   use rbs_flat_case, only: case_arrays, open_case
+   use rbs_flat_door, only: tell
+   implicit none
+   character(len=*), intent(in) :: path
+   integer(c_int), intent(in) :: nc, nn, m
+   integer(c_int), intent(out) :: codes(nc), every, acting(5), sizes(3), status
+   real(c_double), intent(out) :: numbers(nn), settings(5), time(m), values(m, 5)
+   character(len=16), intent(out) :: kinematics
+   character(len=512), intent(out) :: title
+   character(len=20), intent(out) :: method, events
+   character(len=8192), intent(out) :: message
+   !f2py threadsafe
+   type(case_arrays) :: arrays
+   type(error_type), allocatable :: error
+
+   codes = 0
+   every = 0
+   acting = 0
+   sizes = 0
+   numbers = 0.0_c_double
+   settings = 0.0_c_double
+   time = 0.0_c_double
+   values = 0.0_c_double
+   kinematics = ''
+   title = ''
+   method = ''
+   events = ''
+   call open_case(path, arrays, error)
+   call tell(error, status, message)
+   if (status /= 0) return
+   sizes = [size(arrays%codes), size(arrays%numbers), size(arrays%time)]
+   if (any(sizes /= [nc, nn, m])) return
+   codes = arrays%codes
+   numbers = arrays%numbers
+   time = arrays%time
+   values = arrays%values
+   acting = arrays%acting
+   kinematics = arrays%case%column%kinematics
+   title = arrays%case%title
+   every = arrays%case%output%every
+   associate (analysis => arrays%case%analysis)
+      method = analysis%method
+      events = analysis%events
+      settings = [analysis%dt, analysis%tolerance, analysis%rho_infinity, analysis%collapse_drift, &
+                  merge(1.0_c_double, 0.0_c_double, analysis%allow_unstable)]
+   end associate
+end subroutine rbs_read_case
 
 subroutine rbs_protocol(na, amplitudes, nc, cycles, repeats, points, m, values, status, message)
    use iso_c_binding, only: c_double, c_int

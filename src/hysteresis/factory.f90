@@ -1,6 +1,7 @@
 !> From the numbers of a user to the rule that they belong to.
 module rbs_hysteresis_factory
    use rbs_hysteresis_bilinear, only: bilinear_rule
+   use rbs_hysteresis_compression, only: compression_rule
    use rbs_hysteresis_elastic, only: elastic_rule
    use rbs_hysteresis_rule, only: rule_type
    use rbs_hysteresis_takeda, only: takeda_rule
@@ -22,6 +23,8 @@ contains
          allocate (rule, source=bilinear_rule(k=spec%k, d_y=spec%d_y, k_post=spec%k_post))
       case ('takeda')
          call new_takeda(rule, spec)
+      case ('compression')
+         allocate (rule, source=compression_rule(k=spec%k))
       case default
          allocate (rule, source=elastic_rule(k=spec%k))
       end select

@@ -21,6 +21,20 @@ module rbs_hysteresis_springs
       class(rule_type), allocatable :: rule
    end type rule_slot
 
+   !> Springs as they were before they changed their lines.
+   type :: journal_type
+      logical :: open = .false.
+      !> Deformations and works at the begin (count)
+      real(wp), allocatable :: d(:), work(:)
+      integer :: events = 0
+      !> Springs that have changed their lines since, with what they had (changed)
+      integer :: changed = 0
+      integer, allocatable :: spring(:)
+      logical, allocatable :: is_kept(:)
+      type(segment), allocatable :: line(:)
+      type(rule_slot), allocatable :: slot(:)
+   end type journal_type
+
    !> `count` springs in their present state. Assignment copies everything, memory of the rules too.
    type :: spring_array
       !> Number of springs
@@ -37,11 +51,15 @@ module rbs_hysteresis_springs
       real(wp), allocatable :: work(:)
       !> Number of lines left so far
       integer :: events = 0
+      !> Changes with every line that is taken up, going back included: who has factored something for the
+      !> lines of one version need not do it again
+      integer :: version = 0
       !> Whether a rule has gone in a circle; the state is then of no use
       logical :: stuck = .false.
       !> The lines themselves (count), with the ends as the rules gave them
       type(segment), allocatable :: line(:)
       type(rule_slot), allocatable, private :: slot(:)
+      type(journal_type), private :: journal
    contains
       procedure :: create
       procedure :: force
@@ -50,6 +68,12 @@ module rbs_hysteresis_springs
       procedure :: walk
       procedure :: leave
       procedure :: arrive
+      procedure :: carry_to
+      procedure :: stay_on_lines
+      procedure :: load_to
+      procedure :: mark
+      procedure :: restore
+      procedure :: forget_mark
    end type spring_array
 
 contains
@@ -85,13 +109,191 @@ contains
    subroutine move_all(self, d)
       class(spring_array), intent(inout) :: self
       !> New deformations (count) [m or rad]
-      real(wp), intent(in) :: d(:)
+      real(wp), intent(in), contiguous :: d(:)
       integer :: i
 
-      do i = 1, self%count
-         call self%move(i, d(i))
-      end do
+      if (self%count == 2) then
+         ! One body: where both stay on their lines, no loops and no calls.
+         if (d(1) <= self%last(1) .and. d(1) >= self%first(1) .and. &
+             d(2) <= self%last(2) .and. d(2) >= self%first(2)) then
+            call walk_pair(d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, &
+                           self%last)
+            return
+         end if
+      end if
+      if (.not. self%stay_on_lines(d)) then
+         do i = 1, self%count
+            if (d(i) > self%last(i) .or. d(i) < self%first(i)) call move(self, i, d(i))
+         end do
+         if (self%stuck) return
+      end if
+      ! Those that are there already walk no way.
+      call walk_all(self%count, d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, &
+                    self%last)
    end subroutine move_all
+
+   !> Whether all springs can go to new deformations on their present lines.
+   pure logical function stay_on_lines(self, d)
+      class(spring_array), intent(in) :: self
+      !> New deformations (count) [m or rad]
+      real(wp), intent(in), contiguous :: d(:)
+
+      stay_on_lines = are_within(self%count, d, self%first, self%last)
+   end function stay_on_lines
+
+   pure logical function are_within(n, d, first, last)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: d(n), first(n), last(n)
+      integer :: i, outside
+
+      outside = 0
+      do i = 1, n
+         outside = outside + merge(1, 0, d(i) > last(i) .or. d(i) < first(i))
+      end do
+      are_within = outside == 0
+   end function are_within
+
+   !> `walk` for the two springs of one body.
+   pure subroutine walk_pair(to, d0, f0, k, one_way, d, work, first, last)
+      integer, intent(in) :: one_way(2)
+      real(wp), intent(in) :: to(2), d0(2), f0(2), k(2)
+      real(wp), intent(inout) :: d(2), work(2), first(2), last(2)
+      integer :: i
+
+      work = work + (f0 + k*(0.5_wp*(to + d) - d0))*(to - d)
+      d = to
+      do i = 1, 2
+         if (one_way(i) > 0) first(i) = to(i)
+         if (one_way(i) < 0) last(i) = to(i)
+      end do
+   end subroutine walk_pair
+
+   !> `walk` for all springs at once.
+   pure subroutine walk_all(n, to, d0, f0, k, one_way, d, work, first, last)
+      integer, intent(in) :: n, one_way(n)
+      real(wp), intent(in) :: to(n), d0(n), f0(n), k(n)
+      real(wp), intent(inout) :: d(n), work(n), first(n), last(n)
+      integer :: i
+
+      do i = 1, n
+         work(i) = work(i) + (f0(i) + k(i)*(0.5_wp*(to(i) + d(i)) - d0(i)))*(to(i) - d(i))
+         d(i) = to(i)
+         first(i) = merge(to(i), first(i), one_way(i) > 0)
+         last(i) = merge(to(i), last(i), one_way(i) < 0)
+      end do
+   end subroutine walk_all
+
+   !> Walk every spring to a deformation on its present line.
+   subroutine carry_to(self, d)
+      class(spring_array), intent(inout) :: self
+      !> New deformations (count) [m or rad]
+      real(wp), intent(in), contiguous :: d(:)
+
+      call walk_all(self%count, d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, &
+                    self%last)
+   end subroutine carry_to
+
+   !> Follow the lines of a spring until it has a force.
+   subroutine load_to(self, i, f, found)
+      class(spring_array), intent(inout) :: self
+      integer, intent(in) :: i
+      !> Force [N or N m]
+      real(wp), intent(in) :: f
+      !> Whether the spring can have it
+      logical, intent(out) :: found
+      real(wp) :: way, far
+      integer :: lines, direction
+      logical :: is_there
+
+      found = .true.
+      do lines = 1, most_lines
+         way = f - self%force(i)
+         if (.not. abs(way) > 0.0_wp) return
+         direction = merge(1, -1, way > 0.0_wp)
+         associate (line => self%line(i))
+            if (self%one_way(i) /= -direction) then
+               far = line%end_toward(direction)
+               is_there = line%k > 0.0_wp .and. abs(far) >= unbounded
+               if (abs(far) < unbounded) is_there = direction*(line%force(far) - f) >= 0.0_wp
+               if (is_there) then
+                  call walk(self, i, line%d0 + (f - line%f0)/line%k)
+                  return
+               end if
+               if (abs(far) >= unbounded .or. .not. line%k > 0.0_wp) exit
+            end if
+         end associate
+         call self%leave(i, direction)
+      end do
+      found = .false.
+   end subroutine load_to
+
+   !> Remember the present state: from here `restore` brings it back. Only springs that change their lines
+   !> are copied.
+   subroutine mark(self)
+      class(spring_array), intent(inout) :: self
+
+      associate (journal => self%journal)
+         if (.not. allocated(journal%is_kept)) then
+            allocate (journal%is_kept(self%count), source=.false.)
+            allocate (journal%spring(self%count), journal%line(self%count), journal%slot(self%count))
+         end if
+         call self%forget_mark()
+         journal%open = .true.
+         journal%d = self%d
+         journal%work = self%work
+         journal%events = self%events
+      end associate
+   end subroutine mark
+
+   !> Go on without the way back.
+   subroutine forget_mark(self)
+      class(spring_array), intent(inout) :: self
+
+      associate (journal => self%journal)
+         journal%is_kept(journal%spring(:journal%changed)) = .false.
+         journal%changed = 0
+         journal%open = .false.
+      end associate
+   end subroutine forget_mark
+
+   !> Bring back the state that was marked, to the last bit. The mark stays.
+   subroutine restore(self)
+      class(spring_array), intent(inout) :: self
+      integer :: i, j
+
+      associate (journal => self%journal)
+         self%d = journal%d
+         self%work = journal%work
+         self%events = journal%events
+         self%stuck = .false.
+         if (journal%changed > 0) self%version = modulo(self%version + 1, huge(1))
+         do j = 1, journal%changed
+            i = journal%spring(j)
+            self%line(i) = journal%line(j)
+            self%slot(i) = journal%slot(j)
+            journal%is_kept(i) = .false.
+            call put_line(self, i)
+         end do
+         journal%changed = 0
+         where (self%one_way > 0) self%first = self%d
+         where (self%one_way < 0) self%last = self%d
+      end associate
+   end subroutine restore
+
+   !> Keep a spring that is about to change its line for the first time since the mark.
+   subroutine keep(self, i)
+      type(spring_array), intent(inout) :: self
+      integer, intent(in) :: i
+
+      associate (journal => self%journal)
+         if (journal%is_kept(i)) return
+         journal%is_kept(i) = .true.
+         journal%changed = journal%changed + 1
+         journal%spring(journal%changed) = i
+         journal%line(journal%changed) = self%line(i)
+         journal%slot(journal%changed) = self%slot(i)
+      end associate
+   end subroutine keep
 
    !> Move one spring monotonically to a new deformation, along as many lines as lie between.
    subroutine move(self, i, d)
@@ -138,6 +340,7 @@ contains
       class(spring_array), intent(inout) :: self
       integer, intent(in) :: i, direction
 
+      if (self%journal%open) call keep(self, i)
       if (self%one_way(i) == direction .or. self%one_way(i) == 0) then
          call walk(self, i, self%line(i)%end_toward(direction))
       else if (direction < 0) then
@@ -147,6 +350,7 @@ contains
       end if
       call self%slot(i)%rule%next(self%line(i), direction)
       self%events = self%events + 1
+      self%version = modulo(self%version + 1, huge(1))
       call put_line(self, i)
    end subroutine change_line
 

@@ -8,6 +8,7 @@ module rbs_io_csv
    use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
    use rbs_results_recorder, only: recorder_type
+   use rbs_results_row, only: row_time
    implicit none
    private
 
@@ -22,6 +23,8 @@ module rbs_io_csv
    type, extends(recorder_type) :: csv_recorder
       !> Rows written so far
       integer :: count = 0
+      !> First value of the last row: time [s], or number of the point
+      real(wp) :: last_time = 0.0_wp
       !> Path of the file
       character(len=:), allocatable :: path
       type(c_ptr), private :: stream = c_null_ptr
@@ -163,6 +166,7 @@ contains
       end do
       call put_line(self, self%buffer(:at - 1), error)
       self%count = self%count + 1
+      self%last_time = row(row_time)
    end subroutine record
 
    subroutine put_line(self, line, error)

@@ -17,6 +17,7 @@ module rbs_loading_signal
       real(wp), private :: begin = 1.0_wp, finish = -1.0_wp, start = 0.0_wp, slope = 0.0_wp
    contains
       procedure :: at_time
+      procedure :: corner_after
       procedure :: acts
       procedure, private :: find
    end type signal_type
@@ -39,6 +40,18 @@ contains
       if (t < self%begin .or. t > self%finish) call self%find(t)
       value = self%start + self%slope*(t - self%begin)
    end function at_time
+
+   !> The first point after a time, where the slope changes; `huge` if there is none [s].
+   real(wp) function corner_after(self, t) result(corner)
+      class(signal_type), intent(inout) :: self
+      !> Time [s]
+      real(wp), intent(in) :: t
+      real(wp) :: after
+
+      after = t + 8.0_wp*spacing(t)
+      if (after < self%begin .or. after >= self%finish) call self%find(after)
+      corner = self%finish
+   end function corner_after
 
    !> Make the interval that holds t the present one.
    subroutine find(self, t)

@@ -7,7 +7,7 @@ module rbs_results_row
 
    public :: row_size, row_labels
    public :: row_time, row_displacement, row_force, row_input, row_kinetic, row_spring, row_damping
-   public :: row_axial, row_residual, row_joints
+   public :: row_axial, row_residual, row_top, row_joints
 
    !> Time [s] (static: number of the row), displacement of the top [m], lateral force at the top [N].
    integer, parameter :: row_time = 1, row_displacement = 2, row_force = 3
@@ -15,38 +15,48 @@ module rbs_results_row
    !> axial forces; what is left of the balance.
    integer, parameter :: row_input = 4, row_kinetic = 5, row_spring = 6, row_damping = 7
    integer, parameter :: row_axial = 8, row_residual = 9
-   !> From here n slips [m], n relative rotations [rad], n shear forces [N], n moments [N m].
-   integer, parameter :: row_joints = 10
+   !> Height of the top above the ground [m].
+   integer, parameter :: row_top = 10
+   !> From here n slips [m], n relative rotations [rad] and, where the joints open, n openings [m]; then in
+   !> the same order n shear forces [N], n moments [N m] and n axial forces [N].
+   integer, parameter :: row_joints = 11
 
-   character(len=14), parameter :: fixed(9) = [ &
+   character(len=14), parameter :: fixed(10) = [ &
       'time_s        ', 'displacement_m', 'force_N       ', 'input_J       ', 'kinetic_J     ', &
-      'spring_J      ', 'damping_J     ', 'axial_J       ', 'residual_J    ']
+      'spring_J      ', 'damping_J     ', 'axial_J       ', 'residual_J    ', 'top_height_m  ']
 
 contains
 
-   !> Number of values in a row of a column of n bodies.
-   pure integer function row_size(n)
-      integer, intent(in) :: n
+   !> Number of values in a row of a column.
+   pure integer function row_size(unknowns)
+      !> Number of its joint deformations
+      integer, intent(in) :: unknowns
 
-      row_size = row_joints - 1 + 4*n
+      row_size = row_joints - 1 + 2*unknowns
    end function row_size
 
    !> Names of the values with their units.
-   function row_labels(n, dynamic) result(labels)
+   function row_labels(n, opens, dynamic) result(labels)
       integer, intent(in) :: n
-      !> Whether the first value is a time
-      logical, intent(in) :: dynamic
+      !> Whether the joints open, and whether the first value is a time
+      logical, intent(in) :: opens, dynamic
       character(len=24), allocatable :: labels(:)
-      integer :: i
+      integer :: i, m
 
-      allocate (labels(row_size(n)))
+      m = merge(3, 2, opens)*n
+      allocate (labels(row_size(m)))
       labels(:row_joints - 1) = fixed
       if (.not. dynamic) labels(row_time) = 'step'
       do i = 1, n
-         labels(row_joints - 1 + i) = 'slip_'//to_text(i)//'_m'
-         labels(row_joints - 1 + n + i) = 'rotation_'//to_text(i)//'_rad'
-         labels(row_joints - 1 + 2*n + i) = 'shear_'//to_text(i)//'_N'
-         labels(row_joints - 1 + 3*n + i) = 'moment_'//to_text(i)//'_Nm'
+         associate (deformation => row_joints - 1 + i, force => row_joints - 1 + m + i)
+            labels(deformation) = 'slip_'//to_text(i)//'_m'
+            labels(deformation + n) = 'rotation_'//to_text(i)//'_rad'
+            labels(force) = 'shear_'//to_text(i)//'_N'
+            labels(force + n) = 'moment_'//to_text(i)//'_Nm'
+            if (.not. opens) cycle
+            labels(deformation + 2*n) = 'opening_'//to_text(i)//'_m'
+            labels(force + 2*n) = 'axial_force_'//to_text(i)//'_N'
+         end associate
       end do
    end function row_labels
 

@@ -7,7 +7,7 @@ module rbs_results_summary
 
    public :: summary_type, summary_size, summary_names
 
-   integer, parameter :: summary_size = 13
+   integer, parameter :: summary_size = 16
 
    !> Names of the numbers of `as_array`.
    character(len=28), parameter :: summary_names(summary_size) = [ &
@@ -15,7 +15,8 @@ module rbs_results_summary
       'time_step_s                 ', 'stable_step_s               ', 'peak_displacement_m         ', &
       'peak_force_N                ', 'displacement_at_peak_force_m', 'input_energy_J              ', &
       'spring_energy_J             ', 'damping_energy_J            ', 'energy_residual_J           ', &
-      'relative_energy_residual    ']
+      'relative_energy_residual    ', 'peak_rotation_rad           ', 'cut_steps                   ', &
+      'collapsed                   ']
 
    type :: summary_type
       !> Steps or increments taken, rows offered to the recorder, lines of springs left
@@ -27,6 +28,15 @@ module rbs_results_summary
       real(wp) :: peak_displacement = 0.0_wp, peak_force = 0.0_wp, displacement_at_peak = 0.0_wp
       !> Energies at the end [J]
       real(wp) :: input = 0.0_wp, spring = 0.0_wp, damping = 0.0_wp
+      !> Largest absolute rotation of a body over the rows, in size [rad]
+      real(wp) :: peak_rotation = 0.0_wp
+      !> Steps that were cut: at an event, for accuracy, or because they did not converge
+      integer :: cut_steps = 0
+      !> Whether the analysis ended where the user's criterion of collapse was met
+      logical :: collapsed = .false.
+      !> Method that was used and, if the program chose it, why
+      character(len=20) :: method = ''
+      character(len=200) :: reason = ''
       !> Largest residual of the balance over the rows, in size, and the largest energy [J]
       real(wp) :: residual = 0.0_wp, largest = 0.0_wp
    contains
@@ -53,6 +63,7 @@ contains
    !> Take the energies of a kept row into account.
    pure subroutine see(self, row)
       class(summary_type), intent(inout) :: self
+      !> Values as in `rbs_results_row`
       real(wp), intent(in) :: row(:)
 
       self%rows = self%rows + 1
@@ -71,7 +82,8 @@ contains
       values = [real(self%steps, wp), real(self%rows, wp), real(self%events, wp), self%time_step, &
                 self%stable_step, self%peak_displacement, self%peak_force, self%displacement_at_peak, &
                 self%input, self%spring, self%damping, self%residual, &
-                self%residual/max(self%largest, tiny(1.0_wp))]
+                self%residual/max(self%largest, tiny(1.0_wp)), self%peak_rotation, &
+                real(self%cut_steps, wp), merge(1.0_wp, 0.0_wp, self%collapsed)]
    end function as_array
 
 end module rbs_results_summary

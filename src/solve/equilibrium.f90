@@ -4,11 +4,17 @@
 !> (displacement or force of the top). This module finds that line: exactly, without increments.
 !>
 !>     K q - a F = r,   a q = x        K = diag(k) + K_G,  a = arms of the lateral force F
+!>
+!> A few bodies are solved in (slip, relative rotation) with full matrices. More are solved in (slip,
+!> absolute rotation), where K is a band of two diagonals beside the main one: k_M couples neighbouring
+!> rotations, the axial load only the slip of a joint and the rotation below it.
 module rbs_solve_equilibrium
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: factor_positive, solve_positive, solve_general
    use rbs_column_axial, only: geometric_stiffness, geometric_forces
    use rbs_column_column, only: column_type
+   use rbs_column_dead_loads, only: to_joints
+   use rbs_solve_bordered, only: bordered_band
    implicit none
    private
 
@@ -17,18 +23,29 @@ module rbs_solve_equilibrium
    !> A pivot below this share of the initial stiffness is round-off.
    real(wp), parameter :: no_stiffness = 1.0e-12_wp
 
+   !> A relative rotation is a small difference of absolute ones. What that costs comes back if the
+   !> residual is taken in the deformations of the joints and solved for again.
+   integer, parameter :: refinements = 1
+
+   !> Most bodies for which full matrices are faster than bands.
+   integer, parameter :: few = 8
+
    type :: equilibrium_type
-      !> Number of unknowns
+      !> Number of unknowns, 2 n: openings keep still
       integer :: unknowns = 0
       !> The column, and of it the displacement of the top per unknown (2 n)
       type(column_type) :: column
       real(wp), allocatable :: arm(:)
       !> Whether the geometric stiffness takes part; if not, K is diagonal and nothing is factored
       logical :: coupled = .false.
-      !> Geometric stiffness (2 n, 2 n), allocated only if it takes part
-      real(wp), allocatable :: geometric(:, :)
       !> Initial stiffness (2 n): shares the motion between joints that have none left
       real(wp), allocatable :: initial_stiffness(:)
+      !> Few bodies: geometric stiffness (2 n, 2 n)
+      real(wp), allocatable, private :: geometric(:, :)
+      !> Many bodies: the tangent, and the arms joint by joint (2 n)
+      logical, private :: banded = .false.
+      type(bordered_band), private :: tangent
+      real(wp), allocatable, private :: lever(:)
    contains
       procedure :: create
       procedure :: residual
@@ -38,20 +55,45 @@ module rbs_solve_equilibrium
 
 contains
 
-   subroutine create(self, column)
+   subroutine create(self, column, full)
       class(equilibrium_type), intent(out) :: self
       type(column_type), intent(in) :: column
+      !> Whether to use full matrices whatever the number of bodies, or never; to compare them
+      logical, intent(in), optional :: full
 
-      self%unknowns = column%unknowns
+      self%unknowns = 2*column%n
       self%column = column
-      self%arm = column%arm
-      self%initial_stiffness = column%initial_stiffness
+      self%arm = column%arm(:self%unknowns)
+      self%initial_stiffness = column%initial_stiffness(:self%unknowns)
       self%coupled = column%axially_loaded
-      if (self%coupled) then
+      if (.not. self%coupled) return
+      self%banded = column%n > few
+      if (present(full)) self%banded = .not. full
+      if (self%banded) then
+         call create_band(self, column)
+      else
          allocate (self%geometric(self%unknowns, self%unknowns))
          call geometric_stiffness(column, self%geometric)
       end if
    end subroutine create
+
+   subroutine create_band(self, column)
+      type(equilibrium_type), intent(inout) :: self
+      type(column_type), intent(in) :: column
+      real(wp) :: stiffness(self%unknowns)
+      integer :: i, n
+
+      n = column%n
+      allocate (self%lever(self%unknowns))
+      do i = 1, n
+         self%lever(2*i - 1) = 1.0_wp
+         self%lever(2*i) = column%length(i)
+         stiffness(2*i - 1) = column%initial_stiffness(i)
+         stiffness(2*i) = column%initial_stiffness(n + i)
+         if (i < n) stiffness(2*i) = stiffness(2*i) + column%initial_stiffness(n + i + 1)
+      end do
+      call self%tangent%create(2, stiffness)
+   end subroutine create_band
 
    !> What is missing to equilibrium: a F - f - K_G q.
    subroutine residual(self, q, f, force, r)
@@ -73,80 +115,117 @@ contains
 
    !> Driven by the force: K rate = a and K correction = r.
    subroutine follow_force(self, k, r, rate, correction, weakest)
-      class(equilibrium_type), intent(in) :: self
+      class(equilibrium_type), intent(inout) :: self
       !> Stiffness of the springs (2 n)
       real(wp), intent(in) :: k(:)
       !> Residual (2 n)
       real(wp), intent(in) :: r(:)
       !> Change of the deformations per newton, and what takes the residual away (2 n)
-      real(wp), intent(out) :: rate(:), correction(:)
+      real(wp), intent(out), contiguous :: rate(:), correction(:)
       !> 0 if the column is stable; else the spring with the least stiffness
       integer, intent(out) :: weakest
-      real(wp), allocatable :: a(:, :)
       logical :: positive
-      integer :: i
 
-      weakest = 0
-      if (.not. self%coupled) then
-         if (minval(k) > 0.0_wp) then
+      if (self%banded) then
+         call follow_force_banded(self, k, r, rate, correction, positive)
+      else if (self%coupled) then
+         call follow_force_full(self, k, r, rate, correction, positive)
+      else
+         positive = minval(k) > 0.0_wp
+         if (positive) then
             rate = self%arm/k
             correction = r/k
-            return
-         end if
-      else
-         a = tangent(self, k)
-         call factor_positive(a, positive)
-         if (positive) then
-            do i = 1, self%unknowns
-               positive = positive .and. a(i, i)**2 > no_stiffness*self%initial_stiffness(i)
-            end do
-         end if
-         if (positive) then
-            rate = self%arm
-            correction = r
-            call solve_positive(a, rate)
-            call solve_positive(a, correction)
-            return
          end if
       end if
+      weakest = 0
+      if (positive) return
       weakest = minloc(k/self%initial_stiffness, dim=1)
       rate = 0.0_wp
       correction = 0.0_wp
    end subroutine follow_force
 
+   subroutine follow_force_full(self, k, r, rate, correction, positive)
+      type(equilibrium_type), intent(in) :: self
+      real(wp), intent(in) :: k(:), r(:)
+      real(wp), intent(out), contiguous :: rate(:), correction(:)
+      logical, intent(out) :: positive
+      real(wp) :: a(self%unknowns, self%unknowns)
+      integer :: i
+
+      call fill_full(self, k, a)
+      call factor_positive(a, positive)
+      if (.not. positive) return
+      do i = 1, self%unknowns
+         positive = positive .and. a(i, i)**2 > no_stiffness*self%initial_stiffness(i)
+      end do
+      if (.not. positive) return
+      rate = self%arm
+      correction = r
+      call solve_positive(a, rate)
+      call solve_positive(a, correction)
+   end subroutine follow_force_full
+
+   subroutine follow_force_banded(self, k, r, rate, correction, positive)
+      type(equilibrium_type), intent(inout) :: self
+      real(wp), intent(in) :: k(:), r(:)
+      real(wp), intent(out), contiguous :: rate(:), correction(:)
+      logical, intent(out) :: positive
+      real(wp), allocatable :: missing(:, :), more(:, :), q(:, :)
+      real(wp), parameter :: force(2) = [1.0_wp, 0.0_wp]
+      logical :: regular
+      integer :: j, again
+
+      call fill_tangent(self, k)
+      call self%tangent%factor()
+      positive = self%tangent%positive
+      if (.not. positive) return
+      allocate (missing(self%unknowns, 2), more(self%unknowns, 2))
+      allocate (q(self%unknowns, 2), source=0.0_wp)
+      do again = 0, refinements
+         do j = 1, 2
+            call self%residual(q(:, j), k*q(:, j), force(j), missing(:, j))
+            if (j == 2) missing(:, j) = missing(:, j) + r
+            call along_joints(self%column%n, missing(:, j), more(:, j))
+         end do
+         call self%tangent%solve(more, regular)
+         call add_joints(self, more, q)
+      end do
+      rate = q(:, 1)
+      correction = q(:, 2)
+   end subroutine follow_force_banded
+
    !> Driven by the displacement: K rate = a dF and a rate = 1; K correction = r + a F', a correction = gap.
    subroutine follow_displacement(self, k, r, gap, rate, force_rate, correction, force_correction, regular)
-      class(equilibrium_type), intent(in) :: self
+      class(equilibrium_type), intent(inout) :: self
       !> Stiffness of the springs (2 n)
       real(wp), intent(in) :: k(:)
       !> Residual (2 n), and what is missing to the displacement [m]
       real(wp), intent(in) :: r(:), gap
       !> Change of the deformations per metre, and what takes the residuals away (2 n)
-      real(wp), intent(out) :: rate(:), correction(:)
+      real(wp), intent(out), contiguous :: rate(:), correction(:)
       !> Change of the force [N/m], and of the force with the correction [N]
       real(wp), intent(out) :: force_rate, force_correction
       !> Whether there is one answer
       logical, intent(out) :: regular
-      real(wp), allocatable :: a(:, :), b(:, :)
+      real(wp), allocatable :: b(:, :), x(:, :)
+      real(wp) :: g(2), y(2)
       real(wp) :: flexibility
-      integer :: m
 
-      m = self%unknowns
       if (self%coupled) then
-         allocate (a(m + 1, m + 1), b(m + 1, 2))
-         a(:m, :m) = tangent(self, k)
-         a(:m, m + 1) = -self%arm
-         a(m + 1, :m) = self%arm
-         a(m + 1, m + 1) = 0.0_wp
+         allocate (b(self%unknowns, 2), x(self%unknowns, 2))
+         g = [1.0_wp, gap]
          b(:, 1) = 0.0_wp
-         b(m + 1, 1) = 1.0_wp
-         b(:m, 2) = r
-         b(m + 1, 2) = gap
-         call solve_general(a, b, regular)
-         rate = b(:m, 1)
-         force_rate = b(m + 1, 1)
-         correction = b(:m, 2)
-         force_correction = b(m + 1, 2)
+         b(:, 2) = r
+         if (self%banded) then
+            call solve_banded(self, k, b, g, x, y, regular)
+         else
+            call solve_full(self, k, b, g, x, y, regular)
+         end if
+         if (.not. regular) return
+         rate = x(:, 1)
+         correction = x(:, 2)
+         force_rate = y(1)
+         force_correction = y(2)
       else if (minval(k) > 0.0_wp) then
          regular = .true.
          flexibility = sum(self%arm**2/k)
@@ -169,6 +248,70 @@ contains
       end if
    end subroutine follow_displacement
 
+   !> The whole system with its border as one full matrix.
+   subroutine solve_full(self, k, f, g, x, y, regular)
+      type(equilibrium_type), intent(in) :: self
+      real(wp), intent(in) :: k(:), f(:, :), g(:)
+      real(wp), intent(out) :: x(:, :), y(:)
+      logical, intent(out) :: regular
+      real(wp) :: a(self%unknowns + 1, self%unknowns + 1), b(self%unknowns + 1, size(g))
+      integer :: m
+
+      m = self%unknowns
+      call fill_full(self, k, a(:m, :m))
+      a(:m, m + 1) = -self%arm
+      a(m + 1, :m) = self%arm
+      a(m + 1, m + 1) = 0.0_wp
+      b(:m, :) = f
+      b(m + 1, :) = g
+      call solve_general(a, b, regular)
+      x = b(:m, :)
+      y = b(m + 1, :)
+   end subroutine solve_full
+
+   !> The same system as a band with its border.
+   subroutine solve_banded(self, k, f, g, x, y, regular)
+      type(equilibrium_type), intent(inout) :: self
+      real(wp), intent(in) :: k(:), f(:, :), g(:)
+      real(wp), intent(out) :: x(:, :), y(:)
+      logical, intent(out) :: regular
+      real(wp), allocatable :: missing(:, :), more(:, :), b(:, :)
+      real(wp) :: gap(size(g)), more_force(size(g))
+      integer :: j, again
+
+      call fill_tangent(self, k)
+      call self%tangent%factor()
+      allocate (missing, b, more, mold=f)
+      x = 0.0_wp
+      y = 0.0_wp
+      do again = 0, refinements
+         do j = 1, size(g)
+            call self%residual(x(:, j), k*x(:, j), y(j), missing(:, j))
+            missing(:, j) = missing(:, j) + f(:, j)
+            call along_joints(self%column%n, missing(:, j), b(:, j))
+            gap(j) = g(j) - sum(self%arm*x(:, j))
+         end do
+         call self%tangent%solve_bordered(self%lever, self%lever, b, gap, more, more_force, regular)
+         if (.not. regular) return
+         call add_joints(self, more, x)
+         y = y + more_force
+      end do
+   end subroutine solve_banded
+
+   !> Add changes in (slip, absolute rotation) to deformations of the joints.
+   subroutine add_joints(self, z, q)
+      type(equilibrium_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: z(:, :)
+      real(wp), intent(inout) :: q(:, :)
+      real(wp) :: change(self%unknowns)
+      integer :: j
+
+      do j = 1, size(z, 2)
+         call to_joints(self%column, 2, z(:, j), change)
+         q(:, j) = q(:, j) + change
+      end do
+   end subroutine add_joints
+
    !> Joints without stiffness take all the motion. Several share it as they would with a hardening in
    !> proportion to their initial stiffness, however small.
    subroutine follow_mechanism(self, k, rate)
@@ -182,16 +325,50 @@ contains
    end subroutine follow_mechanism
 
    !> Tangent stiffness diag(k) + K_G.
-   function tangent(self, k) result(a)
+   pure subroutine fill_full(self, k, a)
       type(equilibrium_type), intent(in) :: self
       real(wp), intent(in) :: k(:)
-      real(wp), allocatable :: a(:, :)
+      real(wp), intent(out) :: a(:, :)
       integer :: i
 
       a = self%geometric
       do i = 1, self%unknowns
          a(i, i) = a(i, i) + k(i)
       end do
-   end function tangent
+   end subroutine fill_full
+
+   !> The same in (slip, absolute rotation), joint by joint, as a band.
+   subroutine fill_tangent(self, k)
+      type(equilibrium_type), intent(inout) :: self
+      real(wp), intent(in) :: k(:)
+      integer :: i, n
+
+      n = self%column%n
+      associate (band => self%tangent%band, column => self%column)
+         band = 0.0_wp
+         do i = 1, n
+            band(1, 2*i - 1) = k(i)
+            band(1, 2*i) = k(n + i) - column%axial_body(i)*column%length(i)
+            if (i == n) exit
+            band(1, 2*i) = band(1, 2*i) + k(n + i + 1)
+            band(2, 2*i) = -column%axial_joint(i + 1)
+            band(3, 2*i) = -k(n + i + 1)
+         end do
+      end associate
+   end subroutine fill_tangent
+
+   !> Forces on (slip, absolute rotation), joint by joint, from those of the joints.
+   pure subroutine along_joints(n, r, b)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: r(:)
+      real(wp), intent(out) :: b(:)
+      integer :: i
+
+      do i = 1, n
+         b(2*i - 1) = r(i)
+         b(2*i) = r(n + i)
+         if (i < n) b(2*i) = b(2*i) - r(n + i + 1)
+      end do
+   end subroutine along_joints
 
 end module rbs_solve_equilibrium

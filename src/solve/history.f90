@@ -1,119 +1,113 @@
-!> Response in time: marching through the plan, springs, energy balance, rows.
+!> Response in time: marching through the plan, energy balance, rows.
 module rbs_solve_history
    use rbs_base_constants, only: unset_integer
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type
-   use rbs_hysteresis_springs, only: spring_array
-   use rbs_loading_signal, only: signal_type
+   use rbs_column_column, only: column_type, joint_name
    use rbs_results_progress, only: progress_type
    use rbs_results_recorder, only: recorder_type
    use rbs_results_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
-                              row_spring, row_damping, row_axial, row_residual, row_joints
+                              row_spring, row_damping, row_axial, row_residual, row_top, row_joints
    use rbs_results_summary, only: summary_type
-   use rbs_solve_motion, only: motion_type
-   use rbs_solve_rk4, only: rk4_work, step
+   use rbs_solve_loads, only: loads_type, lateral, axial
+   use rbs_solve_state, only: state_type, stepper_type, out_of_bounds
    use rbs_solve_time_plan, only: time_plan
+   use rbs_spec_check, only: is_given
    implicit none
    private
 
    public :: initial_state, march
 
-   !> Beyond this [m, rad] no column is left, and squares would overflow.
-   real(wp), parameter :: out_of_bounds = 1.0e100_wp
-
    !> State at the begin; arrays that are not allocated are zero.
    type :: initial_state
-      !> Deformations [m, rad] and velocities [m/s, rad/s] (2 n); the springs get there from zero
+      !> Deformations [m, rad] and velocities [m/s, rad/s] (unknowns); the springs get there from zero
       real(wp), allocatable :: deformation(:), velocity(:)
+      !> Whether the openings are among them; else the axial springs begin in equilibrium with axial load
+      !> and weight
+      logical :: opening_given = .false.
    end type initial_state
-
-   !> State of a run.
-   type :: run_type
-      type(motion_type) :: motion
-      type(spring_array) :: springs
-      type(rk4_work) :: work
-      type(signal_type) :: force, ground
-      real(wp), allocatable :: q(:), v(:)
-      real(wp) :: time = 0.0_wp
-      !> Lateral force [N] and ground acceleration [m/s2] now
-      real(wp) :: force_now = 0.0_wp, ground_now = 0.0_wp
-      !> Works of loads and damping, and the energy at the begin [J]
-      real(wp) :: of_loads = 0.0_wp, of_damping = 0.0_wp, at_begin = 0.0_wp
-   end type run_type
 
 contains
 
    !> March through the plan.
-   subroutine march(column, plan, time, force, ground, initial, every, recorder, summary, error, progress)
+   subroutine march(column, plan, stepper, time, loads, initial, collapse_drift, every, recorder, summary, &
+                    error, progress)
       type(column_type), intent(in) :: column
       type(time_plan), intent(in) :: plan
+      !> The method
+      class(stepper_type), intent(inout) :: stepper
       !> Times of the loading (m) [s]
       real(wp), intent(in) :: time(:)
-      !> Lateral force [N] and acceleration of the ground [m/s2]; a signal without points is zero
-      type(signal_type), intent(in) :: force, ground
+      type(loads_type), intent(in) :: loads
       type(initial_state), intent(in) :: initial
+      !> Displacement of the top over the height at which the column has collapsed; `unset`: none
+      real(wp), intent(in) :: collapse_drift
       !> Every n-th step gives a row, and the last; `unset_integer`: every interval of the plan
       integer, intent(in) :: every
       class(recorder_type), intent(inout) :: recorder
-      !> On entry with the stability limit
       type(summary_type), intent(inout) :: summary
       !> On failure everything up to the last good state has been recorded
       type(error_type), allocatable, intent(out) :: error
       !> Told now and then how far the run is
       class(progress_type), intent(inout), optional :: progress
-      type(run_type) :: run
+      type(state_type) :: state
       real(wp), allocatable :: row(:)
-      real(wp) :: finish
-      integer :: interval, part, parts
+      real(wp) :: begin, finish, displacement, furthest, h
+      integer :: interval, part, parts, step, next_row
 
-      call start_run(run, column, force, ground, initial, plan%begin, error)
+      call start_state(state, column, loads, initial, plan%begin, error)
       if (allocated(error)) return
-      allocate (row(row_size(column%n)))
+      allocate (row(row_size(column%unknowns)))
+      furthest = huge(1.0_wp)
+      if (is_given(collapse_drift)) furthest = collapse_drift*column%joint_height(column%n + 1)
       summary%time_step = plan%dt
-      call summary%see_peak(run%motion%top_displacement(run%q), run%force_now)
-      call keep(run, row, recorder, summary, error)
+      next_row = huge(1)
+      if (every /= unset_integer) next_row = min(every, plan%steps)
+      displacement = state%motion%top_displacement(state%q)
+      call summary%see_peak(displacement, state%load(lateral))
+      call keep(state, row, recorder, summary, error)
       if (allocated(error)) return
+      finish = plan%begin
+      step = 0
       do interval = 1, plan%intervals
+         begin = finish
          call interval_of(plan, time, interval, finish, parts)
-         do part = parts, 1, -1
-            call take_step(run, (finish - run%time)/part)
-            summary%steps = summary%steps + 1
-            if (part == 1) run%time = finish
-            call summary%see_peak(run%motion%top_displacement(run%q), run%force_now)
-            if (.not. maxval(abs(run%q)) < out_of_bounds) then
-               call report_unbounded(run, error)
-               return
-            else if (run%springs%stuck) then
-               call fatal_error(error, analysis_failed, 'a hysteresis rule goes in a circle at time '// &
-                                to_text(run%time)//' s; the parameters of a spring are too extreme '// &
-                                'for the arithmetic. Rows up to there are kept')
+         h = (finish - begin)/parts
+         do part = 1, parts
+            call stepper%advance(state, h, error)
+            if (allocated(error)) then
+               summary%steps = step + stepper%extra_steps
+               summary%cut_steps = stepper%cut_steps
+               call keep_last(state, row, recorder, summary)
                return
             end if
-            if (is_kept(summary%steps, part == 1, plan%steps, every)) then
-               call keep(run, row, recorder, summary, error)
-               if (allocated(error)) return
+            step = step + 1
+            if (state%lost .or. state%springs%stuck) then
+               summary%steps = step + stepper%extra_steps
+               call report_state(state, error)
+               return
             end if
-            if (mod(summary%steps, 8192) == 0 .and. present(progress)) then
-               call progress%update(real(summary%steps, wp)/plan%steps)
+            state%time = begin + part*h
+            if (part == parts) state%time = finish
+            displacement = state%motion%top_displacement(state%q)
+            call summary%see_peak(displacement, state%load(lateral))
+            summary%collapsed = abs(displacement) >= furthest
+            if (summary%collapsed .or. step == next_row .or. &
+                (every == unset_integer .and. part == parts)) then
+               summary%steps = step + stepper%extra_steps
+               summary%cut_steps = stepper%cut_steps
+               if (stepper%longest_step > 0.0_wp) summary%time_step = stepper%longest_step
+               call keep(state, row, recorder, summary, error)
+               if (allocated(error) .or. summary%collapsed) return
+               if (every /= unset_integer) next_row = min(step + every, plan%steps)
+            end if
+            if (iand(step, 8191) == 0 .and. present(progress)) then
+               call progress%update(real(step, wp)/plan%steps)
             end if
          end do
       end do
    end subroutine march
-
-   !> Whether a step gives a row.
-   pure logical function is_kept(step, ends_interval, steps, every)
-      !> Number of the step, of all steps, and n of every n-th
-      integer, intent(in) :: step, steps, every
-      logical, intent(in) :: ends_interval
-
-      if (every == unset_integer) then
-         is_kept = ends_interval
-      else
-         is_kept = mod(step, every) == 0 .or. step == steps
-      end if
-   end function is_kept
 
    !> End of an interval between kept times, and the number of its steps.
    pure subroutine interval_of(plan, time, interval, finish, parts)
@@ -133,92 +127,132 @@ contains
       end if
    end subroutine interval_of
 
-   subroutine start_run(run, column, force, ground, initial, begin, error)
-      type(run_type), intent(out) :: run
+   subroutine start_state(state, column, loads, initial, begin, error)
+      type(state_type), intent(out) :: state
       type(column_type), intent(in) :: column
-      type(signal_type), intent(in) :: force, ground
+      type(loads_type), intent(in) :: loads
       type(initial_state), intent(in) :: initial
       real(wp), intent(in) :: begin
       type(error_type), allocatable, intent(out) :: error
       integer :: m
 
       m = column%unknowns
-      call run%motion%create(column, error)
+      state%loads = loads
+      call state%loads%find_acting()
+      call state%motion%create(column, state%loads%acts, error)
       if (allocated(error)) return
-      call run%springs%create(column%spring)
-      call run%work%create(m)
-      run%force = force
-      run%ground = ground
-      run%time = begin
-      allocate (run%q(m), run%v(m), source=0.0_wp)
-      if (allocated(initial%deformation)) run%q = initial%deformation
-      if (allocated(initial%velocity)) run%v = initial%velocity
-      call run%springs%move_all(run%q)
-      if (run%force%acts()) run%force_now = run%force%at_time(begin)
-      if (run%ground%acts()) run%ground_now = run%ground%at_time(begin)
-      run%at_begin = run%motion%kinetic_energy(run%q, run%v) + sum(run%springs%work) &
-                     + run%motion%potential(run%q)
-   end subroutine start_run
-
-   !> One step; the springs follow at its end, along as many lines as they have passed.
-   subroutine take_step(run, h)
-      type(run_type), intent(inout) :: run
-      !> Step [s]
-      real(wp), intent(in) :: h
-      real(wp) :: force(3), ground(3)
-
-      force = 0.0_wp
-      ground = 0.0_wp
-      if (run%force%acts()) then
-         force = [run%force_now, run%force%at_time(run%time + 0.5_wp*h), run%force%at_time(run%time + h)]
+      call state%springs%create(column%spring)
+      state%time = begin
+      call state%loads%at_time(begin, state%load)
+      allocate (state%q(m), state%v(m), source=0.0_wp)
+      if (allocated(initial%deformation)) state%q = initial%deformation
+      if (allocated(initial%velocity)) state%v = initial%velocity
+      if (column%opens .and. .not. initial%opening_given) then
+         call close_joints(state, error)
+         if (allocated(error)) return
       end if
-      if (run%ground%acts()) then
-         ground = [run%ground_now, run%ground%at_time(run%time + 0.5_wp*h), &
-                   run%ground%at_time(run%time + h)]
+      call state%springs%move_all(state%q)
+      state%at_begin = state%motion%kinetic_energy(state%q, state%v) + sum(state%springs%work) &
+                       + state%motion%potential(state%q)
+   end subroutine start_state
+
+   !> Openings in equilibrium with axial load and weight.
+   subroutine close_joints(state, error)
+      type(state_type), intent(inout) :: state
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: tension
+      integer :: i, n
+      logical :: found
+
+      n = state%motion%column%n
+      do i = 1, n
+         tension = -(state%motion%column%axial_joint(i) + state%load(axial))
+         call state%springs%load_to(2*n + i, tension, found)
+         if (.not. found) then
+            call fatal_error(error, analysis_failed, trim(joint_name(state%motion%column, 2*n + i))// &
+                             ' cannot carry the axial force of '//to_text(-tension)//' N (compression '// &
+                             'positive) at the begin; change axial_load or the spring, or give the '// &
+                             'openings at the begin')
+            return
+         end if
+         state%q(2*n + i) = state%springs%d(2*n + i)
+      end do
+   end subroutine close_joints
+
+   !> Say why one cannot go on from the state.
+   subroutine report_state(state, error)
+      type(state_type), intent(in) :: state
+      type(error_type), allocatable, intent(inout) :: error
+
+      if (state%lost) then
+         call fatal_error(error, analysis_failed, 'the motion has no bounds any more at time '// &
+                          to_text(state%time)//' s (a deformation is beyond '//to_text(out_of_bounds)// &
+                          '): the step is beyond the stability limit, the column has lost its '// &
+                          'stability under the axial load, or the loading has a wrong unit. Rows up to '// &
+                          'there are kept')
+      else
+         call fatal_error(error, analysis_failed, 'a hysteresis rule goes in a circle at time '// &
+                          to_text(state%time)//' s; the parameters of a spring are too extreme '// &
+                          'for the arithmetic. Rows up to there are kept')
       end if
-      call step(run%motion, run%springs, run%work, h, force, ground, run%q, run%v, &
-                run%of_loads, run%of_damping)
-      run%time = run%time + h
-      run%force_now = force(3)
-      run%ground_now = ground(3)
-      if (maxval(abs(run%q)) < out_of_bounds) call run%springs%move_all(run%q)
-   end subroutine take_step
+   end subroutine report_state
+
+   !> Record the last good state before a failure.
+   subroutine keep_last(state, row, recorder, summary)
+      type(state_type), intent(in) :: state
+      real(wp), intent(inout) :: row(:)
+      class(recorder_type), intent(inout) :: recorder
+      type(summary_type), intent(inout) :: summary
+      type(error_type), allocatable :: ignored
+
+      if (state%lost .or. .not. state%time > row(row_time)) return
+      call keep(state, row, recorder, summary, ignored)
+   end subroutine keep_last
 
    !> Record the present state.
-   subroutine keep(run, row, recorder, summary, error)
-      type(run_type), intent(in) :: run
+   subroutine keep(state, row, recorder, summary, error)
+      type(state_type), intent(in) :: state
       real(wp), intent(inout) :: row(:)
       class(recorder_type), intent(inout) :: recorder
       type(summary_type), intent(inout) :: summary
       type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: top(2)
       integer :: m
 
-      m = run%springs%count
-      row(row_time) = run%time
-      row(row_displacement) = run%motion%top_displacement(run%q)
-      row(row_force) = run%force_now
-      row(row_input) = run%of_loads
-      row(row_kinetic) = run%motion%kinetic_energy(run%q, run%v)
-      row(row_spring) = sum(run%springs%work)
-      row(row_damping) = run%of_damping
-      row(row_axial) = run%motion%potential(run%q)
-      row(row_residual) = run%of_loads + run%at_begin - row(row_kinetic) - row(row_spring) &
+      m = state%springs%count
+      top = state%motion%top(state%q)
+      row(row_time) = state%time
+      row(row_displacement) = top(1)
+      row(row_force) = state%load(lateral)
+      row(row_input) = state%of_loads
+      row(row_kinetic) = state%motion%kinetic_energy(state%q, state%v)
+      row(row_spring) = sum(state%springs%work)
+      row(row_damping) = state%of_damping
+      row(row_axial) = state%motion%potential(state%q)
+      row(row_residual) = state%of_loads + state%at_begin - row(row_kinetic) - row(row_spring) &
                           - row(row_damping) - row(row_axial)
-      row(row_joints:row_joints + m - 1) = run%q
-      row(row_joints + m:) = run%springs%f0 + run%springs%k*(run%q - run%springs%d0)
-      summary%events = run%springs%events
+      row(row_top) = top(2)
+      row(row_joints:row_joints + m - 1) = state%q
+      row(row_joints + m:) = state%springs%f0 + state%springs%k*(state%q - state%springs%d0)
+      summary%events = state%springs%events
+      summary%peak_rotation = max(summary%peak_rotation, largest_rotation(state))
       call summary%see(row)
       call recorder%record(row, error)
    end subroutine keep
 
-   subroutine report_unbounded(run, error)
-      type(run_type), intent(in) :: run
-      type(error_type), allocatable, intent(out) :: error
+   !> Largest absolute rotation of a body, in size [rad].
+   pure real(wp) function largest_rotation(state) result(largest)
+      type(state_type), intent(in) :: state
+      real(wp) :: rotation
+      integer :: i, n
 
-      call fatal_error(error, analysis_failed, 'the motion has no bounds any more at time '// &
-                       to_text(run%time)//' s (a deformation is beyond '//to_text(out_of_bounds)// &
-                       '); the column has lost its stability under the axial load, or the loading '// &
-                       'has a wrong unit. Rows up to there are kept')
-   end subroutine report_unbounded
+      n = state%motion%column%n
+      largest = 0.0_wp
+      rotation = 0.0_wp
+      do i = n + 1, 2*n
+         rotation = rotation + state%q(i)
+         largest = max(largest, abs(rotation))
+      end do
+   end function largest_rotation
 
 end module rbs_solve_history

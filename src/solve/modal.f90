@@ -1,15 +1,18 @@
 !> Natural frequencies, mode shapes and the stable step of RK4.
 module rbs_solve_modal
-   use rbs_base_error, only: error_type
+   use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_base_linalg, only: solve_eigen
-   use rbs_column_axial, only: geometric_stiffness, check_stable
+   use rbs_base_linalg, only: factor_positive, singular_values, solve_upper
+   use rbs_base_text, only: to_text
+   use rbs_column_axial, only: geometric_stiffness, critical_factor, check_stable
+   use rbs_column_band, only: to_joints
    use rbs_column_column, only: column_type
-   use rbs_column_mass, only: symmetric_mass
+   use rbs_column_frequency, only: frequency_range
+   use rbs_spec_column, only: most_dense
    implicit none
    private
 
-   public :: modes_type, find_modes
+   public :: modes_type, find_modes, frequency_bounds, stability_limit
 
    !> The stability region of RK4 ends here on the negative real axis: z = -2.785293563...
    real(wp), parameter :: real_limit = 2.785293563405282_wp
@@ -20,81 +23,279 @@ module rbs_solve_modal
    !> A mode slower than this [rad/s] sets no limit.
    real(wp), parameter :: slowest = 1.0e-100_wp
 
+   !> Above this condition the modes come with a warning.
+   real(wp), parameter :: worst_condition = 1.0e4_wp
+
    type :: modes_type
-      !> Circular frequencies, ascending (2 n) [rad/s]
+      !> Circular frequencies, ascending (unknowns) [rad/s]
       real(wp), allocatable :: omega(:)
-      !> Shapes in (slip, relative rotation), one a column, with shape' M shape = 1 (2 n, 2 n)
+      !> Shapes in (slip, relative rotation [, opening]), one a column, with shape' M shape = 1 and the
+      !> top going to +x or up (unknowns, unknowns)
       real(wp), allocatable :: shapes(:, :)
       !> Longest step for which RK4 is stable [s]
       real(wp) :: stable_step = 0.0_wp
+      !> How much a relative error of a stiffness or of the axial load can grow in the square of a
+      !> frequency: (f + 1)/(f - 1), where f times the axial load is the critical one; 1 without
+      real(wp) :: condition = 1.0_wp
+      !> Blank, or what to beware of
+      character(len=200) :: warning = ''
    end type modes_type
 
 contains
 
    !> Modes of the uncracked column; the axial forces count where the kinematics let them.
+   !>
+   !> An eigenproblem of K and M would lose the low frequencies of stiff joints and small masses. Here
+   !> omega are the singular values of
+   !>
+   !>     R diag(sqrt k) B diag(1/sqrt m),  R' R = diag(1/sqrt k) (diag k + K_G) diag(1/sqrt k)
+   !>
+   !> (B from the bodies' motions to the joints' deformations, m the bodies' masses, R = 1 without axial
+   !> forces), a product of extreme diagonals and harmless matrices, and keep their relative accuracy.
    subroutine find_modes(column, modes, error)
       type(column_type), intent(in) :: column
       type(modes_type), intent(out) :: modes
       type(error_type), allocatable, intent(out) :: error
-      real(wp), allocatable :: plain(:), shapes(:, :)
-      integer :: i
+      real(wp), allocatable :: a(:, :), root(:, :), scale(:)
+      integer :: m, n
+      logical :: positive
 
-      call check_stable(column, error)
+      n = column%n
+      if (n > most_dense) then
+         call fatal_error(error, bad_input, 'modes: all modes are found for up to '//to_text(most_dense)// &
+                          ' bodies, not for n = '//to_text(n)//'; take a coarser chain for the modes. '// &
+                          'A dynamic analysis does not need them, it finds its stable step for any n')
+         return
+      end if
+      ! Refuses too a column that buckles by itself.
+      call stability_limit(column, modes%stable_step, error)
       if (allocated(error)) return
-      call solve_modes(column, column%axially_loaded, modes%omega, modes%shapes, error)
-      if (allocated(error)) return
-      plain = modes%omega
+      call set_condition(column, modes)
+
+      m = 2*n
+      call weighted_joints(column, a)
+      allocate (modes%omega(column%unknowns))
+      allocate (modes%shapes(column%unknowns, column%unknowns), source=0.0_wp)
       if (column%axially_loaded) then
-         call solve_modes(column, .false., plain, shapes, error)
+         call factor_loaded(column, root, scale, positive)
+         if (.not. positive) then
+            call fatal_error(error, analysis_failed, 'modes: the axial load is the critical one within '// &
+                             'round-off, there is no lowest frequency; reduce axial_load')
+            return
+         end if
+         call block_modes(a(:m, :m), scale, modes%omega(:m), modes%shapes(:m, :m), error, root)
+      else
+         call block_modes(a(:m, :m), sqrt(column%initial_stiffness(:m)), modes%omega(:m), &
+                          modes%shapes(:m, :m), error)
+      end if
+      if (allocated(error)) return
+      if (column%opens) then
+         call block_modes(a(m + 1:, m + 1:), sqrt(column%initial_stiffness(m + 1:)), modes%omega(m + 1:), &
+                          modes%shapes(m + 1:, m + 1:), error)
          if (allocated(error)) return
       end if
-      modes%stable_step = huge(1.0_wp)
-      do i = 1, size(plain)
-         modes%stable_step = min(modes%stable_step, step_of_mode(column, plain(i), modes%omega(i)))
-      end do
+      call arrange(column, modes)
    end subroutine find_modes
 
+   !> Deformations of the joints per motion of the bodies, divided by the roots of their masses:
+   !> B diag(1/sqrt m) (unknowns, unknowns).
+   subroutine weighted_joints(column, a)
+      type(column_type), intent(in) :: column
+      real(wp), allocatable, intent(out) :: a(:, :)
+      real(wp) :: x(column%unknowns), mass(column%unknowns)
+      integer :: j, n
+
+      n = column%n
+      mass(1:2*n:2) = column%mass
+      mass(2:2*n:2) = column%inertia
+      if (column%opens) mass(2*n + 1:) = column%mass
+      allocate (a(column%unknowns, column%unknowns))
+      x = 0.0_wp
+      do j = 1, column%unknowns
+         x(j) = 1.0_wp
+         call to_joints(column, x, a(:, j))
+         x(j) = 0.0_wp
+         a(:, j) = a(:, j)/sqrt(mass(j))
+      end do
+   end subroutine weighted_joints
+
+   !> Cholesky factor of the stiffness with axial forces, scaled to a diagonal of ones:
+   !> diag(k) + K_G = diag(scale) root root' diag(scale).
+   subroutine factor_loaded(column, root, scale, positive)
+      type(column_type), intent(in) :: column
+      !> Lower triangle (2 n, 2 n), zeros above
+      real(wp), allocatable, intent(out) :: root(:, :)
+      !> (2 n)
+      real(wp), allocatable, intent(out) :: scale(:)
+      logical, intent(out) :: positive
+      real(wp), allocatable :: stiffness(:, :)
+      integer :: i, m
+
+      m = 2*column%n
+      allocate (stiffness(column%unknowns, column%unknowns))
+      call geometric_stiffness(column, stiffness)
+      allocate (root(m, m))
+      allocate (scale(m))
+      root = stiffness(:m, :m)
+      do i = 1, m
+         root(i, i) = root(i, i) + column%initial_stiffness(i)
+         scale(i) = sqrt(max(root(i, i), tiny(1.0_wp)))
+      end do
+      do i = 1, m
+         root(:, i) = root(:, i)/scale/scale(i)
+      end do
+      call factor_positive(root, positive)
+      do i = 2, m
+         root(:i - 1, i) = 0.0_wp
+      end do
+   end subroutine factor_loaded
+
+   !> Frequencies, descending, and shapes of one block of unknowns: the left vectors v of root' diag(scale) a
+   !> give the shapes omega diag(scale)^-1 root'^-1 v.
+   subroutine block_modes(a, scale, omega, shapes, error, root)
+      !> (m, m) and (m)
+      real(wp), intent(in) :: a(:, :), scale(:)
+      !> (m) and (m, m)
+      real(wp), intent(out) :: omega(:), shapes(:, :)
+      type(error_type), allocatable, intent(out) :: error
+      !> (m, m), one if not there
+      real(wp), intent(in), contiguous, optional :: root(:, :)
+      real(wp), allocatable :: scaled(:, :), left(:, :), values(:)
+      integer :: i, m
+
+      m = size(scale)
+      allocate (scaled(m, m), left(m, m), values(m))
+      do i = 1, m
+         scaled(:, i) = scale*a(:, i)
+      end do
+      if (present(root)) scaled = matmul(transpose(root), scaled)
+      call singular_values(scaled, values, left, error)
+      if (allocated(error)) return
+      if (present(root)) call solve_upper(root, left)
+      omega = values
+      do i = 1, m
+         shapes(:, i) = values(i)*(left(:, i)/scale)
+      end do
+   end subroutine block_modes
+
+   !> Put the modes in ascending order, the top going to +x or, if it only goes along the column, up.
+   subroutine arrange(column, modes)
+      type(column_type), intent(in) :: column
+      type(modes_type), intent(inout) :: modes
+      real(wp), allocatable :: omega(:), shapes(:, :)
+      real(wp) :: top
+      integer :: i, lateral, m, n, opening, taken
+
+      m = column%unknowns
+      n = column%n
+      allocate (omega, source=modes%omega)
+      allocate (shapes, source=modes%shapes)
+      ! Two descending lists, taken from their ends.
+      lateral = 2*n
+      opening = m
+      do i = 1, m
+         taken = lateral
+         if (opening > 2*n) then
+            if (lateral == 0) then
+               taken = opening
+            else if (omega(opening) < omega(lateral)) then
+               taken = opening
+            end if
+         end if
+         if (taken > 2*n) then
+            opening = opening - 1
+         else
+            lateral = lateral - 1
+         end if
+         modes%omega(i) = omega(taken)
+         top = dot_product(column%arm, shapes(:, taken)) + sum(shapes(2*n + 1:, taken))
+         modes%shapes(:, i) = sign(1.0_wp, top)*shapes(:, taken)
+      end do
+   end subroutine arrange
+
+   !> Condition of the modes under axial load.
+   subroutine set_condition(column, modes)
+      type(column_type), intent(in) :: column
+      type(modes_type), intent(inout) :: modes
+      type(error_type), allocatable :: ignored
+      real(wp) :: factor, share
+
+      if (.not. column%axially_loaded) return
+      call critical_factor(column, factor, ignored)
+      share = 1.0_wp/factor
+      modes%condition = (1.0_wp + share)/max(1.0_wp - share, epsilon(1.0_wp))
+      if (modes%condition < worst_condition) return
+      modes%warning = 'the axial load is '//to_text(share)//' of the critical one: a relative error of '// &
+                      'a stiffness or of the load may grow by '//to_text(modes%condition)// &
+                      ' in the square of the lowest frequency'
+   end subroutine set_condition
+
+   !> Lowest and highest circular frequency of the uncracked column [rad/s], for any number of bodies in
+   !> O(n); the axial forces count where the kinematics let them.
+   subroutine frequency_bounds(column, lowest, highest, error)
+      type(column_type), intent(in) :: column
+      real(wp), intent(out) :: lowest, highest
+      type(error_type), allocatable, intent(out) :: error
+
+      lowest = 0.0_wp
+      highest = huge(1.0_wp)
+      call check_stable(column, error)
+      if (.not. allocated(error)) call frequency_range(column, column%axially_loaded, lowest, highest)
+   end subroutine frequency_bounds
+
+   !> Longest step for which RK4 is stable [s], for any number of bodies in O(n).
+   !>
+   !> Only the lowest and the highest frequency are asked: with c = alpha + beta omega^2 the limit of one mode
+   !> first grows with omega and then falls (see the tests), and with c = 2 zeta omega, or on the half disc,
+   !> it only falls; so no mode between two has a shorter limit than both.
+   subroutine stability_limit(column, limit, error)
+      type(column_type), intent(in) :: column
+      real(wp), intent(out) :: limit
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: plain(2), loaded(2)
+
+      limit = 0.0_wp
+      call frequency_bounds(column, loaded(1), loaded(2), error)
+      if (allocated(error)) return
+      plain = loaded
+      if (column%axially_loaded) call frequency_range(column, .false., plain(1), plain(2))
+      limit = min(step_of_mode(column, plain(1), loaded(1)), step_of_mode(column, plain(2), loaded(2)))
+   end subroutine stability_limit
+
    !> Longest stable step for one mode, on the safe side of what is not known.
+   !>
+   !> Whatever lines the springs are on, a motion lambda^2 x + lambda M^-1 C x + M^-1 K x = 0 obeys the scalar
+   !> equation of the quotients c = x'Cx/x'Mx and k = x'Kx/x'Mx of its shape. So |lambda| is at most the
+   !> larger of the largest c and omega, which always gives a safe step; where c follows from the initial
+   !> stiffness in the shape, the scalar equations themselves give the longest one.
    pure real(wp) function step_of_mode(column, plain, loaded) result(h)
       type(column_type), intent(in) :: column
       !> Circular frequency without and with axial forces [rad/s]
       real(wp), intent(in) :: plain, loaded
-      real(wp) :: omega, c
+      real(wp) :: omega, c, remaining
+      logical :: elastic, apart
 
+      elastic = all(column%spring%rule == 'elastic')
       omega = max(plain, loaded)
       c = column%mass_damping + column%stiffness_damping*plain**2
-      if (column%axially_loaded .and. column%stiffness_damping > 0.0_wp) then
-         ! The axial load is not in the damping, so the modes do not part; but no eigenvalue is larger
-         ! than the larger of omega and c.
-         h = least_radius/max(omega, c)
-      else
-         h = stable_step(omega, c)
+      ! Stiffness damping has no axial forces in it.
+      apart = .not. (column%axially_loaded .and. column%stiffness_damping > 0.0_wp)
+      if (allocated(column%modal_damping)) then
+         c = c + 2.0_wp*maxval(column%modal_damping)*loaded
+         apart = elastic .and. size(column%modal_damping) == 1 .and. &
+                 .not. (column%mass_damping > 0.0_wp .or. column%stiffness_damping > 0.0_wp)
       end if
-      ! Where springs yield, their stiffness goes and their damping stays: the eigenvalue -c is left.
-      if (c > 0.0_wp .and. any(column%spring%rule /= 'elastic')) h = min(h, real_limit/c)
+      if (.not. apart) then
+         h = least_radius/max(omega, c, slowest)
+         return
+      end if
+      h = stable_step(omega, c)
+      if (elastic) return
+      ! Where springs yield, their stiffness goes and their damping stays, unless it is that of the present
+      ! lines: the eigenvalue -c is left.
+      remaining = merge(column%mass_damping, c, column%tangent_damping)
+      if (remaining > 0.0_wp) h = min(h, real_limit/remaining)
    end function step_of_mode
-
-   !> Eigenproblem K x = omega^2 M x of the uncracked column.
-   subroutine solve_modes(column, axial, omega, shapes, error)
-      type(column_type), intent(in) :: column
-      !> Whether the axial forces count
-      logical, intent(in) :: axial
-      real(wp), allocatable, intent(out) :: omega(:), shapes(:, :)
-      type(error_type), allocatable, intent(out) :: error
-      real(wp), allocatable :: mass(:, :)
-      integer :: i, m
-
-      m = column%unknowns
-      allocate (mass(m, m), omega(m))
-      allocate (shapes(m, m), source=0.0_wp)
-      if (axial) call geometric_stiffness(column, shapes)
-      do i = 1, m
-         shapes(i, i) = shapes(i, i) + column%initial_stiffness(i)
-      end do
-      call symmetric_mass(column, mass)
-      call solve_eigen(shapes, mass, omega, error)
-      if (.not. allocated(error)) omega = sqrt(max(omega, 0.0_wp))
-   end subroutine solve_modes
 
    !> Longest stable step of RK4 for x'' + c x' + omega^2 x = 0: the largest h with |R(lambda h)| <= 1
    !> for both eigenvalues, R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24. Without damping 2 sqrt(2)/omega.

@@ -1,68 +1,171 @@
-!> One step of the classical Runge-Kutta scheme (the paper's choice), and nothing else.
+!> The classical Runge-Kutta scheme with fixed steps (the paper's choice).
 module rbs_solve_rk4
+   use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_springs, only: spring_array
-   use rbs_solve_motion, only: motion_type
+   use rbs_solve_loads, only: lateral, horizontal
+   use rbs_solve_rk4_one_body, only: advance_one_body, step_of_one_body
+   use rbs_solve_scheme, only: scheme_type
+   use rbs_solve_state, only: state_type, stepper_type, in_bounds
    implicit none
    private
 
-   public :: rk4_work, step
+   public :: rk4_stepper, rk4_scheme
 
-   !> Arrays of the scheme, allocated once.
-   type :: rk4_work
-      real(wp), allocatable :: q(:), v(:), a(:), f(:), dq(:), dv(:)
+   !> Stages: weight, way to the next one, and where their loads stand (begin, middle, end).
+   real(wp), parameter :: weight(4) = [1.0_wp, 2.0_wp, 2.0_wp, 1.0_wp]/6.0_wp
+   real(wp), parameter :: reach(4) = [0.5_wp, 0.5_wp, 1.0_wp, 0.0_wp]
+   integer, parameter :: at(4) = [1, 2, 2, 3]
+
+   type, extends(scheme_type) :: rk4_scheme
+      !> Stage and acceleration (unknowns)
+      real(wp), allocatable, private :: stage_q(:), stage_v(:), a(:)
    contains
       procedure :: create
-   end type rk4_work
+      procedure :: attempt
+   end type rk4_scheme
+
+   !> Springs change their lines at the end of a step.
+   type, extends(stepper_type) :: rk4_stepper
+      type(rk4_scheme) :: scheme
+   contains
+      procedure :: advance
+   end type rk4_stepper
 
 contains
 
    subroutine create(self, m)
-      class(rk4_work), intent(out) :: self
+      class(rk4_scheme), intent(inout) :: self
       !> Number of unknowns
       integer, intent(in) :: m
 
-      allocate (self%q(m), self%v(m), self%a(m), self%f(m), self%dq(m), self%dv(m))
+      self%order = 4
+      allocate (self%q(m), self%v(m), self%stage_q(m), self%stage_v(m), self%a(m))
    end subroutine create
 
-   !> Advance q and v by h. Springs stay on their present lines within the step; the works of loads and
-   !> damping are integrated with the weights of the scheme.
-   subroutine step(motion, springs, work, h, force, ground, q, v, work_of_loads, work_of_damping)
-      type(motion_type), intent(inout) :: motion
-      type(spring_array), intent(in) :: springs
-      type(rk4_work), intent(inout) :: work
+   !> A step of h from the state, which stays as it is. Works of loads and damping are integrated with the
+   !> weights of the scheme.
+   subroutine attempt(self, state, h)
+      class(rk4_scheme), intent(inout) :: self
+      type(state_type), intent(inout) :: state
       !> Step [s]
       real(wp), intent(in) :: h
-      !> Lateral force [N] and acceleration of the ground [m/s2] at the begin, middle and end
-      real(wp), intent(in) :: force(3), ground(3)
-      !> Deformations and velocities (2 n)
-      real(wp), intent(inout) :: q(:), v(:)
-      !> Works so far [J]
-      real(wp), intent(inout) :: work_of_loads, work_of_damping
-      integer, parameter :: at(4) = [1, 2, 2, 3]
-      real(wp), parameter :: weight(4) = [1.0_wp, 2.0_wp, 2.0_wp, 1.0_wp]/6.0_wp
-      real(wp), parameter :: reach(4) = [0.5_wp, 0.5_wp, 1.0_wp, 0.0_wp]
-      real(wp) :: of_loads, of_damping
-      integer :: stage
+      real(wp) :: load(4, 3)
 
-      work%q = q
-      work%v = v
-      work%dq = 0.0_wp
-      work%dv = 0.0_wp
-      do stage = 1, 4
-         work%f = springs%f0 + springs%k*(work%q - springs%d0)
-         call motion%acceleration(work%q, work%v, work%f, force(at(stage)), ground(at(stage)), work%a)
-         call motion%power(work%q, work%v, force(at(stage)), ground(at(stage)), of_loads, of_damping)
-         work_of_loads = work_of_loads + h*weight(stage)*of_loads
-         work_of_damping = work_of_damping + h*weight(stage)*of_damping
-         work%dq = work%dq + weight(stage)*work%v
-         work%dv = work%dv + weight(stage)*work%a
-         if (stage == 4) exit
-         work%q = q + (h*reach(stage))*work%v
-         work%v = v + (h*reach(stage))*work%a
+      load(:, 1) = state%load
+      call state%loads%at_time(state%time + 0.5_wp*h, load(:, 2))
+      call state%loads%at_time(state%time + h, load(:, 3))
+      self%load = load(:, 3)
+      if (state%motion%plain .and. state%motion%single) then
+         self%of_damping = 0.0_wp
+         self%q(:) = state%q
+         self%v(:) = state%v
+         call step_of_one_body(state%motion, state%springs%d0, state%springs%f0, state%springs%k, h, &
+                               load(lateral, :), load(horizontal, :), self%q, self%v, self%of_loads)
+      else
+         call step_of_chain(self, state, h, load)
+      end if
+   end subroutine attempt
+
+   !> The step for any number of bodies.
+   subroutine step_of_chain(self, state, h, load)
+      class(rk4_scheme), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      real(wp), intent(in) :: h
+      !> Loads at begin, middle and end
+      real(wp), intent(in) :: load(4, 3)
+      real(wp) :: of_loads, of_damping, top, momentum, speed(2)
+      integer :: stage, m, n
+
+      m = size(state%q)
+      self%of_loads = 0.0_wp
+      self%of_damping = 0.0_wp
+      associate (motion => state%motion)
+         n = motion%column%n
+         top = 0.0_wp
+         momentum = 0.0_wp
+         if (motion%plain .and. motion%acts(lateral)) top = motion%top_velocity(state%v)
+         if (motion%plain .and. motion%acts(horizontal)) momentum = motion%momentum(state%v)
+         speed = [top, momentum]
+         call begin_step(m, state%q, state%v, self%stage_q, self%stage_v, self%q, self%v)
+         do stage = 1, 4
+            associate (now => load(:, at(stage)))
+               call motion%acceleration(state%springs, self%stage_q, self%stage_v, now, self%a)
+               if (motion%plain) then
+                  self%of_loads = self%of_loads + h*weight(stage)*(speed(1)*now(lateral) &
+                                                                   - speed(2)*now(horizontal))
+                  ! Velocity of the top and momentum are linear in v: they step as it does.
+                  speed(1) = top + h*reach(stage)*(motion%force(n) + motion%column%upper(n)*motion%torque(n))
+                  speed(2) = momentum + h*reach(stage)*(now(lateral) - motion%f(1) &
+                                                        - motion%column%mass_above(1)*now(horizontal))
+               else
+                  call motion%power(state%springs, self%stage_q, self%stage_v, now, of_loads, of_damping)
+                  self%of_loads = self%of_loads + h*weight(stage)*of_loads
+                  self%of_damping = self%of_damping + h*weight(stage)*of_damping
+               end if
+            end associate
+            if (stage < 4) then
+               call next_stage(m, h*weight(stage), h*reach(stage), state%q, state%v, self%a, self%stage_q, &
+                               self%stage_v, self%q, self%v)
+            else
+               call end_step(m, h*weight(stage), self%a, self%stage_v, self%q, self%v)
+            end if
+         end do
+      end associate
+   end subroutine step_of_chain
+
+   pure subroutine begin_step(m, q0, v0, stage_q, stage_v, q, v)
+      integer, intent(in) :: m
+      real(wp), intent(in) :: q0(m), v0(m)
+      real(wp), intent(out) :: stage_q(m), stage_v(m), q(m), v(m)
+
+      stage_q = q0
+      stage_v = v0
+      q = q0
+      v = v0
+   end subroutine begin_step
+
+   !> Add a stage to the result, and set out to the next one.
+   pure subroutine next_stage(m, share, reach, q0, v0, a, stage_q, stage_v, q, v)
+      integer, intent(in) :: m
+      !> Weight and place of the stage times the step [s]
+      real(wp), intent(in) :: share, reach
+      real(wp), intent(in) :: q0(m), v0(m), a(m)
+      real(wp), intent(inout) :: stage_q(m), stage_v(m), q(m), v(m)
+      integer :: i
+
+      do i = 1, m
+         q(i) = q(i) + share*stage_v(i)
+         v(i) = v(i) + share*a(i)
+         stage_q(i) = q0(i) + reach*stage_v(i)
+         stage_v(i) = v0(i) + reach*a(i)
       end do
-      q = q + h*work%dq
-      v = v + h*work%dv
-   end subroutine step
+   end subroutine next_stage
+
+   pure subroutine end_step(m, share, a, stage_v, q, v)
+      integer, intent(in) :: m
+      real(wp), intent(in) :: share, a(m), stage_v(m)
+      real(wp), intent(inout) :: q(m), v(m)
+
+      q = q + share*stage_v
+      v = v + share*a
+   end subroutine end_step
+
+   !> One step; the springs follow at its end, along as many lines as they have passed.
+   subroutine advance(self, state, h, error)
+      class(rk4_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      real(wp), intent(in) :: h
+      type(error_type), allocatable, intent(inout) :: error
+
+      if (allocated(error)) return
+      if (state%motion%plain .and. state%motion%single) then
+         call advance_one_body(state, h)
+         return
+      end if
+      call self%scheme%attempt(state, h)
+      call self%scheme%accept(state, h)
+      state%lost = .not. in_bounds(size(state%q), state%q)
+      if (.not. state%lost) call state%springs%move_all(state%q)
+   end subroutine advance
 
 end module rbs_solve_rk4

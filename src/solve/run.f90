@@ -1,24 +1,45 @@
-!> The two analyses, from what the user asked for to rows: where both doors meet.
+!> The analyses, from what the user asked for to rows: where both doors meet.
 module rbs_solve_run
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use rbs_base_constants, only: beyond_meaning
+   use rbs_base_constants, only: beyond_meaning, pi
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type, new_column, finite
+   use rbs_column_axial, only: check_stable
+   use rbs_column_column, only: column_type, new_column, small, finite
    use rbs_loading_signal, only: signal_type
    use rbs_results_progress, only: progress_type
    use rbs_results_recorder, only: recorder_type
    use rbs_results_summary, only: summary_type
    use rbs_solve_history, only: initial_state, march
-   use rbs_solve_modal, only: modes_type, find_modes
+   use rbs_solve_implicit, only: new_newmark, new_hht, new_generalised_alpha
+   use rbs_solve_loads, only: loads_type
+   use rbs_solve_located, only: located_stepper
+   use rbs_solve_modal, only: frequency_bounds, stability_limit
+   use rbs_solve_pair45, only: pair45_scheme
+   use rbs_solve_rk4, only: rk4_stepper, rk4_scheme
+   use rbs_solve_state, only: stepper_type
    use rbs_solve_static, only: trace
-   use rbs_solve_time_plan, only: time_plan, new_plan, check_times
+   use rbs_solve_static_finite, only: trace_finite
+   use rbs_solve_time_plan, only: time_plan, new_plan, check_times, check_length
+   use rbs_spec_analysis, only: analysis_spec
+   use rbs_spec_check, only: is_given
    use rbs_spec_column, only: column_spec
    implicit none
    private
 
    public :: make_column, run_static, plan_dynamic, run_dynamic, check_values
+
+   !> Where the user gives no step: share of the stability limit for rk4, share of the longest natural
+   !> period for the implicit methods.
+   real(wp), parameter :: auto_share = 0.2_wp, implicit_share = 0.02_wp
+
+   !> Where the user gives none: error of a step of rk45, spectral radius at infinite frequency.
+   real(wp), parameter :: usual_tolerance = 1.0e-6_wp, usual_rho = 0.8_wp
+
+   !> `auto`: an implicit step costs as much as this number of explicit ones; more explicit body-steps
+   !> than the second take minutes.
+   real(wp), parameter :: few_times = 5.0_wp, most_explicit = 1.0e9_wp
 
 contains
 
@@ -35,7 +56,7 @@ contains
    end subroutine make_column
 
    !> Static path through displacements of the top or lateral forces.
-   subroutine run_static(column, by_force, target, every, recorder, summary, error, progress)
+   subroutine run_static(column, by_force, target, every, collapse_drift, recorder, summary, error, progress)
       type(column_type), intent(in) :: column
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
@@ -43,58 +64,155 @@ contains
       real(wp), intent(in) :: target(:)
       !> Every n-th point is kept, and the last; `unset_integer`: all
       integer, intent(in) :: every
+      !> Displacement of the top over the height at which the path ends as collapsed; `unset`: none
+      real(wp), intent(in) :: collapse_drift
       class(recorder_type), intent(inout) :: recorder
       type(summary_type), intent(out) :: summary
       type(error_type), allocatable, intent(out) :: error
       class(progress_type), intent(inout), optional :: progress
 
-      if (column%kinematics == finite) then
-         call fatal_error(error, bad_input, "column: kinematics = 'finite' has no static path; use "// &
-                          "'small' or 'pdelta', or a dynamic analysis")
-         return
-      end if
       if (by_force) then
          call check_values(target, 'force', error)
       else
          call check_values(target, 'displacement', error)
       end if
       if (allocated(error)) return
-      call trace(column, by_force, target, every, recorder, summary, error, progress)
+      if (column%kinematics == finite) then
+         call trace_finite(column, by_force, target, every, collapse_drift, recorder, summary, error, &
+                           progress)
+      else
+         call trace(column, by_force, target, every, collapse_drift, recorder, summary, error, progress)
+      end if
+      summary%method = 'static'
    end subroutine run_static
 
-   !> Stability limit and plan of the steps of a dynamic analysis.
-   subroutine plan_dynamic(column, time, dt, plan, limit, error)
+   !> Choice of the method, stability limit and plan of the steps of a dynamic analysis.
+   subroutine plan_dynamic(column, analysis, time, loads, plan, error)
       type(column_type), intent(in) :: column
+      !> Validated settings
+      type(analysis_spec), intent(in) :: analysis
       !> Times of the loading (m) [s]
       real(wp), intent(in) :: time(:)
-      !> Step, or `unset` [s]
-      real(wp), intent(in) :: dt
+      type(loads_type), intent(in) :: loads
       type(time_plan), intent(out) :: plan
-      !> Stability limit [s]
-      real(wp), intent(out) :: limit
       type(error_type), allocatable, intent(out) :: error
-      type(modes_type) :: modes
 
-      limit = 0.0_wp
       call check_times(time, error)
       if (allocated(error)) return
-      call find_modes(column, modes, error)
+      call check_stable(column, error)
       if (allocated(error)) return
-      limit = modes%stable_step
-      call new_plan(plan, time, dt, limit, error)
+      plan%method = analysis%method
+      if (analysis%method == 'auto') then
+         call choose_method(column, analysis, time, plan, error)
+         if (allocated(error)) return
+      end if
+      if (is_implicit(plan%method) .and. column%kinematics == finite) then
+         call fatal_error(error, bad_input, "analysis: method = '"//trim(plan%method)//"' is for "// &
+                          "kinematics = 'small' and 'pdelta'; use 'rk45' or 'rk4' with 'finite'")
+         return
+      end if
+      call plan_steps(column, analysis, time, loads, plan, error)
    end subroutine plan_dynamic
 
-   !> Response in time under lateral force, ground motion, or both, by RK4.
-   subroutine run_dynamic(column, plan, limit, time, force, ground, initial, every, recorder, summary, &
-                          error, progress)
+   !> Steps of the method chosen.
+   subroutine plan_steps(column, analysis, time, loads, plan, error)
       type(column_type), intent(in) :: column
+      type(analysis_spec), intent(in) :: analysis
+      real(wp), intent(in) :: time(:)
+      type(loads_type), intent(in) :: loads
+      type(time_plan), intent(inout) :: plan
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: lowest, highest, longest, bound
+
+      longest = time(size(time)) - time(1)
+      bound = huge(1.0_wp)
+      if (is_implicit(plan%method)) then
+         call frequency_bounds(column, lowest, highest, error)
+         if (allocated(error)) return
+         longest = min(longest, implicit_share*2.0_wp*pi/max(lowest, tiny(1.0_wp)*1.0e3_wp))
+      else
+         call stability_limit(column, plan%limit, error)
+         if (allocated(error)) return
+         if (plan%method == 'rk45') then
+            ! Explicit all the same: its steps cannot be much longer than the limit of rk4.
+            call check_length((time(size(time)) - time(1))/plan%limit, plan%limit, error)
+            if (allocated(error)) return
+         else if (plan%method == 'rk4') then
+            longest = auto_share*plan%limit
+            if (.not. analysis%allow_unstable) bound = plan%limit
+         end if
+      end if
+      call new_plan(plan, time, analysis%dt, longest, bound, error)
+      if (allocated(error)) return
+      if (loads%vertical%acts() .and. column%kinematics == small .and. .not. column%opens) then
+         call fatal_error(error, bad_input, "vertical_acceleration: with kinematics = 'small' and joints "// &
+                          "that do not open it does nothing; use 'pdelta' or 'finite', or give axial "// &
+                          'springs')
+      else if (loads%axial%acts() .and. column%kinematics == small .and. .not. column%opens) then
+         call fatal_error(error, bad_input, "axial_load: with kinematics = 'small' and joints that do "// &
+                          "not open a history of it does nothing; use 'pdelta' or 'finite', or give axial "// &
+                          'springs')
+      end if
+   end subroutine plan_steps
+
+   pure logical function is_implicit(method)
+      character(len=*), intent(in) :: method
+
+      is_implicit = any(method == [character(len=20) :: 'newmark', 'hht', 'generalised_alpha'])
+   end function is_implicit
+
+   !> The method for a case whose user leaves it to the program: by what the steps cost.
+   subroutine choose_method(column, analysis, time, plan, error)
+      type(column_type), intent(in) :: column
+      type(analysis_spec), intent(in) :: analysis
+      real(wp), intent(in) :: time(:)
+      type(time_plan), intent(inout) :: plan
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: lowest, highest, explicit_steps, implicit_steps, longest, wanted
+      logical :: linear
+
+      wanted = 1.0e-3_wp
+      if (is_given(analysis%tolerance)) wanted = analysis%tolerance
+      linear = all(column%spring%rule == 'elastic')
+      call stability_limit(column, plan%limit, error)
+      if (allocated(error)) return
+      call frequency_bounds(column, lowest, highest, error)
+      if (allocated(error)) return
+      associate (duration => time(size(time)) - time(1))
+         explicit_steps = duration/(auto_share*plan%limit)
+         longest = implicit_share*2.0_wp*pi/max(lowest, tiny(1.0_wp)*1.0e3_wp)
+         implicit_steps = real(size(time) - 1, wp) + duration/longest
+      end associate
+      if (column%kinematics == finite) then
+         plan%method = 'rk45'
+         plan%reason = 'finite rotations, error controlled'
+      else if (wanted < 1.0e-4_wp .and. explicit_steps*column%n < most_explicit) then
+         plan%method = 'rk45'
+         plan%reason = 'a tolerance of '//to_text(wanted)//' asks for controlled errors'
+      else if (explicit_steps > few_times*implicit_steps) then
+         plan%method = 'generalised_alpha'
+         plan%reason = 'stiff: rk4 would need '//to_text(explicit_steps)//' steps for stability, this '// &
+                       'method about '//to_text(implicit_steps)
+      else if (linear) then
+         plan%method = 'rk4'
+         plan%reason = 'linear and not stiff: '//to_text(explicit_steps)//' steps'
+      else
+         plan%method = 'rk45'
+         plan%reason = 'not stiff, springs change their lines: located events, error controlled'
+      end if
+   end subroutine choose_method
+
+   !> Response in time under lateral force, ground motion, axial load, or all of them.
+   subroutine run_dynamic(column, analysis, plan, time, loads, initial, every, recorder, summary, error, &
+                          progress)
+      type(column_type), intent(in) :: column
+      !> Validated settings
+      type(analysis_spec), intent(in) :: analysis
       !> From `plan_dynamic`
       type(time_plan), intent(in) :: plan
-      real(wp), intent(in) :: limit
       !> Times of the loading (m) [s]
       real(wp), intent(in) :: time(:)
-      !> Lateral force [N] and acceleration of the ground [m/s2]; no points: none
-      type(signal_type), intent(in) :: force, ground
+      type(loads_type), intent(in) :: loads
       type(initial_state), intent(in) :: initial
       !> Every n-th step gives a row, and the last; `unset_integer`: every interval of the plan
       integer, intent(in) :: every
@@ -102,14 +220,72 @@ contains
       type(summary_type), intent(out) :: summary
       type(error_type), allocatable, intent(out) :: error
       class(progress_type), intent(inout), optional :: progress
+      class(stepper_type), allocatable :: stepper
 
-      if (force%acts()) call check_values(force%value, 'force', error)
+      call check_signal(loads%force, 'force', error)
+      call check_signal(loads%ground, 'ground_acceleration', error)
+      call check_signal(loads%vertical, 'vertical_acceleration', error)
+      call check_signal(loads%axial, 'axial_load', error)
       if (allocated(error)) return
-      if (ground%acts()) call check_values(ground%value, 'ground_acceleration', error)
-      if (allocated(error)) return
-      summary%stable_step = limit
-      call march(column, plan, time, force, ground, initial, every, recorder, summary, error, progress)
+      summary%stable_step = plan%limit
+      summary%method = plan%method
+      summary%reason = plan%reason
+      call new_stepper(stepper, column, analysis, plan)
+      call march(column, plan, stepper, time, loads, initial, analysis%collapse_drift, every, recorder, &
+                 summary, error, progress)
    end subroutine run_dynamic
+
+   !> The method of a plan, ready for its first step.
+   subroutine new_stepper(stepper, column, analysis, plan)
+      class(stepper_type), allocatable, intent(out) :: stepper
+      type(column_type), intent(in) :: column
+      type(analysis_spec), intent(in) :: analysis
+      type(time_plan), intent(in) :: plan
+      type(rk4_stepper), allocatable :: fixed
+      type(located_stepper), allocatable :: located
+      real(wp) :: rho
+
+      rho = usual_rho
+      if (is_given(analysis%rho_infinity)) rho = analysis%rho_infinity
+      select case (plan%method)
+      case ('newmark')
+         allocate (stepper, source=new_newmark())
+      case ('hht')
+         allocate (stepper, source=new_hht(rho))
+      case ('generalised_alpha')
+         allocate (stepper, source=new_generalised_alpha(rho))
+      case ('rk45')
+         allocate (located)
+         allocate (pair45_scheme :: located%scheme)
+         call located%scheme%create(column%unknowns)
+         located%tolerance = usual_tolerance
+         if (is_given(analysis%tolerance)) located%tolerance = analysis%tolerance
+         located%next_step = auto_share*plan%limit
+         located%shortest = 1.0e-6_wp*plan%limit
+         call move_alloc(located, stepper)
+      case default
+         if (analysis%events == 'located') then
+            allocate (located)
+            allocate (rk4_scheme :: located%scheme)
+            call located%scheme%create(column%unknowns)
+            call move_alloc(located, stepper)
+         else
+            allocate (fixed)
+            call fixed%scheme%create(column%unknowns)
+            call move_alloc(fixed, stepper)
+         end if
+      end select
+   end subroutine new_stepper
+
+   !> Values of a signal that acts must be finite; the first fault counts.
+   subroutine check_signal(signal, name, error)
+      type(signal_type), intent(in) :: signal
+      character(len=*), intent(in) :: name
+      type(error_type), allocatable, intent(inout) :: error
+
+      if (allocated(error) .or. .not. signal%acts()) return
+      call check_values(signal%value, name, error)
+   end subroutine check_signal
 
    !> Values must be finite, and so must what is made of them.
    subroutine check_values(values, name, error)

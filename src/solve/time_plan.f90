@@ -9,10 +9,7 @@ module rbs_solve_time_plan
    implicit none
    private
 
-   public :: time_plan, new_plan, check_times
-
-   !> Where the user gives no step, it is at the most this share of the stability limit.
-   real(wp), parameter, public :: auto_share = 0.2_wp
+   public :: time_plan, new_plan, check_times, check_length
 
    !> Steps this close to a whole number in an interval divide it.
    real(wp), parameter :: whole = 1.0e-9_wp
@@ -24,6 +21,11 @@ module rbs_solve_time_plan
    type :: time_plan
       !> Longest step [s]
       real(wp) :: dt = 0.0_wp
+      !> Method, and why it was chosen if the user left that to the program
+      character(len=20) :: method = ''
+      character(len=200) :: reason = ''
+      !> Longest step for which RK4 is stable [s]; 0: not asked for
+      real(wp) :: limit = 0.0_wp
       !> Number of intervals between kept times, and of steps in all
       integer :: intervals = 0, steps = 0
       !> Whether every interval is one step of length dt from the begin on (the last may be shorter);
@@ -68,15 +70,17 @@ contains
    end subroutine check_times
 
    !> Plan the steps. Without `dt` each interval of the loading is cut into equal steps not longer than
-   !> `auto_share` of the limit, and rows are kept at its ends. With `dt` the same, if dt divides every
-   !> interval; else steps of dt run from the begin to the end and a row is kept after each.
-   subroutine new_plan(plan, time, dt, limit, error)
-      type(time_plan), intent(out) :: plan
+   !> `longest`, and rows are kept at its ends. With `dt` the same, if dt divides every interval; else steps
+   !> of dt run from the begin to the end and a row is kept after each.
+   subroutine new_plan(plan, time, dt, longest, limit, error)
+      type(time_plan), intent(inout) :: plan
       !> Times of the loading, checked (m) [s]
       real(wp), intent(in) :: time(:)
       !> Step that the user wants, or `unset` [s]
       real(wp), intent(in) :: dt
-      !> Stability limit [s]
+      !> Longest step where the user gives none [s]
+      real(wp), intent(in) :: longest
+      !> Steps that the user gives must not be longer; `huge` for none [s]
       real(wp), intent(in) :: limit
       type(error_type), allocatable, intent(out) :: error
       real(wp), allocatable :: parts(:)
@@ -94,17 +98,13 @@ contains
          plan%free = any(abs(parts - max(anint(parts), 1.0_wp)) > whole*parts)
          parts = max(anint(parts), 1.0_wp)
       else
-         step = auto_share*limit
+         step = longest
          parts = max(aint((time(2:) - time(:m - 1))/step*(1.0_wp - whole)) + 1.0_wp, 1.0_wp)
       end if
       steps = sum(parts)
       if (plan%free) steps = aint((plan%finish - plan%begin)/step*(1.0_wp - whole)) + 1.0_wp
-      if (steps > most_steps) then
-         call fatal_error(error, bad_input, 'analysis: '//to_text(steps)//' steps of '//to_text(step)// &
-                          ' s are more than '//to_text(most_steps)//'; shorten the duration, or give '// &
-                          'a longer dt (the stability limit is '//to_text(limit)//' s)')
-         return
-      end if
+      call check_length(steps, step, error)
+      if (allocated(error)) return
       plan%steps = nint(steps)
       if (plan%free) then
          plan%dt = step
@@ -115,6 +115,19 @@ contains
          plan%intervals = m - 1
       end if
    end subroutine new_plan
+
+   !> Refuse more steps than can be taken.
+   subroutine check_length(steps, step, error)
+      !> Number of steps, and their length [s]
+      real(wp), intent(in) :: steps, step
+      type(error_type), allocatable, intent(out) :: error
+
+      if (steps > most_steps) then
+         call fatal_error(error, bad_input, 'analysis: '//to_text(steps)//' steps of '//to_text(step)// &
+                          ' s are more than '//to_text(most_steps)//'; shorten the duration, or give '// &
+                          "a longer dt (method = 'generalised_alpha' has no limit of stability)")
+      end if
+   end subroutine check_length
 
    !> Number of rows of a run, the first at its begin.
    elemental integer function rows(self, every)

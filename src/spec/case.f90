@@ -9,8 +9,8 @@ module rbs_spec_case
 
    public :: case_spec, most_loadings
 
-   !> A force and a ground motion may act together.
-   integer, parameter :: most_loadings = 2
+   !> A force, a ground motion in two directions and an axial load may act together.
+   integer, parameter :: most_loadings = 4
 
    !> Everything that a run needs to know.
    type :: case_spec
@@ -38,21 +38,41 @@ contains
       do i = 1, self%loadings
          call self%loading(i)%validate(self%analysis%dynamic(), messages)
       end do
-      if (self%loadings == 2) then
-         if (.not. self%analysis%dynamic()) then
-            call messages%add('loading: two loadings need a dynamic analysis; with method = '// &
-                              "'static' give one")
-         else if (self%loading(1)%drive == self%loading(2)%drive) then
-            call messages%add("loading: two loadings with drive = '"//trim(self%loading(1)%drive)// &
-                              "'; give one force and one ground motion at the most")
-         end if
-      end if
+      call check_together(self, messages)
       call self%analysis%validate(messages)
-      if (self%column%kinematics == 'finite' .and. self%analysis%method == 'static') then
-         call messages%add("column: kinematics = 'finite' has no static path; set kinematics = "// &
-                           "'small' or 'pdelta', or method = 'rk4' in the group analysis")
-      end if
+      call check_static(self, messages)
       call self%output%validate(messages)
    end subroutine validate
+
+   !> What a static path cannot take, found before it is begun (in the words of the solver).
+   subroutine check_static(self, messages)
+      type(case_spec), intent(in) :: self
+      type(message_list), intent(inout) :: messages
+
+      if (self%analysis%dynamic() .or. self%column%kinematics /= 'finite') return
+      if (.not. (self%column%axial_follows .or. self%column%force_follows)) return
+      call messages%add('column: loads that follow the top (axial_follows, force_follows) have no '// &
+                        'potential, and a static path could miss the loss of stability; use a '// &
+                        'dynamic analysis')
+   end subroutine check_static
+
+   !> Loadings that cannot act together.
+   subroutine check_together(self, messages)
+      type(case_spec), intent(in) :: self
+      type(message_list), intent(inout) :: messages
+      integer :: i
+
+      if (self%loadings < 2) return
+      if (.not. self%analysis%dynamic()) then
+         call messages%add('loading: several loadings need a dynamic analysis; with method = '// &
+                           "'static' give one")
+         return
+      end if
+      do i = 2, self%loadings
+         if (all(self%loading(:i - 1)%drive /= self%loading(i)%drive)) cycle
+         call messages%add("loading: two loadings with drive = '"//trim(self%loading(i)%drive)// &
+                           "'; give each drive once")
+      end do
+   end subroutine check_together
 
 end module rbs_spec_case

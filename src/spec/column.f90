@@ -10,12 +10,16 @@ module rbs_spec_column
    implicit none
    private
 
-   public :: column_spec, kinematics_names, most_bodies
+   public :: column_spec, kinematics_names, most_bodies, most_dense
 
    character(len=6), parameter :: kinematics_names(3) = ['small ', 'pdelta', 'finite']
 
-   !> The solvers work on dense matrices of twice this size at the most; their modes take seconds.
-   integer, parameter :: most_bodies = 500
+   !> Every row holds four numbers or more for each body: more bodies are a slip of the pen.
+   integer, parameter :: most_bodies = 10000
+
+   !> What needs dense matrices (mode shapes, modal damping) takes seconds with this number of bodies and
+   !> grows with its cube.
+   integer, parameter :: most_dense = 500
 
    !> A column of `n` rigid bodies; joint i is at the bottom of body i, counted from the ground.
    type :: column_spec
@@ -37,14 +41,30 @@ module rbs_spec_column
       logical :: self_weight = .false.
       !> Acceleration of gravity for the weight [m/s2]
       real(wp) :: gravity = standard_gravity
+      !> Whether the axial load, and the lateral force, turn with the top body (`finite` only)
+      logical :: axial_follows = .false., force_follows = .false.
+      !> Mass lumped at the top [kg] and its rotary inertia about the top [kg m2]; its weight belongs to
+      !> the axial load
+      real(wp) :: top_mass = 0.0_wp, top_inertia = 0.0_wp
+      !> Depth of the section [m]: adds m depth^2/12 to the rotary inertia of every body
+      real(wp) :: depth = 0.0_wp
+      !> Rotary inertia of the bodies about their centroids, one for all or n [kg m2]; not allocated:
+      !> m (l^2 + depth^2)/12
+      real(wp), allocatable :: rotary_inertia(:)
       !> Damping in proportion to the mass [1/s]
       real(wp) :: mass_damping = 0.0_wp
-      !> Damping in proportion to the initial stiffness of each joint [s]
+      !> Damping in proportion to the stiffness of each joint [s]
       real(wp) :: stiffness_damping = 0.0_wp
+      !> Whether that is the stiffness of the present line, else the initial one
+      logical :: tangent_damping = .false.
+      !> Damping ratios of the modes of the uncracked column: one for all, or those of the first ones
+      real(wp), allocatable :: modal_damping(:)
       !> Shear springs: one for every joint, or n
       type(spring_spec), allocatable :: shear(:)
       !> Flexural springs: one for every joint, or n
       type(spring_spec), allocatable :: flexure(:)
+      !> Axial springs, tension positive: one for every joint, or n; not allocated: joints do not open
+      type(spring_spec), allocatable :: axial(:)
    contains
       procedure :: validate
    end type column_spec
@@ -71,17 +91,85 @@ contains
          call check_positive(self%mass, 'column: mass', 'kg', messages)
       end if
       call check_name(self%kinematics, kinematics_names, 'column: kinematics', messages, place)
-      if (self%kinematics == 'finite' .and. self%n > 1) then
-         call messages%add("column: kinematics = 'finite' is there for n = 1 only, not for n = "// &
-                           to_text(self%n)//"; use 'pdelta' or one body")
+      if (self%kinematics /= 'finite' .and. (self%axial_follows .or. self%force_follows)) then
+         call messages%add('column: a load that follows the top (axial_follows, force_follows) needs '// &
+                           "kinematics = 'finite'; remove it or change the kinematics")
       end if
       call check_finite(self%axial_load, 'column: axial_load', 'N', messages)
       call check_not_negative(self%gravity, 'column: gravity', 'm/s2', messages)
+      call check_inertia(self, messages)
       call check_not_negative(self%mass_damping, 'column: mass_damping', '1/s', messages)
       call check_not_negative(self%stiffness_damping, 'column: stiffness_damping', 's', messages)
+      call check_modal_damping(self, messages)
       call check_springs(self%shear, 'shear', self%n, messages)
       call check_springs(self%flexure, 'flexure', self%n, messages)
+      if (allocated(self%axial)) call check_springs(self%axial, 'axial', self%n, messages)
    end subroutine validate
+
+   !> Lumped mass and rotary inertias; a body without inertia has no equation of motion.
+   subroutine check_inertia(self, messages)
+      type(column_spec), intent(in) :: self
+      type(message_list), intent(inout) :: messages
+      integer :: i
+      logical :: given
+
+      call check_not_negative(self%top_mass, 'column: top_mass', 'kg', messages)
+      call check_not_negative(self%top_inertia, 'column: top_inertia', 'kg m2', messages)
+      call check_not_negative(self%depth, 'column: depth', 'm', messages)
+      if (.not. allocated(self%rotary_inertia)) return
+      given = .false.
+      if (ieee_is_finite(self%depth)) given = self%depth > 0.0_wp
+      if (given) then
+         call messages%add('column: both depth and rotary_inertia are given; keep the one that is meant')
+      end if
+      if (size(self%rotary_inertia) == 1) then
+         call check_positive(self%rotary_inertia(1), 'column: rotary_inertia', 'kg m2', messages)
+         return
+      end if
+      if (size(self%rotary_inertia) /= self%n) then
+         call messages%add('column: rotary_inertia has '//to_text(size(self%rotary_inertia))// &
+                           ' values for n = '//to_text(self%n)//' bodies; give one, or one for each')
+      end if
+      do i = 1, size(self%rotary_inertia)
+         call check_positive(self%rotary_inertia(i), 'column: rotary_inertia('//to_text(i)//')', 'kg m2', &
+                             messages)
+      end do
+   end subroutine check_inertia
+
+   !> Modal damping: ratios below critical, and matrices that can be handled.
+   subroutine check_modal_damping(self, messages)
+      type(column_spec), intent(in) :: self
+      type(message_list), intent(inout) :: messages
+      character(len=:), allocatable :: name
+      integer :: i, modes
+      logical :: ok, given
+
+      given = .false.
+      if (ieee_is_finite(self%stiffness_damping)) given = self%stiffness_damping > 0.0_wp
+      if (self%tangent_damping .and. .not. given) then
+         call messages%add('column: tangent_damping has no meaning without stiffness_damping; give one')
+      end if
+      if (.not. allocated(self%modal_damping)) return
+      modes = merge(3, 2, allocated(self%axial))*self%n
+      if (size(self%modal_damping) > modes) then
+         call messages%add('column: modal_damping has '//to_text(size(self%modal_damping))// &
+                           ' values for '//to_text(modes)//' modes; give one for all, or one for each '// &
+                           'of the first modes')
+      end if
+      do i = 1, size(self%modal_damping)
+         name = 'column: modal_damping('//to_text(i)//')'
+         call check_not_negative(self%modal_damping(i), name, '', messages, ok)
+         if (ok .and. self%modal_damping(i) >= 1.0_wp) then
+            call messages%add(name//' = '//to_text(self%modal_damping(i))//' must be below 1 (critical '// &
+                              'damping); it is a ratio, not per cent')
+         end if
+      end do
+      if (self%n > most_dense) then
+         call messages%add('column: modal damping needs all modes, which are there for up to '// &
+                           to_text(most_dense)//' bodies, not for n = '//to_text(self%n)// &
+                           '; use mass and stiffness damping')
+      end if
+   end subroutine check_modal_damping
 
    !> Lengths or masses: n positive numbers.
    subroutine check_parts(parts, name, unit, n, messages)
@@ -131,6 +219,14 @@ contains
          do i = 1, size(springs)
             call springs(i)%validate(name//' spring of joint '//to_text(i), messages)
          end do
+      end if
+      if (.not. allocated(springs)) return
+      if (name == 'axial' .and. any(springs%rule == 'takeda')) then
+         call messages%add("column: an axial spring cannot be of the rule 'takeda'; it is 'elastic', "// &
+                           "'bilinear' or 'compression'")
+      else if (name /= 'axial' .and. any(springs%rule == 'compression')) then
+         call messages%add('column: the '//name//" spring cannot be of the rule 'compression', which is "// &
+                           'for axial springs')
       end if
    end subroutine check_springs
 

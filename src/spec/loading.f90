@@ -11,14 +11,16 @@ module rbs_spec_loading
 
    public :: loading_spec, drive_names, source_names, format_names, units_of
 
-   character(len=12), parameter :: drive_names(3) = ['displacement', 'force       ', 'ground      ']
+   character(len=12), parameter :: drive_names(5) = [ &
+      'displacement', 'force       ', 'ground      ', 'vertical    ', 'axial       ']
    character(len=8), parameter :: source_names(2) = ['file    ', 'protocol']
    character(len=4), parameter :: format_names(3) = ['auto', 'peer', 'csv ']
 
    !> One loading of a case.
    type :: loading_spec
-      !> What is prescribed: displacement of the top [m], lateral force at the top [N] or
-      !> acceleration of the ground [m/s2]; one of `drive_names`
+      !> What is prescribed, one of `drive_names`: displacement of the top [m], lateral force at the top
+      !> [N], acceleration of the ground, horizontal or (upward positive) vertical [m/s2], or axial load
+      !> besides the constant one, compression positive [N]
       character(len=16) :: drive = ''
       !> One of `source_names`
       character(len=16) :: source = ''
@@ -47,6 +49,8 @@ module rbs_spec_loading
       integer :: points = 25
       !> protocol in a dynamic analysis: duration of one cycle [s]
       real(wp) :: period = unset
+      !> force: whether it turns with the top body
+      logical :: follows = .false.
    contains
       procedure :: validate
    end type loading_spec
@@ -61,7 +65,7 @@ contains
       select case (drive)
       case ('displacement')
          units = length_units
-      case ('force')
+      case ('force', 'axial')
          units = force_units
       case default
          units = acceleration_units
@@ -79,13 +83,18 @@ contains
       call check_name(self%drive, drive_names, 'loading: drive', messages, drive)
       call check_name(self%source, source_names, 'loading: source', messages, source)
       call check_finite(self%scale, 'loading: scale', '', messages)
-      if (.not. dynamic .and. self%drive == 'ground') then
-         call messages%add("loading: drive = 'ground' needs a dynamic analysis; set method = 'rk4' "// &
-                           'in the group analysis')
+      if (.not. dynamic .and. drive > 2) then
+         call messages%add("loading: drive = '"//trim(self%drive)//"' needs a dynamic analysis; set "// &
+                           "method = 'rk4' in the group analysis")
       end if
       if (dynamic .and. self%drive == 'displacement') then
          call messages%add("loading: drive = 'displacement' needs the static analysis; set "// &
                            "method = 'static' in the group analysis, or drive = 'force'")
+      end if
+      if (self%follows .and. self%drive /= 'force') then
+         call messages%add("loading: follows has no meaning for drive = '"//trim(self%drive)// &
+                           "'; only a force can turn with the top (and the axial load, with follows in "// &
+                           'the group axial)')
       end if
       if (is_given(self%interval)) call check_positive(self%interval, 'loading: interval', 's', messages)
       if (drive > 0) call check_unit(self, messages)

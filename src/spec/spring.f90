@@ -14,14 +14,15 @@ module rbs_spec_spring
 
    public :: spring_spec, rule_names, inner_names, initial_stiffness
 
-   character(len=8), parameter :: rule_names(3) = ['elastic ', 'bilinear', 'takeda  ']
+   character(len=11), parameter :: rule_names(4) = [ &
+      'elastic    ', 'bilinear   ', 'takeda     ', 'compression']
    character(len=3), parameter :: inner_names(3) = ['kc ', 'kr ', 'one']
 
    !> One spring. Numbers that its rule does not use stay `unset`.
    type :: spring_spec
       !> One of `rule_names`
       character(len=16) :: rule = ''
-      !> elastic, bilinear: initial stiffness [N/m]
+      !> elastic, bilinear, compression: initial stiffness [N/m]
       real(wp) :: k = unset
       !> bilinear, takeda: yield deformation [m]
       real(wp) :: d_y = unset
@@ -57,7 +58,7 @@ contains
 
       call check_name(self%rule, rule_names, name//': rule', messages, place)
       select case (self%rule)
-      case ('elastic')
+      case ('elastic', 'compression')
          call check_positive(self%k, name//': k', '', messages)
       case ('bilinear')
          call validate_bilinear(self, name, messages)
@@ -83,7 +84,7 @@ contains
 
       values = [self%k, self%d_y, self%k_post, self%k_c, self%d_c, self%k_y, self%k_u]
       select case (self%rule)
-      case ('elastic')
+      case ('elastic', 'compression')
          used = [yes, no, no, no, no, no, no]
       case ('bilinear')
          used = [yes, yes, yes, no, no, no, no]

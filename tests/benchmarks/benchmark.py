@@ -1,29 +1,33 @@
 """Times of rbsdem on this machine, goal and measured side by side. Nothing is asserted.
 
-    python tests/benchmarks/benchmark.py [--quick] [--build DIR]
+    python tests/benchmarks/benchmark.py [--quick] [--only PART] [--build DIR] [--against DIR]
 
 Medians over repeats, with the fastest and the slowest: wall time through Python, processor time
 elsewhere, which another load of the machine disturbs less. What runs inside Fortran is timed by
 `time_solver`, built like the unit tests: meson setup build/fortran, then meson compile -C
-build/fortran. Rows that need a program that is not there say so.
+build/fortran. There `yardstick` is built too, if there is a C compiler: the same work written by
+hand for one case, by which the solver is measured. --against takes the build folder of another
+version (of an older commit, say) and runs both in turns. Rows that need a program that is not
+there say so.
 """
 
 from __future__ import annotations
 
 import argparse
 import importlib.util
-import statistics
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import numpy as np
+from compare import against_rows, take_turns, yardstick_rows
+from rows import ROOT, Row, newest, show
 
 import rbsdem
 from rbsdem.__main__ import executable as installed_executable
@@ -32,15 +36,6 @@ try:
     import resource
 except ImportError:  # Windows
     resource = None  # type: ignore[assignment]
-try:
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-except ImportError:
-    Console = None  # type: ignore[assignment,misc]
-
-ROOT = Path(__file__).resolve().parents[2]
-
 CASE = """\
 &column height = 1.6, mass = 614.4, kinematics = '{kinematics}' /
 &shear rule = 'bilinear', k = 7.0387e8, d_y = 1.296e-4, k_post = 8.3185e6 /
@@ -51,33 +46,6 @@ CASE = """\
 &output every = 1000 /
 """
 STEPS_PER_CYCLE = 5000
-
-
-@dataclass
-class Row:
-    """One line of the table; `values` in its unit, empty if it could not be measured."""
-
-    what: str
-    unit: str
-    goal: float | None = None
-    values: list[float] = field(default_factory=list)
-    note: str = ""
-
-    def texts(self) -> list[str]:
-        """Return the cells of the row."""
-        goal = "" if self.goal is None else f"< {self.goal:g}"
-        if not self.values:
-            return [self.what, self.unit, goal, "-", "", self.note]
-        median = statistics.median(self.values)
-        spread = f"{number(min(self.values))} - {number(max(self.values))}"
-        verdict = "" if self.goal is None else "met" if median < self.goal else "MISSED"
-        note = ", ".join(part for part in (verdict, self.note) if part)
-        return [self.what, self.unit, goal, number(median), spread, note]
-
-
-def number(value: float) -> str:
-    """Return three digits, and all those before the point."""
-    return f"{value:.0f}" if value >= 100 else f"{value:.3g}"
 
 
 def seconds(action: Callable[[], Any], repeats: int) -> list[float]:
@@ -105,14 +73,6 @@ def children() -> float:
         return 0.0
     usage = resource.getrusage(resource.RUSAGE_CHILDREN)
     return usage.ru_utime + usage.ru_stime
-
-
-def newest(name: str, build: Path | None) -> Path | None:
-    """Return the newest program of a name in a build folder, or in all of them."""
-    folders = [build] if build else [ROOT / "build", *ROOT.glob("build-*")]
-    found = [path for folder in folders for path in folder.rglob(name) if path.is_file()]
-    found = [path for path in found if not {"checked", "memory"} & set(path.parts)]
-    return max(found, key=lambda path: path.stat().st_mtime, default=None)
 
 
 def find_executable(build: Path | None) -> Path | None:
@@ -192,13 +152,43 @@ def through_executable(executable: Path | None, repeats: int, cycles: int) -> li
             continue
         steps = cycles * STEPS_PER_CYCLE
         with tempfile.TemporaryDirectory() as folder:
-            case = Path(folder) / "case.nml"
-            case.write_text(CASE.format(kinematics=kinematics, cycles=cycles), encoding="utf-8")
-            command = [executable, "run", case, "--quiet"]
-            times = [processor_time(command) for _ in range(repeats + 1)][1:]
+            case = write_case(Path(folder), kinematics, cycles)
+            times = [run_case(executable, case) for _ in range(repeats + 1)][1:]
         row.values = [1e9 * t / steps for t in times]
         row.note = f"{steps:,} steps".replace(",", " ")
     return rows
+
+
+def executable_against(
+    executable: Path | None, other: Path, repeats: int, cycles: int
+) -> list[Row]:
+    """Time the executable on that case in turns with the one of another build."""
+    rows = []
+    before = newest("rbsdem", other)
+    for kinematics in ("small", "finite"):
+        row = Row(f"RK4, N = 1, {kinematics}, executable", "x before", 1.05)
+        rows.append(row)
+        if executable is None or before is None:
+            row.note = f"no executable in {'this build' if before else other}"
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            case = write_case(Path(folder), kinematics, cycles)
+            row.values = take_turns(
+                partial(run_case, executable, case), partial(run_case, before, case), repeats
+            )
+    return rows
+
+
+def write_case(folder: Path, kinematics: str, cycles: int) -> Path:
+    """Write the long case."""
+    case = folder / "case.nml"
+    case.write_text(CASE.format(kinematics=kinematics, cycles=cycles), encoding="utf-8")
+    return case
+
+
+def run_case(executable: Path, case: Path) -> float:
+    """Return the processor time of a run."""
+    return processor_time([executable, "run", case, "--quiet"])
 
 
 def main_job() -> ModuleType:
@@ -236,27 +226,7 @@ def four_columns(repeats: int) -> list[Row]:
     return [row]
 
 
-HEADINGS = ("What", "Unit", "Goal", "Median", "Fastest - slowest", "")
-
-
-def show(rows: dict[str, list[Row]]) -> None:
-    """Print the table; with rich if it is there."""
-    if Console is None:
-        for title, part in rows.items():
-            print(f"\n{title}")
-            for row in part:
-                what, unit, goal, median, spread, note = row.texts()
-                print(f"  {what:<38}{goal:>8}{median:>8} {unit:<13}{spread:<18}{note}")
-        return
-    table = Table(box=box.SIMPLE_HEAD)
-    for place, heading in enumerate(HEADINGS):
-        table.add_column(heading, justify="right" if place in (2, 3) else "left", no_wrap=place < 5)
-    for title, part in rows.items():
-        table.add_row(f"[bold]{title}")
-        for row in part:
-            what, *rest = row.texts()
-            table.add_row(f"  {what}", *rest, end_section=row is part[-1])
-    Console(width=None if sys.stdout.isatty() else 132).print(table)
+PARTS = ("python", "fortran", "yardstick", "executable")
 
 
 def arguments() -> argparse.Namespace:
@@ -265,9 +235,13 @@ def arguments() -> argparse.Namespace:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--quick", action="store_true", help="fewer repeats, shorter runs")
+    parser.add_argument("--only", choices=PARTS, help="one part of the table")
     parser.add_argument("--repeats", type=int, metavar="N", help="default 9, with --quick 3")
     parser.add_argument(
         "--build", type=Path, metavar="DIR", help="build folder of time_solver and rbsdem"
+    )
+    parser.add_argument(
+        "--against", type=Path, metavar="DIR", help="build folder of another version"
     )
     given = parser.parse_args()
     if given.repeats is None:
@@ -280,15 +254,24 @@ def arguments() -> argparse.Namespace:
 def main() -> None:
     """Measure and print."""
     given = arguments()
-    repeats = given.repeats
-    driver = newest("time_solver", given.build)
-    rows = {
-        "Through Python": through_python(repeats) + four_columns(repeats),
-        "Inside Fortran": inside_fortran(driver, repeats, 10 if given.quick else 1),
-        "Through the executable": through_executable(
-            find_executable(given.build), repeats, 100 if given.quick else 200
-        ),
-    }
+    repeats, divisor, cycles = given.repeats, 10 if given.quick else 1, 100 if given.quick else 200
+    parts = [given.only] if given.only else PARTS
+    executable = find_executable(given.build)
+    rows = {}
+    if "python" in parts:
+        rows["Through Python"] = through_python(repeats) + four_columns(repeats)
+    if "fortran" in parts:
+        driver = newest("time_solver", given.build)
+        rows["Inside Fortran"] = inside_fortran(driver, repeats, divisor)
+    if "yardstick" in parts:
+        rows["By the yardstick"] = yardstick_rows(given.build, repeats, divisor)
+    if "executable" in parts:
+        rows["Through the executable"] = through_executable(executable, repeats, cycles)
+    if given.against:
+        rows["Now against before"] = [
+            *executable_against(executable, given.against, repeats, cycles),
+            *against_rows(given.build, given.against, repeats, divisor),
+        ]
     show(rows)
 
 

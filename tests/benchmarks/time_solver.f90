@@ -1,32 +1,59 @@
-!> Times of the solver itself, without Python and without files: `time_solver [repeats [divisor]]`.
+!> Times of the solver itself, without Python and without files.
+!>
+!>     time_solver [repeats [divisor]]
 !>
 !> A line for every repeat: name, nanoseconds of the processor per unit of work; for one body also how
 !> many lines its springs leave in 1000 steps. The divisor makes all runs shorter.
+!>
+!>     time_solver rk4|newmark N DT STEPS PERIOD STRENGTH
+!>     time_solver static POINTS
+!>
+!> The same work as `yardstick`, which is told there: nanoseconds per step (static: per increment), the
+!> peak displacement [m] (static: force [N]), and the memory that the process held at the most [kB].
 program time_solver
-   use, intrinsic :: iso_fortran_env, only: output_unit
+   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use rbs_base_constants, only: pi, unset, unset_integer
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
    use rbs_hysteresis_springs, only: follow_path
-   use rbs_loading_signal, only: signal_type
    use rbs_results_recorder, only: array_recorder
    use rbs_results_row, only: row_size
    use rbs_results_summary, only: summary_type
    use rbs_solve_history, only: initial_state
+   use rbs_solve_loads, only: loads_type
    use rbs_solve_run, only: make_column, run_static, plan_dynamic, run_dynamic
    use rbs_solve_time_plan, only: time_plan
+   use rbs_spec_analysis, only: analysis_spec
    use rbs_spec_column, only: column_spec
    use rbs_spec_spring, only: spring_spec
    implicit none
 
-   integer, parameter :: bodies(3) = [10, 50, 200]
-   integer :: repeats, divisor, repeat, i
+   integer :: repeats, divisor, repeat
    character(len=16) :: label
 
-   repeats = whole_argument(1, 5)
-   divisor = whole_argument(2, 1)
-   do repeat = 1, repeats
+   call get_command_argument(1, label)
+   select case (label)
+   case ('static')
+      call compare_static(whole_argument(2, 0))
+   case ('rk4', 'newmark')
+      call compare_dynamic(trim(label), whole_argument(2, 0), real_argument(3), whole_argument(4, 0), &
+                           real_argument(5), real_argument(6))
+   case default
+      repeats = whole_argument(1, 5)
+      divisor = whole_argument(2, 1)
+      do repeat = 1, repeats
+         call time_all()
+      end do
+   end select
+
+contains
+
+   subroutine time_all()
+      integer, parameter :: bodies(3) = [10, 50, 200]
+      character(len=16) :: name
+      integer :: i
+
       call time_spring('spring_smooth', .true.)
       call time_spring('spring_random', .false.)
       call time_static()
@@ -34,12 +61,10 @@ program time_solver
       call time_rk4('rk4_pdelta', 'pdelta', 1)
       call time_rk4('rk4_finite', 'finite', 1)
       do i = 1, size(bodies)
-         write (label, '(a, i0)') 'rk4_n', bodies(i)
-         call time_rk4(trim(label), 'pdelta', bodies(i))
+         write (name, '(a, i0)') 'rk4_n', bodies(i)
+         call time_rk4(trim(name), 'pdelta', bodies(i))
       end do
-   end do
-
-contains
+   end subroutine time_all
 
    integer function whole_argument(i, default) result(value)
       integer, intent(in) :: i, default
@@ -50,8 +75,18 @@ contains
       call get_command_argument(i, word)
       if (word == '') return
       read (word, *, iostat=status) value
-      if (status /= 0 .or. value < 1) error stop 'usage: time_solver [repeats [divisor]]'
+      if (status /= 0 .or. value < 1) error stop 'time_solver: arguments are not as told in its source'
    end function whole_argument
+
+   real(wp) function real_argument(i) result(value)
+      integer, intent(in) :: i
+      character(len=32) :: word
+      integer :: status
+
+      call get_command_argument(i, word)
+      read (word, *, iostat=status) value
+      if (status /= 0) error stop 'time_solver: arguments are not as told in its source'
+   end function real_argument
 
    subroutine tell(what, begin, count)
       character(len=*), intent(in) :: what
@@ -148,10 +183,10 @@ contains
 
       call make_paper_column(column, 'pdelta', 1)
       allocate (x(m), source=wave(m, 20, 0.05_wp))
-      allocate (rows(row_size(1), m))
+      allocate (rows(row_size(column%unknowns), m))
       recorder%rows => rows
       call cpu_time(begin)
-      call run_static(column, .false., x, unset_integer, recorder, summary, error)
+      call run_static(column, .false., x, unset_integer, unset, recorder, summary, error)
       call tell('static', begin, m)
       if (allocated(error)) error stop 'time_solver: the static path failed'
    end subroutine time_static
@@ -161,37 +196,162 @@ contains
       character(len=*), intent(in) :: what, kinematics
       integer, intent(in) :: n
       type(column_type) :: column
-      type(array_recorder) :: recorder
       type(summary_type) :: summary
       type(error_type), allocatable :: error
+      type(analysis_spec) :: analysis
       type(time_plan) :: plan
-      type(signal_type) :: force, no_ground
-      type(initial_state) :: rest
-      real(wp), allocatable, target :: rows(:, :)
-      real(wp) :: limit, begin
+      type(loads_type) :: loads
+      real(wp) :: used
       integer :: steps, i
       integer, parameter :: points = 101
 
       call make_paper_column(column, kinematics, n)
-      allocate (force%time(points), force%value(points))
-      force%time = [(0.02_wp*(i - 1), i=1, points)]
-      force%value = 1.5e5_wp*sin(2.0_wp*pi*5.0_wp*force%time)
+      allocate (loads%force%time(points), loads%force%value(points))
+      loads%force%time = [(0.02_wp*(i - 1), i=1, points)]
+      loads%force%value = 1.5e5_wp*sin(2.0_wp*pi*5.0_wp*loads%force%time)
+      analysis%method = 'rk4'
       ! Once for the limit, then as long as the work is worth measuring.
-      call plan_dynamic(column, force%time, unset, plan, limit, error)
+      call plan_dynamic(column, analysis, loads%force%time, loads, plan, error)
       if (allocated(error)) error stop 'time_solver: the time history cannot be planned'
       steps = max(400000/(divisor*n), 50)
-      force%time = force%time*(steps*0.2_wp*limit/force%time(points))
-      call plan_dynamic(column, force%time, unset, plan, limit, error)
-      if (allocated(error)) error stop 'time_solver: the time history cannot be planned'
-      allocate (rows(row_size(n), plan%rows(1000)))
-      recorder%rows => rows
-      call cpu_time(begin)
-      call run_dynamic(column, plan, limit, force%time, force, no_ground, rest, 1000, recorder, &
-                       summary, error)
-      call tell(what, begin, n*summary%steps)
-      if (allocated(error)) error stop 'time_solver: the time history failed'
+      loads%force%time = loads%force%time*(steps*0.2_wp*plan%limit/loads%force%time(points))
+      call run(column, analysis, loads, summary, used)
+      write (output_unit, '(a, 1x, f0.3)') what, 1.0e9_wp*used/(n*summary%steps)
       if (n > 1) return
       write (output_unit, '(a, 1x, f0.3)') what//'_lines', 1000.0_wp*real(summary%events, wp)/summary%steps
    end subroutine time_rk4
+
+   !> Plan and run; every 1000th step is kept. Only the run is timed.
+   subroutine run(column, analysis, loads, summary, used)
+      type(column_type), intent(in) :: column
+      type(analysis_spec), intent(in) :: analysis
+      type(loads_type), intent(in) :: loads
+      type(summary_type), intent(out) :: summary
+      !> Processor time [s]
+      real(wp), intent(out) :: used
+      type(array_recorder) :: recorder
+      type(time_plan) :: plan
+      type(initial_state) :: rest
+      type(error_type), allocatable :: error
+      real(wp), allocatable, target :: rows(:, :)
+      real(wp) :: begin, finish
+
+      call plan_dynamic(column, analysis, loads%force%time, loads, plan, error)
+      if (allocated(error)) call give_up(error)
+      allocate (rows(row_size(column%unknowns), plan%rows(1000)))
+      recorder%rows => rows
+      call cpu_time(begin)
+      call run_dynamic(column, analysis, plan, loads%force%time, loads, rest, 1000, recorder, summary, error)
+      call cpu_time(finish)
+      used = finish - begin
+      if (allocated(error)) call give_up(error)
+   end subroutine run
+
+   !> The chain of the yardstick: column 1 of table 3 in n equal bodies, two bilinear springs a joint that
+   !> together are as soft as those of one body.
+   subroutine make_bilinear_column(column, n, strength)
+      type(column_type), intent(out) :: column
+      integer, intent(in) :: n
+      !> Of the shear springs, 1 as in the paper
+      real(wp), intent(in) :: strength
+      type(column_spec) :: spec
+      type(error_type), allocatable :: error
+
+      spec%n = n
+      spec%height = 1.6_wp
+      spec%mass = 614.4_wp
+      spec%depth = 0.4_wp
+      allocate (spec%shear(1), spec%flexure(1))
+      spec%shear(1)%rule = 'bilinear'
+      spec%shear(1)%k = n*7.0387e8_wp
+      spec%shear(1)%d_y = strength*1.2960e-4_wp/n
+      spec%shear(1)%k_post = n*8.3185e6_wp
+      spec%flexure(1)%rule = 'bilinear'
+      spec%flexure(1)%k = n*6.2937e7_wp
+      spec%flexure(1)%d_y = 2.7183e-3_wp/n
+      spec%flexure(1)%k_post = n*7.5772e6_wp
+      call make_column(spec, column, error)
+      if (allocated(error)) call give_up(error)
+   end subroutine make_bilinear_column
+
+   !> One history in time, as `yardstick` runs it.
+   subroutine compare_dynamic(method, n, dt, steps, period, strength)
+      character(len=*), intent(in) :: method
+      integer, intent(in) :: n, steps
+      !> Step [s], steps in a cycle of the load, strength of the shear springs
+      real(wp), intent(in) :: dt, period, strength
+      type(column_type) :: column
+      type(summary_type) :: summary
+      type(analysis_spec) :: analysis
+      type(loads_type) :: loads
+      real(wp) :: used
+      integer, parameter :: spacing = 20
+      integer :: i
+
+      call make_bilinear_column(column, n, strength)
+      analysis%method = method
+      analysis%dt = dt
+      loads%force%time = [(i*dt, i=0, steps, spacing)]
+      loads%force%value = [(1.5e5_wp*sin(2.0_wp*pi*i/period), i=0, steps, spacing)]
+      call run(column, analysis, loads, summary, used)
+      call tell_case(used/summary%steps, summary%peak_displacement)
+   end subroutine compare_dynamic
+
+   !> The static path of one body, as `yardstick` follows it.
+   subroutine compare_static(points)
+      integer, intent(in) :: points
+      type(column_type) :: column
+      type(array_recorder) :: recorder
+      type(summary_type) :: summary
+      type(error_type), allocatable :: error
+      real(wp), allocatable, target :: rows(:, :)
+      real(wp), allocatable :: x(:)
+      real(wp) :: begin, finish
+
+      call make_bilinear_column(column, 1, 1.0_wp)
+      allocate (x(points), source=wave(points, 20, 0.05_wp))
+      allocate (rows(row_size(column%unknowns), points/1000 + 2))
+      recorder%rows => rows
+      call cpu_time(begin)
+      call run_static(column, .false., x, 1000, unset, recorder, summary, error)
+      call cpu_time(finish)
+      if (allocated(error)) call give_up(error)
+      call tell_case((finish - begin)/points, summary%peak_force)
+   end subroutine compare_static
+
+   subroutine tell_case(seconds, peak)
+      !> Per unit of work [s]
+      real(wp), intent(in) :: seconds
+      !> Peak [m, N]
+      real(wp), intent(in) :: peak
+
+      write (output_unit, '(f0.4, 1x, es24.16, 1x, i0)') 1.0e9_wp*seconds, peak, memory()
+   end subroutine tell_case
+
+   !> Memory that this process has held at the most [kB]; 0 where the system does not tell (all but Linux).
+   integer function memory() result(kilobytes)
+      character(len=80) :: text
+      integer :: unit, status
+
+      kilobytes = 0
+      open (newunit=unit, file='/proc/self/status', status='old', action='read', iostat=status)
+      if (status /= 0) return
+      do
+         read (unit, '(a)', iostat=status) text
+         if (status /= 0) exit
+         if (text(:6) /= 'VmHWM:') cycle
+         read (text(7:), *, iostat=status) kilobytes
+         if (status /= 0) kilobytes = 0
+         exit
+      end do
+      close (unit)
+   end function memory
+
+   subroutine give_up(error)
+      type(error_type), intent(in) :: error
+
+      write (error_unit, '(a)') 'time_solver: '//error%message
+      error stop 1
+   end subroutine give_up
 
 end program time_solver

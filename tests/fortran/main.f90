@@ -2,8 +2,11 @@
 program unit_tests
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use check, only: unit_test, run_suite
+   use test_band, only: collect_band
    use test_bilinear, only: collect_bilinear
+   use test_chain, only: collect_chain
    use test_column, only: collect_column
+   use test_finite, only: collect_finite
    use test_history, only: collect_history
    use test_linalg, only: collect_linalg
    use test_modal, only: collect_modal
@@ -14,6 +17,8 @@ program unit_tests
    use test_spec, only: collect_spec
    use test_springs, only: collect_springs
    use test_static, only: collect_static
+   use test_static_finite, only: collect_static_finite
+   use test_steppers, only: collect_steppers
    use test_takeda, only: collect_takeda
    use test_text, only: collect_text
    use test_time_plan, only: collect_time_plan
@@ -33,7 +38,7 @@ program unit_tests
       procedure(collect_interface), pointer, nopass :: collect => null()
    end type suite_type
 
-   type(suite_type) :: suites(15)
+   type(suite_type) :: suites(20)
    character(len=80) :: wanted, pattern
    integer :: i, run, failed, found
 
@@ -41,10 +46,15 @@ program unit_tests
              suite_type('spec', collect_spec), suite_type('segment', collect_segment), &
              suite_type('bilinear', collect_bilinear), suite_type('takeda', collect_takeda), &
              suite_type('springs', collect_springs), suite_type('column', collect_column), &
+             suite_type('chain', collect_chain), &
+             suite_type('band', collect_band), &
+             suite_type('finite', collect_finite), &
              suite_type('protocol', collect_protocol), suite_type('signal', collect_signal), &
              suite_type('results', collect_results), suite_type('time_plan', collect_time_plan), &
              suite_type('modal', collect_modal), suite_type('static', collect_static), &
-             suite_type('history', collect_history)]
+             suite_type('static_finite', collect_static_finite), &
+             suite_type('history', collect_history), &
+             suite_type('steppers', collect_steppers)]
 
    call get_command_argument(1, wanted)
    call get_command_argument(2, pattern)

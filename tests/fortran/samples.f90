@@ -10,7 +10,7 @@ module samples
    implicit none
    private
 
-   public :: elastic, bilinear, takeda, bilinear_1, takeda_1, column_1, chain, made
+   public :: elastic, bilinear, compression, takeda, bilinear_1, takeda_1, column_1, chain, rich_column, made
    public :: random_type
 
    !> Soesianawati & Park No 1, table 3 of the paper: flexure [N m, rad] ...
@@ -29,6 +29,7 @@ module samples
       integer(int64) :: state = 20240229_int64
    contains
       procedure :: uniform
+      procedure :: uniform_array
    end type random_type
 
 contains
@@ -41,6 +42,19 @@ contains
       self%state = mod(48271_int64*self%state, 2147483647_int64)
       x = low + (high - low)*real(self%state, wp)/2147483647.0_wp
    end function uniform
+
+   !> The next m numbers.
+   function uniform_array(self, low, high, m) result(x)
+      class(random_type), intent(inout) :: self
+      real(wp), intent(in) :: low, high
+      integer, intent(in) :: m
+      real(wp) :: x(m)
+      integer :: i
+
+      do i = 1, m
+         x(i) = self%uniform(low, high)
+      end do
+   end function uniform_array
 
    pure type(spring_spec) function elastic(k) result(spec)
       real(wp), intent(in) :: k
@@ -57,6 +71,13 @@ contains
       spec%d_y = d_y
       spec%k_post = k_post
    end function bilinear
+
+   pure type(spring_spec) function compression(k) result(spec)
+      real(wp), intent(in) :: k
+
+      spec%rule = 'compression'
+      spec%k = k
+   end function compression
 
    pure type(spring_spec) function takeda(k_c, d_c, k_y, d_y, k_u, b0, b1, inner) result(spec)
       real(wp), intent(in) :: k_c, d_c, k_y, d_y, k_u, b0, b1
@@ -115,6 +136,34 @@ contains
       end do
       spec%lengths = spec%lengths*(spec%height/sum(spec%lengths))
    end function chain
+
+   !> A random column of n bodies with bilinear springs, axial load and weight; it does not buckle.
+   type(column_spec) function rich_column(n, kinematics, opens, random) result(spec)
+      integer, intent(in) :: n
+      character(len=*), intent(in) :: kinematics
+      !> Whether the joints have axial springs
+      logical, intent(in) :: opens
+      type(random_type), intent(inout) :: random
+      real(wp) :: number(6)
+      integer :: i
+
+      spec%n = n
+      spec%kinematics = kinematics
+      spec%axial_load = random%uniform(-1.0e6_wp, 2.0e6_wp)
+      spec%self_weight = .true.
+      allocate (spec%lengths(n), spec%masses(n), spec%shear(n), spec%flexure(n), spec%rotary_inertia(n))
+      if (opens) allocate (spec%axial(n))
+      do i = 1, n
+         spec%lengths(i) = random%uniform(0.2_wp, 1.0_wp)
+         spec%masses(i) = random%uniform(50.0_wp, 500.0_wp)
+         spec%rotary_inertia(i) = spec%masses(i)*random%uniform(0.01_wp, 0.2_wp)
+         number = random%uniform_array(1.0_wp, 9.0_wp, 6)
+         spec%shear(i) = bilinear(1.0e8_wp*number(1), 2.0e-3_wp, 1.0e7_wp*number(2))
+         spec%flexure(i) = bilinear(1.0e8_wp*number(3), 2.0e-3_wp, 1.0e7_wp*number(4))
+         if (opens) spec%axial(i) = bilinear(1.0e9_wp*number(5), 2.0e-3_wp, 1.0e7_wp*number(6))
+      end do
+      spec%height = sum(spec%lengths)
+   end function rich_column
 
    !> The column of a specification that must be valid.
    type(column_type) function made(spec) result(column)

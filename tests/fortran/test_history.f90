@@ -7,20 +7,22 @@ module test_history
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
-   use rbs_hysteresis_springs, only: follow_path
-   use rbs_loading_signal, only: signal_type
+   use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_results_progress, only: progress_type
    use rbs_results_recorder, only: array_recorder, recorder_type
    use rbs_results_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
                               row_spring, row_damping, row_axial, row_residual, row_joints
    use rbs_results_summary, only: summary_type
    use rbs_solve_history, only: initial_state, march
+   use rbs_solve_loads, only: loads_type
    use rbs_solve_modal, only: modes_type, find_modes
    use rbs_solve_motion, only: motion_type
+   use rbs_solve_rk4, only: rk4_stepper
    use rbs_solve_run, only: plan_dynamic, run_dynamic, run_static
    use rbs_solve_time_plan, only: time_plan
    use rbs_spec_column, only: column_spec
-   use samples, only: chain, column_1, elastic, made, random_type, d_y, k_c, k_u, s_k, mass_1, height_1
+   use runs, only: run_data, run, times, last_deformation
+   use samples, only: chain, column_1, elastic, made, random_type, d_y, k_u, mass_1, height_1
    implicit none
    private
 
@@ -41,19 +43,6 @@ module test_history
    contains
       procedure :: update
    end type counting_progress
-
-   !> One run: what goes in besides the column, and what comes out.
-   type :: run_data
-      real(wp), allocatable :: time(:), force(:), ground(:)
-      real(wp) :: dt = unset
-      integer :: every = unset_integer
-      type(initial_state) :: initial
-      !> Stability limit [s]
-      real(wp) :: limit = 0.0_wp
-      real(wp), allocatable :: rows(:, :)
-      type(summary_type) :: summary
-      type(error_type), allocatable :: outcome
-   end type run_data
 
 contains
 
@@ -103,45 +92,8 @@ contains
       self%share = share
    end subroutine update
 
-   subroutine run(data, column)
-      type(run_data), intent(inout) :: data
-      type(column_type), intent(in) :: column
-      type(time_plan) :: plan
-      type(array_recorder) :: recorder
-      type(signal_type) :: force, ground
-      real(wp), allocatable, target :: kept(:, :)
-
-      if (allocated(data%rows)) deallocate (data%rows)
-      if (allocated(data%outcome)) deallocate (data%outcome)
-      call plan_dynamic(column, data%time, data%dt, plan, data%limit, data%outcome)
-      if (allocated(data%outcome)) return
-      if (allocated(data%force)) then
-         force%time = data%time
-         force%value = data%force
-      end if
-      if (allocated(data%ground)) then
-         ground%time = data%time
-         ground%value = data%ground
-      end if
-      allocate (kept(row_size(column%n), plan%rows(data%every)))
-      recorder%rows => kept
-      call run_dynamic(column, plan, data%limit, data%time, force, ground, data%initial, data%every, &
-                       recorder, data%summary, data%outcome)
-      data%rows = kept(:, :recorder%count)
-   end subroutine run
-
-   !> Times 0, h, ..., m h.
-   pure function times(m, h) result(t)
-      integer, intent(in) :: m
-      real(wp), intent(in) :: h
-      real(wp) :: t(m + 1)
-      integer :: i
-
-      t = [(i*h, i=0, m)]
-   end function times
-
    !> The error must fall by 2**4 as the step is halved, within 4.0 +- 0.05.
-   subroutine check_order(error, wrong, what)
+   subroutine check_order_4(error, wrong, what)
       type(error_type), allocatable, intent(inout) :: error
       real(wp), intent(in) :: wrong(:)
       character(len=*), intent(in) :: what
@@ -150,16 +102,13 @@ contains
       m = size(wrong)
       call check_close(error, log(wrong(:m - 1)/wrong(2:))/log(2.0_wp), spread(4.0_wp, 1, m - 1), 0.0_wp, &
                        0.05_wp, what//': order')
-   end subroutine check_order
+   end subroutine check_order_4
 
    !> Largest difference of the deformations at the last row from the exact ones, over their size.
    real(wp) function wrong_at_end(data, exact) result(wrong)
       type(run_data), intent(in) :: data
       real(wp), intent(in) :: exact(:)
-      real(wp) :: q(size(exact))
-
-      q = data%rows(row_joints:row_joints + size(exact) - 1, size(data%rows, 2))
-      wrong = maxval(abs(q - exact))/maxval(abs(exact))
+      wrong = maxval(abs(last_deformation(data, size(exact)) - exact))/maxval(abs(exact))
    end function wrong_at_end
 
    subroutine free_vibration(error)
@@ -183,13 +132,13 @@ contains
          h = min(finish/20, 0.9_wp*modes%stable_step)
          do i = 1, 3
             data%time = [0.0_wp, finish]
-            data%dt = finish/(ceiling(finish/h)*2**i)
+            data%analysis%dt = finish/(ceiling(finish/h)*2**i)
             call run(data, column)
             call check_passed(error, data%outcome, 'run')
             if (allocated(error)) return
             wrong(i) = wrong_at_end(data, data%initial%deformation*cos(modes%omega(mode)*finish))
          end do
-         call check_order(error, wrong, 'mode '//to_text(mode))
+         call check_order_4(error, wrong, 'mode '//to_text(mode))
          call check_true(error, wrong(3) < 1.0e-5_wp, 'error in mode '//to_text(mode))
       end do
    end subroutine free_vibration
@@ -219,13 +168,13 @@ contains
          data%time = [0.0_wp, t]
          data%initial%deformation = modes%shapes(:, 4)
          do i = 1, 3
-            data%dt = t/(40*2**i)
+            data%analysis%dt = t/(40*2**i)
             call run(data, column)
             call check_passed(error, data%outcome, 'run')
             if (allocated(error)) return
             wrong(i) = wrong_at_end(data, modes%shapes(:, 4)*exp(-c*t/2)*(cos(w*t) + c/(2*w)*sin(w*t)))
          end do
-         call check_order(error, wrong, 'damping '//to_text(kind))
+         call check_order_4(error, wrong, 'damping '//to_text(kind))
          call check_true(error, abs(data%rows(row_residual, size(data%rows, &
                          2))) < 1.0e-5_wp*data%summary%largest, &
                          'energy balance')
@@ -271,7 +220,7 @@ contains
          m = ceiling(2.0_wp*finish*modes%omega(4))*2**i
          h = finish/m
          data%time = times(2*m, 0.5_wp*h)
-         data%dt = h
+         data%analysis%dt = h
          wave = sin(w*data%time)
          if (by_ground) then
             data%ground = 3.0_wp*wave
@@ -290,7 +239,7 @@ contains
          end do
          wrong(i) = wrong(i)/maxval(abs(exact))
       end do
-      call check_order(error, wrong, 'harmonic load')
+      call check_order_4(error, wrong, 'harmonic load')
       call check_true(error, wrong(3) < 1.0e-6_wp, 'error')
    end subroutine harmonic_orders
 
@@ -321,7 +270,7 @@ contains
       t = 0.013_wp
       data%time = t*[0.0_wp, 0.25_wp, 1.0_wp]
       data%force = 2.0e4_wp*[0.0_wp, 0.25_wp, 1.0_wp]
-      data%dt = t/2000
+      data%analysis%dt = t/2000
       call run(data, column)
       call check_passed(error, data%outcome, 'run')
       if (allocated(error)) return
@@ -345,7 +294,8 @@ contains
       type(modes_type) :: modes
       type(time_plan) :: plan
       type(initial_state) :: start
-      type(signal_type) :: none
+      type(loads_type) :: none
+      type(rk4_stepper) :: stepper
       type(summary_type) :: summary
       type(array_recorder) :: recorder
       real(wp), allocatable, target :: kept(:, :)
@@ -368,11 +318,13 @@ contains
             plan%steps = steps
             plan%finish = steps*plan%dt
             if (allocated(kept)) deallocate (kept)
-            allocate (kept(row_size(2), 2))
+            allocate (kept(row_size(column%unknowns), 2))
             recorder%rows => kept
             recorder%count = 0
-            call march(column, plan, [0.0_wp, plan%finish], none, none, start, steps, recorder, summary, &
-                       outcome)
+            stepper = rk4_stepper()
+            call stepper%scheme%create(column%unknowns)
+            call march(column, plan, stepper, [0.0_wp, plan%finish], none, start, unset, steps, recorder, &
+                       summary, outcome)
             call check_passed(error, outcome, 'march')
             energy(i) = (kept(row_kinetic, 2) + kept(row_spring, 2))/kept(row_kinetic, 1)
          end do
@@ -392,7 +344,7 @@ contains
       call find_modes(column, modes, outcome)
       call check_passed(error, outcome, 'find_modes')
       data%time = [0.0_wp, 1.0_wp]
-      data%dt = 1.01_wp*modes%stable_step
+      data%analysis%dt = 1.01_wp*modes%stable_step
       call run(data, column)
       call check_failed(error, data%outcome, bad_input, 'is beyond the stability limit of rk4, '// &
                         to_text(modes%stable_step)//' s')
@@ -409,7 +361,7 @@ contains
       spec%shear(1) = elastic(7.0e3_wp)
       spec%flexure(1) = elastic(2.5e3_wp)
       data%time = times(200, 0.05_wp)
-      data%dt = 5.0e-4_wp
+      data%analysis%dt = 5.0e-4_wp
       data%initial%deformation = [0.05_wp, 0.8_wp]
       call run(data, made(spec))
       call check_passed(error, data%outcome, 'run')
@@ -442,7 +394,7 @@ contains
          data%time = times(100, 0.02_wp)
          data%force = 3.0e3_wp*sin(7.0_wp*data%time)
          data%ground = 4.0_wp*cos(5.0_wp*data%time)
-         data%dt = 4.0e-3_wp/2**i
+         data%analysis%dt = 4.0e-3_wp/2**i
          call run(data, made(spec))
          call check_passed(error, data%outcome, 'run')
          if (allocated(error)) return
@@ -461,7 +413,9 @@ contains
       type(random_type) :: random
       type(column_spec) :: spec
       type(motion_type) :: small, finite
-      real(wp) :: q(2), v(2), f(2), a(2), b(2)
+      type(spring_array) :: springs
+      real(wp) :: q(2), v(2), a(2), b(2)
+      real(wp), parameter :: load(4) = [30.0_wp, 0.1_wp, 0.2_wp, 400.0_wp]
       integer :: i
 
       spec = column_1('pdelta')
@@ -469,21 +423,20 @@ contains
       spec%self_weight = .true.
       spec%mass_damping = 2.0_wp
       spec%stiffness_damping = 1.0e-4_wp
-      call small%create(made(spec), outcome)
+      call small%create(made(spec), spread(.true., 1, 4), outcome)
       call check_passed(error, outcome, 'small')
       spec%kinematics = 'finite'
-      call finite%create(made(spec), outcome)
+      call finite%create(made(spec), spread(.true., 1, 4), outcome)
       call check_passed(error, outcome, 'finite')
+      call springs%create(small%column%spring)
       do i = 1, 50
          q = 1.0e-7_wp*[random%uniform(-1.0_wp, 1.0_wp), random%uniform(-1.0_wp, 1.0_wp)]
          v = 1.0e-6_wp*[random%uniform(-1.0_wp, 1.0_wp), random%uniform(-1.0_wp, 1.0_wp)]
-         f = [s_k, k_c]*q
-         call small%acceleration(q, v, f, 30.0_wp, 0.1_wp, a)
-         call finite%acceleration(q, v, f, 30.0_wp, 0.1_wp, b)
+         call small%acceleration(springs, q, v, load, a)
+         call finite%acceleration(springs, q, v, load, b)
          call check_close(error, a, b, 1.0e-10_wp, 1.0e-10_wp, 'acceleration')
          call check_close(error, small%kinetic_energy(q, v), finite%kinetic_energy(q, v), 1.0e-10_wp, &
-                          0.0_wp, &
-                          'kinetic energy')
+                          0.0_wp, 'kinetic energy')
          call check_close(error, small%potential(q), finite%potential(q), 1.0e-10_wp, 0.0_wp, 'potential')
       end do
    end subroutine finite_small
@@ -504,7 +457,7 @@ contains
          data%time = times(40, 1.0e-3_wp)
          data%force = 3.0e5_wp*sin(70.0_wp*data%time)
          data%ground = 4.0_wp*cos(50.0_wp*data%time)
-         data%dt = 1.0e-3_wp/(10*2**i)
+         data%analysis%dt = 1.0e-3_wp/(10*2**i)
          call run(data, made(spec))
          call check_passed(error, data%outcome, 'run')
          if (allocated(error)) return
@@ -534,7 +487,7 @@ contains
 
       column = made(column_1('small'))
       call yielding_force(data, 1.6e5_wp, 0.2_wp)
-      data%dt = 0.2_wp/2003.0_wp
+      data%analysis%dt = 0.2_wp/2003.0_wp
       call run(data, column)
       call check_passed(error, data%outcome, 'run')
       if (allocated(error)) return
@@ -555,7 +508,7 @@ contains
 
       do i = 1, 4
          call yielding_force(data, 1.6e5_wp, 0.2_wp)
-         data%dt = 0.05_wp/(50*4**i)
+         data%analysis%dt = 0.05_wp/(50*4**i)
          call run(data, made(column_1('small')))
          call check_passed(error, data%outcome, 'run')
          if (allocated(error)) return
@@ -585,10 +538,10 @@ contains
          call check_passed(error, data%outcome, 'run')
          if (allocated(error)) return
          if (allocated(kept)) deallocate (kept)
-         allocate (kept(row_size(1), size(data%force)))
+         allocate (kept(row_size(2), size(data%force)))
          recorder%rows => kept
          recorder%count = 0
-         call run_static(made(spec), .true., data%force, 1, recorder, summary, outcome)
+         call run_static(made(spec), .true., data%force, 1, unset, recorder, summary, outcome)
          call check_passed(error, outcome, 'static path')
          wrong(i) = maxval(abs(data%rows(row_displacement, :) - kept(row_displacement, :))) &
                     /maxval(abs(kept(row_displacement, :)))
@@ -671,7 +624,7 @@ contains
       integer :: last
 
       data%time = [1.0_wp, 1.0205_wp]
-      data%dt = 1.0e-3_wp
+      data%analysis%dt = 1.0e-3_wp
       data%initial%velocity = [1.0_wp, 0.0_wp]
       call run(data, made(column_1('small')))
       call check_passed(error, data%outcome, 'run')
@@ -704,19 +657,18 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(failing_recorder) :: recorder
+      type(run_data) :: data
       type(column_type) :: column
       type(time_plan) :: plan
-      type(signal_type) :: none
-      type(initial_state) :: rest
+      type(loads_type) :: none
       type(summary_type) :: summary
-      real(wp) :: time(6), step_limit
 
       column = made(column_1('small'))
-      time = times(5, 0.25_wp)
-      call plan_dynamic(column, time, unset, plan, step_limit, outcome)
+      data%time = times(5, 0.25_wp)
+      call plan_dynamic(column, data%analysis, data%time, none, plan, outcome)
       call check_passed(error, outcome, 'plan')
-      call run_dynamic(column, plan, step_limit, time, none, none, rest, unset_integer, recorder, summary, &
-                       outcome)
+      call run_dynamic(column, data%analysis, plan, data%time, none, data%initial, unset_integer, recorder, &
+                       summary, outcome)
       call check_failed(error, outcome, analysis_failed, 'disk full at 0.5 s')
       call check_equal(error, recorder%count, 3, 'rows offered')
    end subroutine failing
@@ -726,20 +678,21 @@ contains
       type(error_type), allocatable :: outcome
       type(array_recorder) :: recorder
       type(counting_progress) :: told
+      type(run_data) :: data
       type(column_type) :: column
       type(time_plan) :: plan
-      type(signal_type) :: none
-      type(initial_state) :: rest
+      type(loads_type) :: none
       type(summary_type) :: summary
-      real(wp), target :: kept(13, 2)
-      real(wp) :: step_limit
+      real(wp), target :: kept(14, 2)
 
       column = made(column_1('small'))
-      call plan_dynamic(column, [0.0_wp, 10.0_wp], 1.0e-4_wp, plan, step_limit, outcome)
+      data%time = [0.0_wp, 10.0_wp]
+      data%analysis%dt = 1.0e-4_wp
+      call plan_dynamic(column, data%analysis, data%time, none, plan, outcome)
       call check_passed(error, outcome, 'plan')
       recorder%rows => kept
-      call run_dynamic(column, plan, step_limit, [0.0_wp, 10.0_wp], none, none, rest, unset_integer, &
-                       recorder, summary, outcome, told)
+      call run_dynamic(column, data%analysis, plan, data%time, none, data%initial, unset_integer, recorder, &
+                       summary, outcome, told)
       call check_passed(error, outcome, 'run')
       call check_equal(error, told%count, 12, 'times told')
       call check_true(error, told%ascends .and. told%share <= 1.0_wp, 'shares')

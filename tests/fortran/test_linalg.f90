@@ -4,7 +4,8 @@ module test_linalg
    use rbs_base_error, only: error_type, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: factor_positive, solve_positive, invert_positive, solve_general, &
-                              solve_eigen
+                              solve_eigen, factor_band, solve_band, solve_tridiagonal, &
+                              solve_general_band, singular_values, solve_upper, is_dominated
    implicit none
    private
 
@@ -27,7 +28,14 @@ contains
                unit_test('elimination with pivots, two right-hand sides', general), &
                unit_test('elimination refuses a singular matrix', singular), &
                unit_test('eigenvalues ascend, vectors have unit mass', eigen), &
-               unit_test('eigenproblem names a mass matrix that is not positive', bad_mass)]
+               unit_test('eigenproblem names a mass matrix that is not positive', bad_mass), &
+               unit_test('band: Cholesky solves, and refuses an indefinite matrix', band), &
+               unit_test('band: shift*diag - A positive definite above the largest eigenvalue', dominated), &
+               unit_test('tridiagonal system, and one that is not positive', tridiagonal), &
+               unit_test('general band needs pivots, two right-hand sides', general_band), &
+               unit_test('singular values 1e150 to 1e-150 keep their digits', graded), &
+               unit_test('left vectors of a singular value problem', left_vectors), &
+               unit_test('the transposed Cholesky factor', upper)]
    end subroutine collect_linalg
 
    subroutine positive(error)
@@ -157,5 +165,160 @@ contains
       call check_failed(error, outcome, analysis_failed, 'mass matrix is not positive')
       call check_failed(error, outcome, analysis_failed, 'leading minor 2')
    end subroutine bad_mass
+
+   !> T T of the second differences T, (1, -4, 6, -4, 1) with 5 in place of 6 at the ends, as a lower band
+   !> of half-width 3; its eigenvalues are (2 - 2 cos(j pi/(n + 1)))^2.
+   pure function bending(n) result(a)
+      integer, intent(in) :: n
+      real(wp) :: a(4, n)
+
+      a(1, :) = 6.0_wp
+      a(1, [1, n]) = 5.0_wp
+      a(2, :) = -4.0_wp
+      a(3, :) = 1.0_wp
+      a(4, :) = 0.0_wp
+   end function bending
+
+   subroutine band(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: n = 7
+      real(wp) :: a(4, n), b(n)
+      integer :: i
+      logical :: is_positive
+
+      a = bending(n)
+      b = 0.0_wp
+      ! T x = e_n has x_i = i/(n + 1), and T of that is e_n: so T T x = T e_n.
+      b(n - 1:) = [-1.0_wp, 2.0_wp]
+      call factor_band(a, is_positive)
+      call check_true(error, is_positive, 'positive definite')
+      call solve_band(a, b)
+      call check_close(error, b, [(real(i, wp)/(n + 1), i=1, n)], 1.0e-13_wp, 0.0_wp, 'solution')
+      a = bending(n)
+      a(1, 4) = 0.1_wp
+      call factor_band(a, is_positive)
+      call check_true(error, .not. is_positive, 'indefinite')
+   end subroutine band
+
+   subroutine dominated(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: n = 7
+      real(wp) :: d(n), largest
+      real(wp) :: full(4, 2), mass(2)
+
+      largest = (2.0_wp - 2.0_wp*cos(n*acos(-1.0_wp)/(n + 1)))**2
+      d = 1.0_wp
+      call check_true(error, is_dominated(bending(n), d, largest*(1.0_wp + 1.0e-14_wp)), 'just above')
+      call check_true(error, .not. is_dominated(bending(n), d, largest*(1.0_wp - 1.0e-14_wp)), 'just below')
+      ! Two by two, what is beyond the matrix is not read: 3 is the largest of (2 1; 1 2); with masses 1, 2
+      ! the larger root of 2 w^2 - 6 w + 3.
+      full = 7.0_wp
+      full(1, :) = 2.0_wp
+      full(2, 1) = 1.0_wp
+      mass = [1.0_wp, 2.0_wp]
+      largest = 0.5_wp*(3.0_wp + sqrt(3.0_wp))
+      call check_true(error, is_dominated(full, mass, largest*(1.0_wp + 1.0e-15_wp)), 'just above')
+      call check_true(error, .not. is_dominated(full, mass, largest*(1.0_wp - 1.0e-15_wp)), 'just below')
+   end subroutine dominated
+
+   subroutine tridiagonal(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: n = 5
+      real(wp) :: diagonal(n), beside(n - 1), b(n)
+      integer :: i
+      logical :: is_positive
+
+      diagonal = 2.0_wp
+      beside = -1.0_wp
+      b = 0.0_wp
+      b(n) = n + 1.0_wp
+      call solve_tridiagonal(diagonal, beside, b, is_positive)
+      call check_true(error, is_positive, 'positive definite')
+      call check_close(error, b, [(real(i, wp), i=1, n)], 1.0e-14_wp, 0.0_wp, 'solution')
+      diagonal = 1.0_wp
+      beside = -1.0_wp
+      call solve_tridiagonal(diagonal, beside, b, is_positive)
+      call check_true(error, .not. is_positive, 'indefinite')
+   end subroutine tridiagonal
+
+   !> (0 1; 1 0; ...): a permutation of neighbours, then a singular matrix.
+   subroutine general_band(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: a(4, 4), b(4, 2)
+      integer :: j
+      logical :: regular
+
+      a = 0.0_wp
+      do j = 1, 3
+         a(4, j) = merge(2.0_wp, 0.0_wp, mod(j, 2) == 1)
+         a(2, j + 1) = a(4, j)
+      end do
+      b(:, 1) = [1.0_wp, 2.0_wp, 3.0_wp, 4.0_wp]
+      b(:, 2) = -b(:, 1)
+      call solve_general_band(a, 1, 1, b, regular)
+      call check_true(error, regular, 'regular')
+      call check_close(error, b(:, 1), [1.0_wp, 0.5_wp, 2.0_wp, 1.5_wp], 1.0e-15_wp, 0.0_wp, 'first')
+      call check_close(error, b(:, 2), -b(:, 1), 0.0_wp, 0.0_wp, 'second')
+      a = 0.0_wp
+      call solve_general_band(a, 1, 1, b, regular)
+      call check_true(error, .not. regular, 'singular')
+   end subroutine general_band
+
+   !> diag(d) (1 1/2; 0 1), d = 1e150, 1e-150: the values are d_1 sqrt(5)/2 and d_2 2/sqrt(5), to 1e-300.
+   subroutine graded(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      real(wp) :: a(2, 2), w(2), u(2, 2), one(1, 1), single(1)
+
+      a = reshape([1.0e150_wp, 0.0_wp, 0.5e150_wp, 1.0e-150_wp], [2, 2])
+      call singular_values(a, w, u, outcome)
+      call check_passed(error, outcome, 'singular values')
+      call check_close(error, w, [0.5e150_wp*sqrt(5.0_wp), 2.0e-150_wp/sqrt(5.0_wp)], 1.0e-14_wp, 0.0_wp, &
+                       'values')
+      one = -3.0_wp
+      call singular_values(one, single, u(:1, :1), outcome)
+      call check_passed(error, outcome, 'one by one')
+      call check_close(error, single(1), 3.0_wp, 1.0e-15_wp, 0.0_wp, 'one value')
+      call check_close(error, abs(u(1, 1)), 1.0_wp, 1.0e-15_wp, 0.0_wp, 'one vector')
+   end subroutine graded
+
+   !> u' a has rows of the lengths w, at right angles.
+   subroutine left_vectors(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: n = 6
+      type(error_type), allocatable :: outcome
+      real(wp) :: a(n, n), copy(n, n), w(n), u(n, n)
+      integer :: i, j
+
+      do j = 1, n
+         do i = 1, n
+            a(i, j) = sin(1.0_wp*i*j) + merge(3.0_wp, 0.0_wp, i == j)
+         end do
+      end do
+      copy = a
+      call singular_values(copy, w, u, outcome)
+      call check_passed(error, outcome, 'singular values')
+      call check_true(error, all(w(:n - 1) >= w(2:)), 'descending')
+      a = matmul(transpose(u), a)
+      a = matmul(a, transpose(a))
+      do i = 1, n
+         call check_close(error, a(i, i), w(i)**2, 1.0e-13_wp, 0.0_wp, 'length')
+         a(i, i) = 0.0_wp
+      end do
+      call check_true(error, maxval(abs(a)) < 1.0e-13_wp*w(1)**2, 'right angles')
+   end subroutine left_vectors
+
+   !> (2 1; 1 2) = L L', L = (sqrt 2, 0; 1/sqrt 2, sqrt 1.5).
+   subroutine upper(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: a(2, 2), b(2, 1)
+      logical :: is_positive
+
+      a = two_by_two
+      call factor_positive(a, is_positive)
+      b(:, 1) = [sqrt(2.0_wp) + 1.0_wp/sqrt(2.0_wp), sqrt(1.5_wp)]
+      call solve_upper(a, b)
+      call check_close(error, b(:, 1), [1.0_wp, 1.0_wp], 1.0e-15_wp, 0.0_wp, 'solution')
+   end subroutine upper
 
 end module test_linalg

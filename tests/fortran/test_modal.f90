@@ -1,15 +1,15 @@
 !> Natural frequencies, shapes and the stable step of RK4.
 module test_modal
-   use check, only: unit_test, check_close, check_failed, check_passed, check_true
+   use check, only: unit_test, check_close, check_contains, check_failed, check_passed, check_true
    use rbs_base_constants, only: pi
    use rbs_base_error, only: error_type, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_column_axial, only: geometric_stiffness
+   use rbs_column_axial, only: critical_factor, geometric_stiffness
    use rbs_column_column, only: column_type
    use rbs_column_mass, only: symmetric_mass
-   use rbs_solve_modal, only: modes_type, find_modes
-   use rbs_spec_column, only: column_spec
-   use samples, only: chain, column_1, elastic, made, k_c, s_k, mass_1, height_1
+   use rbs_solve_modal, only: modes_type, find_modes, frequency_bounds, stability_limit
+   use rbs_spec_column, only: column_spec, most_dense
+   use samples, only: bilinear, chain, column_1, elastic, made, random_type, k_c, s_k, mass_1, height_1
    implicit none
    private
 
@@ -27,7 +27,16 @@ contains
                unit_test('stable step without damping: 2 sqrt(2)/omega', plain_step), &
                unit_test('stable step with damping is on the edge |R| = 1', damped_step), &
                unit_test('stable step under axial load is the shorter one', axial_step), &
-               unit_test('a column that buckles by itself has no modes', buckling)]
+               unit_test('a column that buckles by itself has no modes', buckling), &
+               unit_test('openings are modes of their own', openings), &
+               unit_test('lowest and highest frequency in O(n) are those of all modes', bounds), &
+               unit_test('lowest and highest frequency of 10000 bodies', bounds_long), &
+               unit_test('stability limit of chains with damping is on the edge |R| = 1', chain_steps), &
+               unit_test('the modes between two have no shorter limit', unimodal), &
+               unit_test('modal damping: exact for elastic springs, safe for others', modal_step), &
+               unit_test('damping that follows the present lines leaves with them', tangent_step), &
+               unit_test('near the critical load the modes come with a warning', near_critical), &
+               unit_test('all modes of too many bodies are refused', too_many)]
    end subroutine collect_modal
 
    !> The two values of eq 6 corrected, k_M/(2 I) with I = m l^2/12; the small one from the product.
@@ -159,20 +168,24 @@ contains
    !> Largest growth of RK4 over the modes for q'' + c q' + omega^2 q = 0.
    pure real(wp) function growth(omega, alpha, beta, h)
       real(wp), intent(in) :: omega(:), alpha, beta, h
-      complex(wp) :: root, z
-      real(wp) :: c
-      integer :: i, sign
+      integer :: i
 
       growth = 0.0_wp
       do i = 1, size(omega)
-         c = alpha + beta*omega(i)**2
-         root = sqrt(cmplx(c**2/4.0_wp - omega(i)**2, 0.0_wp, wp))
-         do sign = -1, 1, 2
-            z = h*(-c/2.0_wp + sign*root)
-            growth = max(growth, abs(1.0_wp + z + z**2/2.0_wp + z**3/6.0_wp + z**4/24.0_wp))
-         end do
+         growth = max(growth, growth_of(omega(i), alpha + beta*omega(i)**2, h))
       end do
    end function growth
+
+   !> Growth of RK4 for one mode.
+   pure real(wp) function growth_of(omega, c, h)
+      real(wp), intent(in) :: omega, c, h
+      complex(wp) :: root, z(2)
+
+      root = sqrt(cmplx(c**2/4.0_wp - omega**2, 0.0_wp, wp))
+      z(1) = -h*(c/2.0_wp + root)
+      z(2) = h**2*omega**2/z(1)
+      growth_of = maxval(abs(1.0_wp + z + z**2/2.0_wp + z**3/6.0_wp + z**4/24.0_wp))
+   end function growth_of
 
    subroutine damped_step(error)
       type(error_type), allocatable, intent(inout) :: error
@@ -233,5 +246,279 @@ contains
       call find_modes(made(spec), modes, outcome)
       call check_failed(error, outcome, bad_input, 'the column buckles by itself')
    end subroutine buckling
+
+   !> A uniform chain in tension, fixed at its foot: 2 sqrt(k/m) sin((2 j - 1) pi/(4 n + 2)).
+   subroutine openings(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: n = 5
+      real(wp), parameter :: k = 3.0e9_wp, mass = 40.0_wp
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(column_type) :: column
+      type(modes_type) :: plain, modes
+      real(wp) :: m(3*n, 3*n), product(3*n, 3*n), expected(3*n)
+      integer :: i, j
+
+      spec = chain(n, 'small')
+      spec%masses = mass
+      call find_modes(made(spec), plain, outcome)
+      call check_passed(error, outcome, 'find_modes')
+      allocate (spec%axial(1))
+      spec%axial(1) = elastic(k)
+      column = made(spec)
+      call find_modes(column, modes, outcome)
+      call check_passed(error, outcome, 'find_modes')
+      if (allocated(error)) return
+      expected(:2*n) = plain%omega
+      do j = 1, n
+         expected(2*n + j) = 2.0_wp*sqrt(k/mass)*sin((2*j - 1)*pi/(4*n + 2))
+      end do
+      do i = 1, 3*n
+         j = i - 1 + minloc(expected(i:), 1)
+         expected([i, j]) = expected([j, i])
+      end do
+      call check_close(error, modes%omega, expected, 1.0e-13_wp, 0.0_wp, 'frequencies')
+      call symmetric_mass(column, m)
+      product = matmul(transpose(modes%shapes), matmul(m, modes%shapes))
+      do i = 1, 3*n
+         product(i, i) = product(i, i) - 1.0_wp
+      end do
+      call check_true(error, maxval(abs(product)) < 1.0e-11_wp, 'modal masses are one')
+      do i = 1, 3*n
+         call check_true(error, all(abs(modes%shapes(:2*n, i)) <= 0.0_wp) .neqv. &
+                         all(abs(modes%shapes(2*n + 1:, i)) <= 0.0_wp), 'a mode opens or bends')
+         call check_true(error, dot_product(column%arm, modes%shapes(:, i)) + &
+                         sum(modes%shapes(2*n + 1:, i)) > 0.0_wp, 'the top goes to +x or up')
+      end do
+   end subroutine openings
+
+   !> Chains with stiffnesses over 12 and masses over 8 powers of ten, with and without axial forces.
+   subroutine bounds(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(column_type) :: column
+      type(modes_type) :: modes
+      type(random_type) :: random
+      real(wp) :: lowest, highest, factor
+      integer :: i, n, trial
+
+      do trial = 1, 60
+         n = 1 + mod(trial, 8)
+         spec = chain(n, merge('small ', 'pdelta', mod(trial, 3) == 0))
+         do i = 1, n
+            spec%masses(i) = 10.0_wp**random%uniform(-4.0_wp, 4.0_wp)
+            spec%shear(i)%k = 10.0_wp**random%uniform(0.0_wp, 12.0_wp)
+            spec%flexure(i)%k = 10.0_wp**random%uniform(0.0_wp, 12.0_wp)
+         end do
+         if (mod(trial, 4) == 1) then
+            allocate (spec%axial(1))
+            spec%axial(1) = elastic(10.0_wp**random%uniform(0.0_wp, 12.0_wp))
+         end if
+         if (mod(trial, 3) /= 0) then
+            spec%axial_load = sign(1.0e-3_wp, random%uniform(-1.0_wp, 1.0_wp))
+            call critical_factor(made(spec), factor, outcome)
+            spec%axial_load = random%uniform(0.1_wp, 0.99_wp)*spec%axial_load*min(factor, 1.0e12_wp)
+         end if
+         column = made(spec)
+         call find_modes(column, modes, outcome)
+         call check_passed(error, outcome, 'find_modes')
+         call frequency_bounds(column, lowest, highest, outcome)
+         call check_passed(error, outcome, 'frequency_bounds')
+         if (allocated(error)) return
+         call check_close(error, lowest, modes%omega(1), 1.0e-10_wp, 0.0_wp, 'lowest')
+         call check_close(error, highest, modes%omega(column%unknowns), 1.0e-10_wp, 0.0_wp, 'highest')
+      end do
+   end subroutine bounds
+
+   !> The cantilever of above; in the highest mode all bodies far from the ends turn alike and slide back:
+   !> omega^2 = k_V l^2/I, twenty powers of ten above the square of the lowest one.
+   subroutine bounds_long(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      integer, parameter :: n = 10000
+      real(wp), parameter :: ei = 1.0e6_wp, length = 2.0_wp, mass = 100.0_wp, k_v = 1.0e21_wp
+      real(wp) :: lowest, highest, limit
+
+      spec = chain(n, 'small')
+      spec%lengths = length/n
+      spec%masses = mass/n
+      spec%shear(:) = elastic(k_v)
+      spec%flexure(:) = elastic(ei*n/length)
+      spec%flexure(1) = elastic(2.0_wp*ei*n/length)
+      call frequency_bounds(made(spec), lowest, highest, outcome)
+      call check_passed(error, outcome, 'frequency_bounds')
+      call check_close(error, lowest, 1.8751040687119611_wp**2*sqrt(ei/(mass*length**3)), 1.0e-8_wp, 0.0_wp, &
+                       'lowest')
+      call stability_limit(made(spec), limit, outcome)
+      call check_passed(error, outcome, 'stability_limit')
+      call check_close(error, highest, sqrt(12.0_wp*k_v*n/mass), 1.0e-6_wp, 0.0_wp, 'highest')
+      call check_close(error, limit, 2.0_wp*sqrt(2.0_wp)/highest, 1.0e-14_wp, 0.0_wp, 'limit')
+   end subroutine bounds_long
+
+   subroutine chain_steps(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(modes_type) :: modes
+      integer, parameter :: n = 6, cases = 6
+      real(wp), parameter :: alpha(cases) = [1.0_wp, 3.0e4_wp, 0.0_wp, 1.0e2_wp, 0.0_wp, 1.0e5_wp]
+      real(wp), parameter :: beta(cases) = [0.0_wp, 0.0_wp, 1.0e-5_wp, 1.0e-4_wp, 0.1_wp, 1.0e-5_wp]
+      real(wp) :: limit
+      integer :: i
+
+      do i = 1, cases
+         spec = chain(n, 'small')
+         spec%mass_damping = alpha(i)
+         spec%stiffness_damping = beta(i)
+         call find_modes(made(spec), modes, outcome)
+         call check_passed(error, outcome, 'find_modes')
+         call stability_limit(made(spec), limit, outcome)
+         call check_passed(error, outcome, 'stability_limit')
+         if (allocated(error)) return
+         call check_close(error, limit, modes%stable_step, 0.0_wp, 0.0_wp, 'one limit')
+         call check_true(error, growth(modes%omega, alpha(i), beta(i), 0.9999_wp*limit) <= 1.0_wp, &
+                         'stable just below')
+         call check_true(error, growth(modes%omega, alpha(i), beta(i), 1.0001_wp*limit) > 1.0_wp, &
+                         'unstable just above')
+      end do
+   end subroutine chain_steps
+
+   !> Why two modes are enough: the limit of a mode with c = alpha + beta omega^2 rises with omega and then
+   !> falls; on a ladder of frequencies it never rises again. In units of sqrt(alpha/beta) there is only one
+   !> number. With alpha alone: the springs of a mode soften.
+   subroutine unimodal(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: rungs = 1000
+      real(wp), parameter :: alpha(8) = [1.0_wp, 0.0_wp, 1.0e-3_wp, 0.1_wp, 0.3_wp, 1.0_wp, 3.0_wp, 1.0e2_wp]
+      real(wp), parameter :: beta(8) = [0.0_wp, 1.0_wp, alpha(3:)]
+      real(wp) :: limit, last, omega
+      integer :: i, j
+      logical :: falls
+
+      do j = 1, size(alpha)
+         falls = .false.
+         last = 0.0_wp
+         do i = 1, rungs
+            omega = 10.0_wp**(10.0_wp*(i - 1)/(rungs - 1) - 5.0_wp)
+            limit = edge(omega, alpha(j) + beta(j)*omega**2)
+            call check_true(error, .not. (falls .and. limit > last*(1.0_wp + 1.0e-9_wp)), &
+                            'a limit rises after it fell')
+            if (limit < last*(1.0_wp - 1.0e-9_wp)) falls = .true.
+            last = limit
+         end do
+      end do
+   end subroutine unimodal
+
+   !> Longest step h at which RK4 lets no motion of q'' + c q' + omega^2 q = 0 grow.
+   pure real(wp) function edge(omega, c) result(below)
+      real(wp), intent(in) :: omega, c
+      real(wp) :: above, h
+      integer :: i
+
+      below = 0.0_wp
+      above = 4.0_wp/max(omega, 0.5_wp*c)
+      do i = 1, 60
+         h = 0.5_wp*(below + above)
+         if (growth_of(omega, c, h) <= 1.0_wp + 1.0e-13_wp) then
+            below = h
+         else
+            above = h
+         end if
+      end do
+   end function edge
+
+   !> Elastic, one ratio: as one mode of the highest frequency. Otherwise no more than the half disc of
+   !> radius 2.615587 over the highest frequency, and no less for ratios up to one half.
+   subroutine modal_step(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: n = 4
+      real(wp), parameter :: zeta = 0.3_wp
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(modes_type) :: modes
+      real(wp) :: limit, highest
+      integer :: i
+
+      spec = chain(n, 'pdelta')
+      spec%axial_load = -1.0e6_wp
+      spec%modal_damping = [zeta]
+      call find_modes(made(spec), modes, outcome)
+      call check_passed(error, outcome, 'find_modes')
+      if (allocated(error)) return
+      highest = modes%omega(2*n)
+      limit = modes%stable_step
+      call check_true(error, growth_of(highest, 2.0_wp*zeta*highest, 0.9999_wp*limit) <= 1.0_wp, 'just below')
+      call check_close(error, limit, edge(highest, 2.0_wp*zeta*highest), 1.0e-10_wp, 0.0_wp, 'elastic')
+      do i = 1, 3
+         if (i == 1) then
+            spec%modal_damping = [zeta, 0.1_wp]
+         else if (i == 2) then
+            spec%modal_damping = [zeta]
+            spec%mass_damping = 1.0_wp
+         else
+            spec%flexure(1) = bilinear(spec%flexure(1)%k, 1.0e-3_wp, 0.0_wp)
+         end if
+         call stability_limit(made(spec), limit, outcome)
+         call check_passed(error, outcome, 'stability_limit')
+         call check_close(error, limit*highest, 2.615587_wp, 1.0e-3_wp, 0.0_wp, 'half disc')
+      end do
+   end subroutine modal_step
+
+   !> Springs that yield leave their initial damping behind, -c; if it follows the lines it goes with them.
+   subroutine tangent_step(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(modes_type) :: modes
+      real(wp) :: c
+
+      spec = column_1('small')
+      spec%stiffness_damping = 7.0e-4_wp
+      call find_modes(made(spec), modes, outcome)
+      call check_passed(error, outcome, 'find_modes')
+      if (allocated(error)) return
+      c = spec%stiffness_damping*modes%omega(2)**2
+      call check_close(error, modes%stable_step, 2.785293563405282_wp/c, 1.0e-12_wp, 0.0_wp, 'initial')
+      spec%tangent_damping = .true.
+      call find_modes(made(spec), modes, outcome)
+      call check_passed(error, outcome, 'find_modes')
+      call check_close(error, modes%stable_step, edge(modes%omega(2), c), 1.0e-6_wp, 0.0_wp, 'tangent')
+      call check_true(error, modes%stable_step*c > 2.79_wp, 'tangent is longer')
+   end subroutine tangent_step
+
+   subroutine near_critical(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(modes_type) :: modes
+
+      spec = column_1('pdelta')
+      spec%axial_load = 0.5_wp*k_c/height_1
+      call find_modes(made(spec), modes, outcome)
+      call check_passed(error, outcome, 'find_modes')
+      call check_close(error, modes%condition, 3.0_wp, 1.0e-12_wp, 0.0_wp, 'condition at half of the load')
+      call check_true(error, modes%warning == '', 'no warning')
+      spec%axial_load = (1.0_wp - 1.0e-5_wp)*k_c/height_1
+      call find_modes(made(spec), modes, outcome)
+      call check_passed(error, outcome, 'find_modes')
+      call check_close(error, modes%condition, 2.0e5_wp, 1.0e-4_wp, 0.0_wp, 'condition')
+      call check_contains(error, modes%warning, 'of the critical one', 'warning')
+   end subroutine near_critical
+
+   subroutine too_many(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(modes_type) :: modes
+      type(column_type) :: column
+      real(wp) :: limit
+
+      column = made(chain(most_dense + 1, 'small'))
+      call find_modes(column, modes, outcome)
+      call check_failed(error, outcome, bad_input, 'for up to 500 bodies, not for n = 501')
+      call stability_limit(column, limit, outcome)
+      call check_passed(error, outcome, 'stability_limit')
+   end subroutine too_many
 
 end module test_modal

@@ -5,7 +5,8 @@ module test_results
    use rbs_base_kinds, only: wp
    use rbs_results_recorder, only: array_recorder
    use rbs_results_row, only: row_size, row_labels, row_time, row_displacement, row_force, row_input, &
-                              row_kinetic, row_spring, row_damping, row_axial, row_residual, row_joints
+                              row_kinetic, row_spring, row_damping, row_axial, row_residual, row_top, &
+                              row_joints
    use rbs_results_summary, only: summary_type, summary_size, summary_names
    implicit none
    private
@@ -19,6 +20,7 @@ contains
 
       tests = [unit_test('places of a row are all different and fill it', places), &
                unit_test('labels carry joint and unit', labels), &
+               unit_test('labels of joints that open', labels_of_openings), &
                unit_test('recorder keeps rows until it is full', recorder), &
                unit_test('recorder keeps nothing after an error', recorder_after_error), &
                unit_test('summary sees peaks with sign, kept or not', peaks), &
@@ -29,32 +31,54 @@ contains
    subroutine places(error)
       type(error_type), allocatable, intent(inout) :: error
       integer :: i
-      integer, parameter :: all_places(10) = [row_time, row_displacement, row_force, row_input, &
+      integer, parameter :: all_places(11) = [row_time, row_displacement, row_force, row_input, &
                                               row_kinetic, row_spring, row_damping, row_axial, &
-                                              row_residual, row_joints]
+                                              row_residual, row_top, row_joints]
 
-      do i = 1, 10
+      do i = 1, 11
          call check_equal(error, all_places(i), i, 'place')
       end do
-      call check_equal(error, row_size(1), 13, 'one body')
-      call check_equal(error, row_size(50), 209, 'fifty bodies')
+      call check_equal(error, row_size(2), 14, 'one body')
+      call check_equal(error, row_size(3), 16, 'one body that opens')
+      call check_equal(error, row_size(100), 210, 'fifty bodies')
    end subroutine places
 
    subroutine labels(error)
       type(error_type), allocatable, intent(inout) :: error
       character(len=24), allocatable :: label(:)
 
-      allocate (label, source=row_labels(12, .true.))
-      call check_equal(error, size(label), row_size(12), 'number of labels')
+      allocate (label, source=row_labels(12, .false., .true.))
+      call check_equal(error, size(label), row_size(24), 'number of labels')
       call check_equal(error, trim(label(row_time)), 'time_s', 'dynamic')
       call check_equal(error, trim(label(row_residual)), 'residual_J', 'residual')
+      call check_equal(error, trim(label(row_top)), 'top_height_m', 'height of the top')
       call check_equal(error, trim(label(row_joints)), 'slip_1_m', 'first slip')
       call check_equal(error, trim(label(row_joints + 12)), 'rotation_1_rad', 'first rotation')
       call check_equal(error, trim(label(row_joints + 35)), 'shear_12_N', 'last shear')
       call check_equal(error, trim(label(row_joints + 47)), 'moment_12_Nm', 'last moment')
-      label = row_labels(1, .false.)
+      label = row_labels(1, .false., .false.)
       call check_equal(error, trim(label(row_time)), 'step', 'static')
    end subroutine labels
+
+   subroutine labels_of_openings(error)
+      type(error_type), allocatable, intent(inout) :: error
+      character(len=24), allocatable :: label(:)
+      integer :: i, j
+
+      allocate (label, source=row_labels(12, .true., .true.))
+      call check_equal(error, size(label), row_size(36), 'number of labels')
+      call check_equal(error, trim(label(row_joints + 23)), 'rotation_12_rad', 'last rotation')
+      call check_equal(error, trim(label(row_joints + 24)), 'opening_1_m', 'first opening')
+      call check_equal(error, trim(label(row_joints + 35)), 'opening_12_m', 'last opening')
+      call check_equal(error, trim(label(row_joints + 36)), 'shear_1_N', 'first shear')
+      call check_equal(error, trim(label(row_joints + 59)), 'moment_12_Nm', 'last moment')
+      call check_equal(error, trim(label(row_joints + 71)), 'axial_force_12_N', 'last axial force')
+      do i = 1, size(label)
+         do j = i + 1, size(label)
+            call check_true(error, label(i) /= label(j), 'two columns with the name '//trim(label(i)))
+         end do
+      end do
+   end subroutine labels_of_openings
 
    subroutine recorder(error)
       type(error_type), allocatable, intent(inout) :: error
@@ -89,7 +113,7 @@ contains
    !> A row with a displacement, a force, and energies that are told apart.
    pure function row_of(displacement, force, residual) result(row)
       real(wp), intent(in) :: displacement, force, residual
-      real(wp) :: row(13)
+      real(wp) :: row(14)
 
       row = 0.0_wp
       row(row_displacement) = displacement
@@ -148,6 +172,14 @@ contains
       call check_same(error, values(named('damping_energy_J')), 3.0_wp, 'damping')
       call check_close(error, values(named('relative_energy_residual')), 1.0e-9_wp/50.0_wp, 1.0e-15_wp, &
                        0.0_wp, 'relative residual')
+      summary%peak_rotation = 0.25_wp
+      summary%cut_steps = 3
+      summary%collapsed = .true.
+      values = summary%as_array()
+      call check_same(error, values(named('peak_rotation_rad')), 0.25_wp, 'peak rotation')
+      call check_same(error, values(named('cut_steps')), 3.0_wp, 'cut steps')
+      call check_same(error, values(named('collapsed')), 1.0_wp, 'collapsed')
+      call check_true(error, all(summary_names /= ''), 'every number has a name')
    end subroutine as_array
 
    integer function named(name)

@@ -8,10 +8,10 @@ module test_spec
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
    use rbs_solve_run, only: make_column
-   use rbs_spec_analysis, only: analysis_spec
+   use rbs_spec_analysis, only: analysis_spec, method_names
    use rbs_spec_case, only: case_spec
    use rbs_spec_check, only: is_given
-   use rbs_spec_column, only: column_spec, most_bodies
+   use rbs_spec_column, only: column_spec, most_bodies, most_dense
    use rbs_spec_loading, only: loading_spec, units_of
    use rbs_spec_spring, only: spring_spec, initial_stiffness
    use rbs_spec_units, only: unit_type, to_si, length_units, force_units, acceleration_units
@@ -42,14 +42,20 @@ contains
                unit_test('column: single numbers', column_numbers), &
                unit_test('column: lengths and masses', column_parts), &
                unit_test('column: number of springs', column_springs), &
-               unit_test('column: finite for one body only', column_finite), &
+               unit_test('column: loads that follow need finite rotations', column_follows), &
+               unit_test('column: mass at the top, rotary inertia', column_inertia), &
+               unit_test('column: damping', column_damping), &
+               unit_test('column: axial springs', column_axial), &
                unit_test('loading: drive and source', loading_names), &
                unit_test('loading: a drive that the analysis cannot take', loading_drive), &
                unit_test('loading: units', loading_units), &
                unit_test('loading: protocol', loading_protocol), &
+               unit_test('loading: a force that follows', loading_follows), &
                unit_test('analysis and output', analysis), &
+               unit_test('analysis: settings of the methods', settings), &
+               unit_test('analysis: a setting that the method does not use', unused_settings), &
                unit_test('case: all faults at once', all_at_once), &
-               unit_test('case: two loadings', two_loadings), &
+               unit_test('case: several loadings', several_loadings), &
                unit_test('units: exact decimals', units)]
    end subroutine collect_spec
 
@@ -237,6 +243,7 @@ contains
 
       call expect_column(error, column_1('small'), '')
       call expect_column(error, column_1('finite'), '')
+      call expect_column(error, chain(7, 'finite'), '')
       call expect_column(error, chain(7, 'pdelta'), '')
       spec = column_1('pdelta')
       spec%axial_load = -1.0e5_wp
@@ -249,9 +256,9 @@ contains
 
       spec = column_1('small')
       spec%n = 0
-      call expect_column(error, spec, 'column: n = 0 bodies; it must be from 1 to 500')
+      call expect_column(error, spec, 'column: n = 0 bodies; it must be from 1 to 10000')
       spec%n = most_bodies + 1
-      call expect_column(error, spec, 'column: n = 501 bodies')
+      call expect_column(error, spec, 'column: n = 10001 bodies')
       spec = column_1('small')
       spec%height = unset
       call expect_column(error, spec, 'column: height is missing; give it a value in m')
@@ -306,11 +313,110 @@ contains
       call expect_column(error, spec, 'flexure spring of joint 2: k = -1 must be above zero')
    end subroutine column_springs
 
-   subroutine column_finite(error)
+   subroutine column_follows(error)
       type(error_type), allocatable, intent(inout) :: error
+      type(column_spec) :: spec
 
-      call expect_column(error, chain(2, 'finite'), "'finite' is there for n = 1 only, not for n = 2")
-   end subroutine column_finite
+      spec = chain(2, 'finite')
+      spec%axial_follows = .true.
+      spec%force_follows = .true.
+      call expect_column(error, spec, '')
+      spec%kinematics = 'pdelta'
+      call expect_column(error, spec, "(axial_follows, force_follows) needs kinematics = 'finite'")
+      spec%axial_follows = .false.
+      spec%kinematics = 'small'
+      call expect_column(error, spec, "needs kinematics = 'finite'; remove it")
+   end subroutine column_follows
+
+   subroutine column_inertia(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(column_spec) :: spec
+
+      spec = chain(3, 'small')
+      spec%top_mass = 500.0_wp
+      spec%top_inertia = 30.0_wp
+      spec%depth = 0.4_wp
+      call expect_column(error, spec, '')
+      spec%top_mass = -1.0_wp
+      call expect_column(error, spec, 'column: top_mass = -1 kg must not be negative')
+      spec%top_mass = ieee_value(1.0_wp, ieee_quiet_nan)
+      call expect_column(error, spec, 'column: top_mass = NaN must be a finite number')
+      spec%top_mass = 0.0_wp
+      spec%top_inertia = ieee_value(1.0_wp, ieee_positive_inf)
+      call expect_column(error, spec, 'column: top_inertia = Infinity must be a finite number')
+      spec%top_inertia = 0.0_wp
+      spec%depth = -0.4_wp
+      call expect_column(error, spec, 'column: depth = -0.4 m must not be negative')
+      spec%depth = 0.4_wp
+      spec%rotary_inertia = [2.0_wp]
+      call expect_column(error, spec, 'both depth and rotary_inertia are given')
+      spec%depth = 0.0_wp
+      call expect_column(error, spec, '')
+      spec%rotary_inertia = [2.0_wp, 3.0_wp]
+      call expect_column(error, spec, 'column: rotary_inertia has 2 values for n = 3 bodies')
+      spec%rotary_inertia = [2.0_wp, 0.0_wp, 3.0_wp]
+      call expect_column(error, spec, 'column: rotary_inertia(2) = 0 kg m2 must be above zero')
+      spec%rotary_inertia = [-2.0_wp]
+      call expect_column(error, spec, 'column: rotary_inertia = -2 kg m2 must be above zero')
+   end subroutine column_inertia
+
+   subroutine column_damping(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(column_spec) :: spec
+
+      spec = chain(3, 'small')
+      spec%tangent_damping = .true.
+      call expect_column(error, spec, 'tangent_damping has no meaning without stiffness_damping')
+      spec%stiffness_damping = 1.0e-4_wp
+      call expect_column(error, spec, '')
+      spec%modal_damping = [0.05_wp]
+      call expect_column(error, spec, '')
+      spec%modal_damping = [0.0_wp, 0.05_wp, 0.999_wp]
+      call expect_column(error, spec, '')
+      spec%modal_damping = [0.02_wp, 5.0_wp]
+      call expect_column(error, spec, 'column: modal_damping(2) = 5 must be below 1')
+      spec%modal_damping = [-0.02_wp]
+      call expect_column(error, spec, 'column: modal_damping(1) = -0.02 must not be negative')
+      spec%modal_damping = [ieee_value(1.0_wp, ieee_quiet_nan)]
+      call expect_column(error, spec, 'column: modal_damping(1) = NaN must be a finite number')
+      deallocate (spec%modal_damping)
+      allocate (spec%modal_damping(7), source=0.01_wp)
+      call expect_column(error, spec, 'modal_damping has 7 values for 6 modes')
+      spec = chain(most_dense + 1, 'small')
+      spec%modal_damping = [0.05_wp]
+      call expect_column(error, spec, 'up to 500 bodies, not for n = 501')
+   end subroutine column_damping
+
+   subroutine column_axial(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(column_spec) :: spec
+      type(spring_spec) :: contact
+      integer :: i
+
+      contact%rule = 'compression'
+      contact%k = 1.0e9_wp
+      spec = chain(3, 'small')
+      allocate (spec%axial(1), source=contact)
+      call expect_column(error, spec, '')
+      spec%axial(1) = bilinear_1()
+      call expect_column(error, spec, '')
+      spec%axial(1) = takeda_1('kc')
+      call expect_column(error, spec, "column: an axial spring cannot be of the rule 'takeda'")
+      deallocate (spec%axial)
+      allocate (spec%axial(3))
+      do i = 1, 3
+         spec%axial(i) = elastic(1.0e9_wp)
+      end do
+      call expect_column(error, spec, '')
+      spec%axial(2)%k = 0.0_wp
+      call expect_column(error, spec, 'axial spring of joint 2: k = 0 must be above zero')
+      spec%axial = spec%axial(:2)
+      spec%axial(2)%k = 1.0_wp
+      call expect_column(error, spec, 'column: 2 axial springs for 3 joints')
+      deallocate (spec%axial)
+      spec%flexure(3) = contact
+      call expect_column(error, spec, "the flexure spring cannot be of the rule 'compression'")
+   end subroutine column_axial
 
    !> A displacement protocol in drift.
    type(loading_spec) function drift_protocol() result(spec)
@@ -357,7 +463,25 @@ contains
       call expect_loading(error, spec, .true., "drive = 'displacement' needs the static analysis")
       spec%drive = 'ground'
       call expect_loading(error, spec, .false., "drive = 'ground' needs a dynamic analysis")
+      call expect_loading(error, spec, .true., '')
+      spec%drive = 'vertical'
+      call expect_loading(error, spec, .false., "drive = 'vertical' needs a dynamic analysis")
+      call expect_loading(error, spec, .true., '')
+      spec%drive = 'axial'
+      call expect_loading(error, spec, .false., "drive = 'axial' needs a dynamic analysis")
+      call expect_loading(error, spec, .true., '')
    end subroutine loading_drive
+
+   subroutine loading_follows(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(loading_spec) :: spec
+
+      spec = drift_protocol()
+      spec%follows = .true.
+      call expect_loading(error, spec, .false., "loading: follows has no meaning for drive = 'displacement'")
+      spec%drive = 'force'
+      call expect_loading(error, spec, .false., '')
+   end subroutine loading_follows
 
    subroutine loading_units(error)
       type(error_type), allocatable, intent(inout) :: error
@@ -376,6 +500,8 @@ contains
       call expect_loading(error, spec, .false., "= 'drift' is not known; it is one of m, mm, cm, in")
       call check_equal(error, size(units_of('force')), 4, 'units of force')
       call check_equal(error, size(units_of('ground')), 4, 'units of acceleration')
+      call check_equal(error, size(units_of('axial')), 4, 'units of axial load')
+      call check_equal(error, size(units_of('vertical')), 4, 'units of vertical acceleration')
    end subroutine loading_units
 
    subroutine loading_protocol(error)
@@ -431,6 +557,82 @@ contains
       call check_contains(error, of_case%text, 'output: every = 0 must be 1 or more', 'every')
    end subroutine analysis
 
+   !> The settings of an analysis give one message that holds `part`, or none if it is empty.
+   subroutine expect_analysis(error, spec, part)
+      type(error_type), allocatable, intent(inout) :: error
+      type(analysis_spec), intent(in) :: spec
+      character(len=*), intent(in) :: part
+      type(message_list) :: messages
+
+      call spec%validate(messages)
+      call expect(error, messages, part)
+   end subroutine expect_analysis
+
+   subroutine settings(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(analysis_spec) :: spec
+      real(wp) :: nan
+      integer :: i
+
+      nan = ieee_value(1.0_wp, ieee_quiet_nan)
+      do i = 1, size(method_names)
+         spec%method = method_names(i)
+         spec%collapse_drift = 0.1_wp
+         call expect_analysis(error, spec, '')
+      end do
+      spec%collapse_drift = 0.0_wp
+      call expect_analysis(error, spec, 'analysis: collapse_drift = 0 must be above zero')
+      spec%collapse_drift = nan
+      call expect_analysis(error, spec, 'analysis: collapse_drift = NaN must be a finite number')
+      spec = analysis_spec(method='rk4', events='located', allow_unstable=.true.)
+      call expect_analysis(error, spec, '')
+      spec%events = 'locatd'
+      call expect_analysis(error, spec, "events = 'locatd' is not known; it is one of step, located (did "// &
+                           "you mean 'located'?)")
+      spec = analysis_spec(method='auto', tolerance=1.0e-8_wp)
+      call expect_analysis(error, spec, '')
+      spec%method = 'rk45'
+      call expect_analysis(error, spec, '')
+      spec%tolerance = 0.5_wp
+      call expect_analysis(error, spec, 'analysis: tolerance = 0.5 must be from 1e-13 to 0.1')
+      spec%tolerance = -1.0_wp
+      call expect_analysis(error, spec, 'analysis: tolerance = -1 must be from')
+      spec%tolerance = nan
+      call expect_analysis(error, spec, 'analysis: tolerance = NaN must be a finite number')
+      spec = analysis_spec(method='generalised_alpha', rho_infinity=0.0_wp)
+      call expect_analysis(error, spec, '')
+      spec%rho_infinity = 1.1_wp
+      call expect_analysis(error, spec, 'analysis: rho_infinity = 1.1 must be from 0 to 1')
+      spec = analysis_spec(method='hht', rho_infinity=0.5_wp)
+      call expect_analysis(error, spec, '')
+      spec%rho_infinity = 0.4_wp
+      call expect_analysis(error, spec, "rho_infinity of method = 'hht' = 0.4 must be from 0.5 to 1")
+   end subroutine settings
+
+   subroutine unused_settings(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer :: i
+
+      do i = 1, size(method_names)
+         associate (method => method_names(i))
+            if (method /= 'rk4') then
+               call expect_analysis(error, analysis_spec(method=method, events='step'), &
+                                    "events has no meaning for method = '"//trim(method)//"'")
+               call expect_analysis(error, analysis_spec(method=method, allow_unstable=.true.), &
+                                    "allow_unstable has no meaning for method = '"//trim(method)//"'")
+            end if
+            if (method /= 'rk45' .and. method /= 'auto') then
+               call expect_analysis(error, analysis_spec(method=method, tolerance=1.0e-6_wp), &
+                                    "tolerance has no meaning for method = '"//trim(method)//"'")
+            end if
+            if (method /= 'hht' .and. method /= 'generalised_alpha') then
+               call expect_analysis(error, analysis_spec(method=method, rho_infinity=0.9_wp), &
+                                    "rho_infinity has no meaning for method = '"//trim(method)//"'")
+            end if
+         end associate
+      end do
+   end subroutine unused_settings
+
    subroutine all_at_once(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -449,22 +651,23 @@ contains
       call check_failed(error, outcome, bad_input, 'flexure spring: d_c = NaN must be a finite number')
    end subroutine all_at_once
 
-   subroutine two_loadings(error)
+   subroutine several_loadings(error)
       type(error_type), allocatable, intent(inout) :: error
       type(case_spec) :: spec
-      type(message_list) :: messages(3)
+      type(message_list) :: messages(5)
+      character(len=12), parameter :: drives(4) = ['force       ', 'ground      ', 'vertical    ', &
+                                                   'axial       ']
       integer :: i
 
-      spec%column = column_1('small')
+      spec%column = column_1('pdelta')
       spec%loadings = 2
-      do i = 1, 2
+      do i = 1, 4
          spec%loading(i) = drift_protocol()
          spec%loading(i)%drive = 'force'
-         spec%loading(i)%unit = 'kN'
          spec%loading(i)%period = 1.0_wp
       end do
       call spec%validate(messages(1))
-      call expect(error, messages(1), 'two loadings need a dynamic analysis')
+      call expect(error, messages(1), 'several loadings need a dynamic analysis')
       spec%analysis%method = 'rk4'
       call spec%validate(messages(2))
       call expect(error, messages(2), "two loadings with drive = 'force'")
@@ -472,7 +675,16 @@ contains
       spec%loading(2)%unit = 'g'
       call spec%validate(messages(3))
       call expect(error, messages(3), '')
-   end subroutine two_loadings
+      spec%loadings = 4
+      do i = 1, 4
+         spec%loading(i)%drive = drives(i)
+      end do
+      call spec%validate(messages(4))
+      call expect(error, messages(4), '')
+      spec%loading(1)%drive = 'axial'
+      call spec%validate(messages(5))
+      call expect(error, messages(5), "two loadings with drive = 'axial'; give each drive once")
+   end subroutine several_loadings
 
    subroutine units(error)
       type(error_type), allocatable, intent(inout) :: error

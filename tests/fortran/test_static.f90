@@ -2,7 +2,7 @@
 module test_static
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_true
-   use rbs_base_constants, only: unset_integer
+   use rbs_base_constants, only: unset, unset_integer
    use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -11,7 +11,7 @@ module test_static
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_results_recorder, only: array_recorder, recorder_type
    use rbs_results_row, only: row_size, row_time, row_displacement, row_force, row_axial, row_residual, &
-                              row_joints, row_spring, row_input
+                              row_joints, row_spring, row_input, row_top
    use rbs_results_summary, only: summary_type
    use rbs_solve_run, only: run_static
    use rbs_solve_static, only: kept_rows
@@ -55,7 +55,6 @@ contains
                unit_test('no targets, no rows', nothing), &
                unit_test('the first target may be zero, targets may repeat', standstill), &
                unit_test('a recorder that fails ends the path', failing), &
-               unit_test('finite kinematics has no static path', finite_refused), &
                unit_test('a target that is no number is refused', not_a_number)]
    end subroutine collect_static
 
@@ -71,7 +70,7 @@ contains
    end subroutine record_and_fail
 
    !> Run into an array of rows.
-   subroutine run(spec, by_force, values, rows, outcome, every, summary)
+   subroutine run(spec, by_force, values, rows, outcome, every, summary, collapse_drift)
       type(column_spec), intent(in) :: spec
       logical, intent(in) :: by_force
       real(wp), intent(in) :: values(:)
@@ -79,16 +78,22 @@ contains
       type(error_type), allocatable, intent(out) :: outcome
       integer, intent(in), optional :: every
       type(summary_type), intent(out), optional :: summary
+      real(wp), intent(in), optional :: collapse_drift
       type(array_recorder) :: recorder
+      type(column_type) :: column
+      real(wp) :: drift
       type(summary_type) :: figures
       real(wp), allocatable, target :: kept(:, :)
       integer :: n_th
 
       n_th = unset_integer
       if (present(every)) n_th = every
-      allocate (kept(row_size(spec%n), max(size(values), 1)))
+      column = made(spec)
+      allocate (kept(row_size(column%unknowns), max(size(values), 1)))
       recorder%rows => kept
-      call run_static(made(spec), by_force, values, n_th, recorder, figures, outcome)
+      drift = unset
+      if (present(collapse_drift)) drift = collapse_drift
+      call run_static(column, by_force, values, n_th, drift, recorder, figures, outcome)
       rows = kept(:, :recorder%count)
       if (present(summary)) summary = figures
    end subroutine run
@@ -530,7 +535,10 @@ contains
 
       call run(column_1('small'), .false., [0.0_wp, 0.01_wp, 0.01_wp, 0.0_wp, 0.0_wp], rows, outcome)
       call check_passed(error, outcome, 'static path')
-      call check_close(error, rows(2:, 1), spread(0.0_wp, 1, row_size(1) - 1), 0.0_wp, 0.0_wp, 'at rest')
+      call check_close(error, rows(2:row_top - 1, 1), spread(0.0_wp, 1, row_top - 2), 0.0_wp, 0.0_wp, &
+                       'at rest')
+      call check_close(error, rows(row_joints:, 1), spread(0.0_wp, 1, 4), 0.0_wp, 0.0_wp, 'joints at rest')
+      call check_close(error, rows(row_top, 1), height_1, 0.0_wp, 0.0_wp, 'height')
       call check_close(error, rows(2:, 3), rows(2:, 2), 0.0_wp, 0.0_wp, 'the same again')
       call check_close(error, rows(2:, 5), rows(2:, 4), 0.0_wp, 0.0_wp, 'the same again at zero')
    end subroutine standstill
@@ -541,20 +549,11 @@ contains
       type(failing_recorder) :: recorder
       type(summary_type) :: summary
 
-      call run_static(made(column_1('small')), .false., [0.01_wp, 0.02_wp, 0.03_wp, 0.04_wp], 1, recorder, &
-                      summary, outcome)
+      call run_static(made(column_1('small')), .false., [0.01_wp, 0.02_wp, 0.03_wp, 0.04_wp], 1, unset, &
+                      recorder, summary, outcome)
       call check_failed(error, outcome, analysis_failed, 'disk full at row 2')
       call check_equal(error, recorder%count, 3, 'rows offered')
    end subroutine failing
-
-   subroutine finite_refused(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      real(wp), allocatable :: rows(:, :)
-
-      call run(column_1('finite'), .false., [0.01_wp], rows, outcome)
-      call check_failed(error, outcome, bad_input, "kinematics = 'finite' has no static path")
-   end subroutine finite_refused
 
    subroutine not_a_number(error)
       type(error_type), allocatable, intent(inout) :: error

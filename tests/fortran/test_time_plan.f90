@@ -5,14 +5,14 @@ module test_time_plan
    use rbs_base_constants, only: unset, unset_integer
    use rbs_base_error, only: error_type, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_solve_time_plan, only: time_plan, new_plan, check_times, auto_share
+   use rbs_solve_time_plan, only: time_plan, new_plan, check_times
    implicit none
    private
 
    public :: collect_time_plan
 
-   !> Stability limit of these plans [s]
-   real(wp), parameter :: limit = 0.1_wp
+   !> Stability limit of these plans, and the longest step where the user gives none [s]
+   real(wp), parameter :: limit = 0.1_wp, longest = 0.02_wp
 
 contains
 
@@ -20,7 +20,7 @@ contains
       type(unit_test), allocatable, intent(out) :: tests(:)
 
       tests = [unit_test('times must be two or more, finite, ascending', times), &
-               unit_test('no dt: equal steps, not above a fifth of the limit', automatic), &
+               unit_test('no dt: equal steps, not above the longest', automatic), &
                unit_test('dt that divides every interval', dividing), &
                unit_test('dt that divides but for round-off', nearly_dividing), &
                unit_test('dt that does not divide: free steps to the end', free), &
@@ -56,7 +56,7 @@ contains
       integer, parameter :: expected(3) = [1, 5, 45]
       integer :: i
 
-      call new_plan(plan, [1.0_wp, 1.001_wp, 1.1_wp, 2.0_wp], unset, limit, outcome)
+      call new_plan(plan, [1.0_wp, 1.001_wp, 1.1_wp, 2.0_wp], unset, longest, limit, outcome)
       call check_passed(error, outcome, 'plan')
       call check_true(error, .not. plan%free, 'steps follow the loading')
       call check_equal(error, plan%intervals, 3, 'intervals')
@@ -64,7 +64,7 @@ contains
          call check_equal(error, plan%parts(i), expected(i), 'steps in an interval')
       end do
       call check_equal(error, plan%steps, 51, 'steps')
-      call check_true(error, plan%dt <= auto_share*limit, 'longest step')
+      call check_true(error, plan%dt <= longest, 'longest step')
       call check_same(error, [plan%begin, plan%finish], [1.0_wp, 2.0_wp], 'begin and end')
    end subroutine automatic
 
@@ -73,7 +73,7 @@ contains
       type(error_type), allocatable :: outcome
       type(time_plan) :: plan
 
-      call new_plan(plan, [0.0_wp, 0.5_wp, 0.75_wp], 0.0625_wp, limit, outcome)
+      call new_plan(plan, [0.0_wp, 0.5_wp, 0.75_wp], 0.0625_wp, longest, limit, outcome)
       call check_passed(error, outcome, 'plan')
       call check_true(error, .not. plan%free, 'steps follow the loading')
       call check_equal(error, plan%parts(1), 8, 'steps in the first interval')
@@ -89,7 +89,7 @@ contains
       integer :: i
 
       time = [(0.02_wp*(i - 1), i=1, 1001)]
-      call new_plan(plan, time, 0.005_wp, limit, outcome)
+      call new_plan(plan, time, 0.005_wp, longest, limit, outcome)
       call check_passed(error, outcome, 'plan')
       call check_true(error, .not. plan%free, 'steps follow the loading')
       call check_equal(error, plan%steps, 4000, 'steps')
@@ -100,7 +100,7 @@ contains
       type(error_type), allocatable :: outcome
       type(time_plan) :: plan
 
-      call new_plan(plan, [0.0_wp, 0.25_wp, 1.0_wp], 0.03_wp, limit, outcome)
+      call new_plan(plan, [0.0_wp, 0.25_wp, 1.0_wp], 0.03_wp, longest, limit, outcome)
       call check_passed(error, outcome, 'plan')
       call check_true(error, plan%free, 'free steps')
       call check_equal(error, plan%steps, 34, 'steps: 33 of 0.03 s and a shorter one')
@@ -114,7 +114,7 @@ contains
       type(time_plan) :: plan
       integer :: i
 
-      call new_plan(plan, [(0.01_wp*i, i=0, 100)], 0.02_wp, limit, outcome)
+      call new_plan(plan, [(0.01_wp*i, i=0, 100)], 0.02_wp, longest, limit, outcome)
       call check_passed(error, outcome, 'plan')
       call check_true(error, plan%free, 'free steps')
       call check_equal(error, plan%steps, 50, 'steps')
@@ -125,9 +125,9 @@ contains
       type(error_type), allocatable :: outcome
       type(time_plan) :: plan
 
-      call new_plan(plan, [0.0_wp, 1.0_wp], limit, limit, outcome)
+      call new_plan(plan, [0.0_wp, 1.0_wp], limit, longest, limit, outcome)
       call check_passed(error, outcome, 'the limit itself')
-      call new_plan(plan, [0.0_wp, 1.0_wp], 0.125_wp, limit, outcome)
+      call new_plan(plan, [0.0_wp, 1.0_wp], 0.125_wp, longest, limit, outcome)
       call check_failed(error, outcome, bad_input, &
                         'dt = 0.125 s is beyond the stability limit of rk4, 0.1 s; give a dt below it')
    end subroutine beyond_limit
@@ -137,11 +137,11 @@ contains
       type(error_type), allocatable :: outcome
       type(time_plan) :: plan
 
-      call new_plan(plan, [0.0_wp, 1.0_wp], 0.0_wp, limit, outcome)
+      call new_plan(plan, [0.0_wp, 1.0_wp], 0.0_wp, longest, limit, outcome)
       call check_failed(error, outcome, bad_input, 'dt = 0 s must be above zero')
-      call new_plan(plan, [0.0_wp, 1.0_wp], -0.01_wp, limit, outcome)
+      call new_plan(plan, [0.0_wp, 1.0_wp], -0.01_wp, longest, limit, outcome)
       call check_failed(error, outcome, bad_input, 'dt = -0.01 s must be above zero')
-      call new_plan(plan, [0.0_wp, 1.0_wp], ieee_value(1.0_wp, ieee_quiet_nan), limit, outcome)
+      call new_plan(plan, [0.0_wp, 1.0_wp], ieee_value(1.0_wp, ieee_quiet_nan), longest, limit, outcome)
       call check_failed(error, outcome, bad_input, 'dt = NaN must be a finite number')
    end subroutine no_step
 
@@ -150,16 +150,15 @@ contains
       type(error_type), allocatable :: outcome
       type(time_plan) :: plan
 
-      call new_plan(plan, [0.0_wp, 1.0e9_wp], 1.0e-3_wp, limit, outcome)
+      call new_plan(plan, [0.0_wp, 1.0e9_wp], 1.0e-3_wp, longest, limit, outcome)
       call check_failed(error, outcome, bad_input, '1e+12 steps of 0.001 s are more than 2e+09')
-      call new_plan(plan, [0.0_wp, 1.0e50_wp], 1.0e-50_wp, limit, outcome)
+      call new_plan(plan, [0.0_wp, 1.0e50_wp], 1.0e-50_wp, longest, limit, outcome)
       call check_failed(error, outcome, bad_input, 'shorten the duration')
       ! Beyond that the number of steps itself would overflow.
-      call new_plan(plan, [0.0_wp, 1.0e50_wp], 1.0e-300_wp, limit, outcome)
+      call new_plan(plan, [0.0_wp, 1.0e50_wp], 1.0e-300_wp, longest, limit, outcome)
       call check_failed(error, outcome, bad_input, 'too short for any number of steps')
       call check_times([0.0_wp, 1.0e300_wp], outcome)
       call check_failed(error, outcome, bad_input, 'value 2 of 2 is 1e+300')
-      call check_close(error, auto_share, 0.2_wp, 0.0_wp, 0.0_wp, 'stated share')
    end subroutine too_many
 
    subroutine number_of_rows(error)
@@ -167,7 +166,7 @@ contains
       type(error_type), allocatable :: outcome
       type(time_plan) :: plan
 
-      call new_plan(plan, [0.0_wp, 0.5_wp, 0.75_wp], 0.0625_wp, limit, outcome)
+      call new_plan(plan, [0.0_wp, 0.5_wp, 0.75_wp], 0.0625_wp, longest, limit, outcome)
       call check_passed(error, outcome, 'plan')
       call check_equal(error, plan%rows(unset_integer), 3, 'one at each time of the loading')
       call check_equal(error, plan%rows(1), 13, 'begin and 12 steps')

@@ -19,6 +19,9 @@ ELASTIC = rbsdem.Elastic(1.0e6)
 BILINEAR = rbsdem.Bilinear(7.0387e8, 1.2960e-4, 8.3185e6)
 TAKEDA = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
 
+# The warning that frequencies hang on the last digits of the load is right, and not the matter.
+NEAR_CRITICAL = pytest.mark.filterwarnings("ignore::rbsdem.AccuracyWarning")
+
 
 def elastic(values) -> list[rbsdem.Elastic]:
     return [rbsdem.Elastic(k) for k in values]
@@ -412,6 +415,7 @@ def number_before(text: str, unit: str, after: str) -> float:
     return float(found.group(1))
 
 
+@NEAR_CRITICAL
 @pytest.mark.parametrize("kinematics", ["pdelta", "finite"])
 def test_critical_load_of_one_body_is_k_m_over_l(kinematics):
     length, k_m = 1.6, 2.5428e8
@@ -434,6 +438,7 @@ def test_critical_load_of_one_body_is_k_m_over_l(kinematics):
     rbsdem.modes(column((1 - 1e-9) * critical))
 
 
+@NEAR_CRITICAL
 def test_critical_load_of_two_bodies():
     """Equal lengths and joints, rigid in slip: K - P l [[2, 1], [1, 1]] is singular at P l = c k.
 
@@ -453,6 +458,7 @@ def test_critical_load_of_two_bodies():
         rbsdem.modes(column((1 + 1e-6) * critical))
 
 
+@NEAR_CRITICAL
 def test_shear_flexibility_lowers_the_critical_load_of_two_bodies():
     """Slip of joint 2 belongs to the lever arm (E8): the critical load by the determinant."""
     length, k_m, k_v = 0.8, 3.0e6, 5.0e6
@@ -482,6 +488,7 @@ def test_no_tension_is_critical_for_one_body():
     assert np.all(np.isfinite(rbsdem.modes(column).omega))
 
 
+@NEAR_CRITICAL
 def test_two_bodies_buckle_in_tension_at_a_slider():
     """A dead load that pulls on two rods joined by a slider buckles them (E8: -P u_2 theta_1).
 
@@ -598,7 +605,36 @@ BAD = [
     ({"kinematics": "large"}, ["kinematics", "large", "small"]),
     ({"kinematics": "Small"}, ["kinematics", "Small"]),
     ({"kinematics": ""}, ["kinematics"]),
-    ({"kinematics": "finite", "n": 2}, ["finite", "n = 2"]),
+    ({"self_weight": 2}, ["self_weight = 2", "True or False"]),
+    ({"self_weight": "no"}, ["self_weight = 'no'", "True or False"]),
+    ({"axial_follows": True}, ["axial_follows", "finite"]),
+    ({"force_follows": True, "kinematics": "pdelta"}, ["force_follows", "finite"]),
+    ({"axial_follows": None}, ["axial_follows = None", "True or False"]),
+    ({"top_mass": -1.0}, ["top_mass", "-1 kg"]),
+    ({"top_mass": NAN}, ["top_mass", "NaN"]),
+    ({"top_mass": "heavy"}, ["top_mass", "heavy"]),
+    ({"top_inertia": INF}, ["top_inertia", "Infinity"]),
+    ({"depth": -0.4}, ["depth", "-0.4 m"]),
+    ({"depth": 0.4, "rotary_inertia": 3.0}, ["both depth and rotary_inertia"]),
+    ({"rotary_inertia": 0.0}, ["rotary_inertia", "0 kg m2"]),
+    ({"rotary_inertia": NAN}, ["rotary_inertia", "NaN"]),
+    ({"rotary_inertia": "x"}, ["rotary_inertia"]),
+    ({"rotary_inertia": []}, ["rotary_inertia", "empty"]),
+    ({"rotary_inertia": [1.0, 2.0], "n": 3}, ["rotary_inertia has 2 values for n = 3"]),
+    ({"axial": 1e9}, ["axial", "1000000000.0"]),
+    ({"axial": []}, ["axial", "empty"]),
+    ({"axial": TAKEDA}, ["axial spring", "'takeda'"]),
+    ({"axial": [ELASTIC] * 2, "n": 3}, ["2 axial springs for 3 joints"]),
+    ({"shear": rbsdem.Compression(1e9)}, ["shear spring", "'compression'"]),
+    ({"damping": "5 %"}, ["damping", "5 %"]),
+    ({"damping": [0.1]}, ["damping", "[0.1]"]),
+    ({"damping": 5.0}, ["modal_damping(1) = 5", "below 1"]),
+    ({"damping": -0.1}, ["modal_damping(1) = -0.1", "negative"]),
+    ({"damping": 0.05, "mass_damping": 1.0}, ["both damping and mass_damping", "keep"]),
+    ({"damping": rbsdem.Damping(1.0), "stiffness_damping": 1e-4}, ["both damping"]),
+    ({"damping": rbsdem.Damping(tangent=True)}, ["tangent_damping", "stiffness_damping"]),
+    ({"damping": rbsdem.Damping(modal=[0.1] * 3)}, ["modal_damping has 3 values for 2 modes"]),
+    ({"damping": 0.05, "n": 501}, ["modal damping", "500 bodies", "n = 501"]),
     ({"gravity": -9.81}, ["gravity", "-9.81"]),
     ({"gravity": NAN}, ["gravity", "NaN"]),
     ({"mass_damping": -0.1}, ["mass_damping", "-0.1"]),
@@ -644,3 +680,111 @@ def test_extreme_but_valid_columns():
         scale = 6 * k / mass
         expected = scale * np.array([(1 / 3) / (4 / 3 + root), 4 / 3 + root])
         np.testing.assert_allclose(rbsdem.modes(column).omega ** 2, expected, rtol=1e-12)
+
+
+def test_column_of_10000_bodies_is_the_largest():
+    column = rbsdem.Column(20.0, 1e5, ELASTIC, ELASTIC, n=10_000)
+    assert column.unknowns == 20_000
+    with pytest.raises(rbsdem.InputError, match="from 1 to 10000"):
+        rbsdem.Column(20.0, 1e5, ELASTIC, ELASTIC, n=10_001)
+
+
+# ---- mass at the top, rotary inertia -------------------------------------------------------------
+
+
+def lumped_mass(column: rbsdem.Column) -> np.ndarray:
+    """Mass matrix of bodies and of what is lumped at the top, each with its own J and G."""
+    lengths, masses = np.asarray(column.lengths), np.asarray(column.masses)
+    n = len(lengths)
+    total = kinematic_mass(lengths, masses)
+    joints = np.concatenate([[0.0], np.cumsum(lengths)[:-1]])
+    top = np.concatenate([np.ones(n), lengths.sum() - joints])
+    turn = np.concatenate([np.zeros(n), np.ones(n)])
+    total += column.top_mass * np.outer(top, top) + column.top_inertia * np.outer(turn, turn)
+    below = np.hstack([np.zeros((n, n)), np.tril(np.ones((n, n)))])
+    if column.rotary_inertia is not None:
+        own = np.broadcast_to(column.rotary_inertia, n) - masses * lengths**2 / 12
+    else:
+        own = masses * column.depth**2 / 12
+    return total + below.T * own @ below
+
+
+@pytest.mark.parametrize("n", [1, 2, 7])
+def test_mass_matrix_with_lumped_mass_depth_and_rotary_inertia(n):
+    rng = np.random.default_rng(30 + n)
+    for options in (
+        {"top_mass": 2e4},
+        {"top_mass": 3e3, "top_inertia": 500.0},
+        {"top_inertia": 800.0},
+        {"depth": 0.7},
+        {"rotary_inertia": 12.0, "top_mass": 1e3},
+        {"rotary_inertia": rng.uniform(1.0, 50.0, n)},
+    ):
+        column = random_column(rng, n, **options)
+        mass = rbsdem.mass_matrix(column)
+        np.testing.assert_allclose(mass, lumped_mass(column), rtol=1e-12)
+        paper = rbsdem.mass_matrix(column, form="paper")
+        np.testing.assert_allclose(paper @ paper_transform(n), mass, rtol=1e-12)
+
+
+def test_cantilever_with_a_heavy_top_is_the_oscillator_of_one_mass():
+    """A bridge pier: omega^2 = k/M with k of shear and bending in series."""
+    column = rbsdem.Column(6.0, 1.0, rbsdem.Elastic(4e8), rbsdem.Elastic(3e8), top_mass=5e5)
+    stiffness_ = 1 / (1 / 4e8 + 36.0 / 3e8)
+    assert rbsdem.modes(column).omega[0] ** 2 == pytest.approx(stiffness_ / 5e5, rel=1e-5)
+
+
+# ---- damping -------------------------------------------------------------------------------------
+
+
+def test_rayleigh_damping_has_its_ratio_at_both_frequencies():
+    damping = rbsdem.Damping.rayleigh(0.05, 2.0, 11.0, tangent=True)
+    for frequency in (2.0, 11.0):
+        omega = 2 * np.pi * frequency
+        ratio = damping.mass / (2 * omega) + damping.stiffness * omega / 2
+        assert ratio == pytest.approx(0.05, rel=1e-14)
+    assert damping.tangent
+    assert damping.modal is None
+    assert rbsdem.Damping.rayleigh(0.05, 11.0, 2.0, tangent=True) == damping
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((1.0, 2.0, 11.0), ["ratio = 1.0", "below 1"]),
+        ((-0.1, 2.0, 11.0), ["ratio = -0.1"]),
+        ((NAN, 2.0, 11.0), ["ratio = nan"]),
+        ((0.05, 0.0, 11.0), ["frequency_1 = 0.0 Hz", "above zero"]),
+        ((0.05, 2.0, INF), ["frequency_2 = inf"]),
+        ((0.05, 2.0, NAN), ["frequency_2 = nan"]),
+        ((0.05, 2.0, 2.0), ["both 2.0 Hz", "different"]),
+        ((0.05, "a", 2.0), ["frequency_1 = 'a' must be a number"]),
+    ],
+)
+def test_bad_rayleigh_damping_is_refused(arguments, words):
+    with pytest.raises(rbsdem.InputError) as caught:
+        rbsdem.Damping.rayleigh(*arguments)
+    for word in words:
+        assert word in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [{"mass": "a"}, {"stiffness": None}, {"tangent": "yes"}, {"modal": "a"}, {"modal": []},
+     {"modal": [[0.1]]}],
+)  # fmt: skip
+def test_bad_damping_is_refused_by_name(arguments):
+    with pytest.raises(rbsdem.InputError, match=f"damping: {next(iter(arguments))}"):
+        rbsdem.Damping(**arguments)
+
+
+def test_damping_of_a_column_in_its_two_spellings():
+    old = rbsdem.Column(1.6, 614.4, ELASTIC, ELASTIC, mass_damping=3.0, stiffness_damping=1e-4)
+    new = rbsdem.Column(1.6, 614.4, ELASTIC, ELASTIC, damping=rbsdem.Damping(3.0, 1e-4))
+    assert rbsdem.modes(new).stable_step == rbsdem.modes(old).stable_step
+    ratio = rbsdem.Column(1.6, 614.4, ELASTIC, ELASTIC, damping=0.05)
+    assert ratio.damping == rbsdem.Damping(modal=0.05)
+    assert ratio.damping.ratios() == (0.05,)
+    assert rbsdem.Damping(modal=np.array([0.1, 0.2])).modal == (0.1, 0.2)
+    assert rbsdem.Damping().ratios() == ()
+    assert len({ratio, rbsdem.Column(1.6, 614.4, ELASTIC, ELASTIC, damping=0.05)}) == 1

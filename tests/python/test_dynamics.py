@@ -833,7 +833,7 @@ BAD = [
     ({"dt": 10.0}, "dt = 10 s is beyond the stability limit"),
     ({"dt": "fast"}, "dt = 'fast' must be a number"),
     ({"dt": 1e-12}, "steps of 1e-12 s"),
-    ({"time": [0.0, 1e12]}, "stability limit"),
+    ({"time": [0.0, 1e12]}, "generalised_alpha"),
     ({"method": "rk5"}, "method = 'rk5'"),
     ({"every": 0}, "every = 0"),
     ({"every": 2.5}, "every = 2.5"),
@@ -882,7 +882,8 @@ def test_double_precision_survives_the_door():
     assert rbsdem.Elastic(value).response([1.0])[0] == value
     column = rbsdem.Column(value, value, rbsdem.Elastic(1.0), rbsdem.Elastic(1.0))
     assert rbsdem.mass_matrix(column)[0, 0] == value
-    assert rbsdem.cyclic(column, force=[value]).shear[0, 0] == value
+    with pytest.warns(rbsdem.AccuracyWarning, match="rotation"):
+        assert rbsdem.cyclic(column, force=[value]).shear[0, 0] == value
     run = rbsdem.time_history(column, [0, 1e-3], initial={"slip": [value]})
     assert run.slip[0, 0] == value
     assert rbsdem.time_history(column, [value, 1.5]).time[0] == value

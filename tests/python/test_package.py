@@ -22,9 +22,12 @@ import rbsdem
 PROMISED = {
     "Bilinear", "Takeda", "Elastic", "Column", "modes", "mass_matrix", "cyclic", "time_history",
     "read_peer", "paper_columns", "paper_sections", "InputError", "SolveError", "Result",
+    "AccuracyWarning", "Case", "Compression", "Damping", "read_case",
 }  # fmt: skip
 
-MODULES = ["analysis", "column", "compare", "errors", "paper", "peer", "plot", "springs"]
+MODULES = [
+    "analysis", "case", "column", "compare", "damping", "errors", "paper", "peer", "plot", "springs"
+]  # fmt: skip
 
 ELASTIC = rbsdem.Elastic(1e6)
 BILINEAR = rbsdem.Bilinear(1e6, 1e-3, 0.0)
@@ -105,7 +108,9 @@ def test_signature_is_the_promised_one(one):
         "Bilinear": "(k, d_y, k_post)",
         "Takeda": "(k_c, d_c, k_y, d_y, k_u, b0=0.4, b1=1.0, inner='kc')",
         "Column": "(height, mass, shear, flexure, n=1, axial_load=0.0, kinematics='small', "
-        "lengths=None, masses=None",
+        "lengths=None, masses=None, self_weight=False, gravity=9.80665, mass_damping=0.0, "
+        "stiffness_damping=0.0, axial=None, top_mass=0.0, top_inertia=0.0, depth=0.0, "
+        "rotary_inertia=None, axial_follows=False, force_follows=False, damping=None)",
     }[one.__name__]
     signature = inspect.signature(one)
     bare = [
@@ -123,6 +128,10 @@ def test_signatures_of_the_analyses_are_the_promised_ones():
     assert names(rbsdem.cyclic)[:3] == ["column", "displacement", "force"]
     assert names(rbsdem.time_history)[:7] == [
         "column", "time", "force", "ground_acceleration", "dt", "method", "initial"
+    ]  # fmt: skip
+    assert names(rbsdem.time_history)[7:] == [
+        "vertical_acceleration", "axial_load", "events", "tolerance", "rho_infinity",
+        "collapse_drift", "allow_unstable", "every",
     ]  # fmt: skip
     assert names(rbsdem.mass_matrix) == ["column", "form"]
     assert names(rbsdem.modes) == ["column"]
@@ -234,6 +243,25 @@ def test_errors_have_one_base_and_are_also_the_builtin_kind():
         lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], force=[1.0, 1.0], method="euler"),
         lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], initial={"speed": 1.0}),
         lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], initial={"slip": [1.0, 2.0]}),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], initial={"opening": [1.0]}),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], force=[1.0, 1.0], method="static"),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], force=[1.0, 1.0], method="r\u00fcnge"),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], vertical_acceleration=[1.0, 1.0]),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], axial_load=[1.0, 1.0]),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], axial_load=[1.0]),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], axial_load=[]),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], events="sometimes"),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], tolerance=1e-6),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], tolerance="fine", method="rk45"),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], rho_infinity=0.9),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], collapse_drift=0.0),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], allow_unstable="yes"),
+        lambda: rbsdem.cyclic(COLUMN, [0.01], collapse_drift=-0.1),
+        lambda: rbsdem.Compression(0.0),
+        lambda: rbsdem.Damping(mass="a"),
+        lambda: rbsdem.read_case("not there"),
+        lambda: rbsdem.read_case(""),
+        lambda: rbsdem.read_case("a\0b"),
         lambda: rbsdem.mass_matrix(COLUMN, "none"),
         lambda: rbsdem.modes(None),
         lambda: rbsdem.protocol([]),
@@ -294,6 +322,7 @@ def test_columns_and_results_survive_pickling():
 def test_records_cannot_be_changed(tmp_path):
     run = rbsdem.cyclic(COLUMN, [0.001])
     records = [ELASTIC, BILINEAR, TAKEDA, COLUMN, run, rbsdem.modes(COLUMN), peer_test(tmp_path)]
+    records.append(rbsdem.Damping())
     for record in records:
         assert is_dataclass(record)
         for field in fields(record):

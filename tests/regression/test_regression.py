@@ -19,8 +19,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from integrators import Finite, alpha_method, directions, linear_chain, modal_damping, until
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
+from scipy.optimize import brentq
 
 import rbsdem
 from rbsdem import __main__ as command
@@ -355,6 +357,265 @@ def reason_history_file(rows: Rows) -> None:
     assert 0 < last < rows["force_N"][4]
 
 
+# ---- 08: average acceleration, modal damping -----------------------------------------------------
+
+
+def run_newmark_modal() -> rbsdem.Result:
+    column = rbsdem.Column(
+        6.0,
+        12e3,
+        rbsdem.Elastic(6e8),
+        [rbsdem.Elastic(2e8), rbsdem.Elastic(4e8), rbsdem.Elastic(4e8)],
+        n=3,
+        lengths=[2.5, 2.0, 1.5],
+        top_mass=80e3,
+        top_inertia=9e4,
+        depth=0.9,
+        damping=rbsdem.Damping(modal=[0.05, 0.03]),
+        kinematics="pdelta",
+        axial_load=785e3,
+        self_weight=True,
+    )
+    ground = rbsdem.protocol(np.array([0.2, 0.4]) * G, points=4)
+    time = np.arange(33) * (0.8 / 16)
+    return rbsdem.time_history(column, time, ground_acceleration=ground, method="newmark", dt=0.01)
+
+
+def reason_newmark_modal(rows: Rows) -> None:
+    """The recursion of Newmark 1959 with matrices of another make."""
+    lengths = np.array([2.5, 2.0, 1.5])
+    masses = 12e3 * lengths / 6
+    inertias = masses * (lengths**2 + 0.9**2) / 12
+    springs = np.full(3, 6e8), np.array([2e8, 4e8, 4e8])
+    chain = linear_chain(lengths, masses, inertias, springs, lumped=(80e3, 9e4), load=785e3)
+    motion = G * rbsdem.protocol([0.2, 0.4], points=4)
+    ground = np.interp(np.arange(161) / 5, np.arange(33), motion)
+    damping = modal_damping(chain, [0.05, 0.03])
+    q = alpha_method(chain, damping, -np.outer(ground, chain.ground), 0.01)[::5]
+    size = np.max(np.abs(q @ chain.top))
+    np.testing.assert_allclose(rows["displacement_m"], q @ chain.top, atol=1e-10 * size)
+    for i in range(3):
+        size = np.max(np.abs(q[:, i]))
+        np.testing.assert_allclose(rows[f"slip_{i + 1}_m"], q[:, i], atol=1e-9 * size)
+    # Average acceleration keeps the energy of a linear system to round-off.
+    assert np.max(np.abs(rows["residual_J"])) < 1e-11 * rows["input_J"].max()
+    assert rows["damping_J"][-1] > 0.2 * rows["input_J"].max()
+
+
+# ---- 09: generalised-alpha -----------------------------------------------------------------------
+
+
+def run_alpha_force() -> rbsdem.Result:
+    column = rbsdem.Column(
+        3.0,
+        3e3,
+        rbsdem.Elastic(5e8),
+        rbsdem.Elastic(5e7),
+        n=2,
+        rotary_inertia=[400.0, 300.0],
+        damping=rbsdem.Damping(mass=1.0, stiffness=1e-4),
+    )
+    wave = rbsdem.protocol(1.0, points=5)
+    return rbsdem.time_history(
+        column,
+        np.arange(21) * (0.5 / 20),
+        force=40.0 * wave * 1000,
+        ground_acceleration=2.0 * wave,
+        method="generalised_alpha",
+        rho_infinity=0.6,
+        dt=0.005,
+        every=5,
+    )
+
+
+def reason_alpha_force(rows: Rows) -> None:
+    """The recursion of Chung and Hulbert 1993 with matrices of another make."""
+    lengths, masses, inertias = np.full(2, 1.5), np.full(2, 1.5e3), np.array([400.0, 300.0])
+    springs = np.full(2, 5e8), np.full(2, 5e7)
+    chain = linear_chain(lengths, masses, inertias, springs)
+    wave = np.interp(np.arange(101), np.arange(21) * 5, rbsdem.protocol(1.0, points=5))
+    loads = np.outer(wave, 40e3 * chain.top - 2.0 * chain.ground)
+    damping = 1.0 * chain.mass + 1e-4 * chain.stiffness
+    q = alpha_method(chain, damping, loads, 0.005, rho=0.6)[::5]
+    for name, values in (("displacement_m", q @ chain.top), ("rotation_2_rad", q[:, 3])):
+        size = np.max(np.abs(values))
+        np.testing.assert_allclose(rows[name], values, atol=1e-10 * size)
+    # The highest mode is far beyond the step: explicit methods could not take it.
+    highest = np.sqrt(np.linalg.eigvals(np.linalg.solve(chain.mass, chain.stiffness)).max())
+    assert highest.real * 0.005 > 2 * np.sqrt(2)
+
+
+# ---- 10: two bodies that turn far ----------------------------------------------------------------
+
+
+def run_rk45_finite() -> rbsdem.Result:
+    column = rbsdem.Column(
+        2.0,
+        1e3,
+        rbsdem.Elastic(4e5),
+        rbsdem.Elastic(4e4),
+        n=2,
+        lengths=[1.2, 0.8],
+        top_mass=300.0,
+        kinematics="finite",
+        mass_damping=0.3,
+        axial_load=4e3,
+        self_weight=True,
+        axial_follows=True,
+        force_follows=True,
+    )
+    wave = rbsdem.protocol(1.0, points=3)
+    return rbsdem.time_history(
+        column,
+        np.arange(13) * (1.2 / 12),
+        force=9e3 * wave,
+        vertical_acceleration=4.0 * wave,
+        axial_load=2e3 * wave,
+        method="rk45",
+        tolerance=1e-11,
+    )
+
+
+def reason_rk45_finite(rows: Rows) -> None:
+    """M(q) and the inertia forces of another make, by an integrator of order 8."""
+    chain = Finite(np.array([1.2, 0.8]), np.array([600.0, 400.0]), 300.0)
+    springs = np.array([4e5, 4e5, 4e4, 4e4])
+    times, wave = rows["time_s"], rbsdem.protocol(1.0, points=3)
+    masses = np.append(chain.masses, chain.lumped)
+
+    def rate(time: float, state: np.ndarray) -> np.ndarray:
+        q, v = np.split(state, 2)
+        part = np.interp(time, times, wave)
+        axis, normal = directions(q[2] + q[3])
+        forces = np.zeros((3, 2))
+        forces[:, 1] -= masses * 4.0 * part
+        forces[:2, 1] -= chain.masses * G  # the weight of the lumped mass belongs to the load
+        forces[2] += 9e3 * part * normal - (4e3 + 2e3 * part) * axis
+        return np.concatenate([v, chain.acceleration(q, v, forces, springs, 0.3)])
+
+    def solve(begin: float, end: float, state: np.ndarray) -> np.ndarray:
+        solved = solve_ivp(rate, (begin, end), state, "DOP853", rtol=1e-12, atol=1e-13)
+        return solved.y[:, -1]
+
+    states = np.array([*until(solve, times, np.zeros(8)).values()])
+    names = ("slip_1_m", "slip_2_m", "rotation_1_rad", "rotation_2_rad")
+    for i, name in enumerate(names):
+        size = np.max(np.abs(states[:, i]))
+        np.testing.assert_allclose(rows[name], states[:, i], atol=1e-7 * size, err_msg=name)
+    turn = states[:, 2] + states[:, 3]
+    assert np.max(np.abs(turn)) > 0.5  # far from small
+    (_, along), (axis_1, axis_2) = directions(0.0), (directions(states[:, 2]), directions(turn))
+    first = states[:, :1] * along + 1.2 * axis_1[0].T
+    top = first + states[:, 1:2] * axis_1[1].T + 0.8 * axis_2[0].T
+    np.testing.assert_allclose(rows["displacement_m"], top[:, 0], atol=1e-7)
+    np.testing.assert_allclose(rows["top_height_m"], top[:, 1], atol=1e-7)
+    assert np.max(np.abs(rows["residual_J"])) < 1e-9 * rows["input_J"].max()
+
+
+# ---- 11: contact ---------------------------------------------------------------------------------
+
+
+def run_contact() -> rbsdem.Result:
+    column = rbsdem.Column(
+        1.0,
+        1e3,
+        rbsdem.Elastic(1e7),
+        rbsdem.Elastic(1e7),
+        axial=rbsdem.Compression(4e6),
+        self_weight=True,
+    )
+    ground = np.append(2.5 * G * rbsdem.protocol(1.0, points=2), 0.0)
+    time = np.append(np.arange(9) * 0.02, 0.4)
+    return rbsdem.time_history(
+        column,
+        time,
+        vertical_acceleration=ground,
+        method="rk4",
+        events="located",
+        dt=2e-4,
+        every=100,
+    )
+
+
+def reason_contact(rows: Rows) -> None:
+    """m w'' = -N - m (g + a), N = k w for w < 0: a spring in contact, a parabola in flight."""
+    wave = np.append(rbsdem.protocol(1.0, points=2), 0.0)
+    corners = np.append(np.arange(9) * 0.02, 0.4)
+
+    def solve(begin: float, end: float, state: np.ndarray) -> np.ndarray:
+        while begin < end:
+            # In contact or on the way into it.
+            touching = state[0] < 0 or (abs(state[0]) < 1e-14 and state[1] < 0)
+
+            def rate(time: float, state: np.ndarray, touching=touching) -> list[float]:
+                ground = 2.5 * G * np.interp(time, corners, wave)
+                spring = 4e6 / 1e3 * state[0] if touching else 0.0
+                return [state[1], -spring - G - ground]
+
+            def leaves(_: float, state: np.ndarray) -> float:
+                return state[0]
+
+            leaves.terminal = True
+            leaves.direction = 1 if touching else -1
+            solved = solve_ivp(
+                rate, (begin, end), state, "DOP853", rtol=1e-13, atol=1e-15, events=leaves
+            )
+            begin, state = solved.t[-1], solved.y[:, -1]
+            if solved.t_events[0].size:
+                state[0] = 0.0
+                # On the other side, so that the next piece does not end where it begins.
+                begin, state = begin + 1e-13, state + 1e-13 * np.array(rate(begin, state))
+        return state
+
+    stops = np.unique(np.concatenate([corners, rows["time_s"]]).round(9))
+    states = until(solve, stops, np.array([-G * 1e3 / 4e6, 0.0]))
+    opening = np.array([states[float(t.round(9))][0] for t in rows["time_s"]])
+    size = np.max(np.abs(opening))
+    assert size > 0.05  # it flies
+    np.testing.assert_allclose(rows["opening_1_m"], opening, atol=1e-7 * size)
+    force = np.minimum(4e6 * opening, 0.0)
+    np.testing.assert_allclose(rows["axial_force_1_N"], force, atol=4e6 * 1e-7 * size)
+    np.testing.assert_allclose(rows["top_height_m"], 1 + rows["opening_1_m"], rtol=1e-15)
+    assert not rows["displacement_m"].any()
+
+
+# ---- 12: static path with exact rotations --------------------------------------------------------
+
+
+def run_static_finite() -> rbsdem.Result:
+    column = rbsdem.Column(
+        LENGTH,
+        MASS,
+        rbsdem.Elastic(2e5),
+        rbsdem.Elastic(4e4),
+        kinematics="finite",
+        axial_load=5e3,
+        self_weight=True,
+    )
+    return rbsdem.cyclic(column, rbsdem.protocol(np.array([0.3, 0.8]) * LENGTH, points=4))
+
+
+def reason_static_finite(rows: Rows) -> None:
+    """Equilibrium of one body: slip F/k_V, moment of force, load and weight about the joint."""
+    load = 5e3 + MASS * G / 2
+
+    def force(turn: float) -> float:
+        return (4e4 * turn - load * LENGTH * np.sin(turn)) / (LENGTH * np.cos(turn))
+
+    for row, displacement in enumerate(rows["displacement_m"]):
+        turn = brentq(
+            lambda th, d=displacement: force(th) / 2e5 + LENGTH * np.sin(th) - d,
+            -1.5,
+            1.5,
+            xtol=1e-14,
+        )
+        assert rows["rotation_1_rad"][row] == pytest.approx(turn, rel=1e-9, abs=1e-12)
+        assert rows["force_N"][row] == pytest.approx(force(turn), rel=1e-9, abs=1e-6)
+        assert rows["top_height_m"][row] == pytest.approx(LENGTH * np.cos(turn), rel=1e-12)
+    assert np.max(np.abs(rows["rotation_1_rad"])) > 0.7
+    np.testing.assert_allclose(rows["slip_1_m"], rows["force_N"] / 2e5, rtol=1e-12, atol=1e-14)
+
+
 # --------------------------------------------------------------------------------------------------
 
 CASES = {
@@ -365,6 +626,11 @@ CASES = {
     "05-rk4-finite": Case(run_rk4_finite, reason_rk4_finite),
     "06-rk4-slow": Case(run_rk4_slow, reason_rk4_slow),
     "07-history-file": Case(run_history_file, reason_history_file),
+    "08-newmark-modal": Case(run_newmark_modal, reason_newmark_modal),
+    "09-alpha-force": Case(run_alpha_force, reason_alpha_force),
+    "10-rk45-finite": Case(run_rk45_finite, reason_rk45_finite),
+    "11-contact": Case(run_contact, reason_contact),
+    "12-static-finite": Case(run_static_finite, reason_static_finite),
 }
 
 
@@ -378,7 +644,10 @@ def rows_of(result: rbsdem.Result) -> list[np.ndarray]:
     """Columns of a result in the order of the csv."""
     energies = [result.energy[name] for name in result.energy]
     joints = [result.slip, result.rotation, result.shear, result.moment]
-    columns = [result.time, result.displacement, result.force, *energies]
+    if result.axial_force is not None:
+        joints[2:2] = [result.opening]
+        joints += [result.axial_force]
+    columns = [result.time, result.displacement, result.force, *energies, result.top[:, 1]]
     return columns + [values for joint in joints for values in joint.T]
 
 

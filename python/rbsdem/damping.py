@@ -1,0 +1,104 @@
+"""Viscous damping of a column."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rbsdem import _core
+from rbsdem.errors import InputError
+
+
+@dataclass(frozen=True)
+class Damping:
+    """Damping in proportion to mass and stiffness, and of single modes; the parts add up.
+
+    Parameters
+    ----------
+    mass : float, optional
+        Damping in proportion to the mass [1/s].
+    stiffness : float, optional
+        Damping in proportion to the stiffness of each joint [s].
+    tangent : bool, optional
+        Whether that is the stiffness of the line that a spring is on, else the initial one. With
+        the initial one a joint that yields keeps the damping of one that does not.
+    modal : float or sequence of float, optional
+        Damping ratios of the modes of the uncracked column: one for all, or those of the first
+        modes. At most 500 bodies.
+
+    Raises
+    ------
+    InputError
+        If a number is none; values are checked with the column that they are given to.
+    """
+
+    mass: float = 0.0
+    stiffness: float = 0.0
+    tangent: bool = False
+    modal: float | Sequence[float] | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("mass", "stiffness"):
+            value = _core.number(getattr(self, name), f"damping: {name}")
+            object.__setattr__(self, name, value)
+        object.__setattr__(self, "tangent", _core.switch(self.tangent, "damping: tangent"))
+        if self.modal is None:
+            return
+        if np.ndim(self.modal) == 0:
+            object.__setattr__(self, "modal", _core.number(self.modal, "damping: modal"))
+            return
+        ratios = _core.vector(self.modal, "damping: modal")
+        if ratios.size == 0:
+            raise InputError("damping: modal is empty; give a ratio, or None")
+        object.__setattr__(self, "modal", tuple(ratios.tolist()))
+
+    @classmethod
+    def rayleigh(
+        cls, ratio: float, frequency_1: float, frequency_2: float, tangent: bool = False
+    ) -> Damping:
+        """Return the damping of mass and stiffness that has a ratio at two frequencies.
+
+        Between the frequencies the ratio is smaller, beyond them larger.
+
+        Parameters
+        ----------
+        ratio : float
+            Damping ratio, below 1.
+        frequency_1, frequency_2 : float
+            Two different frequencies [Hz].
+        tangent : bool, optional
+            As of `Damping`.
+
+        Raises
+        ------
+        InputError
+            If a frequency is not positive, or both are the same.
+        """
+        ratio = _core.number(ratio, "damping: ratio")
+        if not 0.0 <= ratio < 1.0:
+            raise InputError(
+                f"damping: ratio = {ratio} must be from 0 to below 1 (critical damping)"
+            )
+        omega = []
+        for name, value in (("frequency_1", frequency_1), ("frequency_2", frequency_2)):
+            frequency = _core.number(value, f"damping: {name}")
+            if not 0.0 < frequency < math.inf:
+                raise InputError(f"damping: {name} = {frequency} Hz must be above zero and finite")
+            omega.append(2.0 * math.pi * frequency)
+        if omega[0] == omega[1]:
+            raise InputError(
+                f"damping: frequency_1 and frequency_2 are both {frequency_1} Hz; "
+                "they must be different"
+            )
+        # ratio = mass / (2 omega) + stiffness omega / 2 at both.
+        stiffness = 2.0 * ratio / (omega[0] + omega[1])
+        return cls(mass=stiffness * omega[0] * omega[1], stiffness=stiffness, tangent=tangent)
+
+    def ratios(self) -> tuple[float, ...]:
+        """Return the modal ratios, one for all or those of the first modes; empty if none."""
+        if self.modal is None:
+            return ()
+        return self.modal if isinstance(self.modal, tuple) else (self.modal,)

@@ -1,0 +1,299 @@
+"""Settings to try, from coarse to fine, within a time budget."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time as clock
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rbsdem.analysis import METHODS, time_history
+from rbsdem.column import Column
+from rbsdem.errors import InputError, RbsdemError
+from rbsdem.trade.answer import Run, Setting
+from rbsdem.trade.path import common_interval
+from rbsdem.trade.scene import Scene
+
+#: Levels of kinematics, each with more physics than the one before.
+LEVELS = ("small", "pdelta", "finite")
+
+IMPLICIT = ("newmark", "hht", "generalised_alpha")
+
+#: Rungs of a ladder: steps are halved, tolerances divided by ten.
+RK4_RUNGS, IMPLICIT_RUNGS, TOLERANCES = 7, 8, range(3, 11)
+
+#: A step of rk45 costs this many of rk4, and rk45 takes at least steps of this share of the limit.
+PAIR_COST, PAIR_SHARE = 7 / 4, 0.2
+
+
+class Budget:
+    """Wall time that may be used.
+
+    Parameters
+    ----------
+    seconds : float
+        All of it [s].
+    """
+
+    def __init__(self, seconds: float) -> None:
+        self.seconds = seconds
+        self.begin = clock.perf_counter()
+
+    def used(self) -> float:
+        """Return the time used so far [s]."""
+        return clock.perf_counter() - self.begin
+
+    def left(self, share: float = 1.0) -> float:
+        """Return what is left of a share of the time, counted from the begin [s]."""
+        return share * self.seconds - self.used()
+
+
+@dataclass(frozen=True)
+class Probe:
+    """What a first look at a scene in time tells.
+
+    Attributes
+    ----------
+    duration, interval : float
+        From the first to the last time of the loading, and between two of them [s].
+    regular : bool
+        Whether the interval divides all of them.
+    limit : float
+        Longest stable step of rk4 [s].
+    explicit, implicit : float
+        Wall time of a step of rk4, and of an implicit one [s]; infinite if there are none.
+    """
+
+    duration: float
+    interval: float
+    regular: bool
+    limit: float
+    explicit: float
+    implicit: float
+
+    def seconds(self, setting: Setting) -> float:
+        """Return about how long a setting takes [s]."""
+        rows = self.duration / self.interval
+        if setting.method == "auto" and setting.kinematics != "finite":
+            return self.implicit * rows
+        if setting.method in ("auto", "rk45"):
+            tolerance = setting.tolerance or 1e-6
+            shortest = self.limit * min(PAIR_SHARE * (tolerance / 1e-6) ** 0.2, 1.0)
+            return PAIR_COST * self.explicit * max(self.duration / shortest, rows)
+        step = self.explicit if setting.method == "rk4" else self.implicit
+        return step * self.duration / setting.dt if setting.dt else 0.0
+
+
+def probe(scene: Scene) -> Probe:
+    """Return limit of stability and cost of a step, from short runs.
+
+    Raises
+    ------
+    InputError
+        If the scene cannot be solved, as with an axial load above the critical one.
+    """
+    time = scene.time
+    interval, regular = common_interval(time)
+    level = scene.column.kinematics
+    first = _beginning(scene, min(1e-6 * interval, time[1] - time[0]))
+    keywords = first.keywords(Setting("rk4", level), scene.column)
+    limit = _stable_step(first, keywords)
+    steps = min(300.0, (time[-1] - time[0]) / (0.5 * limit))
+    short = _beginning(scene, 0.5 * limit * max(steps, 1.0))
+    explicit = _seconds(short, Setting("rk4", level, dt=0.5 * limit)) / max(steps, 1.0)
+    rows = min(100, time.size - 1)
+    short = _beginning(scene, float(time[rows] - time[0]))
+    if level == "finite":
+        # Implicit methods do not know finite rotations; where they are tried, they have fewer.
+        level = "pdelta"
+    try:
+        implicit = _seconds(short, Setting("newmark", level, dt=interval)) / rows
+    except RbsdemError:
+        implicit = math.inf
+    duration = float(time[-1] - time[0])
+    return Probe(duration, interval, regular, limit, explicit, implicit)
+
+
+def _stable_step(scene: Scene, keywords: dict[str, Any]) -> float:
+    return float(time_history(scene.column, scene.time, **keywords).summary["stable_step"])
+
+
+def _beginning(scene: Scene, duration: float) -> Scene:
+    """Return the scene up to a time after its begin."""
+    end = min(scene.time[0] + duration, scene.time[-1])
+    kept = np.append(scene.time[scene.time < end], end)
+    loads = {name: np.interp(kept, scene.time, load) for name, load in scene.loads.items()}
+    return dataclasses.replace(scene, time=kept, loads=loads)
+
+
+def _seconds(scene: Scene, setting: Setting) -> float:
+    begin = clock.perf_counter()
+    scene.solve(setting)
+    return clock.perf_counter() - begin
+
+
+def dividing_steps(look: Probe, longest: float) -> Iterator[float]:
+    """Yield steps that divide the interval of the loading, each half of the one before.
+
+    Where nothing divides its intervals, steps of any length.
+    """
+    if look.regular:
+        parts = max(math.ceil(look.interval / longest * (1 - 1e-12)), 1)
+        while True:
+            yield look.interval / parts
+            parts *= 2
+    step = min(longest, look.interval)
+    while True:
+        yield step
+        step /= 2
+
+
+def ladders(scene: Scene, look: Probe | None, methods: Sequence[str]) -> list[list[Setting]]:
+    """Return the settings to try, a list for each family from coarse to fine.
+
+    Levels of kinematics below that of the column get a few settings each.
+    """
+    level = scene.column.kinematics
+    found = []
+    if scene.static:
+        parts = (0, 1, 2, 4, 8) if level == "finite" else (0, 1, 4)
+        found.append([Setting("static", level, parts=p) for p in parts])
+        lower = LEVELS[: LEVELS.index(level)]
+        return found + [[Setting("static", lower_level, parts=1)] for lower_level in lower]
+    found = _families(look, methods, level)
+    for lower_level in LEVELS[: LEVELS.index(level)]:
+        for family in _families(look, methods, lower_level):
+            if family[0].events == "located" or family[0].method in ("hht", "generalised_alpha"):
+                continue
+            # Every second of the coarser rungs: the error is soon that of the kinematics.
+            stable = [s for s in family if s.method != "rk4" or s.dt <= look.limit]
+            found.append(stable[1:6:2] if family[0].tolerance else stable[:5:2])
+    return found
+
+
+def _families(look: Probe, methods: Sequence[str], level: str) -> list[list[Setting]]:
+    found = []
+    if "rk4" in methods:
+        for events in ("step", "located"):
+            steps = dividing_steps(look, look.limit)
+            family = [
+                Setting("rk4", level, dt=next(steps), events=events) for _ in range(RK4_RUNGS)
+            ]
+            if events == "step" and look.regular and look.interval > family[0].dt:
+                # The next longer one, to show what becomes of it.
+                parts = round(look.interval / family[0].dt)
+                family.insert(0, dataclasses.replace(family[0], dt=look.interval / (parts - 1)))
+            found.append(family)
+    if "rk45" in methods:
+        found.append([Setting("rk45", level, tolerance=10.0**-e) for e in TOLERANCES])
+    if "auto" in methods:
+        found.append([Setting("auto", level)])
+    for method in IMPLICIT:
+        if method in methods:
+            steps = dividing_steps(look, look.interval)
+            found.append([Setting(method, level, dt=next(steps)) for _ in range(IMPLICIT_RUNGS)])
+    return found
+
+
+def own_setting(column: Column, given: Mapping[str, Any]) -> Setting:
+    """Return the setting that a user gives by keywords of `time_history`.
+
+    Raises
+    ------
+    InputError
+        If a keyword is none of a setting.
+    """
+    known = ("method", "dt", "tolerance", "events", "rho_infinity")
+    for name in given:
+        if name not in known:
+            raise InputError(
+                f"trade: setting: {name!r} is not known; it is one of {', '.join(known)}"
+            )
+    fields = {"method": "rk4", **given}
+    if fields["method"] == "rk4":
+        fields.setdefault("events", "step")
+    return Setting(kinematics=column.kinematics, own=True, **fields)
+
+
+def checked_methods(methods: Sequence[str] | None) -> tuple[str, ...]:
+    """Return the methods that are wanted, all of them if none are named.
+
+    Raises
+    ------
+    InputError
+        If one is not known.
+    """
+    if methods is None:
+        return METHODS
+    wanted = (methods,) if isinstance(methods, str) else tuple(methods)
+    for method in wanted:
+        if method not in METHODS:
+            raise InputError(
+                f"trade: method {method!r} is not known; it is one of {', '.join(METHODS)}"
+            )
+    if not wanted:
+        raise InputError("trade: methods is empty; name one, or leave it out to try all")
+    return wanted
+
+
+def predicted(last: Run | None, setting: Setting, look: Probe | None) -> float:
+    """Return about how long a setting takes [s], from the coarser one if there is one."""
+    if last is None or not last.seconds > 0:
+        return 0.0 if look is None else look.seconds(setting)
+    if setting.dt and last.setting.dt:
+        return last.seconds * last.setting.dt / setting.dt
+    if setting.tolerance and last.setting.tolerance:
+        return last.seconds * (last.setting.tolerance / setting.tolerance) ** 0.2
+    if setting.parts and last.setting.parts:
+        return last.seconds * setting.parts / last.setting.parts
+    return last.seconds
+
+
+def too_expensive(cost: float, left: float) -> str:
+    """Return why something is not run."""
+    return f"would take about {cost:.2g} s; {max(left, 0):.2g} s of the budget are left for it"
+
+
+def climb(
+    scene: Scene,
+    families: list[list[Setting]],
+    look: Probe | None,
+    budget: Budget,
+    share: float,
+    repeats: int,
+    told: Callable[[str], None],
+) -> list[Run]:
+    """Run all families rung by rung, coarse ones first, as far as the budget goes.
+
+    The first setting of a family that is too expensive is in the list with its reason; finer ones
+    are not.
+    """
+    runs: dict[Setting, Run] = {}
+    last: dict[int, Run | None] = dict.fromkeys(range(len(families)))
+    ended: set[int] = set()
+    patience = share * budget.seconds / 40
+    for rung in range(max(map(len, families))):
+        for place, family in enumerate(families):
+            if rung >= len(family) or place in ended:
+                continue
+            setting = family[rung]
+            told(str(setting))
+            cost = predicted(last[place], setting, look)
+            if cost > budget.left(share):
+                reason = too_expensive(cost, budget.left(share))
+                runs[setting] = Run(setting, None, status="skipped", reason=reason)
+                ended.add(place)
+                continue
+            run = scene.run(setting, repeats, seconds=patience)
+            runs[setting] = run
+            if run.status == "refused":
+                # A step of rk4 beyond the limit is; any other reason holds for the finer ones too.
+                if setting.method != "rk4" or rung > 0:
+                    ended.add(place)
+            else:
+                last[place] = run
+    return [runs[setting] for family in families for setting in family if setting in runs]

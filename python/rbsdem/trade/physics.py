@@ -1,0 +1,328 @@
+"""Which physics matters: the answer with one part of the model on or off."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from rbsdem.column import Column
+from rbsdem.damping import Damping
+from rbsdem.errors import InputError
+from rbsdem.springs import Spring
+from rbsdem.trade.answer import Answer, Run, Setting, errors_of
+from rbsdem.trade.ladder import IMPLICIT, LEVELS, Budget, Probe, predicted, too_expensive
+from rbsdem.trade.reference import Reference
+from rbsdem.trade.scene import VERTICAL, Scene
+
+#: What rotary inertia that is taken off leaves: a body without any has no equation of motion.
+LITTLE_INERTIA = 0.01
+
+#: Changes larger than this count, if the user gives no tolerance.
+USUAL_TOLERANCE = 0.01
+
+#: What twice the bodies cost: twice the work of a step, and about half of it is stable.
+TWICE_THE_BODIES = 6
+
+#: Short runs are repeated for their times.
+REPEATS = 3
+
+#: Tolerance of rk45 for the comparisons.
+FINE = 1e-8
+
+
+@dataclass(frozen=True)
+class Effect:
+    """What one part of the model changes.
+
+    Attributes
+    ----------
+    part : str
+        What was changed.
+    peak, moment, energy : float
+        Relative change of the peak response, of the peak base moment and of the energy that springs
+        and damping have taken by the end (the last relative to its largest value).
+    residual : float
+        Change of the response at the end over the peak response.
+    history : float
+        Root mean square change of the response over its peak.
+    time_ratio : float
+        Wall time over that of the model as given.
+    status, reason : str
+        As of a setting.
+    matters : bool or None
+        Whether peak, moment, energy or residual changes by more than the tolerance; None if the
+        comparison could not be made.
+    """
+
+    part: str
+    peak: float = math.nan
+    residual: float = math.nan
+    moment: float = math.nan
+    energy: float = math.nan
+    history: float = math.nan
+    time_ratio: float = math.nan
+    status: str = "completed"
+    reason: str = ""
+    matters: bool | None = None
+
+    @property
+    def largest(self) -> float:
+        """Largest of the absolute changes of peak, residual, moment and energy."""
+        return max(abs(self.peak), abs(self.residual), abs(self.moment), abs(self.energy))
+
+
+@dataclass(frozen=True)
+class Physics:
+    """All effects, and what they were measured with.
+
+    Attributes
+    ----------
+    effects : tuple of Effect
+        One for each part of the model.
+    setting : str
+        How all of them were solved.
+    resolution : float
+        Error of that setting: smaller changes say nothing.
+    tolerance : float
+        Changes beyond it matter.
+    """
+
+    effects: tuple[Effect, ...]
+    setting: str
+    resolution: float
+    tolerance: float
+
+
+class Variant(NamedTuple):
+    """A model that differs in one thing: its name, how to make it, a load that is left out."""
+
+    name: str
+    make: Callable[[], Column]
+    without: str = ""
+
+
+def split_bodies(column: Column) -> Column:
+    """Return the column with every body cut in two and the same flexibility.
+
+    The flexibility of each joint is shared by the joint at the bottom of its body and a new one at
+    half of the body's height: each has springs of twice the stiffness and half the deformations,
+    so that both together slip, turn and open under a given force as the one did. What changes is
+    where along the height the column turns.
+    """
+
+    def twice(values: object) -> list | None:
+        return None if values is None else [v / 2 for v in values for _ in range(2)]
+
+    def springs(given: object) -> object:
+        if given is None:
+            return None
+        if isinstance(given, Spring):
+            return half_spring(given)
+        return [half_spring(spring) for spring in given for _ in range(2)]
+
+    return dataclasses.replace(
+        column,
+        n=2 * column.n,
+        lengths=twice(column.lengths),
+        masses=twice(column.masses),
+        rotary_inertia=_halves_inertia(column),
+        shear=springs(column.shear),
+        flexure=springs(column.flexure),
+        axial=springs(column.axial),
+    )
+
+
+def half_spring(spring: Spring) -> Spring:
+    """Return a spring of half the flexibility: two of them in series are the spring."""
+    changed = {
+        field.name: getattr(spring, field.name) * (2.0 if field.name.startswith("k") else 0.5)
+        for field in dataclasses.fields(spring)
+        if field.name.startswith(("k", "d_"))
+    }
+    return dataclasses.replace(spring, **changed)
+
+
+def _halves_inertia(column: Column) -> list[float] | None:
+    """Return rotary inertias of half bodies about their own centroids, together those given."""
+    if column.rotary_inertia is None:
+        return None
+    n = column.n
+    lengths, masses = bodies(column)
+    given = list(column.rotary_inertia)
+    given = given * n if len(given) == 1 else given
+    # Two masses m/2, each l/4 away from the middle; very compact bodies keep the share of a rod.
+    halves = [
+        max(0.5 * inertia - m * length**2 / 32, inertia / 8)
+        for inertia, m, length in zip(given, masses, lengths, strict=True)
+    ]
+    return [half for half in halves for _ in range(2)]
+
+
+def bodies(column: Column) -> tuple[list[float], list[float]]:
+    """Return lengths [m] and masses [kg] of the bodies."""
+    n = column.n
+    lengths = list(column.lengths or [column.height / n] * n)
+    masses = column.masses or [column.mass * length / column.height for length in lengths]
+    return lengths, list(masses)
+
+
+def _little_inertia(column: Column) -> Column:
+    lengths, masses = bodies(column)
+    depth = column.depth
+    given = column.rotary_inertia or [
+        m * (length**2 + depth**2) / 12 for m, length in zip(masses, lengths, strict=True)
+    ]
+    few = [LITTLE_INERTIA * value for value in given]
+    return dataclasses.replace(column, rotary_inertia=few, depth=0.0, top_inertia=0.0)
+
+
+def variants(scene: Scene, axial: Spring | None) -> Iterator[Variant]:
+    """Yield the models to compare with: one thing is different in each."""
+    column, moving = scene.column, not scene.static
+    undamped = {"damping": None, "mass_damping": 0.0, "stiffness_damping": 0.0}
+    damped = any(getattr(column, name) for name in undamped)
+    straight = {"axial_follows": False, "force_follows": False}
+    switches: list[tuple[object, str, dict[str, object]]] = [
+        (column.axial_load, "no axial load", {"axial_load": 0.0}),
+        (column.self_weight, "no self-weight", {"self_weight": False}),
+        (any(getattr(column, name) for name in straight), "loads keep direction", straight),
+        (column.axial, "joints do not open", {"axial": None}),
+        (axial and not column.axial, "joints open", {"axial": axial}),
+        (moving and column.top_mass, "no top mass", {"top_mass": 0.0, "top_inertia": 0.0}),
+        (moving and column.top_inertia, "no inertia of top", {"top_inertia": 0.0}),
+        (moving and column.depth, "bodies without depth", {"depth": 0.0}),
+        (moving and damped, "no damping", undamped),
+    ]
+    for level in LEVELS:
+        if level != column.kinematics:
+            yield Variant(f"kinematics {level}", _replacing(column, {"kinematics": level}))
+    for there, name, fields in switches:
+        if there:
+            yield Variant(name, _replacing(column, fields))
+    for name in VERTICAL:
+        if name in scene.loads:
+            yield Variant(f"no {name}", lambda: column, name)
+    if moving:
+        yield Variant(f"rotary inertia x {LITTLE_INERTIA:g}", lambda: _little_inertia(column))
+        if isinstance(column.damping, Damping) and column.damping.stiffness:
+            tangent = not column.damping.tangent
+            other = dataclasses.replace(column.damping, tangent=tangent)
+            name = f"damping of {'tangent' if tangent else 'initial'} stiffness"
+            yield Variant(name, _replacing(column, {"damping": other}))
+    yield Variant(f"{2 * column.n} bodies", lambda: split_bodies(column))
+
+
+def _replacing(column: Column, fields: dict[str, object]) -> Callable[[], Column]:
+    return lambda: dataclasses.replace(column, **fields)
+
+
+def find_physics(
+    scene: Scene,
+    look: Probe | None,
+    reference: Reference | None,
+    runs: list[Run],
+    budget: Budget,
+    tolerance: float | None,
+    axial: Spring | None,
+    told: Callable[[str], None],
+) -> Physics | str:
+    """Return what each part of the model changes, or why that is not known."""
+    several = list(variants(scene, axial))
+    weight = len(several) + TWICE_THE_BODIES + 1
+    base = _base(scene, look, reference, runs, budget.left() / weight)
+    if isinstance(base, str):
+        return base
+    resolution = math.nan
+    if reference is not None:
+        resolution = max(errors_of(base.answer, reference.answer).largest, reference.resolution)
+    limit = USUAL_TOLERANCE if tolerance is None else tolerance
+    effects = []
+    for variant in several:
+        told(f"physics: {variant.name}")
+        effects.append(_effect(scene, variant, base, look, budget, limit))
+    return Physics(tuple(effects), str(base.setting), resolution, limit)
+
+
+def _base(
+    scene: Scene, look: Probe | None, reference: Reference | None, runs: list[Run], seconds: float
+) -> Run | str:
+    """Return the run of the model as given that others are compared with.
+
+    Fine enough if that can be afforded, else the most accurate one that can; rk45 rather than
+    methods whose step the variants might not stand.
+    """
+    level = scene.column.kinematics
+    if scene.static:
+        fine = Setting("static", level, parts=4 if level == "finite" else 1)
+    else:
+        fine = Setting("rk45", level, tolerance=FINE)
+    if predicted(None, fine, look) < seconds:
+        run = scene.run(fine, REPEATS, seconds=seconds / REPEATS)
+        if run.answer is not None:
+            return run
+    done = [run for run in runs if run.answer is not None and run.setting.kinematics == level]
+    done = [run for run in done if run.seconds < seconds]
+    # An implicit step stands any variant; a fixed explicit one may be beyond the limit.
+    for methods in (("rk45",), IMPLICIT, ("rk4", "static", "auto")):
+        able = [run for run in done if run.setting.method in methods]
+        if able and reference is not None:
+            return min(able, key=lambda run: errors_of(run.answer, reference.answer).largest)
+        if able:
+            return able[-1]
+    return "no setting is cheap enough for the comparisons; give more budget"
+
+
+def _effect(
+    scene: Scene,
+    variant: Variant,
+    base: Run,
+    look: Probe | None,
+    budget: Budget,
+    tolerance: float,
+) -> Effect:
+    """Return what one change of the model changes in the answer."""
+    try:
+        column = variant.make()
+    except InputError as error:
+        return Effect(variant.name, status="refused", reason=str(error))
+    loads = {load: values for load, values in scene.loads.items() if load != variant.without}
+    other = dataclasses.replace(scene, loads=loads)
+    setting = dataclasses.replace(base.setting, kinematics=column.kinematics)
+    if column.kinematics == "finite" and setting.method in IMPLICIT:
+        setting = Setting("rk45", "finite", tolerance=1e-6)
+    cost = base.seconds if setting.method == base.setting.method else look.seconds(setting)
+    if column.n > scene.column.n:
+        cost *= TWICE_THE_BODIES
+    if cost > budget.left():
+        return Effect(variant.name, status="skipped", reason=too_expensive(cost, budget.left()))
+    run = other.run(setting, REPEATS, column, base.seconds)
+    while run.status == "refused" and setting.method == "rk4" and setting.dt > base.setting.dt / 64:
+        # Beyond the limit of stability of this model.
+        setting = dataclasses.replace(setting, dt=setting.dt / 2)
+        run = other.run(setting, REPEATS, column, base.seconds)
+    if run.answer is None:
+        return Effect(variant.name, status=run.status, reason=run.reason)
+    return _compare(variant.name, run, base, tolerance)
+
+
+def _compare(name: str, run: Run, base: Run, tolerance: float) -> Effect:
+    old, new = base.answer, run.answer
+
+    def change(quantity: Callable[[Answer], float], scale: float) -> float:
+        return (quantity(new) - quantity(old)) / scale if scale > 0 else 0.0
+
+    effect = Effect(
+        name,
+        peak=change(lambda a: a.peak, old.peak),
+        residual=change(lambda a: a.residual, old.peak),
+        moment=change(lambda a: a.peak_moment, old.peak_moment),
+        energy=change(lambda a: a.energy, old.largest_energy),
+        history=errors_of(new, old).response_rms,
+        time_ratio=run.seconds / base.seconds,
+        status=run.status,
+    )
+    ends = new.response.size == old.response.size
+    return dataclasses.replace(effect, matters=bool(effect.largest > tolerance or not ends))

@@ -1,0 +1,271 @@
+"""The reference of a trade: two independent methods, refined until they agree."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from rbsdem.errors import RbsdemError
+from rbsdem.trade.answer import Answer, Run, Setting, errors_of
+from rbsdem.trade.ladder import IMPLICIT, Budget, Probe, predicted
+from rbsdem.trade.scene import Scene
+
+#: The rungs of the methods that a reference is made of: first tolerance of rk45 (each next a
+#: hundredth, then the least that it takes), first share of the limit or of the interval.
+FIRST_TOLERANCE, LEAST_TOLERANCE, FIRST_SHARE = 1e-8, 1e-13, 16
+
+#: A refinement that does not bring the two closer by this factor has made no way.
+WAY = 0.7
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The solution that errors are measured against.
+
+    Attributes
+    ----------
+    first, second : str
+        The two settings that were compared; the first one is the reference.
+    digits : float
+        Digits to which their responses agree: -log10 of the largest difference at any time of the
+        loading over the peak.
+    moment_digits, energy_digits, peak_digits : float
+        The same of base moment (rms), energy at the end and peak.
+    wanted : float
+        Digits that were asked for.
+    seconds : float
+        Wall time of the finest run of the first [s].
+    note : str
+        What is to be known of it.
+    explicit : bool or None
+        Whether it is of explicit methods; None if static, or of both kinds.
+    answer : Answer
+        The solution.
+    """
+
+    first: str
+    second: str
+    digits: float
+    moment_digits: float
+    energy_digits: float
+    peak_digits: float
+    wanted: float
+    seconds: float
+    note: str
+    explicit: bool | None
+    answer: Answer = field(repr=False, compare=False)
+
+    @property
+    def reached(self) -> bool:
+        """Whether the two agree as was asked for."""
+        return self.digits >= self.wanted
+
+    @property
+    def resolution(self) -> float:
+        """Errors below this say nothing: the two methods differ by as much."""
+        worst = min(self.digits, self.moment_digits, self.energy_digits, self.peak_digits)
+        return 10.0**-worst
+
+
+class _Ladder:
+    """One method of the reference, refined step by step."""
+
+    def __init__(self, settings: list[Setting], look: Probe | None) -> None:
+        self.settings, self.look = settings, look
+        self.place = -1
+        self.run: Run | None = None
+        #: How far the answer moved with the last refinement.
+        self.moved = math.inf
+        self.trouble = ""
+
+    def cost(self) -> float:
+        """Return what the next rung takes [s]; infinite if there is none."""
+        if self.place + 1 >= len(self.settings) or self.trouble:
+            return math.inf
+        return predicted(self.run, self.settings[self.place + 1], self.look)
+
+    def refine(self, scene: Scene) -> None:
+        """Take the next rung."""
+        self.place += 1
+        run = scene.run(self.settings[self.place])
+        if run.answer is None:
+            self.trouble = run.reason
+            return
+        if self.run is not None:
+            self.moved = errors_of(run.answer, self.run.answer).response_max
+        self.run = run
+
+
+def digits(difference: float) -> float:
+    """Return the digits that a relative difference leaves, at most those of the arithmetic."""
+    return -math.log10(max(difference, 1e-16)) if math.isfinite(difference) else 0.0
+
+
+def find_reference(
+    scene: Scene,
+    look: Probe | None,
+    budget: Budget,
+    share: float,
+    wanted: float,
+    told: Callable[[str], None],
+) -> Reference | str:
+    """Return the reference, or why there is none."""
+    if scene.static:
+        return _static_reference(scene, wanted, told)
+    candidates = _candidates(scene, look)
+    left = budget.left(share)
+    able = [ladder for ladder in candidates if ladder.cost() < 0.25 * left]
+    if len(able) < 2:
+        cheapest = sorted(candidates, key=_Ladder.cost)[:2]
+        able = [ladder for ladder in cheapest if ladder.cost() < left]
+    pair = able[:2]
+    for ladder in pair:
+        told(f"reference: {ladder.settings[0]}")
+        ladder.refine(scene)
+    for ladder in able:
+        # Another one in place of one that cannot.
+        if ladder not in pair and any(other.run is None for other in pair):
+            ladder.refine(scene)
+            pair.append(ladder)
+    pair = [ladder for ladder in pair if ladder.run is not None][:2]
+    if len(pair) < 2:
+        reasons = [ladder.trouble for ladder in candidates if ladder.trouble]
+        return reasons[0] if reasons else "the budget does not allow two methods; give more of it"
+    _bring_together(scene, pair, budget, share, wanted, told)
+    return _verdict(pair, wanted)
+
+
+def _candidates(scene: Scene, look: Probe) -> list[_Ladder]:
+    """Return the methods that a reference can be made of, most accurate ones first."""
+    level = scene.column.kinematics
+    tolerances = [FIRST_TOLERANCE]
+    while tolerances[-1] > LEAST_TOLERANCE:
+        tolerances.append(max(tolerances[-1] / 100, LEAST_TOLERANCE))
+    found = [[Setting("rk45", level, tolerance=t) for t in tolerances]]
+    parts = max(math.ceil(look.interval / look.limit), 1) * FIRST_SHARE
+    shares = [parts * 2**i for i in range(10)]
+    found.append([Setting("rk4", level, dt=look.interval / p, events="located") for p in shares])
+    if level != "finite" and math.isfinite(look.implicit):
+        # As long as they may be in the explicit methods, and shorter.
+        longest = min(look.interval, max(look.duration / 2000, look.limit))
+        parts = max(math.ceil(look.interval / longest), 1) * 2
+        shares = [parts * 2**i for i in range(14)]
+        for method in ("generalised_alpha", "newmark"):
+            found.append([Setting(method, level, dt=look.interval / p) for p in shares])
+    return [_Ladder(settings, look) for settings in found]
+
+
+def _bring_together(
+    scene: Scene,
+    pair: list[_Ladder],
+    budget: Budget,
+    share: float,
+    wanted: float,
+    told: Callable[[str], None],
+) -> None:
+    """Refine both methods in turn until they agree or make no way."""
+    apart = errors_of(pair[0].run.answer, pair[1].run.answer).response_max
+    idle = 0
+    while digits(apart) < wanted and idle < 4:
+        # The one that is further from its own limit, as far as is known; else the cheaper one.
+        ready = [ladder for ladder in pair if ladder.cost() < budget.left(share)]
+        if not ready:
+            return
+        ladder = max(ready, key=lambda one: (one.moved, -one.cost()))
+        told(f"reference: {ladder.settings[ladder.place + 1]}")
+        ladder.refine(scene)
+        now = errors_of(pair[0].run.answer, pair[1].run.answer).response_max
+        idle = idle + 1 if now > WAY * apart else 0
+        apart = min(apart, now)
+
+
+def _verdict(pair: list[_Ladder], wanted: float) -> Reference:
+    """Compare the finest runs; the reference is the one that its last refinement moved less."""
+    first, second = sorted(pair, key=lambda ladder: ladder.moved)
+    return compare(first.run, second.run, wanted, "")
+
+
+def compare(first: Run, second: Run, wanted: float, note: str) -> Reference:
+    """Return the reference that two runs make."""
+    apart = errors_of(second.answer, first.answer)
+    parts = [note] if note else []
+    if digits(apart.response_max) < wanted:
+        parts.append(
+            f"the two agree to {digits(apart.response_max):.1f} digits only, "
+            f"{wanted:g} were wanted: errors below {apart.largest:.0e} say nothing"
+        )
+    kind = None
+    implicit = [run.setting.method in IMPLICIT for run in (first, second)]
+    if first.setting.method != "static" and any(implicit) == all(implicit):
+        kind = not implicit[0]
+    if all(implicit):
+        parts.append("both methods are implicit and share the solver of the equations")
+    if first.answer.response.size != second.answer.response.size:
+        parts.append("the two do not end at the same time; the rows of both are compared")
+    return Reference(
+        str(first.setting),
+        str(second.setting),
+        digits(apart.response_max),
+        digits(apart.moment),
+        digits(apart.energy),
+        digits(apart.peak),
+        wanted,
+        first.seconds,
+        "; ".join(parts),
+        kind,
+        first.answer,
+    )
+
+
+def _static_reference(scene: Scene, wanted: float, told: Callable[[str], None]) -> Reference | str:
+    """Return the path by small increments, and what the inverse drive makes of it.
+
+    The forces that driven displacements give are put in as driven forces, or the other way round:
+    another solution of the same equations, which must give back what was driven. Where the force
+    falls it cannot be driven; then the path is compared with that of longer increments.
+    """
+    level = scene.column.kinematics
+    told("reference: static")
+    runs = []
+    for parts in (16, 4, 1) if level == "finite" else (1, 4):
+        run = scene.run(Setting("static", level, parts=parts))
+        if run.answer is None:
+            trouble = run.reason
+            continue
+        back = _inverse(scene, run.answer, parts)
+        if back is not None:
+            return compare(run, back, wanted, "the second drives the response of the first")
+        runs.append(run)
+    if len(runs) < 2:
+        return trouble
+    return compare(*runs[:2], wanted, "the response cannot be driven back; increments are compared")
+
+
+def _inverse(scene: Scene, answer: Answer, parts: int) -> Run | None:
+    """Return the path driven by the response, its answer in what was driven first."""
+    name, path = next(iter(scene.loads.items()))
+    other = "force" if name == "displacement" else "displacement"
+    rows = answer.response.size
+    if np.any(np.diff(answer.response) * np.diff(path[:rows]) < 0):
+        # The force falls, or the displacement goes back: driven by it, the column goes elsewhere.
+        return None
+    inverse = Scene(scene.column, None, {other: answer.response})
+    try:
+        back = inverse.run(Setting("static", scene.column.kinematics, parts=parts))
+    except RbsdemError:
+        return None
+    if back.answer is None or back.answer.response.size != rows:
+        return None
+    # What came back against what was driven, on the scale of the response.
+    lost = (back.answer.response - path[:rows]) / max(np.abs(path).max(), 1e-300)
+    response = answer.response + lost * answer.peak
+    setting = Setting(f"static driven by {other}", scene.column.kinematics)
+    return Run(
+        setting,
+        replace(back.answer, response=response),
+        back.seconds,
+        1,
+    )

@@ -1,0 +1,176 @@
+"""A trade as tables and as a report on the terminal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from rbsdem.errors import InputError
+from rbsdem.trade.ladder import Budget
+from rbsdem.trade.rows import seconds_text
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from rbsdem.trade import Trade
+    from rbsdem.trade.rows import Row
+
+
+def need_rich() -> Any:
+    """Return rich, or raise `ImportError` with the way to get it."""
+    try:
+        import rich.box  # noqa: PLC0415
+        import rich.progress  # noqa: PLC0415
+        import rich.table  # noqa: PLC0415
+    except ImportError as error:
+        raise ImportError(
+            "tables and progress need rich, which is not installed: pip install rbsdem[plot]"
+        ) from error
+    return rich
+
+
+@contextmanager
+def telling(clock: Budget) -> Iterator[Callable[[str], None]]:
+    """Show on stderr what is being done and how much of the budget is used.
+
+    Drawn between runs only, so that no thread disturbs what is timed.
+    """
+    rich = need_rich()
+    from rich.console import Console  # noqa: PLC0415
+
+    bar = rich.progress.Progress(
+        rich.progress.BarColumn(bar_width=20),
+        rich.progress.TextColumn("{task.completed:.0f} of {task.total:.0f} s  {task.description}"),
+        console=Console(stderr=True),
+        auto_refresh=False,
+        transient=True,
+    )
+    with bar:
+        task = bar.add_task("", total=clock.seconds)
+
+        def told(text: str) -> None:
+            bar.update(task, completed=clock.used(), description=text, refresh=True)
+
+        yield told
+
+
+def settings_table(trade: Trade) -> Table:
+    """Return the settings as a table of rich."""
+    rich = need_rich()
+    table = rich.table.Table(box=rich.box.SIMPLE_HEAD, padding=(0, 1), show_edge=False)
+    table.add_column("")
+    table.add_column("Setting", no_wrap=True)
+    table.add_column("Time", justify="right", no_wrap=True)
+    names = (trade.response.capitalize(), "Moment", "Energy", "Peak", "Error", "To finer")
+    for name in names:
+        table.add_column(name, justify="right", no_wrap=True)
+    floor = trade.reference.resolution if trade.reference else 0.0
+    family = None
+    for row in trade.rows:
+        if row.setting.family != family:
+            family = row.setting.family
+            given = " (as given)" if row.setting.own else ""
+            table.add_row("", f"[bold]{row.setting.name}[/bold], {row.setting.kinematics}{given}")
+        mark = "*" if row.pareto else ""
+        chosen = trade.choice is not None and trade.choice.row == row
+        if row.status in ("completed", "collapsed"):
+            errors = (row.response_rms, row.moment, row.energy, row.peak, row.error, row.move)
+            cells = [seconds_text(row.seconds), *(_number(value, floor) for value in errors)]
+        else:
+            cells = ["-", f"[dim]{row.status}[/dim]"]
+        style = "bold" if chosen else None
+        table.add_row(mark, f"  {row.setting.value}", *cells, style=style)
+    return table
+
+
+def reasons(rows: Sequence[Row]) -> list[str]:
+    """Return a line for each setting that has no answer, those of the same reason together."""
+    found: dict[str, list[Row]] = {}
+    for row in rows:
+        if row.status not in ("completed", "collapsed"):
+            found.setdefault(f"{row.status}: {row.reason}", []).append(row)
+    return [f"{', '.join(str(row.setting) for row in same)} {why}" for why, same in found.items()]
+
+
+def report(trade: Trade, title: str) -> None:
+    """Print everything."""
+    need_rich()
+    from rich.console import Console  # noqa: PLC0415
+
+    out = Console(highlight=False)
+    if not out.is_terminal:
+        out = Console(highlight=False, width=132)
+
+    def say(text: str = "") -> None:
+        out.print(text, markup=False, soft_wrap=not out.is_terminal)
+
+    out.print(f"[bold]{escaped(title)}[/bold]\n")
+    reference = trade.reference
+    if reference is not None:
+        say(f"Reference: {reference.first}, against {reference.second}.")
+        say(
+            f"They agree to {reference.digits:.1f} digits in {trade.response}, "
+            f"{reference.moment_digits:.1f} in base moment, {reference.energy_digits:.1f} in "
+            f"energy and {reference.peak_digits:.1f} in peak."
+        )
+        if reference.note:
+            say(f"Note: {reference.note}.")
+    say()
+    out.print(trade.table())
+    say("\n* on the Pareto front. Errors are relative to the reference's peaks; Error is the")
+    say("largest of the four before it; To finer: what the next finer setting changes.")
+    for reason in reasons(trade.rows):
+        say(f"  {reason}")
+    if trade.choice is not None:
+        say(f"\n{str(trade.choice).capitalize()}.")
+    if trade.physics is not None:
+        physics = trade.physics
+        say("\nWhat parts of the model change, all of it else as given:\n")
+        out.print(trade.physics_table())
+        say(f"\nSolved by {physics.setting}, error {physics.resolution:.1e}. What changes peak,")
+        say(f"base moment, energy or residual by more than {physics.tolerance:g} matters.")
+        for effect in physics.effects:
+            if effect.matters is None:
+                say(f"  {effect.part} {effect.status}: {effect.reason}")
+    for note in trade.notes:
+        say(f"Note: {note}.")
+    say(f"\nDone in {trade.seconds:.1f} s of {trade.budget:g} s.")
+
+
+def escaped(text: str) -> str:
+    """Return a text in which rich finds no markup."""
+    from rich.markup import escape  # noqa: PLC0415
+
+    return escape(text)
+
+
+def physics_table(trade: Trade) -> Table:
+    """Return the effects of the parts of the model as a table of rich."""
+    if trade.physics is None:
+        raise InputError("trade: the parts of the model were not compared; see notes")
+    rich = need_rich()
+    table = rich.table.Table(box=rich.box.SIMPLE_HEAD, padding=(0, 1), show_edge=False)
+    table.add_column("Changed", no_wrap=True)
+    for name in ("Peak", "Residual", "Base moment", "Energy", "Time"):
+        table.add_column(f"{name}\n{'ratio' if name == 'Time' else '%'}", justify="right")
+    table.add_column("Matters")
+    for effect in trade.physics.effects:
+        if effect.matters is None:
+            table.add_row(effect.part, f"[dim]{effect.status}")
+            continue
+        changes = (effect.peak, effect.residual, effect.moment, effect.energy)
+        cells = [f"{100 * change:+.2f}" for change in changes]
+        word = "[bold]yes[/bold]" if effect.matters else "no"
+        table.add_row(effect.part, *cells, f"{effect.time_ratio:.2f}", word)
+    return table
+
+
+def _number(value: float, floor: float) -> str:
+    """Return an error; gray below the agreement of the reference."""
+    if math.isnan(value):
+        return ""
+    if math.isinf(value):
+        return "ends"
+    return f"{value:.1e}" if value >= floor else f"[dim]{value:.1e}[/dim]"

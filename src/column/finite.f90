@@ -1,0 +1,376 @@
+!> Motion of the chain with exact rotations, in a number of operations proportional to n.
+!>
+!> Body i has the axis e_i = (sin th_i, cos th_i) and the normal t_i = (cos th_i, -sin th_i), th_i = sum of
+!> phi; it spins with om_i = th_i' (e' = om t, t' = -om e). Its bottom is at joint i,
+!>
+!>     b_i = T_{i-1} + u_i t_{i-1} + w_i e_{i-1},  c_i = b_i + lower_i e_i,  T_i = b_i + length_i e_i
+!>
+!> The mass matrix of the centroids is diagonal, so every body is looked at by itself: joint i acts on
+!> it at its bottom with -V_i t_{i-1} - N_i e_{i-1} and -M_i, joint i + 1 with the opposite. Forces at the
+!> top are those of a joint n + 1. The accelerations of the unknowns are those of the bottom of a body
+!> relative to the top of the one below,
+!>
+!>     t_{i-1} . (b_i'' - T_{i-1}'') = u'' + 2 w' om + w om' - u om^2
+!>     e_{i-1} . (b_i'' - T_{i-1}'') = w'' - 2 u' om - u om' - w om^2    (om of body i - 1)
+!>
+!> all reckoned in the directions of the two bodies, so that only sine and cosine of phi_i are needed. A
+!> field of acceleration that all bodies share (ground, weight) is felt by the first joint alone. No mass
+!> matrix is built and none is factored.
+module rbs_column_finite
+   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+   use rbs_base_kinds, only: wp
+   use rbs_base_linalg, only: solve_tridiagonal
+   use rbs_column_column, only: column_type
+   use rbs_column_finite_mass, only: finite_mass
+   implicit none
+   private
+
+   public :: finite_work, finite_acceleration
+   public :: finite_kinetic, finite_potential, finite_power, finite_top, finite_mass
+
+   !> Arrays of `finite_acceleration`, allocated once.
+   type :: finite_work
+      !> Axial force of each joint, tension positive (n) [N]: the reaction of joints that do not open
+      real(wp), allocatable :: axial(:)
+      !> Sine and cosine of the relative rotations (n)
+      real(wp), allocatable, private :: sine(:), cosine(:)
+      !> Equations of the reactions: diagonal (n) and the numbers beside it (n - 1 of n) [1/kg]
+      real(wp), allocatable, private :: diagonal(:), beside(:)
+   contains
+      procedure :: create
+   end type finite_work
+
+   !> A body on the way up the chain.
+   type :: moving_body
+      !> Absolute rotation [rad], its sine and cosine, and its rate [rad/s]
+      real(wp) :: rotation = 0.0_wp, s = 0.0_wp, c = 1.0_wp, spin = 0.0_wp
+      !> Velocity of the top [m/s]
+      real(wp) :: top(2) = 0.0_wp
+      !> Velocity of the centroid [m/s]
+      real(wp) :: centroid(2) = 0.0_wp
+   end type moving_body
+
+contains
+
+   subroutine create(self, n)
+      class(finite_work), intent(out) :: self
+      !> Number of bodies
+      integer, intent(in) :: n
+
+      allocate (self%axial(n), self%sine(n), self%cosine(n), self%diagonal(n), self%beside(n))
+   end subroutine create
+
+   !> Acceleration of the unknowns, relative to the ground.
+   !>
+   !> Damping in proportion to the mass, -alpha (m v_c, I om) on every body, is -alpha M q' in the unknowns:
+   !> it takes alpha q' from the accelerations.
+   subroutine finite_acceleration(column, work, q, v, f, load, a)
+      type(column_type), intent(in) :: column
+      type(finite_work), intent(inout) :: work
+      !> Unknowns, their velocities, and the forces of the joints conjugate to them, springs and damping
+      !> (unknowns)
+      real(wp), intent(in), contiguous :: q(:), v(:), f(:)
+      !> Lateral force at the top [N], acceleration of the ground in x and in y [m/s2], axial load that is
+      !> added to that of the column, compression positive [N]
+      real(wp), intent(in) :: load(4)
+      !> Accelerations (unknowns)
+      real(wp), intent(out), contiguous :: a(:)
+      logical :: positive
+      integer :: n
+
+      n = column%n
+      call accelerate(column, work, q, v, f, load, a)
+      if (.not. column%opens) then
+         if (n == 1) then
+            work%axial(1) = work%axial(1)/work%diagonal(1)
+         else
+            call solve_tridiagonal(work%diagonal, work%beside, work%axial, positive)
+            ! Only numbers beyond all meaning get here; the caller sees that the state is not finite.
+            if (.not. positive) work%axial = ieee_value(a(1), ieee_quiet_nan)
+         end if
+         call add_reactions(column, work, q, a)
+      end if
+      if (column%mass_damping > 0.0_wp) a = a - column%mass_damping*v
+   end subroutine finite_acceleration
+
+   !> Accelerations under the known forces. If the joints do not open the axial forces are not known: they
+   !> are left out, and the equations are set up which say that the accelerations w'' vanish,
+   !> w''(N) = w''(0) - G N = 0; `work%axial` is then w''(0).
+   subroutine accelerate(column, work, q, v, f, load, a)
+      type(column_type), intent(in) :: column
+      type(finite_work), intent(inout) :: work
+      real(wp), intent(in), contiguous :: q(:), v(:), f(:)
+      real(wp), intent(in) :: load(4)
+      real(wp), intent(out), contiguous :: a(:)
+      !> Joint below and above the body: forces, slip and opening
+      real(wp) :: shear, axial, moment, slip, opening
+      real(wp) :: shear_above, axial_above, moment_above, slip_above, opening_above
+      !> The body: rates of rotation, and those of the body below
+      real(wp) :: spin, turn, spin_below, turn_below
+      !> Acceleration of the bottom of the body, along t and e of the body below, and of the top of that
+      real(wp) :: bottom(2), below(2)
+      real(wp) :: per_mass, per_inertia, s, c, separation, flexibility, rotation
+      integer :: i, n
+
+      n = column%n
+      shear = f(1)
+      moment = f(n + 1)
+      slip = q(1)
+      axial = 0.0_wp
+      opening = 0.0_wp
+      opening_above = 0.0_wp
+      axial_above = 0.0_wp
+      if (column%opens) then
+         axial = f(2*n + 1)
+         opening = q(2*n + 1)
+      end if
+      rotation = 0.0_wp
+      spin_below = 0.0_wp
+      turn_below = 0.0_wp
+      flexibility = 0.0_wp
+      ! Seen from a frame that falls, the ground is what accelerates, upwards by the weight.
+      below = [load(2), load(3) + column%gravity]
+      do i = 1, n
+         s = sin(q(n + i))
+         c = cos(q(n + i))
+         rotation = rotation + q(n + i)
+         if (i < n) then
+            shear_above = f(i + 1)
+            moment_above = f(n + i + 1)
+            slip_above = q(i + 1)
+            if (column%opens) then
+               axial_above = f(2*n + i + 1)
+               opening_above = q(2*n + i + 1)
+            end if
+         else
+            moment_above = 0.0_wp
+            slip_above = 0.0_wp
+            opening_above = 0.0_wp
+            if (n == 1) then
+               call force_at_top(column, load, s, c, shear_above, axial_above)
+            else
+               call force_at_top(column, load, sin(rotation), cos(rotation), shear_above, axial_above)
+            end if
+         end if
+         per_mass = 1.0_wp/column%mass(i)
+         per_inertia = 1.0_wp/column%inertia(i)
+         spin = spin_below + v(n + i)
+         associate (lower => column%lower(i), upper => column%upper(i))
+            ! Moments about the centroid, of joint i at its bottom and of joint i + 1.
+            turn = (lower*(shear*c - axial*s) - moment &
+                    + shear_above*(upper + opening_above) - axial_above*slip_above + moment_above)*per_inertia
+            ! b'' = c'' - lower (om' t - om^2 e), along t and e of the body below.
+            bottom(1) = (shear_above*c + axial_above*s - shear)*per_mass + lower*(spin**2*s - turn*c)
+            bottom(2) = (axial_above*c - shear_above*s - axial)*per_mass + lower*(spin**2*c + turn*s)
+            a(i) = bottom(1) - below(1) + slip*spin_below**2
+            a(n + i) = turn - turn_below
+            separation = bottom(2) - below(2) + 2.0_wp*v(i)*spin_below + slip*turn_below
+            if (column%opens) then
+               a(i) = a(i) - 2.0_wp*v(2*n + i)*spin_below - opening*turn_below
+               a(2*n + i) = separation + opening*spin_below**2
+            else
+               work%sine(i) = s
+               work%cosine(i) = c
+               work%axial(i) = separation
+               work%diagonal(i) = flexibility + per_mass + (lower*s)**2*per_inertia
+               work%beside(i) = lower*s*slip_above*per_inertia - c*per_mass
+               flexibility = per_mass + slip_above**2*per_inertia
+            end if
+            ! T'' = c'' + upper (om' t - om^2 e), along its own t and e.
+            below(1) = (shear_above - shear*c + axial*s)*per_mass + upper*turn
+            below(2) = (axial_above - shear*s - axial*c)*per_mass - upper*spin**2
+         end associate
+         shear = shear_above
+         axial = axial_above
+         moment = moment_above
+         slip = slip_above
+         opening = opening_above
+         spin_below = spin
+         turn_below = turn
+      end do
+   end subroutine accelerate
+
+   !> Force at the top along t_n and e_n. The weight of all masses is in the field of acceleration; that of
+   !> the lumped mass belongs to the axial load and is taken away again here.
+   pure subroutine force_at_top(column, load, s, c, along_t, along_e)
+      type(column_type), intent(in) :: column
+      real(wp), intent(in) :: load(4)
+      !> Sine and cosine of the rotation of the top body
+      real(wp), intent(in) :: s, c
+      !> Components of the force [N]
+      real(wp), intent(out) :: along_t, along_e
+      real(wp) :: down, axial
+
+      axial = column%axial_load + load(4)
+      down = column%weight(column%n) - column%gravity*column%mass(column%n)
+      if (.not. column%axial_follows) down = down + axial
+      along_t = down*s
+      along_e = -down*c
+      if (column%axial_follows) along_e = along_e - axial
+      if (column%force_follows) then
+         along_t = along_t + load(1)
+      else
+         along_t = along_t + load(1)*c
+         along_e = along_e + load(1)*s
+      end if
+   end subroutine force_at_top
+
+   !> Add what the reactions of joints that do not open give to the accelerations.
+   subroutine add_reactions(column, work, q, a)
+      type(column_type), intent(in) :: column
+      type(finite_work), intent(in) :: work
+      real(wp), intent(in), contiguous :: q(:)
+      real(wp), intent(inout), contiguous :: a(:)
+      real(wp) :: turn, turn_below, below, above, along
+      integer :: i, n
+
+      n = column%n
+      turn_below = 0.0_wp
+      below = 0.0_wp
+      do i = 1, n
+         turn = column%lower(i)*work%sine(i)*work%axial(i)
+         above = 0.0_wp
+         if (i < n) then
+            above = work%axial(i + 1)
+            turn = turn + q(i + 1)*above
+         end if
+         turn = -turn/column%inertia(i)
+         along = work%sine(i)/column%mass(i)
+         a(i) = a(i) + above*along - column%lower(i)*work%cosine(i)*turn - below
+         a(n + i) = a(n + i) + turn - turn_below
+         below = work%axial(i)*along + column%upper(i)*turn
+         turn_below = turn
+      end do
+   end subroutine add_reactions
+
+   !> Go up by one body: rotation and velocities of body i from those of body i - 1.
+   pure subroutine climb(column, q, v, i, body)
+      type(column_type), intent(in) :: column
+      real(wp), intent(in), contiguous :: q(:), v(:)
+      integer, intent(in) :: i
+      type(moving_body), intent(inout) :: body
+      real(wp) :: along_t, along_e, bottom(2)
+      integer :: n
+
+      n = column%n
+      along_t = v(i)
+      along_e = -q(i)*body%spin
+      if (column%opens) then
+         along_t = along_t + q(2*n + i)*body%spin
+         along_e = along_e + v(2*n + i)
+      end if
+      bottom(1) = body%top(1) + along_t*body%c + along_e*body%s
+      bottom(2) = body%top(2) - along_t*body%s + along_e*body%c
+      body%rotation = body%rotation + q(n + i)
+      body%spin = body%spin + v(n + i)
+      body%s = sin(body%rotation)
+      body%c = cos(body%rotation)
+      along_t = column%lower(i)*body%spin
+      body%centroid(1) = bottom(1) + along_t*body%c
+      body%centroid(2) = bottom(2) - along_t*body%s
+      along_t = column%length(i)*body%spin
+      body%top(1) = bottom(1) + along_t*body%c
+      body%top(2) = bottom(2) - along_t*body%s
+   end subroutine climb
+
+   !> Kinetic energy relative to the ground [J].
+   pure real(wp) function finite_kinetic(column, q, v) result(energy)
+      type(column_type), intent(in) :: column
+      !> Unknowns and their velocities (unknowns)
+      real(wp), intent(in), contiguous :: q(:), v(:)
+      type(moving_body) :: body
+      integer :: i
+
+      energy = 0.0_wp
+      do i = 1, column%n
+         call climb(column, q, v, i, body)
+         energy = energy + column%mass(i)*(body%centroid(1)**2 + body%centroid(2)**2) &
+                  + column%inertia(i)*body%spin**2
+      end do
+      energy = 0.5_wp*energy
+   end function finite_kinetic
+
+   !> Potential of the column's axial load, unless it follows the top, and of the weight; zero for the
+   !> straight closed column [J].
+   pure real(wp) function finite_potential(column, q) result(energy)
+      type(column_type), intent(in) :: column
+      !> Unknowns (unknowns)
+      real(wp), intent(in), contiguous :: q(:)
+      real(wp) :: rotation, half(2), drop, rise, s, c
+      integer :: i, n
+
+      n = column%n
+      energy = 0.0_wp
+      rotation = 0.0_wp
+      rise = 0.0_wp
+      s = 0.0_wp
+      c = 1.0_wp
+      do i = 1, n
+         rise = rise - q(i)*s
+         if (column%opens) rise = rise + q(2*n + i)*c
+         rotation = rotation + q(n + i)
+         ! 1 - cos without cancellation
+         half = [sin(0.5_wp*rotation), cos(0.5_wp*rotation)]
+         drop = column%length(i)*2.0_wp*half(1)**2
+         s = 2.0_wp*half(1)*half(2)
+         c = 1.0_wp - 2.0_wp*half(1)**2
+         energy = energy + column%weight(i)*(rise - 0.5_wp*drop)
+         rise = rise - drop
+      end do
+      if (.not. column%axial_follows) energy = energy + column%axial_load*rise
+   end function finite_potential
+
+   !> Power of the loads that are in no potential: lateral force, ground, additional axial load, and the
+   !> column's axial load if it follows the top [W].
+   pure real(wp) function finite_power(column, q, v, load) result(power)
+      type(column_type), intent(in) :: column
+      !> Unknowns and their velocities (unknowns)
+      real(wp), intent(in), contiguous :: q(:), v(:)
+      !> As for `finite_acceleration`
+      real(wp), intent(in) :: load(4)
+      type(moving_body) :: body
+      integer :: i
+
+      power = 0.0_wp
+      do i = 1, column%n
+         call climb(column, q, v, i, body)
+         power = power - column%mass(i)*(load(2)*body%centroid(1) + load(3)*body%centroid(2))
+      end do
+      if (column%force_follows) then
+         power = power + load(1)*(body%top(1)*body%c - body%top(2)*body%s)
+      else
+         power = power + load(1)*body%top(1)
+      end if
+      if (column%axial_follows) then
+         power = power - (column%axial_load + load(4))*(body%top(1)*body%s + body%top(2)*body%c)
+      else
+         power = power - load(4)*body%top(2)
+      end if
+   end function finite_power
+
+   !> Position of the top [m].
+   pure function finite_top(column, q) result(top)
+      type(column_type), intent(in) :: column
+      !> Unknowns (unknowns)
+      real(wp), intent(in), contiguous :: q(:)
+      !> x and y
+      real(wp) :: top(2)
+      real(wp) :: rotation, s, c
+      integer :: i, n
+
+      n = column%n
+      top = 0.0_wp
+      rotation = 0.0_wp
+      s = 0.0_wp
+      c = 1.0_wp
+      do i = 1, n
+         top = top + q(i)*[c, -s]
+         if (column%opens) top = top + q(2*n + i)*[s, c]
+         rotation = rotation + q(n + i)
+         s = sin(rotation)
+         c = cos(rotation)
+         top = top + column%length(i)*[s, c]
+      end do
+   end function finite_top
+
+end module rbs_column_finite

@@ -1,0 +1,152 @@
+!> From a case file to everything that a run needs: the one reader of both doors.
+module rbs_io_case
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_io_loading_file, only: loading_values
+   use rbs_io_namelist, only: read_case
+   use rbs_loading_protocol, only: protocol_values
+   use rbs_loading_signal, only: signal_type
+   use rbs_solve_loads, only: loads_type
+   use rbs_solve_run, only: check_values
+   use rbs_spec_analysis, only: analysis_spec
+   use rbs_spec_case, only: case_spec
+   use rbs_spec_check, only: is_given
+   implicit none
+   private
+
+   public :: case_history, load_case
+
+   !> The loadings of a case.
+   type :: case_history
+      !> Common times (m) [s]; the numbers of the points of a static path
+      real(wp), allocatable :: time(:)
+      !> What is driven on a static path (m) [m or N]
+      real(wp), allocatable :: target(:)
+      !> What acts in time
+      type(loads_type) :: loads
+   end type case_history
+
+contains
+
+   !> Read a case and its loadings; all their faults come back as one error.
+   subroutine load_case(path, case, history, error)
+      character(len=*), intent(in) :: path
+      type(case_spec), intent(out) :: case
+      type(case_history), intent(out) :: history
+      type(error_type), allocatable, intent(out) :: error
+      type(message_list) :: messages
+      logical :: understood
+
+      call read_case(path, case, messages, understood)
+      if (understood) call load_values(case, path(:index(path, '/', back=.true.)), history, messages)
+      call messages%raise(error)
+      if (.not. allocated(error)) call cut_duration(case%analysis, history, error)
+   end subroutine load_case
+
+   !> Values of all loadings that are sound in themselves.
+   subroutine load_values(case, folder, history, messages)
+      type(case_spec), intent(in) :: case
+      character(len=*), intent(in) :: folder
+      type(case_history), intent(inout) :: history
+      type(message_list), intent(inout) :: messages
+      type(error_type), allocatable :: fault
+      type(message_list) :: own
+      type(signal_type) :: signal
+      real(wp), allocatable :: time(:), value(:)
+      integer :: i
+
+      do i = 1, case%loadings
+         associate (spec => case%loading(i))
+            own = message_list()
+            call spec%validate(case%analysis%dynamic(), own)
+            if (own%count > 0) cycle                ! reported already
+            if (spec%source == 'protocol') then
+               ! The height is in the amplitudes; a wrong one has been reported.
+               if (.not. ieee_is_finite(case%column%height)) cycle
+               if (case%column%height <= 0.0_wp) cycle
+               call protocol_values(spec, case%column%height, time, value, fault)
+            else
+               call loading_values(spec, folder, case%analysis%dynamic(), time, value, fault)
+            end if
+            if (.not. allocated(fault)) call check_values(value, 'loading: '//trim(spec%drive), fault)
+            if (allocated(fault)) then
+               call messages%add(fault%message)
+               cycle
+            end if
+            signal%time = time
+            signal%value = value
+            select case (spec%drive)
+            case ('force')
+               history%loads%force = signal
+            case ('ground')
+               history%loads%ground = signal
+            case ('vertical')
+               history%loads%vertical = signal
+            case ('axial')
+               history%loads%axial = signal
+            case default                            ! a displacement is no load
+            end select
+            call move_alloc(value, history%target)
+            call join_times(history%time, time)
+         end associate
+      end do
+      if (case%loadings == 0) then
+         call messages%add('the case has no loading; give it a group &loading')
+      end if
+   end subroutine load_values
+
+   !> Times of two loadings in one ascending list. Times that differ by round-off are one.
+   subroutine join_times(all_times, more)
+      real(wp), allocatable, intent(inout) :: all_times(:)
+      real(wp), intent(in) :: more(:)
+      real(wp), allocatable :: joined(:)
+      real(wp) :: same
+      integer :: i, j, n
+
+      if (.not. allocated(all_times)) then
+         all_times = more
+         return
+      end if
+      allocate (joined(size(all_times) + size(more)))
+      same = 1.0e-9_wp*min(minval(all_times(2:) - all_times(:size(all_times) - 1)), &
+                           minval(more(2:) - more(:size(more) - 1)))
+      i = 1
+      j = 1
+      n = 0
+      do while (i <= size(all_times) .or. j <= size(more))
+         n = n + 1
+         if (j > size(more)) then
+            joined(n) = all_times(i)
+            i = i + 1
+         else if (i > size(all_times)) then
+            joined(n) = more(j)
+            j = j + 1
+         else
+            joined(n) = min(all_times(i), more(j))
+            if (.not. all_times(i) > joined(n) + same) i = i + 1
+            if (.not. more(j) > joined(n) + same) j = j + 1
+         end if
+      end do
+      all_times = joined(:n)
+   end subroutine join_times
+
+   !> End the times where the user wants: earlier, or later with the last value held.
+   subroutine cut_duration(spec, history, error)
+      type(analysis_spec), intent(in) :: spec
+      type(case_history), intent(inout) :: history
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: finish
+
+      if (.not. spec%dynamic() .or. .not. is_given(spec%duration)) return
+      finish = history%time(1) + spec%duration
+      if (.not. finish > history%time(1)) then
+         call fatal_error(error, bad_input, 'analysis: duration = '//to_text(spec%duration)// &
+                          ' s is lost beside the time of the begin, '//to_text(history%time(1))//' s')
+         return
+      end if
+      history%time = [pack(history%time, history%time < finish), finish]
+   end subroutine cut_duration
+
+end module rbs_io_case

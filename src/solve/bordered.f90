@@ -1,0 +1,230 @@
+!> A symmetric band matrix with a border: the tangent of a column, and what drives it.
+!>
+!>     A x - a y = f,   c x = g
+!>
+!> A need not be positive definite, and may have no inverse where the force has its peak, while the whole
+!> has one. There a plain block elimination fails; the mixed one used here does not (W. Govaerts, Stable
+!> solvers and block elimination for bordered systems, SIAM J. Matrix Anal. Appl. 12 (1991) 469-483).
+module rbs_solve_bordered
+   use rbs_base_kinds, only: wp
+   use rbs_base_linalg, only: factor_band, solve_band, solve_general_band
+   implicit none
+   private
+
+   public :: bordered_band
+
+   !> A pivot below this share of the initial stiffness is round-off.
+   real(wp), parameter :: no_stiffness = 1.0e-12_wp
+
+   !> Added in proportion to the initial stiffness where elimination meets a zero: no more than round-off.
+   real(wp), parameter :: round_off = 8.0_wp*epsilon(1.0_wp)
+
+   !> If one step of refinement changes the answer by more than this share, there is none.
+   real(wp), parameter :: no_answer = 1.0e-3_wp
+
+   type :: bordered_band
+      !> Number of unknowns, and of diagonals below the main one
+      integer :: size = 0, width = 0
+      !> The matrix, to be filled before `factor` (width + 1, size): band(1 + i - j, j) = a(i, j)
+      real(wp), allocatable :: band(:, :)
+      !> Initial stiffness of the unknowns (size), to be given once: all is reckoned in shares of it
+      real(wp), allocatable :: stiffness(:)
+      !> Whether the matrix is positive definite, after `factor`
+      logical :: positive = .false.
+      !> One over root of the stiffness (size), factor (width + 1, size), and the matrix as elimination
+      !> takes it
+      real(wp), allocatable, private :: scale(:), cholesky(:, :), general(:, :)
+   contains
+      procedure :: create
+      procedure :: factor
+      procedure :: solve
+      procedure :: solve_bordered
+   end type bordered_band
+
+contains
+
+   subroutine create(self, width, stiffness)
+      class(bordered_band), intent(out) :: self
+      integer, intent(in) :: width
+      !> Initial stiffness of the unknowns, all positive
+      real(wp), intent(in) :: stiffness(:)
+
+      self%size = size(stiffness)
+      self%width = width
+      self%stiffness = stiffness
+      self%scale = 1.0_wp/sqrt(stiffness)
+      allocate (self%band(width + 1, self%size), self%cholesky(width + 1, self%size), source=0.0_wp)
+   end subroutine create
+
+   !> Scale the matrix and try its Cholesky factor.
+   subroutine factor(self)
+      class(bordered_band), intent(inout) :: self
+      integer :: i, j
+
+      do j = 1, self%size
+         do i = j, min(j + self%width, self%size)
+            self%band(1 + i - j, j) = self%band(1 + i - j, j)*(self%scale(i)*self%scale(j))
+         end do
+      end do
+      self%cholesky = self%band
+      call factor_band(self%cholesky, self%positive)
+      if (self%positive) self%positive = all(self%cholesky(1, :)**2 > no_stiffness)
+   end subroutine factor
+
+   !> Without border: A x = b.
+   subroutine solve(self, b, regular)
+      class(bordered_band), intent(inout) :: self
+      !> Right-hand sides (size, m), replaced by the solutions
+      real(wp), intent(inout), contiguous :: b(:, :)
+      logical, intent(out) :: regular
+
+      call scale_rows(self, b)
+      call solve_scaled(self, b, regular)
+      call scale_rows(self, b)
+   end subroutine solve
+
+   !> With border.
+   subroutine solve_bordered(self, column, row, f, g, x, y, regular)
+      class(bordered_band), intent(inout) :: self
+      !> The border: a and c (size)
+      real(wp), intent(in) :: column(:), row(:)
+      !> Right-hand sides (size, m), (m)
+      real(wp), intent(in) :: f(:, :), g(:)
+      !> Solutions (size, m), (m)
+      real(wp), intent(out), contiguous :: x(:, :)
+      real(wp), intent(out) :: y(:)
+      !> Whether there is one answer
+      logical, intent(out) :: regular
+      real(wp), allocatable :: border(:, :), flexible(:, :), right(:, :), more(:, :)
+      real(wp) :: change(size(g)), missing(size(g))
+      integer :: j
+
+      allocate (border(self%size, 2))
+      border(:, 1) = column*self%scale
+      border(:, 2) = row*self%scale
+      flexible = border
+      call solve_scaled(self, flexible, regular)
+      right = f
+      call scale_rows(self, right)
+      if (regular) call eliminate(self, border, flexible, right, g, x, y, regular)
+      if (.not. regular) return
+      if (.not. self%positive) then
+         ! What elimination left behind, once: also the proof that the answer is one.
+         do j = 1, size(g)
+            right(:, j) = right(:, j) - times(self, x(:, j)) + border(:, 1)*y(j)
+            missing(j) = g(j) - dot_product(border(:, 2), x(:, j))
+         end do
+         allocate (more, mold=right)
+         call eliminate(self, border, flexible, right, missing, more, change, regular)
+         do j = 1, size(g)
+            regular = regular .and. maxval(abs(more(:, j))) <= no_answer*maxval(abs(x(:, j)))
+         end do
+         if (.not. regular) return
+         x = x + more
+         y = y + change
+      end if
+      call scale_rows(self, x)
+   end subroutine solve_bordered
+
+   !> Mixed block elimination: once from the left, which gives most of y, and once from the right for
+   !> what is missing.
+   subroutine eliminate(self, border, flexible, f, g, x, y, regular)
+      type(bordered_band), intent(inout) :: self
+      !> Columns a and c, and A^-1 times them (size, 2)
+      real(wp), intent(in) :: border(:, :), flexible(:, :)
+      real(wp), intent(in) :: f(:, :), g(:)
+      real(wp), intent(out), contiguous :: x(:, :)
+      real(wp), intent(out) :: y(:)
+      logical, intent(out) :: regular
+      real(wp) :: from_left, from_right, more
+      integer :: j
+
+      from_left = dot_product(flexible(:, 2), border(:, 1))
+      from_right = dot_product(border(:, 2), flexible(:, 1))
+      regular = abs(from_left) > 0.0_wp .and. abs(from_right) > 0.0_wp
+      if (.not. regular) return
+      do j = 1, size(g)
+         y(j) = (g(j) - dot_product(flexible(:, 2), f(:, j)))/from_left
+         x(:, j) = f(:, j) + border(:, 1)*y(j)
+      end do
+      call solve_scaled(self, x, regular)
+      if (.not. regular) return
+      do j = 1, size(g)
+         more = (g(j) - dot_product(border(:, 2), x(:, j)))/from_right
+         x(:, j) = x(:, j) + flexible(:, 1)*more
+         y(j) = y(j) + more
+      end do
+   end subroutine eliminate
+
+   !> Solve with the scaled matrix.
+   subroutine solve_scaled(self, b, regular)
+      type(bordered_band), intent(inout) :: self
+      real(wp), intent(inout), contiguous :: b(:, :)
+      logical, intent(out) :: regular
+      real(wp), allocatable :: right(:, :)
+      integer :: j
+
+      regular = .true.
+      if (self%positive) then
+         do j = 1, size(b, 2)
+            call solve_band(self%cholesky, b(:, j))
+         end do
+         return
+      end if
+      right = b
+      call spread_band(self, 0.0_wp)
+      call solve_general_band(self%general, self%width, self%width, b, regular)
+      if (regular) return
+      b = right
+      call spread_band(self, round_off)
+      call solve_general_band(self%general, self%width, self%width, b, regular)
+   end subroutine solve_scaled
+
+   !> The band as elimination takes it, both triangles.
+   subroutine spread_band(self, extra)
+      type(bordered_band), intent(inout) :: self
+      !> Added to the diagonal
+      real(wp), intent(in) :: extra
+      integer :: i, j, main
+
+      main = 2*self%width + 1
+      if (.not. allocated(self%general)) allocate (self%general(main + self%width, self%size))
+      do j = 1, self%size
+         self%general(:, j) = 0.0_wp
+         self%general(main, j) = self%band(1, j) + extra
+         do i = max(1, j - self%width), j - 1
+            self%general(main + i - j, j) = self%band(1 + j - i, i)
+         end do
+         do i = j + 1, min(j + self%width, self%size)
+            self%general(main + i - j, j) = self%band(1 + i - j, j)
+         end do
+      end do
+   end subroutine spread_band
+
+   !> The scaled matrix times a column.
+   pure function times(self, x) result(product)
+      type(bordered_band), intent(in) :: self
+      real(wp), intent(in) :: x(:)
+      real(wp) :: product(self%size)
+      integer :: i, j
+
+      product = self%band(1, :)*x
+      do j = 1, self%size
+         do i = j + 1, min(j + self%width, self%size)
+            product(i) = product(i) + self%band(1 + i - j, j)*x(j)
+            product(j) = product(j) + self%band(1 + i - j, j)*x(i)
+         end do
+      end do
+   end function times
+
+   pure subroutine scale_rows(self, b)
+      type(bordered_band), intent(in) :: self
+      real(wp), intent(inout) :: b(:, :)
+      integer :: j
+
+      do j = 1, size(b, 2)
+         b(:, j) = b(:, j)*self%scale
+      end do
+   end subroutine scale_rows
+
+end module rbs_solve_bordered

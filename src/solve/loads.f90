@@ -1,0 +1,65 @@
+!> What acts on a column in time.
+module rbs_solve_loads
+   use rbs_base_kinds, only: wp
+   use rbs_loading_signal, only: signal_type
+   implicit none
+   private
+
+   public :: loads_type
+   public :: lateral, horizontal, vertical, axial
+
+   !> Places in an array of the loads at one time.
+   integer, parameter :: lateral = 1, horizontal = 2, vertical = 3, axial = 4
+
+   !> Signals without points are zero.
+   type :: loads_type
+      !> Lateral force at the top [N]
+      type(signal_type) :: force
+      !> Acceleration of the ground to +x and upward [m/s2]
+      type(signal_type) :: ground, vertical
+      !> Axial load besides the constant one, compression positive [N]
+      type(signal_type) :: axial
+      !> Which of the four act; found by `find_acting`
+      logical :: acts(4) = .false.
+   contains
+      procedure :: find_acting
+      procedure :: at_time
+      procedure :: corner_after
+   end type loads_type
+
+contains
+
+   !> Find out which of the four act, once before they are asked for values.
+   subroutine find_acting(self)
+      class(loads_type), intent(inout) :: self
+
+      self%acts = [self%force%acts(), self%ground%acts(), self%vertical%acts(), self%axial%acts()]
+   end subroutine find_acting
+
+   !> All four at a time [N, m/s2, m/s2, N].
+   subroutine at_time(self, t, load)
+      class(loads_type), intent(inout) :: self
+      !> Time [s]
+      real(wp), intent(in) :: t
+      real(wp), intent(out) :: load(4)
+
+      load = 0.0_wp
+      if (self%acts(lateral)) load(lateral) = self%force%at_time(t)
+      if (self%acts(horizontal)) load(horizontal) = self%ground%at_time(t)
+      if (self%acts(vertical)) load(vertical) = self%vertical%at_time(t)
+      if (self%acts(axial)) load(axial) = self%axial%at_time(t)
+   end subroutine at_time
+
+   !> The first time after t at which a load changes its slope; `huge` if there is none [s].
+   real(wp) function corner_after(self, t) result(corner)
+      class(loads_type), intent(inout) :: self
+      real(wp), intent(in) :: t
+
+      corner = huge(1.0_wp)
+      if (self%acts(lateral)) corner = min(corner, self%force%corner_after(t))
+      if (self%acts(horizontal)) corner = min(corner, self%ground%corner_after(t))
+      if (self%acts(vertical)) corner = min(corner, self%vertical%corner_after(t))
+      if (self%acts(axial)) corner = min(corner, self%axial%corner_after(t))
+   end function corner_after
+
+end module rbs_solve_loads

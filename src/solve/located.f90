@@ -1,0 +1,380 @@
+!> Explicit steps that are cut where a spring's line ends or its velocity turns, so that the order of the
+!> scheme is kept through yielding and unloading; with a scheme that estimates its error also steps whose
+!> length follows from a tolerance.
+module rbs_solve_located
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use rbs_base_error, only: error_type, fatal_error, analysis_failed
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_column_chain, only: kinetic_of
+   use rbs_column_column, only: joint_name
+   use rbs_solve_scheme, only: scheme_type
+   use rbs_solve_state, only: state_type, stepper_type, out_of_bounds, in_bounds
+   implicit none
+   private
+
+   public :: located_stepper
+
+   !> Where an event is looked for, and what it is.
+   type :: event_type
+      !> Spring, 0 for none
+      integer :: spring = 0
+      !> Way by which it leaves its line: +1, -1
+      integer :: way = 0
+      !> Whether it leaves because it turns back, else because its line ends
+      logical :: turns = .false.
+      !> Time from the begin of the step: an estimate, and after which it has certainly happened [s]
+      real(wp) :: estimate = 0.0_wp, latest = 0.0_wp
+   end type event_type
+
+   type, extends(stepper_type) :: located_stepper
+      class(scheme_type), allocatable :: scheme
+      !> Wanted relative error of a step in energy norm; 0: steps are not cut for accuracy
+      real(wp) :: tolerance = 0.0_wp
+      !> Step that should do next, and shortest one [s]
+      real(wp) :: next_step = 0.0_wp, shortest = 0.0_wp
+      !> Largest energy so far, as the measure of errors [J]
+      real(wp), private :: largest = 0.0_wp
+      !> Acceleration, for springs that stand still (unknowns)
+      real(wp), allocatable, private :: a(:)
+   contains
+      procedure :: advance
+   end type located_stepper
+
+contains
+
+   !> Move the state on by h, in as many parts as events and tolerance ask for.
+   subroutine advance(self, state, h, error)
+      class(located_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      real(wp), intent(in) :: h
+      type(error_type), allocatable, intent(inout) :: error
+      type(event_type) :: event
+      real(wp) :: finish, left, part, wrong
+      integer :: tries, idle
+
+      if (allocated(error)) return
+      if (.not. allocated(self%a)) allocate (self%a(size(state%q)))
+      finish = state%time + h
+      ! The last part is the step that was asked for.
+      self%extra_steps = self%extra_steps - 1
+      left = h
+      idle = 0
+      do
+         ! What is left below the last digits of the step is nothing. It is not read off the clock, which
+         ! rounds where times are large.
+         if (.not. left > 4.0_wp*spacing(h)) exit
+         ! A corner of the loading would cost the order as an event does.
+         part = min(left, state%loads%corner_after(state%time) - state%time)
+         if (self%tolerance > 0.0_wp .and. self%next_step < 0.999_wp*part) then
+            ! Two equal steps rather than a long and a short one.
+            part = min(self%next_step, 0.5_wp*part)
+         end if
+         call leave_at_once(self, state, error)
+         if (allocated(error)) return
+         do tries = 1, 200
+            call self%scheme%attempt(state, part)
+            wrong = error_of(self, state)
+            if (.not. wrong > 1.0_wp) exit
+            if (self%tolerance > 0.0_wp .and. part > self%shortest) then
+               part = max(part*max(0.2_wp, 0.9_wp*wrong**(-1.0_wp/self%scheme%order)), 0.5_wp*self%shortest)
+               self%cut_steps = self%cut_steps + 1
+            else
+               call report_no_step(self, state, part, error)
+               return
+            end if
+         end do
+         call find_event(state, self%scheme, part, event)
+         if (event%spring > 0) call locate(self, state, event, part)
+         call accept(self, state, event, part, wrong)
+         left = left - part
+         state%time = finish - left
+         idle = merge(0, idle + 1, part > 4.0_wp*spacing(h))
+         if (idle > 20 + 10*state%springs%count) then
+            call report_standstill(state, event%spring, error)
+            return
+         end if
+         self%extra_steps = self%extra_steps + 1
+         if (state%springs%stuck) return
+         if (state%lost) return
+      end do
+      state%time = finish
+   end subroutine advance
+
+   !> Take the attempt; the springs follow, that of the event onto its next line.
+   subroutine accept(self, state, event, h, wrong)
+      type(located_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      type(event_type), intent(in) :: event
+      real(wp), intent(in) :: h, wrong
+      integer :: i
+
+      call self%scheme%accept(state, h)
+      state%lost = .not. in_bounds(size(state%q), state%q)
+      if (state%lost) return
+      i = event%spring
+      if (i > 0) then
+         self%cut_steps = self%cut_steps + 1
+         if (event%turns) then
+            state%v(i) = 0.0_wp
+         else
+            state%q(i) = state%springs%line(i)%end_toward(event%way)
+         end if
+      end if
+      associate (springs => state%springs)
+         ! No other spring has passed an end by more than the last digits.
+         call springs%carry_to(state%q)
+         if (i > 0) call springs%leave(i, event%way)
+      end associate
+      if (self%tolerance > 0.0_wp) then
+         self%longest_step = max(self%longest_step, h)
+         self%largest = max(self%largest, energy_of(state, state%q, state%v))
+         ! An event says nothing of the step that accuracy would allow.
+         if (i == 0) then
+            self%next_step = h*min(5.0_wp, 0.9_wp*max(wrong, 1.0e-10_wp)**(-1.0_wp/self%scheme%order))
+         end if
+      end if
+   end subroutine accept
+
+   !> Error of the attempt over the tolerance, in energy norm; above 1 also where it is not finite.
+   real(wp) function error_of(self, state) result(wrong)
+      type(located_stepper), intent(in) :: self
+      type(state_type), intent(in) :: state
+      real(wp) :: measure
+
+      wrong = 0.0_wp
+      if (.not. self%tolerance > 0.0_wp) return
+      wrong = 1.0e10_wp
+      if (.not. all(ieee_is_finite(self%scheme%v))) return
+      if (.not. all(ieee_is_finite(self%scheme%q))) return
+      wrong = 0.0_wp
+      if (.not. in_bounds(size(self%scheme%q), self%scheme%q)) return
+      measure = max(self%largest, energy_of(state, self%scheme%q, self%scheme%v))
+      if (measure > 0.0_wp) then
+         wrong = sqrt(energy_of(state, self%scheme%error_q, self%scheme%error_v)/measure)/self%tolerance
+      end if
+   end function error_of
+
+   !> Energy of deformations and velocities of the uncracked column with small rotations [J].
+   pure real(wp) function energy_of(state, q, v) result(energy)
+      type(state_type), intent(in) :: state
+      real(wp), intent(in) :: q(:), v(:)
+
+      energy = 0.5_wp*sum(state%motion%column%initial_stiffness*q**2) + kinetic_of(state%motion%column, v)
+   end function energy_of
+
+   !> Springs that stand at an end of their line and go on, or have turned back already, change their line
+   !> before the step.
+   subroutine leave_at_once(self, state, error)
+      type(located_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      type(error_type), allocatable, intent(inout) :: error
+      integer :: changes, i, way
+      logical :: known
+
+      known = .false.
+      associate (springs => state%springs)
+         do changes = 0, 20 + 10*springs%count
+            do i = 1, springs%count
+               if (springs%one_way(i) == 0 .and. springs%d(i) >= springs%first(i) .and. &
+                   springs%d(i) <= springs%last(i)) then
+                  if (springs%d(i) < springs%line(i)%hi .and. springs%d(i) > springs%line(i)%lo) cycle
+               end if
+               way = direction_of(state%v(i))
+               if (way == 0) then
+                  if (.not. known) then
+                     call state%motion%acceleration(springs, state%q, state%v, state%load, self%a)
+                     known = .true.
+                  end if
+                  way = direction_of(self%a(i))
+               end if
+               if (way == 0) cycle
+               if (springs%one_way(i) == -way) exit
+               if (way > 0 .and. springs%d(i) >= springs%line(i)%hi) exit
+               if (way < 0 .and. springs%d(i) <= springs%line(i)%lo) exit
+            end do
+            if (i > springs%count) return
+            call springs%leave(i, way)
+            self%scheme%begun = .false.
+            known = .false.
+         end do
+      end associate
+      call report_standstill(state, i, error)
+   end subroutine leave_at_once
+
+   !> A spring goes round in a circle of lines.
+   subroutine report_standstill(state, i, error)
+      type(state_type), intent(in) :: state
+      integer, intent(in) :: i
+      type(error_type), allocatable, intent(inout) :: error
+
+      call fatal_error(error, analysis_failed, trim(joint_name(state%motion%column, i))// &
+                       ' changes its line again and again at time '//to_text(state%time)// &
+                       " s without moving. Rows up to there are kept; try method = 'newmark'")
+   end subroutine report_standstill
+
+   pure integer function direction_of(x)
+      real(wp), intent(in) :: x
+
+      direction_of = 0
+      if (x > 0.0_wp) direction_of = 1
+      if (x < 0.0_wp) direction_of = -1
+   end function direction_of
+
+   !> The first event of an attempt of length h, by the parabola through both velocities.
+   pure subroutine find_event(state, scheme, h, event)
+      type(state_type), intent(in) :: state
+      class(scheme_type), intent(in) :: scheme
+      real(wp), intent(in) :: h
+      type(event_type), intent(out) :: event
+      type(event_type) :: one
+      integer :: i
+
+      event%estimate = huge(1.0_wp)
+      do i = 1, state%springs%count
+         ! Most springs stay inside their line and go one way.
+         if (scheme%q(i) >= state%springs%first(i) .and. scheme%q(i) <= state%springs%last(i) .and. &
+             state%v(i)*scheme%v(i) > 0.0_wp) cycle
+         call event_of_spring(state, scheme, i, h, one)
+         if (one%spring > 0 .and. one%estimate < event%estimate) event = one
+      end do
+   end subroutine find_event
+
+   pure subroutine event_of_spring(state, scheme, i, h, event)
+      type(state_type), intent(in) :: state
+      class(scheme_type), intent(in) :: scheme
+      integer, intent(in) :: i
+      real(wp), intent(in) :: h
+      type(event_type), intent(out) :: event
+      real(wp) :: d, v, turning, furthest, far
+      integer :: way
+
+      d = state%q(i)
+      v = state%v(i)
+      way = direction_of(v)
+      turning = huge(1.0_wp)
+      if (v*scheme%v(i) < 0.0_wp) turning = h*v/(v - scheme%v(i))
+      if (way /= 0 .and. turning < h) then
+         furthest = d + 0.5_wp*v*turning
+         if (is_beyond(state, i, furthest, way)) then
+            ! Over the end and back within the step.
+            far = state%springs%line(i)%end_toward(way) - d
+            event = event_type(i, way, .false., time_to(far, v, turning), turning)
+            return
+         else if (state%springs%one_way(i) == way) then
+            event = event_type(i, -way, .true., turning, h)
+            return
+         end if
+      end if
+      way = direction_of(scheme%q(i) - d)
+      if (turning < h) way = -direction_of(v)
+      if (way == 0) return
+      if (is_beyond(state, i, scheme%q(i), way)) then
+         far = state%springs%line(i)%end_toward(way) - d
+         event = event_type(i, way, .false., h*min(max(far/(scheme%q(i) - d), 0.0_wp), 1.0_wp), h)
+      else if (state%springs%one_way(i) == -way) then
+         event = event_type(i, way, .true., 0.5_wp*h, h)
+      end if
+   end subroutine event_of_spring
+
+   !> Whether a deformation is beyond the end of a line in a direction, by more than the last digits. The
+   !> rear end of a one-way line is none.
+   pure logical function is_beyond(state, i, d, way)
+      type(state_type), intent(in) :: state
+      integer, intent(in) :: i, way
+      real(wp), intent(in) :: d
+      real(wp) :: end_of_line
+
+      is_beyond = .false.
+      if (state%springs%one_way(i) == -way) return
+      end_of_line = state%springs%line(i)%end_toward(way)
+      if (abs(end_of_line) > out_of_bounds) return
+      is_beyond = way*(d - end_of_line) > 4.0_wp*spacing(max(abs(end_of_line), abs(state%q(i))))
+   end function is_beyond
+
+   !> Time in which a decelerated motion, which would turn after `turning`, goes a way.
+   pure real(wp) function time_to(way, v, turning) result(t)
+      real(wp), intent(in) :: way, v, turning
+
+      t = turning*(1.0_wp - sqrt(max(1.0_wp - 2.0_wp*way/(v*turning), 0.0_wp)))
+   end function time_to
+
+   !> Shorten the step to the event: attempts of shorter and shorter steps, by Newton's method within
+   !> bounds. If another event turns out to come before, that one is located.
+   subroutine locate(self, state, event, h)
+      type(located_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      type(event_type), intent(inout) :: event
+      !> On entry the length of the attempt, on return that up to the event [s]
+      real(wp), intent(inout) :: h
+      type(event_type) :: other
+      integer :: rounds
+
+      do rounds = 1, 2 + 2*state%springs%count
+         call approach(self, state, event, h)
+         call find_event(state, self%scheme, h, other)
+         if (other%spring == 0) return
+         if (other%spring == event%spring .and. (other%turns .eqv. event%turns)) return
+         event = other
+      end do
+   end subroutine locate
+
+   !> Newton's method for the time of one event.
+   subroutine approach(self, state, event, h)
+      type(located_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      type(event_type), intent(in) :: event
+      real(wp), intent(inout) :: h
+      real(wp) :: low, high, t, wrong, slope, target, small
+      integer :: iteration, i
+
+      i = event%spring
+      target = state%springs%line(i)%end_toward(event%way)
+      low = 0.0_wp
+      high = min(event%latest, h)
+      t = min(max(event%estimate, 0.0_wp), high)
+      if (.not. t > 0.0_wp) t = 0.5_wp*high
+      do iteration = 1, 60
+         call self%scheme%attempt(state, t)
+         if (event%turns) then
+            wrong = event%way*self%scheme%v(i)
+            small = 4.0_wp*epsilon(1.0_wp)*abs(state%v(i))
+            call state%motion%acceleration(state%springs, self%scheme%q, self%scheme%v, self%scheme%load, &
+                                           self%a)
+            slope = event%way*self%a(i)
+         else
+            wrong = event%way*(self%scheme%q(i) - target)
+            small = 2.0_wp*spacing(max(abs(target), abs(state%q(i))))
+            slope = event%way*self%scheme%v(i)
+         end if
+         h = t
+         if (abs(wrong) <= small .or. high - low <= 4.0_wp*epsilon(1.0_wp)*high) exit
+         if (wrong > 0.0_wp) then
+            high = t
+         else
+            low = t
+         end if
+         t = 0.5_wp*(low + high)
+         if (slope > 0.0_wp) then
+            if (h - wrong/slope > low .and. h - wrong/slope < high) t = h - wrong/slope
+         end if
+      end do
+   end subroutine approach
+
+   !> Accuracy cannot be had, or the motion has no bounds.
+   subroutine report_no_step(self, state, h, error)
+      type(located_stepper), intent(in) :: self
+      type(state_type), intent(in) :: state
+      real(wp), intent(in) :: h
+      type(error_type), allocatable, intent(inout) :: error
+      integer :: i
+
+      i = maxloc(abs(self%scheme%error_q)*sqrt(state%motion%column%initial_stiffness), dim=1)
+      call fatal_error(error, analysis_failed, 'the step of '//to_text(h)//' s at time '// &
+                       to_text(state%time)//' s does not reach the tolerance of '// &
+                       to_text(self%tolerance)//'; the largest error is in '// &
+                       trim(joint_name(state%motion%column, i))//'. Rows up to there are kept. Give a '// &
+                       "larger tolerance, or method = 'generalised_alpha' for a stiff column")
+   end subroutine report_no_step
+
+end module rbs_solve_located

@@ -1,0 +1,98 @@
+!> The embedded pair of order 5(4) of Dormand and Prince (1980), with the estimate of its error.
+module rbs_solve_pair45
+   use rbs_base_kinds, only: wp
+   use rbs_solve_scheme, only: scheme_type
+   use rbs_solve_state, only: state_type
+   implicit none
+   private
+
+   public :: pair45_scheme
+
+   integer, parameter :: stages = 7
+
+   !> Places of the stages, and their coefficients row by row (J. R. Dormand, P. J. Prince, A family of
+   !> embedded Runge-Kutta formulae, J. Comput. Appl. Math. 6 (1980), RK5(4)7M).
+   real(wp), parameter :: place(stages) = [0.0_wp, 0.2_wp, 0.3_wp, 0.8_wp, 8.0_wp/9.0_wp, 1.0_wp, 1.0_wp]
+   real(wp), parameter :: row(stages - 1, stages) = reshape([ &
+      [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], &
+      [0.2_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], &
+      [3.0_wp/40.0_wp, 9.0_wp/40.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], &
+      [44.0_wp/45.0_wp, -56.0_wp/15.0_wp, 32.0_wp/9.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], &
+      [19372.0_wp/6561.0_wp, -25360.0_wp/2187.0_wp, 64448.0_wp/6561.0_wp, -212.0_wp/729.0_wp, &
+       0.0_wp, 0.0_wp], &
+      [9017.0_wp/3168.0_wp, -355.0_wp/33.0_wp, 46732.0_wp/5247.0_wp, 49.0_wp/176.0_wp, &
+       -5103.0_wp/18656.0_wp, 0.0_wp], &
+      [35.0_wp/384.0_wp, 0.0_wp, 500.0_wp/1113.0_wp, 125.0_wp/192.0_wp, -2187.0_wp/6784.0_wp, &
+       11.0_wp/84.0_wp]], [stages - 1, stages])
+
+   !> Weights of order 5 less those of order 4.
+   real(wp), parameter :: difference(stages) = [ &
+      71.0_wp/57600.0_wp, 0.0_wp, -71.0_wp/16695.0_wp, 71.0_wp/1920.0_wp, -17253.0_wp/339200.0_wp, &
+      22.0_wp/525.0_wp, -1.0_wp/40.0_wp]
+
+   type, extends(scheme_type) :: pair45_scheme
+      !> Velocities and accelerations of the stages (unknowns, stages)
+      real(wp), allocatable, private :: rate_q(:, :), rate_v(:, :)
+   contains
+      procedure :: create
+      procedure :: attempt
+   end type pair45_scheme
+
+contains
+
+   subroutine create(self, m)
+      class(pair45_scheme), intent(inout) :: self
+      !> Number of unknowns
+      integer, intent(in) :: m
+
+      self%order = 5
+      allocate (self%q(m), self%v(m), self%error_q(m), self%error_v(m))
+      allocate (self%rate_q(m, stages), self%rate_v(m, stages))
+   end subroutine create
+
+   !> A step of h from the state. The last stage stands at the end of the step; works of loads and damping
+   !> are integrated with the weights of order 5.
+   subroutine attempt(self, state, h)
+      class(pair45_scheme), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      real(wp), intent(in) :: h
+      real(wp) :: load(4), of_loads, of_damping
+      integer :: stage
+
+      self%of_loads = 0.0_wp
+      self%of_damping = 0.0_wp
+      do stage = 1, stages - 1
+         load = state%load
+         if (stage > 1) call state%loads%at_time(state%time + place(stage)*h, load)
+         call reach_stage(self, state, stage, h, load)
+         call state%motion%power(state%springs, self%q, self%v, load, of_loads, of_damping)
+         self%of_loads = self%of_loads + h*row(stage, stages)*of_loads
+         self%of_damping = self%of_damping + h*row(stage, stages)*of_damping
+      end do
+      call reach_stage(self, state, stages, h, load)
+      self%begun = .true.
+      self%load = load
+      self%error_q = h*matmul(self%rate_q, difference)
+      self%error_v = h*matmul(self%rate_v, difference)
+   end subroutine attempt
+
+   !> Deformations, velocities and accelerations of a stage.
+   subroutine reach_stage(self, state, stage, h, load)
+      class(pair45_scheme), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      integer, intent(in) :: stage
+      real(wp), intent(in) :: h, load(4)
+      integer :: i
+
+      self%q = state%q
+      self%v = state%v
+      do i = 1, stage - 1
+         self%q = self%q + (h*row(i, stage))*self%rate_q(:, i)
+         self%v = self%v + (h*row(i, stage))*self%rate_v(:, i)
+      end do
+      self%rate_q(:, stage) = self%v
+      if (stage == 1 .and. self%begun) return
+      call state%motion%acceleration(state%springs, self%q, self%v, load, self%rate_v(:, stage))
+   end subroutine reach_stage
+
+end module rbs_solve_pair45

@@ -1,0 +1,66 @@
+!> What an explicit scheme is: one step from a state, tried without moving it.
+module rbs_solve_scheme
+   use rbs_base_kinds, only: wp
+   use rbs_solve_state, only: state_type
+   implicit none
+   private
+
+   public :: scheme_type
+
+   type, abstract :: scheme_type
+      !> Order of the scheme
+      integer :: order = 0
+      !> Result of the last attempt: deformations and velocities (unknowns)
+      real(wp), allocatable :: q(:), v(:)
+      !> Estimate of its error, if the scheme has one (unknowns)
+      real(wp), allocatable :: error_q(:), error_v(:)
+      !> Works of loads and damping in it [J]
+      real(wp) :: of_loads = 0.0_wp, of_damping = 0.0_wp
+      !> Loads at its end
+      real(wp) :: load(4) = 0.0_wp
+      !> Whether the acceleration at the begin is known from the last attempt
+      logical :: begun = .false.
+   contains
+      procedure(create_interface), deferred :: create
+      procedure(attempt_interface), deferred :: attempt
+      procedure :: accept
+   end type scheme_type
+
+   abstract interface
+      subroutine create_interface(self, m)
+         import :: scheme_type
+         implicit none
+         class(scheme_type), intent(inout) :: self
+         !> Number of unknowns
+         integer, intent(in) :: m
+      end subroutine create_interface
+
+      !> A step of h on the present lines of the springs; deformations and velocities of the state stay.
+      subroutine attempt_interface(self, state, h)
+         import :: scheme_type, state_type, wp
+         implicit none
+         class(scheme_type), intent(inout) :: self
+         type(state_type), intent(inout) :: state
+         !> Step [s]
+         real(wp), intent(in) :: h
+      end subroutine attempt_interface
+   end interface
+
+contains
+
+   !> Take the last attempt, of length h, as the state; its springs do not follow yet.
+   subroutine accept(self, state, h)
+      class(scheme_type), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      real(wp), intent(in) :: h
+
+      state%q(:) = self%q
+      state%v(:) = self%v
+      state%time = state%time + h
+      state%load = self%load
+      state%of_loads = state%of_loads + self%of_loads
+      state%of_damping = state%of_damping + self%of_damping
+      self%begun = .false.
+   end subroutine accept
+
+end module rbs_solve_scheme

@@ -1,0 +1,70 @@
+!> The state of a column in time, what it has received so far, and who moves it on.
+module rbs_solve_state
+   use rbs_base_error, only: error_type
+   use rbs_base_kinds, only: wp
+   use rbs_hysteresis_springs, only: spring_array
+   use rbs_solve_loads, only: loads_type
+   use rbs_solve_motion, only: motion_type
+   implicit none
+   private
+
+   public :: state_type, stepper_type, out_of_bounds, in_bounds
+
+   !> Beyond this [m, rad] no column is left, and squares would overflow.
+   real(wp), parameter :: out_of_bounds = 1.0e100_wp
+
+   type :: state_type
+      type(motion_type) :: motion
+      type(spring_array) :: springs
+      type(loads_type) :: loads
+      !> Deformations of the joints and their velocities (unknowns)
+      real(wp), allocatable :: q(:), v(:)
+      !> Time [s] and loads then
+      real(wp) :: time = 0.0_wp, load(4) = 0.0_wp
+      !> Works of loads and damping, and the energy at the begin [J]
+      real(wp) :: of_loads = 0.0_wp, of_damping = 0.0_wp, at_begin = 0.0_wp
+      !> Whether a deformation has gone out of bounds; one cannot go on from there
+      logical :: lost = .false.
+   end type state_type
+
+   !> A method: what it needs from step to step lives in its own type.
+   type, abstract :: stepper_type
+      !> Steps that were cut so far: at an event, for accuracy, or because they did not converge
+      integer :: cut_steps = 0
+      !> Steps taken beyond one for each call: the parts of cut ones
+      integer :: extra_steps = 0
+      !> Longest step taken, if the method chooses its steps; 0: as planned [s]
+      real(wp) :: longest_step = 0.0_wp
+   contains
+      procedure(advance_interface), deferred :: advance
+   end type stepper_type
+
+   abstract interface
+      !> Move a state on by h. On failure the state is the last good one.
+      subroutine advance_interface(self, state, h, error)
+         import :: stepper_type, state_type, error_type, wp
+         implicit none
+         class(stepper_type), intent(inout) :: self
+         type(state_type), intent(inout) :: state
+         !> Step [s]
+         real(wp), intent(in) :: h
+         type(error_type), allocatable, intent(inout) :: error
+      end subroutine advance_interface
+   end interface
+
+contains
+
+   !> Whether all deformations are such that one can go on.
+   pure logical function in_bounds(m, q)
+      integer, intent(in) :: m
+      real(wp), intent(in) :: q(m)
+      integer :: i, inside
+
+      inside = 0
+      do i = 1, m
+         inside = inside + merge(1, 0, abs(q(i)) < out_of_bounds)
+      end do
+      in_bounds = inside == m
+   end function in_bounds
+
+end module rbs_solve_state

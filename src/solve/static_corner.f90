@@ -1,0 +1,211 @@
+!> The lines on which a column leaves a corner of its static path.
+!>
+!> At a corner a spring stands at an end of its line, or on a one-way line against its way. Which springs
+!> go on and which turn back must be found together: a linear complementarity problem.
+module rbs_solve_static_corner
+   use rbs_base_error, only: error_type, fatal_error, analysis_failed
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_column_axial, only: critical_factor
+   use rbs_solve_static_path, only: static_path, describe_state, name_spring
+   implicit none
+   private
+
+   public :: turn_corner, report_no_line
+
+   !> Most springs whose two ways out of a corner are tried in all combinations, and most trials times
+   !> springs.
+   integer, parameter :: most_tried = 14, most_work = 1000000
+
+   !> How often all springs may be changed at once without fewer being in the way than ever before.
+   integer, parameter :: patience = 3
+
+contains
+
+   !> Find the lines that lead on in a direction, and the rates on them.
+   !>
+   !> Springs without room are put on the next line, all at once as long as this leaves fewer and fewer
+   !> without room, else the first one first: while the column is stable this ends (Murty's least-index
+   !> rule; with blocks: Judice and Pires, Computers Oper. Res. 21 (1994) 587-596). Beyond the peak it may
+   !> go in a circle.
+   subroutine turn_corner(path, direction, target, error)
+      class(static_path), intent(inout) :: path
+      integer, intent(in) :: direction
+      real(wp), intent(in) :: target
+      type(error_type), allocatable, intent(out) :: error
+      character(len=:), allocatable :: state
+      integer :: changes, count, fewest, left
+      logical :: found
+
+      path%direction = 0
+      path%changed = 0
+      fewest = huge(1)
+      left = patience
+      do changes = 1, 20 + min(10*path%moving, 1000 + path%moving)
+         call path%solve_line(direction, found)
+         if (.not. found) then
+            call let_unload(path, direction, found)
+            if (found) cycle
+            call report_no_line(path, target, error)
+            return
+         end if
+         count = without_room(path)
+         if (count == 0) then
+            path%direction = direction
+            return
+         end if
+         if (count < fewest) then
+            fewest = count
+            left = patience
+         else
+            left = left - 1
+         end if
+         call change_lines(path, left >= 0)
+      end do
+      call try_all_ways(path, direction, found)
+      if (found) then
+         path%direction = direction
+      else
+         call describe_state(path, state)
+         call fatal_error(error, analysis_failed, 'the column snaps back at '//state// &
+                          ': no combination of loading and unloading springs was found that lets its '// &
+                          'top go on. A driven top cannot follow that; use a dynamic analysis')
+      end if
+   end subroutine turn_corner
+
+   !> Without stiffness under a driven force this way, but some springs would unload: let them.
+   subroutine let_unload(path, direction, some)
+      class(static_path), intent(inout) :: path
+      integer, intent(in) :: direction
+      logical, intent(out) :: some
+      integer :: i
+
+      some = .false.
+      if (.not. path%by_force) return
+      do i = 1, 2*path%column%n
+         if (path%springs%one_way(i) /= -direction) cycle
+         some = .true.
+         call path%springs%leave(i, direction)
+      end do
+   end subroutine let_unload
+
+   !> Number of springs that cannot go the way they should on their present lines.
+   pure integer function without_room(path) result(count)
+      class(static_path), intent(in) :: path
+      integer :: i
+
+      count = 0
+      do i = 1, path%moving
+         if (barred(path, i) /= 0) count = count + 1
+      end do
+   end function without_room
+
+   !> The way that a spring should go and cannot, 0 if it can.
+   pure integer function barred(path, i)
+      class(static_path), intent(in) :: path
+      integer, intent(in) :: i
+
+      barred = 0
+      associate (springs => path%springs)
+         if (path%rate(i) > 0.0_wp) then
+            if (springs%one_way(i) < 0 .or. springs%d(i) >= springs%line(i)%hi) barred = 1
+         else if (path%rate(i) < 0.0_wp) then
+            if (springs%one_way(i) > 0 .or. springs%d(i) <= springs%line(i)%lo) barred = -1
+         end if
+      end associate
+   end function barred
+
+   !> Put the springs without room on the lines that follow, all or the first of them.
+   subroutine change_lines(path, all_of_them)
+      class(static_path), intent(inout) :: path
+      logical, intent(in) :: all_of_them
+      integer :: i, way
+
+      do i = 1, path%moving
+         way = barred(path, i)
+         if (way == 0) cycle
+         path%changed(i) = path%changed(i) + 1
+         call path%springs%leave(i, way)
+         if (.not. all_of_them) return
+      end do
+   end subroutine change_lines
+
+   !> Try both ways of the springs at the corner in all combinations, one change at a time (Gray code),
+   !> until all have room. Of more springs than can be tried, those come first that the search went back
+   !> and forth with.
+   subroutine try_all_ways(path, direction, found)
+      class(static_path), intent(inout) :: path
+      integer, intent(in) :: direction
+      logical, intent(out) :: found
+      integer, allocatable :: tried(:)
+      integer :: trial, i, most
+
+      associate (springs => path%springs, m => path%moving)
+         tried = pack([(i, i=1, m)], springs%one_way(:m) /= 0 .or. springs%d(:m) >= springs%line(:m)%hi &
+                      .or. springs%d(:m) <= springs%line(:m)%lo)
+      end associate
+      tried = [pack(tried, path%changed(tried) > 1), pack(tried, path%changed(tried) <= 1)]
+      most = min(most_tried, int(log(real(most_work, wp)/path%moving)/log(2.0_wp)))
+      tried = tried(:min(size(tried), most))
+      found = .false.
+      do trial = 1, 2**size(tried)
+         call path%solve_line(direction, found)
+         if (found) then
+            found = without_room(path) == 0
+            if (found) return
+         end if
+         ! The bit that changes next in the Gray code.
+         if (trial == 2**size(tried)) exit
+         i = tried(trailz(trial) + 1)
+         call path%springs%leave(i, way_out(path, i))
+      end do
+      found = .false.
+   end subroutine try_all_ways
+
+   !> The way by which a spring at a corner leaves its line.
+   pure integer function way_out(path, i)
+      class(static_path), intent(in) :: path
+      integer, intent(in) :: i
+
+      if (path%springs%one_way(i) /= 0) then
+         way_out = -path%springs%one_way(i)
+      else if (path%springs%d(i) >= path%springs%line(i)%hi) then
+         way_out = 1
+      else
+         way_out = -1
+      end if
+   end function way_out
+
+   !> Say why the path cannot be carried on.
+   subroutine report_no_line(path, target, error)
+      class(static_path), intent(in) :: path
+      real(wp), intent(in) :: target
+      type(error_type), allocatable, intent(out) :: error
+      type(error_type), allocatable :: ignored
+      character(len=:), allocatable :: spring, state, remark
+      real(wp) :: factor
+
+      call describe_state(path, state)
+      remark = ''
+      if (path%column%axially_loaded) remark = ' above what the axial load takes away'
+      call name_spring(path, spring)
+      call critical_factor(path%column, factor, ignored)
+      if (.not. path%by_force) then
+         call fatal_error(error, analysis_failed, 'the column has no single answer to the displacement '// &
+                          to_text(target)//' m at '//state//': '//spring// &
+                          ' and the axial load leave it without stiffness. Change the axial load '// &
+                          'or the stiffness after yield')
+      else if (factor <= 1.0_wp .and. .not. abs(path%displacement) > 0.0_wp) then
+         call fatal_error(error, analysis_failed, 'the axial load is '//to_text(1.0_wp/factor)// &
+                          ' times the critical load of the uncracked column, which buckles by itself; '// &
+                          'reduce axial_load, stiffen the springs, or drive it by displacement')
+      else
+         call fatal_error(error, analysis_failed, 'the lateral force '//to_text(target)// &
+                          ' N is beyond the capacity of the column: '//spring// &
+                          ' has no stiffness left at '//state//'. The path up to there is '// &
+                          'kept; drive the column by displacement, or give the spring a stiffness '// &
+                          'after yield'//remark)
+      end if
+   end subroutine report_no_line
+
+end module rbs_solve_static_corner

@@ -1,0 +1,179 @@
+!> Runs in time that several suites make: a column and what acts on it go in, rows and summary come out;
+!> and states that a stepper moves by hand.
+module runs
+   use check, only: check_true
+   use rbs_base_constants, only: unset_integer
+   use rbs_base_error, only: error_type
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_column_column, only: column_type
+   use rbs_loading_signal, only: signal_type
+   use rbs_results_recorder, only: array_recorder
+   use rbs_results_row, only: row_size, row_joints
+   use rbs_results_summary, only: summary_type
+   use rbs_solve_history, only: initial_state
+   use rbs_solve_loads, only: loads_type
+   use rbs_solve_located, only: located_stepper
+   use rbs_solve_pair45, only: pair45_scheme
+   use rbs_solve_rk4, only: rk4_scheme
+   use rbs_solve_run, only: plan_dynamic, run_dynamic
+   use rbs_solve_state, only: state_type
+   use rbs_solve_time_plan, only: time_plan
+   use rbs_spec_analysis, only: analysis_spec
+   implicit none
+   private
+
+   public :: run_data, run, times, signal_of, loads_of, last_deformation
+   public :: new_state, new_located, residual_of, distance, order_of, check_order
+
+   !> One run: what goes in besides the column, and what comes out.
+   type :: run_data
+      type(analysis_spec) :: analysis = analysis_spec(method='rk4')
+      !> Times of the loading [s]; what is not allocated does not act
+      real(wp), allocatable :: time(:), force(:), ground(:), vertical(:), axial(:)
+      integer :: every = unset_integer
+      type(initial_state) :: initial
+      type(time_plan) :: plan
+      real(wp), allocatable :: rows(:, :)
+      type(summary_type) :: summary
+      type(error_type), allocatable :: outcome
+   end type run_data
+
+contains
+
+   !> Plan and run.
+   subroutine run(data, column)
+      type(run_data), intent(inout) :: data
+      type(column_type), intent(in) :: column
+      type(array_recorder) :: recorder
+      type(loads_type) :: loads
+      real(wp), allocatable, target :: kept(:, :)
+
+      if (allocated(data%rows)) deallocate (data%rows)
+      if (allocated(data%outcome)) deallocate (data%outcome)
+      loads = loads_of(data)
+      call plan_dynamic(column, data%analysis, data%time, loads, data%plan, data%outcome)
+      if (allocated(data%outcome)) return
+      allocate (kept(row_size(column%unknowns), data%plan%rows(data%every)))
+      recorder%rows => kept
+      call run_dynamic(column, data%analysis, data%plan, data%time, loads, data%initial, data%every, &
+                       recorder, data%summary, data%outcome)
+      data%rows = kept(:, :recorder%count)
+   end subroutine run
+
+   !> The loads of a run.
+   type(loads_type) function loads_of(data) result(loads)
+      type(run_data), intent(in) :: data
+
+      if (allocated(data%force)) loads%force = signal_of(data%time, data%force)
+      if (allocated(data%ground)) loads%ground = signal_of(data%time, data%ground)
+      if (allocated(data%vertical)) loads%vertical = signal_of(data%time, data%vertical)
+      if (allocated(data%axial)) loads%axial = signal_of(data%time, data%axial)
+   end function loads_of
+
+   type(signal_type) function signal_of(time, value) result(signal)
+      real(wp), intent(in) :: time(:), value(:)
+
+      allocate (signal%time, source=time)
+      allocate (signal%value, source=value)
+   end function signal_of
+
+   !> Times 0, h, ..., m h.
+   pure function times(m, h) result(t)
+      integer, intent(in) :: m
+      real(wp), intent(in) :: h
+      real(wp) :: t(m + 1)
+      integer :: i
+
+      t = [(i*h, i=0, m)]
+   end function times
+
+   !> Deformations in the last row.
+   function last_deformation(data, unknowns) result(q)
+      type(run_data), intent(in) :: data
+      integer, intent(in) :: unknowns
+      real(wp) :: q(unknowns)
+
+      q = data%rows(row_joints:row_joints + unknowns - 1, size(data%rows, 2))
+   end function last_deformation
+
+   !> A state at time zero, springs at the deformations q.
+   subroutine new_state(state, column, loads, q, v)
+      type(state_type), intent(out) :: state
+      type(column_type), intent(in) :: column
+      type(loads_type), intent(in) :: loads
+      real(wp), intent(in) :: q(:), v(:)
+      type(error_type), allocatable :: outcome
+
+      state%loads = loads
+      call state%loads%find_acting()
+      call state%motion%create(column, state%loads%acts, outcome)
+      if (allocated(outcome)) error stop 'runs: a column without motion'
+      call state%springs%create(column%spring)
+      call state%loads%at_time(0.0_wp, state%load)
+      state%q = q
+      state%v = v
+      call state%springs%move_all(state%q)
+      state%at_begin = energy_of(state)
+   end subroutine new_state
+
+   !> Energy of a state: motion, springs, potential [J].
+   real(wp) function energy_of(state) result(energy)
+      type(state_type), intent(in) :: state
+
+      energy = state%motion%kinetic_energy(state%q, state%v) + sum(state%springs%work) &
+               + state%motion%potential(state%q)
+   end function energy_of
+
+   !> What is left of the balance of energy [J].
+   real(wp) function residual_of(state) result(residual)
+      type(state_type), intent(in) :: state
+
+      residual = state%of_loads + state%at_begin - energy_of(state) - state%of_damping
+   end function residual_of
+
+   !> How far two states are apart, relative to the second: deformations and velocities.
+   real(wp) function distance(state, reference)
+      type(state_type), intent(in) :: state, reference
+
+      distance = max(maxval(abs(state%q - reference%q))/maxval(abs(reference%q)), &
+                     maxval(abs(state%v - reference%v))/maxval(abs(reference%v)))
+   end function distance
+
+   !> Steps cut at events: rk4 without tolerance, the embedded pair with one.
+   subroutine new_located(stepper, column, tolerance, step)
+      type(located_stepper), intent(out) :: stepper
+      type(column_type), intent(in) :: column
+      !> 0: rk4 [1], and the first step of the pair [s]
+      real(wp), intent(in) :: tolerance, step
+
+      if (tolerance > 0.0_wp) then
+         allocate (pair45_scheme :: stepper%scheme)
+      else
+         allocate (rk4_scheme :: stepper%scheme)
+      end if
+      call stepper%scheme%create(column%unknowns)
+      stepper%tolerance = tolerance
+      stepper%next_step = step
+      stepper%shortest = 1.0e-6_wp*step
+   end subroutine new_located
+
+   !> Observed order from the first error to the last, the step halved each time.
+   pure real(wp) function order_of(wrong) result(order)
+      real(wp), intent(in) :: wrong(:)
+
+      order = log(wrong(1)/wrong(size(wrong)))/log(2.0_wp)/(size(wrong) - 1)
+   end function order_of
+
+   !> The mean order of a sequence of errors is between two bounds.
+   subroutine check_order(error, wrong, least, most, what)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp), intent(in) :: wrong(:), least, most
+      character(len=*), intent(in) :: what
+
+      call check_true(error, order_of(wrong) >= least .and. order_of(wrong) <= most, &
+                      what//': order '//to_text(order_of(wrong))//' is not between '//to_text(least)// &
+                      ' and '//to_text(most))
+   end subroutine check_order
+
+end module runs

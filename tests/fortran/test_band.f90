@@ -1,0 +1,277 @@
+!> The chain in centroid coordinates against the dense matrices in slips and rotations, and the critical
+!> load against the dense eigenproblem.
+module test_band
+   use check, only: unit_test, check_close, check_passed, check_true
+   use rbs_base_error, only: error_type
+   use rbs_base_kinds, only: wp
+   use rbs_base_linalg, only: solve_eigen
+   use rbs_column_axial, only: geometric_stiffness, critical_factor
+   use rbs_column_band, only: add_spring_band, add_geometric_band, add_mass_band, opening_stiffness, &
+                              to_joints, from_joints
+   use rbs_column_column, only: column_type
+   use rbs_column_mass, only: symmetric_mass
+   use rbs_spec_column, only: column_spec
+   use samples, only: chain, elastic, made, random_type
+   implicit none
+   private
+
+   public :: collect_band
+
+contains
+
+   subroutine collect_band(tests)
+      type(unit_test), allocatable, intent(out) :: tests(:)
+
+      tests = [unit_test('deformations of the joints and forces on the bodies are dual', dual), &
+               unit_test('the mass is diagonal at the centroids', mass_diagonal), &
+               unit_test('band of the springs is B''k B', springs), &
+               unit_test('band of the axial forces is B''K_G B', geometric), &
+               unit_test('openings are a chain of their own', openings), &
+               unit_test('critical load against the dense eigenproblem', critical), &
+               unit_test('critical load of 10000 bodies: Haringx with shear, order 2', critical_long)]
+   end subroutine collect_band
+
+   !> A chain with everything: openings, a mass on top, weight and axial load.
+   type(column_type) function full(n) result(column)
+      integer, intent(in) :: n
+      type(column_spec) :: spec
+      integer :: i
+
+      spec = chain(n, 'pdelta')
+      spec%top_mass = 55.0_wp
+      spec%top_inertia = 7.0_wp
+      spec%axial_load = 1.0e6_wp
+      spec%self_weight = .true.
+      spec%gravity = 2.0e3_wp
+      allocate (spec%axial(n))
+      do i = 1, n
+         spec%axial(i) = elastic(1.0e9_wp + 2.0e8_wp*sin(5.0_wp*i))
+      end do
+      column = made(spec)
+   end function full
+
+   !> B by columns.
+   subroutine joints_of_bodies(column, b)
+      type(column_type), intent(in) :: column
+      real(wp), intent(out) :: b(:, :)
+      real(wp) :: x(column%unknowns)
+      integer :: j
+
+      do j = 1, column%unknowns
+         x = 0.0_wp
+         x(j) = 1.0_wp
+         call to_joints(column, x, b(:, j))
+      end do
+   end subroutine joints_of_bodies
+
+   !> A lower band of half-width 3, made whole.
+   pure function whole(band) result(a)
+      real(wp), intent(in) :: band(:, :)
+      real(wp) :: a(size(band, 2), size(band, 2))
+      integer :: i, j
+
+      a = 0.0_wp
+      do j = 1, size(band, 2)
+         do i = j, min(j + 3, size(band, 2))
+            a(i, j) = band(1 + i - j, j)
+            a(j, i) = a(i, j)
+         end do
+      end do
+   end function whole
+
+   subroutine check_matrix(error, actual, expected, what)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp), intent(in) :: actual(:, :), expected(:, :)
+      character(len=*), intent(in) :: what
+
+      call check_close(error, pack(actual, .true.), pack(expected, .true.), 0.0_wp, &
+                       1.0e-14_wp*maxval(abs(expected)), what)
+   end subroutine check_matrix
+
+   subroutine dual(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(column_type) :: column
+      type(random_type) :: random
+      real(wp), allocatable :: b(:, :), f(:), r(:)
+      integer :: i, n
+
+      do n = 1, 5, 2
+         column = full(n)
+         if (allocated(b)) deallocate (b, f, r)
+         allocate (b(3*n, 3*n), f(3*n), r(3*n))
+         call joints_of_bodies(column, b)
+         do i = 1, 3*n
+            f(i) = random%uniform(-1.0_wp, 1.0_wp)
+         end do
+         call from_joints(column, f, r)
+         call check_close(error, r, matmul(transpose(b), f), 1.0e-14_wp, 1.0e-14_wp, 'B''f')
+      end do
+      ! A rigid motion deforms the lowest joint only.
+      do i = 1, n
+         if (i > column%n) exit
+         r(2*i - 1) = 0.3_wp + 0.1_wp*(column%joint_height(i) + column%lower(i))
+         r(2*i) = 0.1_wp
+         r(2*column%n + i) = 0.2_wp
+      end do
+      call to_joints(column, r, f)
+      r = 0.0_wp
+      r(1) = 0.3_wp
+      r(column%n + 1) = 0.1_wp
+      r(2*column%n + 1) = 0.2_wp
+      call check_close(error, f, r, 0.0_wp, 1.0e-15_wp, 'rigid motion')
+   end subroutine dual
+
+   subroutine mass_diagonal(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: n = 5
+      type(column_type) :: column
+      real(wp) :: b(3*n, 3*n), mass(3*n, 3*n), band(4, 2*n)
+
+      column = full(n)
+      call joints_of_bodies(column, b)
+      call symmetric_mass(column, mass)
+      mass = matmul(transpose(b), matmul(mass, b))
+      band = 0.0_wp
+      call add_mass_band(column, 1.0_wp, band)
+      call check_close(error, pack(mass(:2*n, :2*n), .true.), pack(whole(band), .true.), 0.0_wp, 1.0e-11_wp, &
+                       'mass')
+   end subroutine mass_diagonal
+
+   subroutine springs(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(column_type) :: column
+      real(wp), allocatable :: b(:, :), k(:, :), band(:, :)
+      integer :: i, n
+
+      do n = 1, 6
+         column = full(n)
+         if (allocated(b)) deallocate (b, k, band)
+         allocate (b(3*n, 3*n))
+         allocate (k(2*n, 2*n), band(4, 2*n), source=0.0_wp)
+         call joints_of_bodies(column, b)
+         do i = 1, 2*n
+            k(i, i) = column%initial_stiffness(i)
+         end do
+         call add_spring_band(column, column%initial_stiffness, band)
+         associate (c => b(:2*n, :2*n))
+            call check_matrix(error, whole(band), matmul(transpose(c), matmul(k, c)), 'stiffness')
+         end associate
+      end do
+   end subroutine springs
+
+   subroutine geometric(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(column_type) :: column
+      real(wp), allocatable :: b(:, :), k(:, :), band(:, :)
+      integer :: n
+
+      do n = 1, 6
+         column = full(n)
+         if (allocated(b)) deallocate (b, k, band)
+         allocate (b(3*n, 3*n), k(3*n, 3*n))
+         allocate (band(4, 2*n), source=0.0_wp)
+         call joints_of_bodies(column, b)
+         call geometric_stiffness(column, k)
+         call add_geometric_band(column, column%axial_body, column%axial_joint, band)
+         k = matmul(transpose(b), matmul(k, b))
+         call check_matrix(error, whole(band), k(:2*n, :2*n), 'geometric stiffness')
+      end do
+   end subroutine geometric
+
+   subroutine openings(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: n = 4
+      type(column_type) :: column
+      real(wp) :: b(3*n, 3*n), k(n, n), expected(n, n), diagonal(n), beside(n - 1)
+      integer :: i
+
+      column = full(n)
+      call joints_of_bodies(column, b)
+      call check_close(error, maxval(abs(b(:2*n, 2*n + 1:))), 0.0_wp, 0.0_wp, 0.0_wp, 'not coupled')
+      call check_close(error, maxval(abs(b(2*n + 1:, :2*n))), 0.0_wp, 0.0_wp, 0.0_wp, 'not coupled')
+      expected = 0.0_wp
+      k = 0.0_wp
+      call opening_stiffness(column, column%initial_stiffness(2*n + 1:), diagonal, beside)
+      do i = 1, n
+         expected(i, i) = column%initial_stiffness(2*n + i)
+         k(i, i) = diagonal(i)
+      end do
+      do i = 1, n - 1
+         k(i, i + 1) = beside(i)
+         k(i + 1, i) = beside(i)
+      end do
+      associate (c => b(2*n + 1:, 2*n + 1:))
+         call check_matrix(error, k, matmul(transpose(c), matmul(expected, c)), 'stiffness')
+      end associate
+   end subroutine openings
+
+   !> The largest w of -K_G x = w diag(k) x is one over the critical factor.
+   subroutine critical(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: n = 5
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(column_type) :: column
+      type(random_type) :: random
+      real(wp) :: factor, softening(2*n, 2*n), stiffness(2*n, 2*n), w(2*n)
+      integer :: i, trial
+
+      do trial = 1, 40
+         spec = chain(n, 'pdelta')
+         do i = 1, n
+            spec%shear(i)%k = 10.0_wp**random%uniform(4.0_wp, 9.0_wp)
+            spec%flexure(i)%k = 10.0_wp**random%uniform(5.0_wp, 8.0_wp)
+         end do
+         ! Compression and tension, weight against tension too
+         spec%axial_load = random%uniform(-1.0e5_wp, 1.0e5_wp)
+         spec%self_weight = mod(trial, 3) == 0
+         spec%gravity = 1.0e2_wp
+         column = made(spec)
+         call geometric_stiffness(column, softening)
+         softening = -softening
+         stiffness = 0.0_wp
+         do i = 1, 2*n
+            stiffness(i, i) = column%initial_stiffness(i)
+         end do
+         call solve_eigen(softening, stiffness, w, outcome)
+         call check_passed(error, outcome, 'solve_eigen')
+         call critical_factor(column, factor, outcome)
+         call check_passed(error, outcome, 'critical_factor')
+         call check_close(error, factor*w(2*n), 1.0_wp, 1.0e-10_wp, 0.0_wp, 'critical factor')
+      end do
+   end subroutine critical
+
+   !> An elastic cantilever with shear: the slip of a joint is across the axis of the body below, the axial
+   !> force stays upright; so the chain tends to Haringx's critical load, P (1 + P/kGA) = pi^2 EI/(2 L)^2.
+   !> Each flexural spring stands for a body's length, the lowest one for half of it. A slip feels the axial
+   !> force by the rotation of the body below, so the lowest shear spring feels nothing and the highest one
+   !> stands for two bodies.
+   subroutine critical_long(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      integer, parameter :: bodies(3) = [200, 1000, 10000]
+      real(wp), parameter :: height = 2.0_wp, ei = 1.0e6_wp, ga = 3.0e6_wp
+      real(wp) :: euler, haringx, factor, wrong(3)
+      integer :: i, n
+
+      euler = acos(-1.0_wp)**2*ei/(2.0_wp*height)**2
+      haringx = 2.0_wp*euler/(1.0_wp + sqrt(1.0_wp + 4.0_wp*euler/ga))
+      do i = 1, 3
+         n = bodies(i)
+         spec = chain(n, 'pdelta')
+         spec%lengths = height/n
+         spec%shear(:) = elastic(ga*n/height)
+         spec%shear(n) = elastic(0.5_wp*ga*n/height)
+         spec%flexure(:) = elastic(ei*n/height)
+         spec%flexure(1) = elastic(2.0_wp*ei*n/height)
+         spec%axial_load = euler
+         call critical_factor(made(spec), factor, outcome)
+         call check_passed(error, outcome, 'critical_factor')
+         wrong(i) = factor*euler/haringx - 1.0_wp
+      end do
+      call check_close(error, log(abs(wrong(1)/wrong(2)))/log(5.0_wp), 2.0_wp, 0.0_wp, 0.05_wp, 'order')
+      call check_true(error, abs(wrong(3)) < 1.0e-8_wp, '10000 bodies')
+   end subroutine critical_long
+
+end module test_band

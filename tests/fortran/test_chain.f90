@@ -1,0 +1,402 @@
+!> Equation of motion of the chain with small rotations: the O(n) forms against dense matrices written
+!> straight from theory.md, and against the energies.
+module test_chain
+   use check, only: unit_test, check_close, check_same, check_true
+   use rbs_base_error, only: error_type
+   use rbs_base_kinds, only: wp
+   use rbs_base_linalg, only: factor_positive, solve_positive
+   use rbs_base_text, only: to_text
+   use rbs_column_band, only: from_joints, to_joints
+   use rbs_column_chain, only: body_velocities, kinetic_of
+   use rbs_column_column, only: column_type
+   use rbs_column_mass, only: symmetric_mass
+   use rbs_loading_signal, only: signal_type
+   use rbs_solve_loads, only: loads_type, lateral, horizontal, vertical, axial
+   use rbs_solve_modal, only: modes_type, find_modes
+   use rbs_solve_rk4, only: rk4_scheme
+   use rbs_solve_state, only: state_type
+   use rbs_spec_column, only: column_spec
+   use runs, only: new_state, signal_of
+   use samples, only: bilinear, made, random_type, rich_column
+   implicit none
+   private
+
+   public :: collect_chain
+
+contains
+
+   subroutine collect_chain(tests)
+      type(unit_test), allocatable, intent(out) :: tests(:)
+
+      tests = [unit_test('accelerations solve the dense equation of motion', dense), &
+               unit_test('the loads act each by itself', one_load), &
+               unit_test('powers are the rates of the energies', power), &
+               unit_test('velocities of bodies and of joints, kinetic energy', bodies), &
+               unit_test('height of the top to second order', height), &
+               unit_test('one body: the fast step is the step of the chain', fast_step), &
+               unit_test('loads that do not act cost nothing and change nothing', idle_loads)]
+   end subroutine collect_chain
+
+   !> Whether a bit of the number of a variant is set: opens, second order, lumped mass, damping of mass,
+   !> initial stiffness, present stiffness, modes.
+   type(column_spec) function variant(n, kind, random) result(spec)
+      integer, intent(in) :: n, kind
+      type(random_type), intent(inout) :: random
+
+      spec = rich_column(n, merge('pdelta', 'small ', btest(kind, 0)), btest(kind, 1), random)
+      if (btest(kind, 2)) then
+         spec%top_mass = random%uniform(100.0_wp, 2000.0_wp)
+         spec%top_inertia = random%uniform(0.0_wp, 200.0_wp)
+      end if
+      if (btest(kind, 3)) spec%mass_damping = random%uniform(0.0_wp, 20.0_wp)
+      if (btest(kind, 4)) then
+         spec%stiffness_damping = random%uniform(0.0_wp, 1.0e-3_wp)
+         spec%tangent_damping = btest(kind, 5)
+      end if
+      if (btest(kind, 6)) spec%modal_damping = [random%uniform(0.0_wp, 0.3_wp)]
+   end function variant
+
+   !> A state with springs somewhere on their ways, and all loads.
+   subroutine random_state(spec, random, state)
+      type(column_spec), intent(in) :: spec
+      type(random_type), intent(inout) :: random
+      type(state_type), intent(out) :: state
+      type(column_type) :: column
+      type(loads_type) :: loads
+      real(wp), allocatable :: q(:), v(:)
+      integer :: step
+
+      column = made(spec)
+      loads%force = constant(random%uniform(-1.0e6_wp, 1.0e6_wp))
+      loads%ground = constant(random%uniform(-9.0_wp, 9.0_wp))
+      loads%vertical = constant(random%uniform(-9.0_wp, 9.0_wp))
+      loads%axial = constant(random%uniform(-1.0e6_wp, 1.0e6_wp))
+      allocate (q(column%unknowns), source=0.0_wp)
+      v = random%uniform_array(-1.0_wp, 1.0_wp, column%unknowns)
+      call new_state(state, column, loads, q, v)
+      do step = 1, 3
+         q = random%uniform_array(-1.0e-2_wp, 1.0e-2_wp, size(q))
+         call state%springs%move_all(q)
+      end do
+      state%q = q
+   end subroutine random_state
+
+   type(signal_type) function constant(value) result(signal)
+      real(wp), intent(in) :: value
+
+      signal = signal_of([0.0_wp, 1.0_wp], [value, value])
+   end function constant
+
+   !> Forces of dead loads on the straight column to second order. A load of w (down) at the height s on
+   !> body k has the potential w y, y = sum_{j<k} l_j (1 - th_j^2/2) + s (1 - th_k^2/2) + sum_{j<=k} (w_j
+   !> - u_j th_{j-1}).
+   subroutine add_dead_load(column, w, k, s, q, second_order, force)
+      type(column_type), intent(in) :: column
+      real(wp), intent(in) :: w, s, q(:)
+      integer, intent(in) :: k
+      logical, intent(in) :: second_order
+      real(wp), intent(inout) :: force(:)
+      real(wp) :: th(0:column%n), of_rotation(0:column%n), arm
+      integer :: j, n
+
+      n = column%n
+      if (column%opens) force(2*n + 1:2*n + k) = force(2*n + 1:2*n + k) - w
+      if (.not. second_order) return
+      th(0) = 0.0_wp
+      do j = 1, n
+         th(j) = th(j - 1) + q(n + j)
+      end do
+      of_rotation = 0.0_wp
+      do j = 1, k
+         arm = merge(s, column%length(j), j == k)
+         of_rotation(j) = of_rotation(j) + w*arm*th(j)
+         force(j) = force(j) + w*th(j - 1)
+         of_rotation(j - 1) = of_rotation(j - 1) + w*q(j)
+      end do
+      do j = 1, n
+         force(n + j) = force(n + j) + sum(of_rotation(j:))
+      end do
+   end subroutine add_dead_load
+
+   !> Right-hand side of M a = f and M itself, term by term.
+   subroutine equation_of_motion(spec, state, mass, right)
+      type(column_spec), intent(in) :: spec
+      type(state_type), intent(in) :: state
+      real(wp), allocatable, intent(out) :: mass(:, :), right(:)
+      type(error_type), allocatable :: outcome
+      type(modes_type) :: modes
+      real(wp) :: own, shape_force
+      integer :: i, k, m, n
+
+      n = spec%n
+      associate (column => state%motion%column, springs => state%springs, load => state%load)
+         m = column%unknowns
+         allocate (mass(m, m), right(m))
+         call symmetric_mass(column, mass)
+         do i = 1, m
+            right(i) = -springs%force(i)
+         end do
+         right(:2*n) = right(:2*n) + load(lateral)*column%arm(:2*n) - load(horizontal)*column%ground_arm(:2*n)
+         do k = 1, n
+            own = spec%masses(k)*(load(vertical) + merge(spec%gravity, 0.0_wp, spec%self_weight))
+            call add_dead_load(column, own, k, 0.5_wp*spec%lengths(k), state%q, spec%kinematics == 'pdelta', &
+                               right)
+         end do
+         call add_dead_load(column, spec%axial_load + load(axial) + spec%top_mass*load(vertical), n, &
+                            spec%lengths(n), state%q, spec%kinematics == 'pdelta', right)
+         right = right - spec%mass_damping*matmul(mass, state%v)
+         do i = 1, m
+            right(i) = right(i) - spec%stiffness_damping*state%v(i) &
+                       *merge(springs%k(i), column%initial_stiffness(i), spec%tangent_damping)
+         end do
+         if (allocated(spec%modal_damping)) then
+            call find_modes(column, modes, outcome)
+            do i = 1, m
+               shape_force = 2.0_wp*spec%modal_damping(1)*modes%omega(i) &
+                             *dot_product(modes%shapes(:, i), matmul(mass, state%v))
+               right = right - shape_force*matmul(mass, modes%shapes(:, i))
+            end do
+         end if
+      end associate
+   end subroutine equation_of_motion
+
+   subroutine dense(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(column_spec) :: spec
+      type(state_type) :: state
+      real(wp), allocatable :: mass(:, :), expected(:), a(:)
+      integer :: kind, n
+      logical :: positive
+
+      do n = 1, 6
+         do kind = 0, 127
+            spec = variant(n, kind, random)
+            call random_state(spec, random, state)
+            call equation_of_motion(spec, state, mass, expected)
+            call factor_positive(mass, positive)
+            call solve_positive(mass, expected)
+            if (allocated(a)) deallocate (a)
+            allocate (a(size(expected)))
+            call state%motion%acceleration(state%springs, state%q, state%v, state%load, a)
+            ! Round-off of the dense solution grows with the condition of M.
+            call check_close(error, a, expected, 0.0_wp, 1.0e-11_wp*maxval(abs(expected)), &
+                             'n = '//to_text(n)//', variant '//to_text(kind)//', acceleration')
+            if (allocated(error)) return
+         end do
+      end do
+   end subroutine dense
+
+   !> Without springs' forces each load alone has a closed form for one body.
+   subroutine one_load(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(column_spec) :: spec
+      type(state_type) :: state
+      type(column_type) :: column
+      type(loads_type) :: loads
+      real(wp) :: a(3), q(3), v(3), load(4), m, l
+
+      spec = rich_column(1, 'pdelta', .true., random)
+      spec%self_weight = .false.
+      spec%axial_load = 0.0_wp
+      column = made(spec)
+      m = column%mass(1)
+      l = column%length(1)
+      q = 0.0_wp
+      v = 0.0_wp
+      loads%force = constant(1.0_wp)
+      loads%ground = constant(1.0_wp)
+      loads%vertical = constant(1.0_wp)
+      loads%axial = constant(1.0_wp)
+      call new_state(state, column, loads, q, v)
+
+      load = [12.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
+      call state%motion%acceleration(state%springs, q, v, load, a)
+      call check_close(error, a(2)*column%inertia(1), 6.0_wp*l, 1.0e-14_wp, 0.0_wp, 'force turns')
+      call check_close(error, a(1) + 0.5_wp*l*a(2), 12.0_wp/m, 1.0e-14_wp, 0.0_wp, 'force pushes')
+      load = [0.0_wp, 3.0_wp, 0.0_wp, 0.0_wp]
+      call state%motion%acceleration(state%springs, q, v, load, a)
+      call check_close(error, a, [-3.0_wp, 0.0_wp, 0.0_wp], 1.0e-15_wp, 0.0_wp, 'ground')
+      load = [0.0_wp, 0.0_wp, 3.0_wp, 0.0_wp]
+      call state%motion%acceleration(state%springs, q, v, load, a)
+      call check_close(error, a, [0.0_wp, 0.0_wp, -3.0_wp], 1.0e-15_wp, 0.0_wp, 'vertical')
+      load = [0.0_wp, 0.0_wp, 0.0_wp, 3.0_wp*m]
+      call state%motion%acceleration(state%springs, q, v, load, a)
+      call check_close(error, a, [0.0_wp, 0.0_wp, -3.0_wp], 1.0e-15_wp, 0.0_wp, 'axial')
+   end subroutine one_load
+
+   !> d(kinetic energy + potential)/dt + power of the springs = power of loads - power of damping. Both
+   !> energies are quadratic: a central difference over any distance is their derivative.
+   subroutine power(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(state_type) :: state
+      real(wp), allocatable :: a(:)
+      real(wp) :: of_motion, of_potential, of_springs, of_loads, of_damping
+      integer :: i, kind, n
+
+      do n = 1, 6
+         do kind = 0, 127
+            call random_state(variant(n, kind, random), random, state)
+            if (allocated(a)) deallocate (a)
+            allocate (a(size(state%q)))
+            associate (motion => state%motion, q => state%q, v => state%v)
+               call motion%acceleration(state%springs, q, v, state%load, a)
+               call motion%power(state%springs, q, v, state%load, of_loads, of_damping)
+               ! Steps of the size of q and v lose no digits.
+               a = 1.0e-5_wp*a
+               of_motion = 0.5e5_wp*(motion%kinetic_energy(q, v + a) - motion%kinetic_energy(q, v - a))
+               of_potential = 50.0_wp*(motion%potential(q + 0.01_wp*v) - motion%potential(q - 0.01_wp*v))
+               of_springs = sum([(state%springs%force(i)*v(i), i=1, size(v))])
+            end associate
+            call check_close(error, of_motion + of_potential + of_springs, of_loads - of_damping, 0.0_wp, &
+                             1.0e-10_wp*(abs(of_motion) + abs(of_potential) + abs(of_springs) &
+                                         + abs(of_loads) + abs(of_damping)), &
+                             'n = '//to_text(n)//', variant '//to_text(kind)//', power')
+            call check_true(error, of_damping >= 0.0_wp, 'damping gives energy')
+            if (allocated(error)) return
+         end do
+      end do
+   end subroutine power
+
+   subroutine bodies(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      integer :: kind, n
+
+      do n = 1, 6
+         do kind = 0, 7
+            call check_bodies(error, made(variant(n, kind, random)), random)
+         end do
+      end do
+   end subroutine bodies
+
+   !> to_joints and body_velocities are inverse to each other, from_joints is the transpose of to_joints;
+   !> the kinetic energy of the bodies is half of v M v of the joints.
+   subroutine check_bodies(error, column, random)
+      type(error_type), allocatable, intent(inout) :: error
+      type(column_type), intent(in) :: column
+      type(random_type), intent(inout) :: random
+      real(wp), dimension(column%unknowns) :: v, x, back, f, r
+      real(wp) :: mass(column%unknowns, column%unknowns)
+      integer :: n
+
+      n = column%n
+      v = random%uniform_array(-1.0_wp, 1.0_wp, column%unknowns)
+      f = random%uniform_array(-1.0_wp, 1.0_wp, column%unknowns)
+      call body_velocities(column, v, x)
+      call to_joints(column, x, back)
+      call check_close(error, back, v, 0.0_wp, 1.0e-14_wp, 'there and back')
+      call from_joints(column, f, r)
+      call check_close(error, dot_product(r, x), dot_product(f, v), 0.0_wp, 1.0e-13_wp, 'equal works')
+      call check_close(error, x(2*n - 1) + column%upper(n)*x(2*n), dot_product(column%arm, v), 0.0_wp, &
+                       1.0e-14_wp, 'velocity of the top')
+      call symmetric_mass(column, mass)
+      call check_close(error, kinetic_of(column, v), 0.5_wp*dot_product(v, matmul(mass, v)), 1.0e-13_wp, &
+                       0.0_wp, 'kinetic energy')
+   end subroutine check_bodies
+
+   !> The potential of the axial load alone is load times the height that the top has gained.
+   subroutine height(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(column_spec) :: spec
+      type(state_type) :: state
+      real(wp) :: top(2)
+      integer :: n, kind
+
+      do n = 1, 6
+         do kind = 0, 3
+            spec = variant(n, kind, random)
+            spec%self_weight = .false.
+            call random_state(spec, random, state)
+            top = state%motion%top(state%q)
+            call check_close(error, spec%axial_load*(top(2) - spec%height), state%motion%potential(state%q), &
+                             1.0e-9_wp, 0.0_wp, 'n = '//to_text(n)//', variant '//to_text(kind)//', height')
+            call check_close(error, top(1), dot_product(state%motion%column%arm, state%q), 0.0_wp, &
+                             1.0e-15_wp, 'displacement')
+         end do
+      end do
+   end subroutine height
+
+   !> `single` only chooses the way of reckoning.
+   subroutine fast_step(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(column_spec) :: spec
+      type(column_type) :: column
+      type(state_type) :: state
+      type(loads_type) :: loads
+      type(rk4_scheme) :: fast, slow
+      real(wp) :: q(2), v(2)
+      integer :: trial
+
+      call fast%create(2)
+      call slow%create(2)
+      do trial = 1, 200
+         spec = rich_column(1, merge('pdelta', 'small ', mod(trial, 2) == 0), .false., random)
+         if (mod(trial, 3) == 0) spec%top_mass = random%uniform(100.0_wp, 2000.0_wp)
+         column = made(spec)
+         loads = loads_type()
+         if (mod(trial, 5) /= 0) then
+            loads%force = signal_of([0.0_wp, 1.0_wp], [random%uniform(-1.0e6_wp, 1.0e6_wp), 0.0_wp])
+         end if
+         if (mod(trial, 7) /= 0) then
+            loads%ground = signal_of([0.0_wp, 1.0e-4_wp, 1.0_wp], [3.0_wp, 0.0_wp, 0.0_wp])
+         end if
+         q = random%uniform_array(-1.0e-2_wp, 1.0e-2_wp, 2)
+         v = random%uniform_array(-1.0_wp, 1.0_wp, 2)
+         call new_state(state, column, loads, q, v)
+         call check_true(error, state%motion%single .and. state%motion%plain, 'the fast step is taken')
+         call fast%attempt(state, 2.0e-4_wp)
+         state%motion%single = .false.
+         call slow%attempt(state, 2.0e-4_wp)
+         call check_close(error, fast%q, slow%q, 0.0_wp, 1.0e-14_wp*maxval(abs(slow%q)), 'deformation')
+         call check_close(error, fast%v, slow%v, 0.0_wp, 1.0e-13_wp*maxval(abs(slow%v)), 'velocity')
+         call check_close(error, fast%of_loads, slow%of_loads, 1.0e-11_wp, 1.0e-12_wp, 'work of the loads')
+         ! The general way of all columns, power by power
+         state%motion%plain = .false.
+         call slow%attempt(state, 2.0e-4_wp)
+         call check_close(error, fast%v, slow%v, 0.0_wp, 1.0e-13_wp*maxval(abs(slow%v)), 'velocity again')
+         call check_close(error, fast%of_loads, slow%of_loads, 1.0e-11_wp, 1.0e-12_wp, 'work again')
+         call check_same(error, fast%load, slow%load, 'loads at the end')
+      end do
+   end subroutine fast_step
+
+   !> A load of zeros acts like none, to round-off.
+   subroutine idle_loads(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(column_type) :: column
+      type(state_type) :: idle, none
+      type(loads_type) :: zeros
+      type(rk4_scheme) :: a, b
+      real(wp), allocatable :: q(:), v(:)
+      integer :: n, kind
+
+      zeros%force = constant(0.0_wp)
+      zeros%ground = constant(0.0_wp)
+      zeros%vertical = constant(0.0_wp)
+      zeros%axial = constant(0.0_wp)
+      do n = 1, 3
+         do kind = 0, 127
+            column = made(variant(n, kind, random))
+            q = random%uniform_array(-1.0e-3_wp, 1.0e-3_wp, column%unknowns)
+            v = random%uniform_array(-1.0_wp, 1.0_wp, column%unknowns)
+            call new_state(idle, column, zeros, q, v)
+            call new_state(none, column, loads_type(), q, v)
+            a = rk4_scheme()
+            b = rk4_scheme()
+            call a%create(column%unknowns)
+            call b%create(column%unknowns)
+            call a%attempt(idle, 1.0e-5_wp)
+            call b%attempt(none, 1.0e-5_wp)
+            call check_close(error, a%v, b%v, 0.0_wp, 1.0e-13_wp*maxval(abs(b%v)), 'velocity')
+            call check_close(error, a%of_loads, 0.0_wp, 0.0_wp, 0.0_wp, 'no work')
+            call check_close(error, a%of_damping, b%of_damping, 1.0e-13_wp, 0.0_wp, 'damping')
+         end do
+      end do
+   end subroutine idle_loads
+
+end module test_chain

@@ -1,0 +1,774 @@
+!> The explicit steppers: closed forms through contact and yielding, observed orders with located events,
+!> errors in proportion to the tolerance, events in every awkward place, any units.
+module test_steppers
+   use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_same, check_true
+   use rbs_base_constants, only: pi
+   use rbs_base_error, only: error_type, analysis_failed
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_column_column, only: column_type
+   use rbs_solve_loads, only: loads_type
+   use rbs_solve_located, only: located_stepper
+   use rbs_solve_modal, only: modes_type, find_modes
+   use rbs_solve_pair45, only: pair45_scheme
+   use rbs_solve_rk4, only: rk4_stepper
+   use rbs_solve_state, only: state_type, stepper_type
+   use rbs_spec_column, only: column_spec
+   use rbs_spec_spring, only: spring_spec
+   use runs, only: new_state, new_located, signal_of, order_of, check_order, residual_of, distance
+   use samples, only: bilinear, chain, column_1, compression, elastic, made, random_type, takeda_1, d_c, &
+                      d_y, k_c
+   implicit none
+   private
+
+   public :: collect_steppers
+
+   !> A column, its loads, how it begins and how long it moves.
+   type :: scene_type
+      type(column_type) :: column
+      type(loads_type) :: loads
+      real(wp), allocatable :: q(:), v(:)
+      real(wp) :: finish = 0.0_wp
+   end type scene_type
+
+   integer, parameter :: scenes = 6
+
+contains
+
+   subroutine collect_steppers(tests)
+      type(unit_test), allocatable, intent(out) :: tests(:)
+
+      tests = [unit_test('a bouncing contact: closed form', bounce), &
+               unit_test('a bilinear spring, yielding both ways: closed form', yielding), &
+               unit_test('located rk4 without events is rk4, to the last bit', no_events), &
+               unit_test('located: order 4 through yielding and unloading', located_order), &
+               unit_test('located: the energy residual is of order 4 or more', located_energy), &
+               unit_test('events at the end of a step: order 2', step_order), &
+               unit_test('rk45: errors in proportion to the tolerance', tolerances), &
+               unit_test('rk45: energy in proportion to the tolerance', tolerance_energy), &
+               unit_test('the pair: order 5, and an estimate of order 5', pair_order), &
+               unit_test('an event at the exact end of a step', exact_end), &
+               unit_test('a contact that is just touched', grazing), &
+               unit_test('several springs at the same instant', at_once), &
+               unit_test('begin on the end of a line', begin_on_end), &
+               unit_test('begin with a velocity against a one-way line', against_one_way), &
+               unit_test('begin at rest, on the yield plateau', rest_on_line), &
+               unit_test('Takeda loops without end, smaller and smaller', small_loops), &
+               unit_test('events are counted once', counted), &
+               unit_test('where the run is interrupted does not matter', interrupted), &
+               unit_test('a tolerance that cannot be met: an error, the last good state', hopeless), &
+               unit_test('a column that falls has no bounds', falling)]
+   end subroutine collect_steppers
+
+   !> Columns that yield and unload many times; the force has corners that meet no step.
+   subroutine new_scene(scene, number)
+      type(scene_type), intent(out) :: scene
+      integer, intent(in) :: number
+      type(column_spec) :: spec
+      type(random_type) :: random
+      real(wp) :: value(8)
+      integer :: i
+
+      select case (number)
+      case (1)
+         spec = column_1('small')
+         spec%flexure(1) = bilinear(k_c, d_c, 0.1_wp*k_c)
+      case (2)
+         spec = column_1('small')
+      case (3)
+         spec = column_1('pdelta')
+         spec%axial_load = 1.0e6_wp
+      case (4)
+         spec = column_1('small')
+         spec%n = 3
+         spec%flexure(1) = bilinear(k_c, d_c, 0.1_wp*k_c)
+      case (5)
+         spec = column_1('pdelta')
+         spec%n = 3
+         spec%axial_load = 1.0e6_wp
+         spec%self_weight = .true.
+         spec%mass_damping = 5.0_wp
+      case default
+         spec = column_1('finite')
+         spec%axial_load = 1.0e6_wp
+      end select
+      scene%column = made(spec)
+      scene%finish = 0.05_wp
+      value = [(random%uniform(-2.0e5_wp, 2.0e5_wp), i=1, 8)]
+      value(1) = 0.0_wp
+      scene%loads%force = signal_of([(scene%finish*i/7, i=0, 7)], value)
+      allocate (scene%q(scene%column%unknowns), scene%v(scene%column%unknowns), source=0.0_wp)
+      scene%v(1) = 0.3_wp
+      scene%v(scene%column%n + 1) = 1.0_wp
+   end subroutine new_scene
+
+   !> One mass on an axial spring, which nothing couples to the rest, without load.
+   subroutine new_mass(scene, spring, mass, w, v)
+      type(scene_type), intent(out) :: scene
+      type(spring_spec), intent(in) :: spring
+      !> Mass [kg], opening and its velocity
+      real(wp), intent(in) :: mass, w, v
+      type(column_spec) :: spec
+
+      spec = chain(1, 'small')
+      spec%masses = [mass]
+      allocate (spec%axial(1))
+      spec%axial(1) = spring
+      scene%column = made(spec)
+      scene%q = [0.0_wp, 0.0_wp, w]
+      scene%v = [0.0_wp, 0.0_wp, v]
+   end subroutine new_mass
+
+   !> Begin a scene and move it to its end in equal steps.
+   subroutine play(scene, stepper, steps, state, outcome)
+      type(scene_type), intent(in) :: scene
+      class(stepper_type), intent(inout) :: stepper
+      integer, intent(in) :: steps
+      type(state_type), intent(out) :: state
+      type(error_type), allocatable, intent(out) :: outcome
+      integer :: i
+
+      call new_state(state, scene%column, scene%loads, scene%q, scene%v)
+      do i = 1, steps
+         call stepper%advance(state, scene%finish/steps, outcome)
+         if (allocated(outcome)) return
+      end do
+   end subroutine play
+
+   !> The same by rk4 with located events, or by the pair with a tolerance.
+   subroutine play_located(scene, tolerance, steps, state, outcome)
+      type(scene_type), intent(in) :: scene
+      !> 0: rk4
+      real(wp), intent(in) :: tolerance
+      integer, intent(in) :: steps
+      type(state_type), intent(out) :: state
+      type(error_type), allocatable, intent(out) :: outcome
+      type(located_stepper) :: stepper
+
+      call new_located(stepper, scene%column, tolerance, scene%finish/100.0_wp)
+      call play(scene, stepper, steps, state, outcome)
+   end subroutine play_located
+
+   !> Falls on a spring, is thrown back, flies under a constant load, falls again.
+   subroutine bounce(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: state
+      real(wp), parameter :: mass = 2.0_wp, k = 800.0_wp, v0 = 3.0_wp, push = 20.0_wp
+      real(wp) :: omega, sag, radius, flight, contact, wrong(4)
+      integer :: i
+
+      call new_mass(scene, compression(k), mass, 0.0_wp, v0)
+      scene%column%axial_load = push
+      scene%column%axial_joint = push
+      omega = sqrt(k/mass)
+      sag = push/k
+      radius = hypot(sag, v0/omega)
+      flight = 2.0_wp*v0*mass/push
+      contact = (2.0_wp*pi - 2.0_wp*acos(sag/radius))/omega
+      scene%finish = 5.0_wp*(flight + contact) + 0.5_wp*flight
+      do i = 1, 4
+         call play_located(scene, 0.0_wp, 800*2**i, state, outcome)
+         call check_passed(error, outcome, 'rk4')
+         wrong(i) = abs(state%q(3)/(0.5_wp*v0**2*mass/push) - 1.0_wp) + abs(state%v(3))/v0
+      end do
+      call check_order(error, wrong, 3.8_wp, 4.5_wp, 'rk4')
+      call check_true(error, wrong(4) < 1.0e-6_wp, 'rk4: error')
+      do i = 6, 12, 2
+         call play_located(scene, 10.0_wp**(-i), 1, state, outcome)
+         call check_passed(error, outcome, 'rk45')
+         call check_close(error, [state%q(3), state%v(3)], [0.5_wp*v0**2*mass/push, 0.0_wp], 0.0_wp, &
+                          1.0e3_wp*10.0_wp**(-i), 'rk45 with 1e-'//to_text(i))
+      end do
+      ! The spring has given back what it took.
+      call check_close(error, state%springs%work(3), 0.0_wp, 0.0_wp, 1.0e-9_wp, 'work of the contact')
+      call check_equal(error, state%springs%events, 11, 'opened six times, closed five times')
+   end subroutine bounce
+
+   !> Yield, turn, yield the other way, turn, and a quarter of the elastic period back: on each line the
+   !> motion is a harmonic one.
+   subroutine yielding(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: state
+      real(wp), parameter :: mass = 2.0_wp, k = 800.0_wp, post = 80.0_wp, yield = 0.05_wp, v0 = 4.0_wp
+      real(wp), parameter :: omega = sqrt(k/mass), slow = sqrt(post/mass)
+      real(wp) :: f, v, w, reach, span, time, wrong(4)
+      integer :: i
+
+      time = asin(yield*omega/v0)/omega
+      v = sqrt(v0**2 - (yield*omega)**2)
+      f = k*yield
+      reach = hypot(f/post, v/slow)
+      time = time + atan2(v/slow, f/post)/slow
+      w = yield - f/post + reach
+      f = post*reach
+      ! Elastic down by twice the yield deformation, with the amplitude f/k
+      span = f/k - 2.0_wp*yield
+      time = time + acos(span*k/f)/omega
+      v = omega*sqrt((f/k)**2 - span**2)
+      w = w - 2.0_wp*yield
+      f = k*span
+      reach = hypot(f/post, v/slow)
+      time = time + atan2(v/slow, -f/post)/slow
+      w = w - f/post - reach
+      f = -post*reach
+      time = time + 0.5_wp*pi/omega
+      w = w - f/k
+
+      call new_mass(scene, bilinear(k, yield, post), mass, 0.0_wp, v0)
+      scene%finish = time
+      do i = 1, 4
+         call play_located(scene, 0.0_wp, 80*2**i, state, outcome)
+         call check_passed(error, outcome, 'rk4')
+         wrong(i) = abs(state%q(3) - w)/yield
+      end do
+      call check_order(error, wrong, 3.7_wp, 4.8_wp, 'rk4')
+      call check_true(error, wrong(4) < 1.0e-5_wp, 'rk4: error '//to_text(wrong(4)))
+      do i = 6, 12, 2
+         call play_located(scene, 10.0_wp**(-i), 1, state, outcome)
+         call check_passed(error, outcome, 'rk45')
+         call check_close(error, [state%q(3), state%v(3)], [w, omega*abs(f)/k], 0.0_wp, &
+                          1.0e3_wp*10.0_wp**(-i), 'rk45 with 1e-'//to_text(i))
+      end do
+      call check_close(error, residual_of(state), 0.0_wp, 0.0_wp, 1.0e-10_wp*mass*v0**2, 'energy')
+   end subroutine yielding
+
+   !> Elastic springs have no ends: the steps are the same, bit for bit.
+   subroutine no_events(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: located, plain
+      type(rk4_stepper) :: stepper
+      integer, parameter :: bodies(3) = [1, 2, 5]
+      integer :: i, m
+
+      do i = 1, 3
+         scene = scene_type()
+         scene%column = made(chain(bodies(i), 'small'))
+         m = scene%column%unknowns
+         ! A binary fraction: no round-off in the times
+         scene%finish = 2.0_wp**(-7)
+         scene%loads%force = signal_of(scene%finish*[0.0_wp, 1.0_wp], [0.0_wp, 1.0e5_wp])
+         allocate (scene%q(m), scene%v(m), source=0.0_wp)
+         scene%v(1) = 1.0_wp
+         call play_located(scene, 0.0_wp, 2048, located, outcome)
+         call check_passed(error, outcome, 'located')
+         stepper = rk4_stepper()
+         call stepper%scheme%create(m)
+         call play(scene, stepper, 2048, plain, outcome)
+         call check_passed(error, outcome, 'step')
+         call check_same(error, located%q, plain%q, 'deformation')
+         call check_same(error, located%v, plain%v, 'velocity')
+         call check_same(error, located%of_loads, plain%of_loads, 'work of the loads')
+      end do
+   end subroutine no_events
+
+   !> The end of a scene to ten digits or more, by the pair.
+   subroutine find_reference(scene, state, error)
+      type(scene_type), intent(in) :: scene
+      type(state_type), intent(out) :: state
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+
+      call play_located(scene, 1.0e-13_wp, 1, state, outcome)
+      call check_passed(error, outcome, 'reference')
+      call check_true(error, state%springs%events > 20, 'the springs change their lines')
+      call check_true(error, abs(residual_of(state)) < 1.0e-11_wp*sum(state%springs%work), &
+                      'energy of the reference')
+   end subroutine find_reference
+
+   !> The longest step of a scene, in whole steps.
+   pure integer function coarse(scene)
+      type(scene_type), intent(in) :: scene
+
+      coarse = merge(360, 2000, scene%column%n == 1)
+   end function coarse
+
+   subroutine located_order(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: reference, state
+      real(wp) :: wrong(5)
+      integer :: i, number
+
+      do number = 1, scenes
+         call new_scene(scene, number)
+         call find_reference(scene, reference, error)
+         do i = 1, 5
+            call play_located(scene, 0.0_wp, coarse(scene)*2**(i - 1), state, outcome)
+            call check_passed(error, outcome, 'scene '//to_text(number))
+            wrong(i) = distance(state, reference)
+         end do
+         call check_order(error, wrong, 3.7_wp, 4.5_wp, 'scene '//to_text(number))
+         call check_true(error, wrong(5) < 2.0e-7_wp, 'scene '//to_text(number)//': error '// &
+                         to_text(wrong(5)))
+         call check_equal(error, state%springs%events, reference%springs%events, 'events')
+         if (allocated(error)) return
+      end do
+   end subroutine located_order
+
+   subroutine located_energy(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: state
+      real(wp) :: wrong(4)
+      integer :: i, number
+
+      do number = 1, scenes
+         call new_scene(scene, number)
+         do i = 1, 4
+            call play_located(scene, 0.0_wp, coarse(scene)*2**(i - 1), state, outcome)
+            call check_passed(error, outcome, 'scene '//to_text(number))
+            wrong(i) = abs(residual_of(state))/sum(state%springs%work)
+         end do
+         call check_order(error, wrong, 4.0_wp, 6.0_wp, 'scene '//to_text(number))
+         call check_true(error, wrong(4) < 1.0e-8_wp, 'scene '//to_text(number)//': residual')
+      end do
+   end subroutine located_energy
+
+   !> A line that changes at the end of the step costs two orders: by chance more or less, so the mean over
+   !> five halvings.
+   subroutine step_order(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: reference, state
+      type(rk4_stepper) :: stepper
+      real(wp) :: wrong(6)
+      integer :: i, number
+
+      do number = 1, scenes
+         call new_scene(scene, number)
+         call find_reference(scene, reference, error)
+         do i = 1, 6
+            stepper = rk4_stepper()
+            call stepper%scheme%create(scene%column%unknowns)
+            call play(scene, stepper, coarse(scene)*2**(i - 1), state, outcome)
+            call check_passed(error, outcome, 'scene '//to_text(number))
+            wrong(i) = distance(state, reference)
+         end do
+         call check_order(error, wrong, 1.4_wp, 2.8_wp, 'scene '//to_text(number))
+      end do
+   end subroutine step_order
+
+   subroutine tolerances(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: reference, state
+      real(wp) :: wrong(4:12), slope
+      integer :: i, number
+
+      do number = 1, scenes
+         call new_scene(scene, number)
+         call find_reference(scene, reference, error)
+         do i = 4, 12
+            call play_located(scene, 10.0_wp**(-i), 1, state, outcome)
+            call check_passed(error, outcome, 'scene '//to_text(number))
+            wrong(i) = distance(state, reference)
+            ! Some hundred steps add up, and some twenty changes of stiffness make the difference grow.
+            call check_true(error, wrong(i) < 1.0e4_wp*10.0_wp**(-i), 'scene '//to_text(number)// &
+                            ', tolerance 1e-'//to_text(i)//': error '//to_text(wrong(i)))
+         end do
+         slope = log10(wrong(5)/wrong(11))/6.0_wp
+         call check_true(error, slope > 0.85_wp .and. slope < 1.2_wp, 'scene '//to_text(number)// &
+                         ': the error goes with the tolerance to the power '//to_text(slope))
+      end do
+   end subroutine tolerances
+
+   subroutine tolerance_energy(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: state
+      integer :: i, number
+
+      do number = 1, scenes
+         call new_scene(scene, number)
+         do i = 4, 12, 2
+            call play_located(scene, 10.0_wp**(-i), 1, state, outcome)
+            call check_passed(error, outcome, 'scene '//to_text(number))
+            call check_close(error, residual_of(state)/sum(state%springs%work), 0.0_wp, 0.0_wp, &
+                             10.0_wp**(1 - i), 'scene '//to_text(number)//': residual')
+         end do
+      end do
+   end subroutine tolerance_energy
+
+   !> Fixed steps of the pair by hand, without control: a damped chain in its highest mode.
+   subroutine pair_order(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(column_type) :: column
+      type(modes_type) :: modes
+      type(state_type) :: state
+      type(pair45_scheme) :: scheme
+      real(wp) :: wrong(4), first(4), omega, t, q, v, c
+      integer :: i, step, steps
+
+      spec = chain(2, 'small')
+      spec%mass_damping = 200.0_wp
+      column = made(spec)
+      call find_modes(column, modes, outcome)
+      call check_passed(error, outcome, 'find_modes')
+      c = 0.5_wp*spec%mass_damping
+      omega = sqrt(modes%omega(4)**2 - c**2)
+      t = 5.0_wp/omega
+      q = exp(-c*t)*(cos(omega*t) + c/omega*sin(omega*t))
+      v = -exp(-c*t)*(omega + c**2/omega)*sin(omega*t)
+      do i = 1, 4
+         steps = 10*2**i
+         scheme = pair45_scheme()
+         call scheme%create(4)
+         call check_equal(error, scheme%order, 5, 'order')
+         call new_state(state, column, loads_type(), modes%shapes(:, 4), 0.0_wp*modes%shapes(:, 4))
+         do step = 1, steps
+            call scheme%attempt(state, t/steps)
+            if (step == 1) first(i) = maxval(abs(scheme%error_q)) + maxval(abs(scheme%error_v))/omega
+            call scheme%accept(state, t/steps)
+         end do
+         call check_close(error, state%time, t, 1.0e-13_wp, 0.0_wp, 'time')
+         wrong(i) = maxval(abs(state%q - q*modes%shapes(:, 4)))/maxval(abs(modes%shapes(:, 4))) &
+                    + maxval(abs(state%v - v*modes%shapes(:, 4)))/maxval(abs(modes%shapes(:, 4)))/omega
+      end do
+      call check_order(error, wrong, 4.8_wp, 5.4_wp, 'errors')
+      call check_true(error, wrong(4) < 1.0e-8_wp, 'errors')
+      call check_order(error, first, 4.8_wp, 5.4_wp, 'estimates of the first step')
+   end subroutine pair_order
+
+   !> Free flight onto a contact: everything is a binary fraction, the contact closes at t = 1 exactly.
+   subroutine exact_end(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: state
+      real(wp), parameter :: k = 4.0_wp
+      real(wp) :: tolerance
+      integer :: way
+
+      do way = 1, 2
+         tolerance = merge(0.0_wp, 1.0e-10_wp, way == 1)
+         call new_mass(scene, compression(k), 1.0_wp, 1.0_wp, -1.0_wp)
+         scene%finish = 1.0_wp
+         call play_located(scene, tolerance, 4, state, outcome)
+         call check_passed(error, outcome, 'flight')
+         call check_close(error, [state%q(3), state%v(3)], [0.0_wp, -1.0_wp], 0.0_wp, 1.0e-15_wp, 'contact')
+         ! Half a period in contact, then away with the same speed.
+         scene%finish = 4.0_wp
+         call play_located(scene, tolerance, 1024, state, outcome)
+         call check_passed(error, outcome, 'there and back')
+         call check_close(error, [state%q(3), state%v(3)], [3.0_wp - pi/sqrt(k), 1.0_wp], 0.0_wp, 1.0e-9_wp, &
+                          'thrown back')
+         call check_equal(error, state%springs%events, 3, 'opened at the begin, closed, opened')
+      end do
+   end subroutine exact_end
+
+   !> w = (t - t0)^2 - depth under a constant lift: over the end and back within a step, or not quite.
+   subroutine grazing(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: state
+      real(wp), parameter :: depth(9) = [0.0_wp, 1.0e-16_wp, -1.0e-16_wp, 1.0e-12_wp, -1.0e-12_wp, &
+                                         1.0e-8_wp, -1.0e-8_wp, 1.0e-4_wp, -1.0e-4_wp]
+      real(wp), parameter :: touch(3) = [1.0_wp, 1.1_wp, 1.0_wp + 1.0e-9_wp]
+      real(wp) :: w0, v0
+      integer :: i, j, way
+
+      do way = 1, 2
+         do j = 1, 3
+            do i = 1, 9
+               w0 = touch(j)**2 - depth(i)
+               v0 = -2.0_wp*touch(j)
+               call new_mass(scene, compression(10.0_wp), 1.0_wp, w0, v0)
+               scene%column%axial_load = -2.0_wp
+               scene%column%axial_joint = -2.0_wp
+               scene%finish = 2.0_wp
+               call play_located(scene, merge(0.0_wp, 1.0e-9_wp, way == 1), 8, state, outcome)
+               call check_passed(error, outcome, 'depth '//to_text(depth(i)))
+               ! Whatever the contact does, it takes no energy; a small depth changes little.
+               call check_close(error, 0.5_wp*state%v(3)**2 - 2.0_wp*state%q(3), 0.5_wp*v0**2 - 2.0_wp*w0, &
+                                0.0_wp, 1.0e-7_wp + 1.0e-3_wp*sqrt(abs(depth(i))), 'energy')
+               call check_close(error, state%q(3), (2.0_wp - touch(j))**2 - depth(i), 0.0_wp, &
+                                1.0e-6_wp + 20.0_wp*sqrt(max(depth(i), 0.0_wp)), 'opening')
+            end do
+         end do
+      end do
+   end subroutine grazing
+
+   !> Two contacts that close at the same instant, to the last bit; and what follows by the pair.
+   subroutine at_once(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(scene_type) :: scene
+      type(state_type) :: state, reference
+      real(wp) :: wrong(4)
+      integer :: i
+
+      spec = chain(2, 'small')
+      spec%masses = [1.0_wp, 1.0_wp]
+      allocate (spec%axial(1))
+      spec%axial(1) = compression(100.0_wp)
+      scene%column = made(spec)
+      allocate (scene%q(6), scene%v(6), source=0.0_wp)
+      scene%q(5:6) = 1.0_wp
+      scene%v(5:6) = -1.0_wp
+      scene%finish = 2.0_wp
+      call play_located(scene, 1.0e-12_wp, 1, reference, outcome)
+      call check_passed(error, outcome, 'reference')
+      do i = 1, 4
+         call play_located(scene, 0.0_wp, 40*2**i, state, outcome)
+         call check_passed(error, outcome, 'rk4')
+         wrong(i) = distance(state, reference)
+      end do
+      call check_order(error, wrong, 3.7_wp, 5.0_wp, 'rk4')
+      call check_close(error, state%v(5)**2 + (state%v(5) + state%v(6))**2, 5.0_wp, 1.0e-6_wp, 0.0_wp, &
+                       'kinetic energy, all contacts open again')
+      call check_true(error, all(state%q(5:6) > 0.0_wp), 'open')
+      call check_close(error, state%q(5:6), reference%q(5:6), 0.0_wp, 1.0e-5_wp, 'openings')
+   end subroutine at_once
+
+   !> The deformation of yield belongs to the yielded line; a spring that goes back from there is elastic.
+   subroutine begin_on_end(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: state
+      real(wp), parameter :: mass = 2.0_wp, k = 800.0_wp, post = 80.0_wp, yield = 0.05_wp
+      real(wp), parameter :: omega = sqrt(k/mass), slow = sqrt(post/mass)
+      integer :: method, side
+      real(wp) :: s, tolerance
+
+      do method = 1, 2
+         tolerance = merge(0.0_wp, 1.0e-12_wp, method == 1)
+         do side = -1, 1, 2
+            s = side
+            ! Inward: elastic, here for three eighths of a period. At rest: the same without velocity.
+            call new_mass(scene, bilinear(k, yield, post), mass, s*yield, 0.0_wp)
+            scene%finish = 0.75_wp*pi/omega
+            call play_located(scene, tolerance, 400, state, outcome)
+            call check_passed(error, outcome, 'at rest')
+            call check_close(error, state%q(3), s*yield*cos(0.75_wp*pi), 1.0e-9_wp, 0.0_wp, 'from rest')
+            call new_mass(scene, bilinear(k, yield, post), mass, s*yield, -s*0.1_wp)
+            scene%finish = 0.5_wp*pi/omega
+            call play_located(scene, tolerance, 400, state, outcome)
+            call check_passed(error, outcome, 'inward')
+            call check_close(error, state%q(3), -s*0.1_wp/omega, 1.0e-9_wp, 0.0_wp, 'inward')
+            ! Outward: plastic until it turns.
+            call new_mass(scene, bilinear(k, yield, post), mass, s*yield, s*1.0_wp)
+            scene%finish = atan2(1.0_wp/slow, k*yield/post)/slow
+            call play_located(scene, tolerance, 400, state, outcome)
+            call check_passed(error, outcome, 'outward')
+            call check_close(error, state%q(3), s*(yield - k*yield/post + hypot(k*yield/post, 1.0_wp/slow)), &
+                             1.0e-9_wp, 0.0_wp, 'outward')
+         end do
+      end do
+   end subroutine begin_on_end
+
+   !> Yielded by its initial deformation, and already on its way back: the first step is on the elastic line.
+   subroutine against_one_way(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: state
+      type(rk4_stepper) :: stepper
+      real(wp), parameter :: mass = 2.0_wp, k = 800.0_wp, post = 80.0_wp, yield = 0.05_wp
+      real(wp), parameter :: omega = sqrt(k/mass)
+      real(wp) :: amplitude, expected
+
+      call new_mass(scene, bilinear(k, yield, post), mass, 2.0_wp*yield, -0.1_wp)
+      ! Amplitude about the point without force, F/k behind; it stays within the elastic 2 d_y.
+      amplitude = (k*yield + post*yield)/k
+      scene%finish = 0.5_wp/omega
+      expected = 2.0_wp*yield - amplitude + amplitude*cos(0.5_wp) - 0.1_wp/omega*sin(0.5_wp)
+      call play_located(scene, 1.0e-12_wp, 1, state, outcome)
+      call check_passed(error, outcome, 'rk45')
+      call check_close(error, state%q(3), expected, 1.0e-10_wp, 0.0_wp, 'rk45')
+      call play_located(scene, 0.0_wp, 100, state, outcome)
+      call check_passed(error, outcome, 'located')
+      call check_close(error, state%q(3), expected, 1.0e-10_wp, 0.0_wp, 'located')
+      ! Without location the first step is on the wrong line, and only that.
+      call stepper%scheme%create(3)
+      call play(scene, stepper, 100, state, outcome)
+      call check_passed(error, outcome, 'step')
+      call check_close(error, state%q(3), expected, 1.0e-3_wp, 0.0_wp, 'step')
+   end subroutine against_one_way
+
+   !> Yielded and at rest in equilibrium, or pushed on from there: no line changes without need.
+   subroutine rest_on_line(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: state
+      real(wp), parameter :: mass = 2.0_wp, k = 1024.0_wp, post = 0.0_wp, yield = 0.0625_wp
+      integer :: method
+
+      do method = 1, 2
+         call new_mass(scene, bilinear(k, yield, post), mass, 2.0_wp*yield, 0.0_wp)
+         ! The load is the force of the plateau, to the last bit.
+         scene%column%axial_load = -k*yield
+         scene%column%axial_joint = -k*yield
+         scene%finish = 1.0_wp
+         call play_located(scene, merge(0.0_wp, 1.0e-8_wp, method == 1), 10, state, outcome)
+         call check_passed(error, outcome, 'rest')
+         call check_same(error, state%q, scene%q, 'it stays')
+         call check_same(error, state%v, [0.0_wp, 0.0_wp, 0.0_wp], 'at rest')
+         ! On the plateau a constant speed is kept, without any event.
+         scene%v(3) = 0.25_wp
+         call play_located(scene, merge(0.0_wp, 1.0e-8_wp, method == 1), 10, state, outcome)
+         call check_passed(error, outcome, 'glide')
+         call check_close(error, state%q(3), 2.0_wp*yield + 0.25_wp, 1.0e-14_wp, 0.0_wp, 'it glides')
+         call check_equal(error, state%springs%events, 1, 'events')
+      end do
+   end subroutine rest_on_line
+
+   !> A damped column, cracked and yielded on both sides, comes to rest: every swing crosses zero force and
+   !> is a smaller inner loop than the one before.
+   subroutine small_loops(error)
+      type(error_type), allocatable, intent(inout) :: error
+      character(len=3), parameter :: inner(3) = ['kc ', 'kr ', 'one']
+      type(column_spec) :: spec
+      type(column_type) :: column
+      type(state_type) :: state, reference
+      integer :: i
+
+      do i = 1, 3
+         spec = column_1('small')
+         spec%flexure(1) = takeda_1(trim(inner(i)))
+         spec%mass_damping = 20.0_wp
+         column = made(spec)
+         call swing(0.2_wp, 1.0e-12_wp, 1, reference)
+         call swing(0.2_wp, 0.0_wp, 8000, state)
+         call check_close(error, state%q, reference%q, 0.0_wp, 1.0e-7_wp*maxval(abs(reference%q)), &
+                          inner(i)//': deformation')
+         ! exp(-20): hardly anything is left of the motion.
+         call swing(2.0_wp, 1.0e-12_wp, 1, state)
+         call check_true(error, all(abs(state%v) < 1.0e-6_wp), inner(i)//': at rest')
+         call check_true(error, state%springs%events > 100, inner(i)//': many loops, not '// &
+                         to_text(state%springs%events))
+         call check_close(error, residual_of(state)/sum(state%springs%work), 0.0_wp, 0.0_wp, 1.0e-10_wp, &
+                          inner(i)//': energy')
+      end do
+
+   contains
+
+      subroutine swing(finish, tolerance, steps, state)
+         real(wp), intent(in) :: finish, tolerance
+         integer, intent(in) :: steps
+         type(state_type), intent(out) :: state
+         type(error_type), allocatable :: outcome
+         type(located_stepper) :: stepper
+         integer :: step
+
+         call new_state(state, column, loads_type(), [0.0_wp, 4.0_wp*d_y], [0.0_wp, 0.0_wp])
+         state%q(2) = -4.0_wp*d_y
+         call state%springs%move_all(state%q)
+         state%q(2) = -2.0_wp*d_y
+         call state%springs%move_all(state%q)
+         state%at_begin = sum(state%springs%work)
+         call new_located(stepper, column, tolerance, 1.0e-4_wp)
+         do step = 1, steps
+            call stepper%advance(state, finish/steps, outcome)
+            call check_passed(error, outcome, inner(i))
+         end do
+      end subroutine swing
+
+   end subroutine small_loops
+
+   !> One yield and one turn are two lines left, whichever method goes there.
+   subroutine counted(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: state
+      type(rk4_stepper) :: stepper
+
+      call new_mass(scene, bilinear(800.0_wp, 0.05_wp, 80.0_wp), 2.0_wp, 0.0_wp, 2.0_wp)
+      ! Past the turn, before the other yield
+      scene%finish = 0.14_wp
+      call stepper%scheme%create(3)
+      call play(scene, stepper, 1000, state, outcome)
+      call check_passed(error, outcome, 'step')
+      call check_equal(error, state%springs%events, 2, 'step: events')
+      call play_located(scene, 0.0_wp, 1000, state, outcome)
+      call check_passed(error, outcome, 'located')
+      call check_equal(error, state%springs%events, 2, 'located: events')
+      call play_located(scene, 1.0e-8_wp, 1, state, outcome)
+      call check_passed(error, outcome, 'rk45')
+      call check_equal(error, state%springs%events, 2, 'rk45: events')
+   end subroutine counted
+
+   !> Rows in between cut the steps of rk45; the answer is the same within the tolerance.
+   subroutine interrupted(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: whole, cut
+      integer :: number
+
+      do number = 1, scenes
+         call new_scene(scene, number)
+         call play_located(scene, 1.0e-10_wp, 1, whole, outcome)
+         call check_passed(error, outcome, 'whole')
+         call play_located(scene, 1.0e-10_wp, 1013, cut, outcome)
+         call check_passed(error, outcome, 'cut')
+         call check_true(error, distance(cut, whole) < 1.0e-6_wp, 'scene '//to_text(number)// &
+                         ': difference '//to_text(distance(cut, whole)))
+      end do
+   end subroutine interrupted
+
+   !> A shortest step as long as the first leaves no room.
+   subroutine hopeless(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: state
+      type(located_stepper) :: stepper
+
+      call new_scene(scene, 2)
+      call new_located(stepper, scene%column, 1.0e-10_wp, 1.0e-3_wp)
+      stepper%shortest = 1.0e-3_wp
+      call play(scene, stepper, 1, state, outcome)
+      call check_failed(error, outcome, analysis_failed, 's does not reach the tolerance of 1e-10')
+      call check_failed(error, outcome, analysis_failed, 'spring of joint 1')
+      call check_same(error, [state%q, state%v], [scene%q, scene%v], 'the state is that before the step')
+      call check_same(error, [state%time, state%of_loads, state%springs%d], spread(0.0_wp, 1, 4), &
+                      'so are time, work and springs')
+      ! With more room it goes on from there.
+      stepper%shortest = 1.0e-9_wp
+      deallocate (outcome)
+      call stepper%advance(state, scene%finish, outcome)
+      call check_passed(error, outcome, 'once more')
+   end subroutine hopeless
+
+   !> Beyond the critical load of its yielded springs a column falls for ever: all methods say the same.
+   subroutine falling(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(scene_type) :: scene
+      type(state_type) :: state
+      integer :: method
+
+      spec = column_1('pdelta')
+      spec%flexure(1) = bilinear(k_c, d_y, 0.0_wp)
+      spec%axial_load = 1.0e7_wp
+      scene%column = made(spec)
+      scene%q = [0.0_wp, 2.0_wp*d_y]
+      scene%v = [0.0_wp, 10.0_wp]
+      scene%finish = 100.0_wp
+      do method = 1, 2
+         call play_located(scene, merge(0.0_wp, 1.0e-6_wp, method == 1), 100000, state, outcome)
+         call check_passed(error, outcome, 'falling')
+         call check_true(error, state%lost, 'lost')
+      end do
+   end subroutine falling
+
+end module test_steppers

@@ -1,0 +1,653 @@
+"""Time against accuracy: errors, front, choice and reference of a trade, parts of the model, files.
+
+The machine's speed is nothing to test: wall times only have to be there, and the budget to be kept.
+"""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import io
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rbsdem
+from rbsdem.trade import Trade, scene, trade
+from rbsdem.trade import command as trade_command
+from rbsdem.trade.answer import Answer, Setting, errors_of
+from rbsdem.trade.path import at_times, common_interval, reversals
+from rbsdem.trade.physics import half_spring, split_bodies
+from rbsdem.trade.rows import seconds_text
+from rbsdem.trade.scene import make_scene
+
+LENGTH, MASS = 1.6, 614.4
+SHEAR, BENDING = 7.0387e8, 2.5428e8
+ELASTIC = rbsdem.Column(LENGTH, MASS, rbsdem.Elastic(SHEAR), rbsdem.Elastic(BENDING))
+PAPER = rbsdem.paper_columns("pdelta", top_mass=75000.0)["soesianawati_1"]
+TIME = np.arange(0.0, 1.0001, 0.005)
+MOTION = 4.0 * np.sin(2 * np.pi * 2.0 * TIME) * np.minimum(TIME / 0.3, 1.0)
+CYCLES = LENGTH * rbsdem.protocol([0.005, 0.01, 0.02], cycles=1)
+
+
+@pytest.fixture(autouse=True)
+def _short_runs_are_run_once(monkeypatch):
+    monkeypatch.setattr(scene, "SHORT", 0.0)
+
+
+@pytest.fixture(scope="module")
+def shaken() -> Trade:
+    """The column of the paper with a storey, under a short motion."""
+    return trade(PAPER, TIME, ground_acceleration=MOTION, tolerance=1e-3, repeats=1, budget=30.0)
+
+
+def rows_of(found: Trade, method: str, kinematics: str, events: str | None = None) -> list:
+    wanted = (method, events, kinematics)
+    return [row for row in found.rows if row.setting.family[:3] == wanted]
+
+
+# ---- what is compared ----------------------------------------------------------------------------
+
+
+def answer(response, moment, taken) -> Answer:
+    rows = np.arange(float(len(response)))
+    return Answer(rows, *map(np.array, (response, moment, taken)), "completed")
+
+
+def test_errors_are_relative_to_the_peaks_of_the_other():
+    one = answer([0.0, 1.0, -3.0], [0.0, 3.0, -10.0], [0.0, 9.0, 7.0])
+    other = answer([0.0, 2.0, -4.0], [0.0, 0.0, -10.0], [0.0, 10.0, 8.0])
+    errors = errors_of(one, other)
+    assert errors.response_rms == pytest.approx(math.sqrt(2 / 3) / 4)
+    assert errors.response_max == pytest.approx(1 / 4)
+    assert errors.moment == pytest.approx(math.sqrt(3.0) / 10)
+    assert errors.energy == pytest.approx(0.1)
+    assert errors.peak == pytest.approx(0.25)
+    assert errors.largest == pytest.approx(0.25)
+
+
+def test_values_between_rows_are_exact_for_cubics():
+    time = np.cumsum([0.0, 0.2, 0.1, 0.3, 0.25, 0.15])
+    wanted = np.linspace(0.0, 1.0, 33)
+    cubic = np.polynomial.Polynomial([1.0, -2.0, 3.0, -4.0])
+    np.testing.assert_allclose(at_times(wanted, time, cubic(time)), cubic(wanted), atol=1e-13)
+
+
+def test_common_interval_divides_what_can_be_divided():
+    assert common_interval(np.arange(0.0, 1.0001, 0.01)) == (pytest.approx(0.01), True)
+    assert common_interval(np.array([0.0, 0.02, 0.05, 0.07])) == (pytest.approx(0.01), True)
+    interval, regular = common_interval(np.array([0.0, 0.1, 0.1 + 0.1 * math.sqrt(2), 0.5]))
+    assert not regular
+    assert interval == pytest.approx(0.1 * math.sqrt(2))
+
+
+def test_reversals_of_a_path():
+    path = np.array([0.0, 1.0, 2.0, 2.0, 1.0, -1.0, 0.0, 0.5])
+    assert reversals(path).tolist() == [0, 3, 5, 7]
+
+
+def test_a_loading_of_few_times_is_the_same_at_more_of_them():
+    made = make_scene(ELASTIC, [0.0, 1.0, 3.0], {"force": [0.0, 2.0, -2.0]}, None, None)
+    assert made.time.size > scene.LEAST_ROWS
+    assert {0.0, 1.0, 3.0} <= set(made.time)
+    expected = np.interp(made.time, [0.0, 1.0, 3.0], [0.0, 2.0, -2.0])
+    np.testing.assert_allclose(made.loads["force"], expected, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"), [(3.21e-4, "321 us"), (0.0042, "4.2 ms"), (2.0, "2.0 s"), (75.4, "75 s")]
+)
+def test_times_have_units(seconds, text):
+    assert seconds_text(seconds) == text
+
+
+# ---- reference, errors, front, choice ------------------------------------------------------------
+
+
+def free_vibration(time: np.ndarray) -> np.ndarray:
+    """Top displacement of the elastic column that is let go from 1 mm slip, by its modes."""
+    modes = rbsdem.modes(ELASTIC)
+    amplitude = modes.shapes.T @ rbsdem.mass_matrix(ELASTIC) @ [1e-3, 0.0]
+    q = modes.shapes @ (amplitude[:, None] * np.cos(np.outer(modes.omega, time)))
+    return q[0] + LENGTH * q[1]
+
+
+def test_reference_and_orders_of_free_vibration():
+    """The reference against the modal solution; errors fall with the orders of the methods."""
+    found = trade(
+        ELASTIC,
+        [0.0, 0.2],
+        initial={"slip": [1e-3]},
+        methods=["rk4", "newmark"],
+        repeats=1,
+        digits=9,
+    )
+    reference = found.reference
+    assert reference.reached
+    assert reference.digits >= 9
+    exact = free_vibration(reference.answer.time)
+    difference = np.abs(reference.answer.response - exact).max() / np.abs(exact).max()
+    assert difference < 3 * 10**-reference.digits
+    for method, events, order in (("rk4", "step", 4), ("newmark", None, 2)):
+        coarser, finer = rows_of(found, method, "small", events)[-3:-1]
+        for name in ("response_rms", "moment"):
+            ratio = getattr(coarser, name) / getattr(finer, name)
+            assert math.log2(ratio) == pytest.approx(order, abs=0.15), (method, name)
+    assert found.response == "displacement"
+
+
+def test_reference_of_the_paper_column_has_two_methods(shaken):
+    reference = shaken.reference
+    assert reference.reached
+    assert reference.first.split(",")[0] != reference.second.split(",")[0]
+    assert min(reference.moment_digits, reference.energy_digits, reference.peak_digits) > 6
+    assert 0 < reference.resolution < 1e-6
+    # A method of another kind, implicit instead of explicit, tends to the same answer.
+    implicit = rows_of(shaken, "newmark", "pdelta")
+    assert implicit[-1].error < implicit[0].error / 30
+    assert any("of another kind" in note for note in shaken.notes)
+
+
+def test_settings_of_all_kinds_are_there(shaken):
+    families = {row.setting.family[:3] for row in shaken.rows}
+    for method in ("newmark", "hht", "generalised_alpha", "rk45", "auto"):
+        assert (method, None, "pdelta") in families
+    for level in ("small", "pdelta"):
+        assert ("rk4", "step", level) in families
+    assert ("rk4", "located", "pdelta") in families
+    for row in shaken.rows:
+        if row.status == "completed":
+            assert row.seconds > 0
+            assert row.error == max(row.response_rms, row.moment, row.energy, row.peak)
+            assert row.response_rms <= row.response_max
+    chosen = next(row for row in shaken.rows if row.setting.method == "auto")
+    assert chosen.reason.split(":")[0] in rbsdem.analysis.METHODS
+
+
+def test_a_step_beyond_the_limit_stays_in_the_table(shaken):
+    refused = [row for row in shaken.rows if row.status == "refused"]
+    assert len(refused) == 1
+    limit = rbsdem.modes(PAPER).stable_step
+    assert refused[0].setting.dt > limit
+    assert "stability limit" in refused[0].reason
+    assert math.isnan(refused[0].error)
+    next_one = shaken.rows[shaken.rows.index(refused[0]) + 1]
+    assert limit / 2 < next_one.setting.dt <= limit
+
+
+def test_steps_divide_the_interval_of_the_loading(shaken):
+    for row in shaken.rows:
+        if row.setting.dt:
+            parts = 0.005 / row.setting.dt
+            assert parts == pytest.approx(round(parts), rel=1e-9)
+
+
+def test_front_is_what_no_other_beats(shaken):
+    done = [
+        (row.seconds, max(row.error, shaken.reference.resolution), row.pareto)
+        for row in shaken.rows
+        if math.isfinite(row.error)
+    ]
+    for seconds, error, pareto in done:
+        beaten = any(s <= seconds and e <= error and (s, e) != (seconds, error) for s, e, _ in done)
+        assert pareto == (not beaten)
+    assert sum(pareto for _, _, pareto in done) >= 3
+
+
+def test_choice_is_the_cheapest_within_the_tolerance(shaken):
+    for tolerance in (1e-2, 1e-3, 1e-5):
+        row = shaken.cheapest(tolerance)
+        assert row.error <= tolerance
+        for other in shaken.rows:
+            if other.error <= tolerance and other.seconds < row.seconds:
+                finer = [
+                    r
+                    for r in shaken.rows
+                    if r.setting.family == other.setting.family
+                    and (r.setting.dt or r.setting.tolerance)
+                    < (other.setting.dt or other.setting.tolerance)
+                ]
+                assert any(r.error > tolerance for r in finer)
+    assert shaken.cheapest(1e-15) is None
+    choice = shaken.choice
+    assert choice.row == shaken.cheapest(1e-3)
+    assert choice.finer.setting.family == choice.row.setting.family
+    assert choice.move.largest == choice.row.move
+    assert choice.row.move <= choice.row.error + choice.finer.error + 1e-12
+    assert str(choice.row.setting) in str(choice)
+
+
+def test_lower_kinematics_err_by_what_the_physics_table_says(shaken):
+    small = rows_of(shaken, "rk4", "small", "step")[-1]
+    effect = next(e for e in shaken.physics.effects if e.part == "kinematics small")
+    assert small.response_rms == pytest.approx(effect.history, rel=0.01)
+    assert small.peak == pytest.approx(abs(effect.peak), rel=0.02)
+
+
+def test_a_setting_of_the_user_is_measured(shaken):
+    found = trade(
+        PAPER,
+        TIME,
+        ground_acceleration=MOTION,
+        methods=["newmark"],
+        setting={"method": "hht", "dt": 0.00125, "rho_infinity": 0.9},
+        repeats=1,
+    )
+    own = found.rows[0]
+    assert own.setting.own
+    assert own.setting.method == "hht"
+    assert 1e-9 < own.error < 0.1
+    with pytest.raises(rbsdem.InputError, match="setting: 'step' is not known"):
+        trade(PAPER, TIME, ground_acceleration=MOTION, setting={"step": 1.0})
+
+
+def test_finite_rotations_have_no_implicit_method_but_lower_levels_do():
+    column = dataclasses.replace(PAPER, kinematics="finite")
+    found = trade(
+        column, TIME, ground_acceleration=MOTION, methods=["newmark", "rk4"], repeats=1, digits=6
+    )
+    refused = rows_of(found, "newmark", "finite")
+    assert [row.status for row in refused] == ["refused"]
+    assert "'finite'" in refused[0].reason
+    assert all(row.status == "completed" for row in rows_of(found, "newmark", "pdelta"))
+    assert rows_of(found, "rk4", "small", "step")[-1].error > 1e-3
+    assert found.reference.reached
+
+
+def test_irregular_times_are_compared_too():
+    time = np.sort(np.concatenate([TIME, np.sqrt(2) * TIME[1:100]]))
+    motion = np.interp(time, TIME, MOTION)
+    found = trade(PAPER, time, ground_acceleration=motion, methods=["rk4"], repeats=1, digits=6)
+    assert rows_of(found, "rk4", "pdelta", "step")[-1].error < 1e-5
+
+
+def test_collapse_ends_the_comparison():
+    found = trade(
+        PAPER,
+        TIME,
+        ground_acceleration=3 * MOTION,
+        collapse_drift=0.01,
+        methods=["rk4"],
+        repeats=1,
+    )
+    own = rows_of(found, "rk4", "pdelta", "located")
+    assert {row.status for row in own} == {"collapsed"}
+    assert found.reference.answer.time[-1] < TIME[-1]
+    assert own[-1].error < 1e-3
+
+
+# ---- budget --------------------------------------------------------------------------------------
+
+
+def chain(n: int) -> rbsdem.Column:
+    spring = rbsdem.Bilinear(2.0e8 * n, 2e-3 / n, 2.0e7 * n)
+    return rbsdem.Column(
+        1.6, 614.4, rbsdem.Elastic(7e8 * n), spring, n=n, top_mass=75000.0, stiffness_damping=1e-5
+    )
+
+
+def test_budget_is_kept_and_what_did_not_fit_is_told():
+    found = trade(chain(100), TIME, ground_acceleration=MOTION, budget=1.5, digits=4)
+    assert found.seconds < 4.0
+    skipped = [row for row in found.rows if row.status == "skipped"]
+    assert any(row.setting.method == "rk4" for row in skipped)
+    assert all("would take about" in row.reason for row in skipped)
+    assert any("did not fit" in note for note in found.notes)
+    # Implicit methods do it in time, and then make up the reference.
+    assert any(row.setting.method == "newmark" and row.error < 0.05 for row in found.rows)
+    assert found.reference.note.endswith("share the solver of the equations")
+
+
+def test_digits_that_are_not_reached_are_told():
+    found = trade(
+        PAPER, TIME, ground_acceleration=MOTION, methods=["rk4"], digits=15, repeats=1, budget=10.0
+    )
+    assert not found.reference.reached
+    assert 6 < found.reference.digits < 15
+    assert "15 were wanted" in found.reference.note
+
+
+def test_no_time_at_all():
+    with pytest.raises(rbsdem.InputError, match="budget is too small for any setting"):
+        trade(chain(100), TIME, ground_acceleration=MOTION, budget=1e-6)
+
+
+# ---- static --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kinematics", ["small", "pdelta", "finite"])
+def test_static_path_and_its_inverse(kinematics):
+    column = dataclasses.replace(PAPER, kinematics=kinematics)
+    found = trade(column, displacement=CYCLES, tolerance=1e-3)
+    assert found.response == "force"
+    assert found.reference.digits > 8
+    assert "driven by force" in found.reference.second
+    given = next(row for row in found.rows if row.setting.parts == 1)
+    assert given.error < 1e-8
+    turns = next(row for row in found.rows if row.setting.parts == 0)
+    assert turns.peak < 1e-8
+    assert turns.energy < 1e-8
+    assert turns.response_rms > 1e-2
+    assert found.choice.row is not None
+    assert not [e for e in found.physics.effects if "inertia" in e.part]
+
+
+def test_static_force():
+    found = trade(PAPER, force=1.2e5 * CYCLES / CYCLES.max())
+    assert found.response == "displacement"
+    assert found.reference.digits > 10
+
+
+def test_falling_force_cannot_be_driven_back():
+    """Past its peak: increments are compared instead."""
+    column = rbsdem.Column(
+        1.6,
+        614.4,
+        rbsdem.Elastic(1e9),
+        rbsdem.Bilinear(1e8, 1e-3, 1e5),
+        kinematics="pdelta",
+        axial_load=1e6,
+    )
+    found = trade(column, displacement=np.linspace(0.0, 0.02, 50))
+    assert "increments are compared" in found.reference.note
+    assert found.reference.digits > 10
+
+
+# ---- parts of the model --------------------------------------------------------------------------
+
+
+def effect_of(found: Trade, part: str):
+    return next(effect for effect in found.physics.effects if effect.part == part)
+
+
+def test_effect_of_the_axial_load_on_an_elastic_column():
+    """Without P the force is that of two springs in series; with it k_M is less by P l."""
+    load = 0.1 * BENDING / LENGTH
+    column = dataclasses.replace(ELASTIC, kinematics="pdelta", axial_load=load)
+    found = trade(column, displacement=CYCLES)
+
+    def flexibility(axial_load: float) -> float:
+        return 1 / SHEAR + LENGTH**2 / (BENDING - axial_load * LENGTH)
+
+    change = flexibility(load) / flexibility(0.0) - 1
+    for part in ("kinematics small", "no axial load"):
+        effect = effect_of(found, part)
+        assert effect.peak == pytest.approx(change, rel=1e-9)
+        assert effect.matters
+    assert effect_of(found, "kinematics finite").peak == pytest.approx(0.0, abs=1e-3)
+
+
+def test_effect_of_two_bodies_on_an_elastic_column():
+    """Half of the joint's rotation takes place at half of the height."""
+    found = trade(ELASTIC, force=np.linspace(0.0, 1e5, 20))
+    one = 1 / SHEAR + LENGTH**2 / BENDING
+    two = 1 / SHEAR + (LENGTH**2 + (LENGTH / 2) ** 2) / (2 * BENDING)
+    assert effect_of(found, "2 bodies").peak == pytest.approx(two / one - 1, rel=1e-9)
+    assert not effect_of(found, "kinematics pdelta").matters
+
+
+def test_effects_of_a_column_with_everything():
+    column = rbsdem.Column(
+        1.6,
+        614.4,
+        rbsdem.Elastic(7e8),
+        PAPER.flexure,
+        kinematics="pdelta",
+        axial_load=744e3,
+        self_weight=True,
+        axial=rbsdem.Compression(3e9),
+        top_mass=75000.0,
+        top_inertia=2000.0,
+        depth=0.4,
+        damping=rbsdem.Damping(mass=0.2, stiffness=1e-5),
+    )
+    found = trade(
+        column,
+        TIME,
+        ground_acceleration=MOTION,
+        vertical_acceleration=0.3 * MOTION,
+        methods=["rk45"],
+        repeats=1,
+        digits=5,
+        budget=30.0,
+    )
+    effects = {effect.part: effect for effect in found.physics.effects}
+    assert set(effects) == {
+        "kinematics small",
+        "kinematics finite",
+        "no axial load",
+        "no self-weight",
+        "joints do not open",
+        "no top mass",
+        "no inertia of top",
+        "bodies without depth",
+        "no damping",
+        "no vertical_acceleration",
+        "rotary inertia x 0.01",
+        "damping of tangent stiffness",
+        "2 bodies",
+    }
+    assert effects["no top mass"].peak < -0.5
+    assert effects["no top mass"].matters
+    assert not effects["no self-weight"].matters
+    assert 0 < found.physics.resolution < 1e-3
+
+
+def test_joints_that_open_can_be_tried():
+    found = trade(PAPER, displacement=CYCLES, axial=rbsdem.Elastic(2.4e9))
+    assert effect_of(found, "joints open").matters is not None
+
+
+def test_split_bodies_keeps_mass_height_and_inertia():
+    column = rbsdem.Column(
+        2.0,
+        None,
+        rbsdem.Elastic(1e8),
+        [rbsdem.Elastic(1e8), rbsdem.Elastic(2e8)],
+        n=2,
+        lengths=[0.8, 1.2],
+        masses=[100.0, 300.0],
+        rotary_inertia=[100 * 0.8**2 / 12, 300 * 1.2**2 / 12],
+    )
+    halves = split_bodies(column)
+    assert halves.lengths == (0.4, 0.4, 0.6, 0.6)
+    assert halves.masses == (50.0, 50.0, 150.0, 150.0)
+    expected = [m * length**2 / 12 for m, length in zip(halves.masses, halves.lengths, strict=True)]
+    assert halves.rotary_inertia == pytest.approx(expected)
+    assert [spring.k for spring in halves.flexure] == [2e8, 2e8, 4e8, 4e8]
+
+
+@pytest.mark.parametrize(
+    "spring",
+    [
+        rbsdem.Elastic(3.0),
+        rbsdem.Bilinear(3.0, 1.0, 0.5),
+        rbsdem.Takeda(10.0, 0.1, 4.0, 1.0, 0.4, b1=0.3),
+        rbsdem.Takeda(10.0, 0.1, 4.0, 1.0, 0.4, b1=0.6, inner="kr"),
+        rbsdem.Compression(3.0),
+    ],
+    ids=lambda spring: type(spring).__name__,
+)
+def test_two_half_springs_in_series_are_the_spring(spring):
+    path = np.random.default_rng(1).uniform(-4.0, 4.0, 300)
+    half = half_spring(spring)
+    np.testing.assert_allclose(half.response(path / 2), spring.response(path), atol=1e-12)
+
+
+# ---- faults --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({}, "exactly one of displacement and force; given: none"),
+        ({"displacement": CYCLES, "force": CYCLES}, "given: displacement, force"),
+        ({"displacement": [0.0]}, "fewer than 2 points"),
+        ({"displacement": CYCLES, "initial": {"slip": [0.1]}}, "initial has no meaning"),
+        ({"time": TIME}, "nothing moves the column"),
+        ({"time": TIME, "displacement": TIME}, "displacement drives a static path only"),
+        ({"time": TIME, "force": [1.0, 2.0]}, "force has 2 values for 201 times"),
+        ({"time": [1.0, 0.0], "force": [1.0, 2.0]}, "each after the one before"),
+        ({"displacement": CYCLES, "tolerance": 0.0}, "tolerance = 0.0"),
+        ({"displacement": CYCLES, "tolerance": math.nan}, "tolerance = nan"),
+        ({"displacement": CYCLES, "budget": math.inf}, "budget = inf"),
+        ({"displacement": CYCLES, "digits": 16}, "digits = 16"),
+        ({"displacement": CYCLES, "repeats": 0}, "repeats = 0"),
+        ({"displacement": CYCLES, "methods": ["euler"]}, "'euler' is not known"),
+        ({"displacement": CYCLES, "methods": []}, "methods is empty"),
+        ({"displacement": CYCLES, "axial": 3.0}, "axial = 3.0 must be a spring"),
+    ],
+)
+def test_bad_input(arguments, words):
+    with pytest.raises(rbsdem.InputError) as caught:
+        trade(PAPER, **arguments)
+    assert words in str(caught.value)
+
+
+def test_what_no_setting_can_solve():
+    """A force beyond what the column bears; an axial load above the critical one."""
+    column = rbsdem.Column(1.6, 614.4, rbsdem.Elastic(1e9), rbsdem.Bilinear(1e8, 1e-3, 0.0))
+    with pytest.raises(rbsdem.SolveError, match="no setting solves the case"):
+        trade(column, force=np.linspace(0.0, 1e6, 20))
+    column = dataclasses.replace(ELASTIC, kinematics="pdelta", axial_load=2 * BENDING / LENGTH)
+    with pytest.raises(rbsdem.InputError, match="axial"):
+        trade(column, TIME, ground_acceleration=MOTION)
+
+
+# ---- tables, files, figure, command --------------------------------------------------------------
+
+
+def read(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_csv_holds_the_table(shaken, tmp_path):
+    shaken.to_csv(tmp_path / "trade.csv")
+    rows = read(tmp_path / "trade.csv")
+    assert len(rows) == len(shaken.rows)
+    for written, row in zip(rows, shaken.rows, strict=True):
+        assert written["method"] == row.setting.method
+        assert written["status"] == row.status
+        assert written["pareto"] == str(int(row.pareto))
+        if row.status == "completed":
+            assert float(written["error"]) == pytest.approx(row.error, rel=1e-5)
+            assert float(written["wall_time_s"]) == pytest.approx(row.seconds, rel=1e-5)
+    shaken.physics_to_csv(tmp_path / "physics.csv")
+    rows = read(tmp_path / "physics.csv")
+    assert [row["part"] for row in rows] == [effect.part for effect in shaken.physics.effects]
+    assert not list(tmp_path.glob("*.partial"))
+
+
+def test_tables_and_figure(shaken):
+    console = pytest.importorskip("rich.console")
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    out = console.Console(record=True, width=140, file=io.StringIO())
+    out.print(shaken.table())
+    out.print(shaken.physics_table())
+    text = out.export_text()
+    for word in ("rk4, located, pdelta", "tolerance = 1e-06", "refused", "To finer", "no top mass"):
+        assert word in text
+    ax = shaken.plot()
+    assert (ax.get_xscale(), ax.get_yscale()) == ("log", "log")
+    front = next(line for line in ax.get_lines() if line.get_label() == "Pareto front")
+    assert np.all(np.diff(front.get_xdata()) > 0)
+    assert np.all(np.diff(front.get_ydata()) < 0)
+    assert shaken.plot(ax) is ax
+    matplotlib.pyplot.close("all")
+
+
+CASE = """\
+&case title = 'a [short] motion' /
+&column height = 1.6, mass = 614.4, kinematics = 'pdelta', top_mass = 75000 /
+&axial load = 744e3 /
+&shear rule = 'bilinear', k = 7.0387e8, d_y = 1.296e-4, k_post = 8.3185e6 /
+&flexure rule = 'takeda', k_c = 2.5428e8, d_c = 3.1891e-4, k_y = 6.2937e7, d_y = 2.7183e-3,
+         k_u = 7.5772e6, b1 = 0.22 /
+&loading drive = 'ground', amplitudes = 3.0, cycles = 2, period = 0.4, points = 20 /
+&analysis method = 'hht', dt = 0.0025 /
+"""
+
+
+def command(*arguments: object, before: str = "") -> subprocess.CompletedProcess[str]:
+    """Run `rbsdem trade` in a process of its own, after some lines of Python."""
+    code = (
+        f"import sys; {before}\nfrom rbsdem.__main__ import main\n"
+        f"sys.argv[1:] = {['trade', *map(str, arguments)]!r}\nsys.exit(main())"
+    )
+    return subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=100, check=False
+    )
+
+
+def test_command_writes_its_files(tmp_path):
+    case = tmp_path / "case.nml"
+    case.write_text(CASE, "utf-8")
+    done = command(case, "--tolerance", "0.01", "--budget", "20", "--methods", "newmark,rk4")
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    for word in ("a [short] motion", "They agree to", "hht, pdelta (as given)", "Tolerance 0.01: "):
+        assert word in done.stdout
+    folder = tmp_path / "case-trade"
+    assert {path.name for path in folder.iterdir()} == {"trade.csv", "physics.csv", "trade.png"}
+    assert (folder / "trade.png").stat().st_size > 5000
+    rows = read(folder / "trade.csv")
+    assert rows[0]["method"] == "hht"
+    assert float(rows[0]["dt_s"]) == 0.0025
+
+
+def test_command_is_quiet_without_rich_and_matplotlib(tmp_path):
+    case = tmp_path / "case.nml"
+    column = CASE.split("&loading", maxsplit=1)[0]
+    static = column + "&loading drive = 'displacement', amplitudes = 0.01 /\n"
+    case.write_text(static, "utf-8")
+    missing = "sys.modules.update(rich=None, matplotlib=None)"
+    done = command(case, "--quiet", "--output", tmp_path / "out", before=missing)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"trade.csv", "physics.csv"}
+    done = command(case, before=missing)
+    assert done.returncode == 1
+    assert "pip install rbsdem[plot]" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words", "code"),
+    [
+        (["--help"], "", 0),
+        ([], "CASE.nml", 2),
+        (["nowhere.nml"], "nowhere.nml", 2),
+        (["CASE", "--budget", "-1"], "budget = -1", 2),
+        (["CASE", "--budget", "much"], "--budget", 2),
+        (["CASE", "--methods", "euler"], "'euler' is not known", 2),
+        (["CASE", "--output", "CASE"], "File exists", 1),
+    ],
+)
+def test_command_faults(arguments, words, code, tmp_path, capsys, monkeypatch):
+    case = tmp_path / "case.nml"
+    column = CASE.split("&loading", maxsplit=1)[0]
+    case.write_text(f"{column}&loading drive = 'force', amplitudes = 1e4 /\n", "utf-8")
+    monkeypatch.chdir(tmp_path)
+    arguments = [str(case) if word == "CASE" else word for word in arguments]
+    try:
+        returned = trade_command.main(arguments)
+    except SystemExit as end:
+        returned = end.code or 0
+    assert returned == code
+    printed = capsys.readouterr()
+    if code:
+        assert printed.err.startswith("rbsdem: ")
+        assert words in printed.err
+    else:
+        assert "--tolerance X" in printed.out
+
+
+def test_a_setting_in_words():
+    assert str(Setting("rk4", "small", dt=1e-4, events="located")) == (
+        "rk4, located, dt = 0.0001 s, small"
+    )
+    assert str(Setting("rk45", "finite", tolerance=1e-6)) == "rk45, tolerance = 1e-06, finite"
