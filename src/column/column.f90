@@ -46,8 +46,10 @@ module rbs_column_column
       !> Weight of the bodies (n) [N]
       real(wp), allocatable :: weight(:)
       !> Axial force of load and weight for the rotation of body i, and across the slip of joint i,
-      !> compression positive (n) [N]
+      !> compression positive (n) [N]; a load that follows the top has no potential and is not in them
       real(wp), allocatable :: axial_body(:), axial_joint(:)
+      !> Axial force of load and weight in the joints of the straight column, compression positive (n) [N]
+      real(wp), allocatable :: compression(:)
       !> The same per vertical acceleration of the ground, from all masses (n) [kg]
       real(wp), allocatable :: lifted_body(:), lifted_joint(:)
       !> Whether the axial load, and the lateral force, turn with the top body
@@ -134,20 +136,23 @@ contains
       type(column_type), intent(inout) :: column
       type(column_spec), intent(in) :: spec
       real(wp) :: above(column%n + 1)
+      real(wp) :: dead
       integer :: i, n
 
       n = column%n
       column%axial_load = spec%axial_load
+      dead = merge(0.0_wp, column%axial_load, column%axial_follows)
       if (spec%self_weight) column%gravity = spec%gravity
       above(n + 1) = 0.0_wp
       do i = n, 1, -1
          above(i) = above(i + 1) + column%mass(i)
       end do
       column%weight = column%gravity*column%mass
-      column%axial_body = column%axial_load + column%gravity*(column%mass/2.0_wp + above(2:))
-      column%axial_joint = column%axial_load + column%gravity*above(:n)
+      column%axial_body = dead + column%gravity*(column%mass/2.0_wp + above(2:))
+      column%axial_joint = dead + column%gravity*above(:n)
+      column%compression = column%axial_load + column%gravity*above(:n)
       column%axially_loaded = column%kinematics /= small .and. &
-                              (abs(column%axial_load) > 0.0_wp .or. column%gravity > 0.0_wp)
+                              (abs(dead) > 0.0_wp .or. column%gravity > 0.0_wp)
    end subroutine set_weights
 
    !> Centroids and rotary inertias, the lumped mass included.

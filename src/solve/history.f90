@@ -166,7 +166,7 @@ contains
 
       n = state%motion%column%n
       do i = 1, n
-         tension = -(state%motion%column%axial_joint(i) + state%load(axial))
+         tension = -(state%motion%column%compression(i) + state%load(axial))
          call state%springs%load_to(2*n + i, tension, found)
          if (.not. found) then
             call fatal_error(error, analysis_failed, trim(joint_name(state%motion%column, 2*n + i))// &

@@ -31,8 +31,8 @@ module rbs_solve_located
       class(scheme_type), allocatable :: scheme
       !> Wanted relative error of a step in energy norm; 0: steps are not cut for accuracy
       real(wp) :: tolerance = 0.0_wp
-      !> Step that should do next, and shortest one [s]
-      real(wp) :: next_step = 0.0_wp, shortest = 0.0_wp
+      !> Step that should do next, shortest and longest one [s]
+      real(wp) :: next_step = 0.0_wp, shortest = 0.0_wp, longest = huge(1.0_wp)
       !> Largest energy so far, as the measure of errors [J]
       real(wp), private :: largest = 0.0_wp
       !> Acceleration, for springs that stand still (unknowns)
@@ -132,6 +132,7 @@ contains
          ! An event says nothing of the step that accuracy would allow.
          if (i == 0) then
             self%next_step = h*min(5.0_wp, 0.9_wp*max(wrong, 1.0e-10_wp)**(-1.0_wp/self%scheme%order))
+            self%next_step = min(self%next_step, self%longest)
          end if
       end if
    end subroutine accept

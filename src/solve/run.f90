@@ -34,12 +34,16 @@ module rbs_solve_run
    !> period for the implicit methods.
    real(wp), parameter :: auto_share = 0.2_wp, implicit_share = 0.02_wp
 
+   !> The pair 5(4) is stable for undamped motion up to h omega = 0.9968, rk4 up to 2 sqrt(2). Beyond, the
+   !> stiffest mode would grow until its error is above the tolerance, shaking the springs on the way.
+   real(wp), parameter :: pair_share = 0.35_wp
+
    !> Where the user gives none: error of a step of rk45, spectral radius at infinite frequency.
    real(wp), parameter :: usual_tolerance = 1.0e-6_wp, usual_rho = 0.8_wp
 
-   !> `auto`: an implicit step costs as much as this number of explicit ones; more explicit body-steps
-   !> than the second take minutes.
-   real(wp), parameter :: few_times = 5.0_wp, most_explicit = 1.0e9_wp
+   !> `auto`: an implicit step costs as much as this number of explicit ones; so many explicit body-steps take
+   !> hundredths of a second, and so many minutes.
+   real(wp), parameter :: few_times = 5.0_wp, cheap = 1.0e6_wp, dear = 3.0e9_wp
 
 contains
 
@@ -161,44 +165,42 @@ contains
       is_implicit = any(method == [character(len=20) :: 'newmark', 'hht', 'generalised_alpha'])
    end function is_implicit
 
-   !> The method for a case whose user leaves it to the program: by what the steps cost.
+   !> The method for a case whose user leaves it to the program: the most accurate that costs no time worth
+   !> speaking of, else the cheapest.
    subroutine choose_method(column, analysis, time, plan, error)
       type(column_type), intent(in) :: column
       type(analysis_spec), intent(in) :: analysis
       real(wp), intent(in) :: time(:)
       type(time_plan), intent(inout) :: plan
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: lowest, highest, explicit_steps, implicit_steps, longest, wanted
-      logical :: linear
+      real(wp) :: lowest, highest, explicit_steps, implicit_steps, longest
+      logical :: affordable
 
-      wanted = 1.0e-3_wp
-      if (is_given(analysis%tolerance)) wanted = analysis%tolerance
-      linear = all(column%spring%rule == 'elastic')
       call stability_limit(column, plan%limit, error)
       if (allocated(error)) return
       call frequency_bounds(column, lowest, highest, error)
       if (allocated(error)) return
+      longest = implicit_share*2.0_wp*pi/max(lowest, tiny(1.0_wp)*1.0e3_wp)
       associate (duration => time(size(time)) - time(1))
-         explicit_steps = duration/(auto_share*plan%limit)
-         longest = implicit_share*2.0_wp*pi/max(lowest, tiny(1.0_wp)*1.0e3_wp)
+         explicit_steps = real(size(time) - 1, wp) + duration/(auto_share*plan%limit)
          implicit_steps = real(size(time) - 1, wp) + duration/longest
       end associate
+      affordable = explicit_steps*column%n <= cheap .or. explicit_steps <= few_times*implicit_steps
       if (column%kinematics == finite) then
          plan%method = 'rk45'
-         plan%reason = 'finite rotations, error controlled'
-      else if (wanted < 1.0e-4_wp .and. explicit_steps*column%n < most_explicit) then
+         plan%reason = 'finite rotations: explicit, error controlled'
+      else if (is_given(analysis%tolerance) .and. (affordable .or. explicit_steps*column%n <= dear)) then
          plan%method = 'rk45'
-         plan%reason = 'a tolerance of '//to_text(wanted)//' asks for controlled errors'
-      else if (explicit_steps > few_times*implicit_steps) then
+         plan%reason = 'a tolerance of '//to_text(analysis%tolerance)//' asks for controlled errors'
+      else if (.not. affordable) then
          plan%method = 'generalised_alpha'
-         plan%reason = 'stiff: rk4 would need '//to_text(explicit_steps)//' steps for stability, this '// &
-                       'method about '//to_text(implicit_steps)
-      else if (linear) then
-         plan%method = 'rk4'
-         plan%reason = 'linear and not stiff: '//to_text(explicit_steps)//' steps'
+         plan%reason = 'stiff: rk4 would take '//to_text(anint(explicit_steps))//' steps for its stability, '// &
+                       'this method takes about '//to_text(anint(implicit_steps))
       else
-         plan%method = 'rk45'
-         plan%reason = 'not stiff, springs change their lines: located events, error controlled'
+         plan%method = 'rk4'
+         plan%located = any(column%spring%rule /= 'elastic')
+         plan%reason = to_text(anint(explicit_steps))//' steps are no burden'
+         if (plan%located) plan%reason = trim(plan%reason)//'; events located'
       end if
    end subroutine choose_method
 
@@ -226,6 +228,12 @@ contains
       call check_signal(loads%ground, 'ground_acceleration', error)
       call check_signal(loads%vertical, 'vertical_acceleration', error)
       call check_signal(loads%axial, 'axial_load', error)
+      if (.not. allocated(error) .and. allocated(initial%deformation)) then
+         call check_values(initial%deformation, 'initial deformation', error)
+      end if
+      if (.not. allocated(error) .and. allocated(initial%velocity)) then
+         call check_values(initial%velocity, 'initial velocity', error)
+      end if
       if (allocated(error)) return
       summary%stable_step = plan%limit
       summary%method = plan%method
@@ -261,10 +269,11 @@ contains
          located%tolerance = usual_tolerance
          if (is_given(analysis%tolerance)) located%tolerance = analysis%tolerance
          located%next_step = auto_share*plan%limit
+         located%longest = pair_share*plan%limit
          located%shortest = 1.0e-6_wp*plan%limit
          call move_alloc(located, stepper)
       case default
-         if (analysis%events == 'located') then
+         if (analysis%events == 'located' .or. plan%located) then
             allocate (located)
             allocate (rk4_scheme :: located%scheme)
             call located%scheme%create(column%unknowns)

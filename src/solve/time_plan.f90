@@ -24,6 +24,8 @@ module rbs_solve_time_plan
       !> Method, and why it was chosen if the user left that to the program
       character(len=20) :: method = ''
       character(len=200) :: reason = ''
+      !> Whether rk4 locates events
+      logical :: located = .false.
       !> Longest step for which RK4 is stable [s]; 0: not asked for
       real(wp) :: limit = 0.0_wp
       !> Number of intervals between kept times, and of steps in all
