@@ -15,6 +15,7 @@ from rbsdem.peer_file import PeerTest, read_peer
 from rbsdem.protocol import protocol
 from rbsdem.results import Result
 from rbsdem.springs import Bilinear, Compression, Elastic, Takeda
+from rbsdem.trade import Trade, trade
 
 __version__ = _version()
 
@@ -33,6 +34,7 @@ __all__ = [
     "Result",
     "SolveError",
     "Takeda",
+    "Trade",
     "compare",
     "cyclic",
     "mass_matrix",
@@ -45,4 +47,5 @@ __all__ = [
     "read_case",
     "read_peer",
     "time_history",
+    "trade",
 ]

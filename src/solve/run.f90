@@ -154,8 +154,8 @@ contains
                           'springs')
       else if (loads%axial%acts() .and. column%kinematics == small .and. .not. column%opens) then
          call fatal_error(error, bad_input, "axial_load: with kinematics = 'small' and joints that do "// &
-                          "not open a history of it does nothing; use 'pdelta' or 'finite', or give axial "// &
-                          'springs')
+                          "not open a history of it does nothing; use 'pdelta' or 'finite', or give "// &
+                          'axial springs')
       end if
    end subroutine plan_steps
 
@@ -186,20 +186,19 @@ contains
          implicit_steps = real(size(time) - 1, wp) + duration/longest
       end associate
       affordable = explicit_steps*column%n <= cheap .or. explicit_steps <= few_times*implicit_steps
-      if (column%kinematics == finite) then
-         plan%method = 'rk45'
-         plan%reason = 'finite rotations: explicit, error controlled'
-      else if (is_given(analysis%tolerance) .and. (affordable .or. explicit_steps*column%n <= dear)) then
+      if (column%kinematics == finite) affordable = .true.
+      if (is_given(analysis%tolerance) .and. (affordable .or. explicit_steps*column%n <= dear)) then
          plan%method = 'rk45'
          plan%reason = 'a tolerance of '//to_text(analysis%tolerance)//' asks for controlled errors'
       else if (.not. affordable) then
          plan%method = 'generalised_alpha'
-         plan%reason = 'stiff: rk4 would take '//to_text(anint(explicit_steps))//' steps for its stability, '// &
-                       'this method takes about '//to_text(anint(implicit_steps))
+         plan%reason = 'stiff: rk4 would take '//to_text(anint(explicit_steps))//' steps for its '// &
+                       'stability, this method takes about '//to_text(anint(implicit_steps))
       else
          plan%method = 'rk4'
          plan%located = any(column%spring%rule /= 'elastic')
          plan%reason = to_text(anint(explicit_steps))//' steps are no burden'
+         if (column%kinematics == finite) plan%reason = 'finite rotations: explicit'
          if (plan%located) plan%reason = trim(plan%reason)//'; events located'
       end if
    end subroutine choose_method

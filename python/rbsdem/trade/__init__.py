@@ -133,8 +133,14 @@ def trade(
         The column. Its kinematics are those of the reference.
     time : array_like, shape (m,), optional
         Times of the loading [s]. Without it the path is static.
-    force, ground_acceleration, vertical_acceleration, axial_load, initial
-        As for `rbsdem.time_history`; `force` without time as for `rbsdem.cyclic`.
+    force : array_like, shape (m,), optional
+        Lateral force at the top [N]; without time it drives the static path.
+    ground_acceleration, vertical_acceleration : array_like, shape (m,), optional
+        Accelerations of the ground [m/s2].
+    axial_load : array_like, shape (m,), optional
+        Axial load besides that of the column [N].
+    initial : mapping, optional
+        State at the begin, as for `rbsdem.time_history`.
     displacement : array_like, shape (m,), optional
         Static: displacement of the top that is driven [m]; the response is then the force.
     methods : sequence of str, optional
@@ -196,7 +202,7 @@ def trade(
             families.insert(0, [own_setting(column, setting)])
         runs = climb(scene, families, look, clock, SETTINGS_SHARE, repeats, told)
         _need_one(runs)
-        reference = find_reference(scene, look, clock, REFERENCE_SHARE, digits, told)
+        reference = find_reference(scene, look, runs, clock, REFERENCE_SHARE, digits, told)
         known = reference if isinstance(reference, Reference) else None
         physics = find_physics(scene, look, known, runs, clock, tolerance, axial, told)
     notes = [f"reference: {reference}"] if known is None else []

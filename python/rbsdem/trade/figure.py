@@ -101,7 +101,8 @@ def _dress(ax: Axes, trade: Trade, floor: float) -> None:
     ax.set_ylabel("Relative error")
     low, high = ax.get_ylim()
     low, high = min(low, floor / 3), min(high, TOP)
-    ax.axhspan(low, floor, color="0.94", linewidth=0, zorder=0)
+    # Down to the axis, also where panels share it.
+    ax.axhspan(1e-300, floor, color="0.94", linewidth=0, zorder=0)
     ax.text(
         0.985,
         floor,

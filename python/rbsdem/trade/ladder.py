@@ -24,10 +24,11 @@ LEVELS = ("small", "pdelta", "finite")
 IMPLICIT = ("newmark", "hht", "generalised_alpha")
 
 #: Rungs of a ladder: steps are halved, tolerances divided by ten.
-RK4_RUNGS, IMPLICIT_RUNGS, TOLERANCES = 7, 8, range(3, 11)
+RK4_RUNGS, IMPLICIT_RUNGS, TOLERANCES = 7, 8, range(4, 11)
 
-#: A step of rk45 costs this many of rk4, and rk45 takes at least steps of this share of the limit.
-PAIR_COST, PAIR_SHARE = 7 / 4, 0.2
+#: A step of rk45 costs this many of rk4. It is at most this share of the limit of rk4 (where the
+#: pair is stable), and shorter for tolerances below about the last.
+PAIR_COST, PAIR_SHARE, PAIR_TOLERANCE = 7 / 4, 0.35, 1e-8
 
 
 class Budget:
@@ -82,7 +83,7 @@ class Probe:
             return self.implicit * rows
         if setting.method in ("auto", "rk45"):
             tolerance = setting.tolerance or 1e-6
-            shortest = self.limit * min(PAIR_SHARE * (tolerance / 1e-6) ** 0.2, 1.0)
+            shortest = PAIR_SHARE * self.limit * min((tolerance / PAIR_TOLERANCE) ** 0.2, 1.0)
             return PAIR_COST * self.explicit * max(self.duration / shortest, rows)
         step = self.explicit if setting.method == "rk4" else self.implicit
         return step * self.duration / setting.dt if setting.dt else 0.0
@@ -184,9 +185,9 @@ def _families(look: Probe, methods: Sequence[str], level: str) -> list[list[Sett
                 Setting("rk4", level, dt=next(steps), events=events) for _ in range(RK4_RUNGS)
             ]
             if events == "step" and look.regular and look.interval > family[0].dt:
-                # The next longer one, to show what becomes of it.
-                parts = round(look.interval / family[0].dt)
-                family.insert(0, dataclasses.replace(family[0], dt=look.interval / (parts - 1)))
+                # A longer one, to show what becomes of it.
+                parts = int(0.8 * round(look.interval / family[0].dt))
+                family.insert(0, dataclasses.replace(family[0], dt=look.interval / max(parts, 1)))
             found.append(family)
     if "rk45" in methods:
         found.append([Setting("rk45", level, tolerance=10.0**-e) for e in TOLERANCES])

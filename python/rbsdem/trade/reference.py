@@ -13,8 +13,8 @@ from rbsdem.trade.answer import Answer, Run, Setting, errors_of
 from rbsdem.trade.ladder import IMPLICIT, Budget, Probe, predicted
 from rbsdem.trade.scene import Scene
 
-#: The rungs of the methods that a reference is made of: first tolerance of rk45 (each next a
-#: hundredth, then the least that it takes), first share of the limit or of the interval.
+#: Where methods begin that were not run before: tolerance of rk45, share of the limit for rk4. Next
+#: ones are a hundredth, to the least that rk45 takes, and a half.
 FIRST_TOLERANCE, LEAST_TOLERANCE, FIRST_SHARE = 1e-8, 1e-13, 16
 
 #: A refinement that does not bring the two closer by this factor has made no way.
@@ -71,32 +71,45 @@ class Reference:
 
 
 class _Ladder:
-    """One method of the reference, refined step by step."""
+    """One method of the reference, refined step by step from what was run already."""
 
-    def __init__(self, settings: list[Setting], look: Probe | None) -> None:
-        self.settings, self.look = settings, look
-        self.place = -1
-        self.run: Run | None = None
-        #: How far the answer moved with the last refinement.
+    def __init__(self, first: Setting, done: list[Run], look: Probe) -> None:
+        self.look = look
+        done = [run for run in done if run.setting.family == first.family and run.answer]
+        #: The finest run so far, and how far the answer moved with the last refinement.
+        self.run = done[-1] if done else None
         self.moved = math.inf
+        if len(done) > 1:
+            self.moved = errors_of(done[-1].answer, done[-2].answer).response_max
+        self.next: Setting | None = finer(done[-1].setting) if done else first
         self.trouble = ""
 
     def cost(self) -> float:
         """Return what the next rung takes [s]; infinite if there is none."""
-        if self.place + 1 >= len(self.settings) or self.trouble:
+        if self.next is None or self.trouble:
             return math.inf
-        return predicted(self.run, self.settings[self.place + 1], self.look)
+        return predicted(self.run, self.next, self.look)
 
-    def refine(self, scene: Scene) -> None:
+    def refine(self, scene: Scene, told: Callable[[str], None]) -> None:
         """Take the next rung."""
-        self.place += 1
-        run = scene.run(self.settings[self.place])
+        told(f"reference: {self.next}")
+        run = scene.run(self.next)
         if run.answer is None:
             self.trouble = run.reason
             return
         if self.run is not None:
             self.moved = errors_of(run.answer, self.run.answer).response_max
         self.run = run
+        self.next = finer(self.next)
+
+
+def finer(setting: Setting) -> Setting | None:
+    """Return the next finer setting; None if there is none that the arithmetic can tell."""
+    if setting.tolerance is None:
+        return replace(setting, dt=setting.dt / 2)
+    if setting.tolerance <= LEAST_TOLERANCE:
+        return None
+    return replace(setting, tolerance=max(setting.tolerance / 100, LEAST_TOLERANCE))
 
 
 def digits(difference: float) -> float:
@@ -107,6 +120,7 @@ def digits(difference: float) -> float:
 def find_reference(
     scene: Scene,
     look: Probe | None,
+    runs: list[Run],
     budget: Budget,
     share: float,
     wanted: float,
@@ -115,47 +129,38 @@ def find_reference(
     """Return the reference, or why there is none."""
     if scene.static:
         return _static_reference(scene, wanted, told)
-    candidates = _candidates(scene, look)
-    left = budget.left(share)
-    able = [ladder for ladder in candidates if ladder.cost() < 0.25 * left]
-    if len(able) < 2:
-        cheapest = sorted(candidates, key=_Ladder.cost)[:2]
-        able = [ladder for ladder in cheapest if ladder.cost() < left]
-    pair = able[:2]
-    for ladder in pair:
-        told(f"reference: {ladder.settings[0]}")
-        ladder.refine(scene)
-    for ladder in able:
-        # Another one in place of one that cannot.
-        if ladder not in pair and any(other.run is None for other in pair):
-            ladder.refine(scene)
-            pair.append(ladder)
-    pair = [ladder for ladder in pair if ladder.run is not None][:2]
+    candidates = _candidates(scene, look, runs)
+    refined = 0
+    for ladder in candidates:
+        # Finer than all settings, and twice if it is new, if that leaves time to go on.
+        for _ in range(1 if math.isfinite(ladder.moved) else 2):
+            if refined < 2 and ladder.cost() < 0.25 * budget.left(share):
+                ladder.refine(scene, told)
+        refined += math.isfinite(ladder.moved) and not ladder.trouble
+    # Those that are closest to their limits.
+    pair = sorted((one for one in candidates if one.run is not None), key=lambda one: one.moved)[:2]
     if len(pair) < 2:
         reasons = [ladder.trouble for ladder in candidates if ladder.trouble]
         return reasons[0] if reasons else "the budget does not allow two methods; give more of it"
     _bring_together(scene, pair, budget, share, wanted, told)
-    return _verdict(pair, wanted)
+    # The one that its last refinement moved less.
+    first, second = sorted(pair, key=lambda ladder: ladder.moved)
+    return compare(first.run, second.run, wanted, "")
 
 
-def _candidates(scene: Scene, look: Probe) -> list[_Ladder]:
+def _candidates(scene: Scene, look: Probe, runs: list[Run]) -> list[_Ladder]:
     """Return the methods that a reference can be made of, most accurate ones first."""
     level = scene.column.kinematics
-    tolerances = [FIRST_TOLERANCE]
-    while tolerances[-1] > LEAST_TOLERANCE:
-        tolerances.append(max(tolerances[-1] / 100, LEAST_TOLERANCE))
-    found = [[Setting("rk45", level, tolerance=t) for t in tolerances]]
     parts = max(math.ceil(look.interval / look.limit), 1) * FIRST_SHARE
-    shares = [parts * 2**i for i in range(10)]
-    found.append([Setting("rk4", level, dt=look.interval / p, events="located") for p in shares])
+    first = [
+        Setting("rk45", level, tolerance=FIRST_TOLERANCE),
+        Setting("rk4", level, dt=look.interval / parts, events="located"),
+    ]
     if level != "finite" and math.isfinite(look.implicit):
-        # As long as they may be in the explicit methods, and shorter.
-        longest = min(look.interval, max(look.duration / 2000, look.limit))
-        parts = max(math.ceil(look.interval / longest), 1) * 2
-        shares = [parts * 2**i for i in range(14)]
-        for method in ("generalised_alpha", "newmark"):
-            found.append([Setting(method, level, dt=look.interval / p) for p in shares])
-    return [_Ladder(settings, look) for settings in found]
+        parts = max(math.ceil(look.interval / (look.duration / 4000)), 1)
+        methods = ("generalised_alpha", "newmark")
+        first += [Setting(method, level, dt=look.interval / parts) for method in methods]
+    return [_Ladder(setting, runs, look) for setting in first]
 
 
 def _bring_together(
@@ -175,17 +180,10 @@ def _bring_together(
         if not ready:
             return
         ladder = max(ready, key=lambda one: (one.moved, -one.cost()))
-        told(f"reference: {ladder.settings[ladder.place + 1]}")
-        ladder.refine(scene)
+        ladder.refine(scene, told)
         now = errors_of(pair[0].run.answer, pair[1].run.answer).response_max
         idle = idle + 1 if now > WAY * apart else 0
         apart = min(apart, now)
-
-
-def _verdict(pair: list[_Ladder], wanted: float) -> Reference:
-    """Compare the finest runs; the reference is the one that its last refinement moved less."""
-    first, second = sorted(pair, key=lambda ladder: ladder.moved)
-    return compare(first.run, second.run, wanted, "")
 
 
 def compare(first: Run, second: Run, wanted: float, note: str) -> Reference:
@@ -262,7 +260,7 @@ def _inverse(scene: Scene, answer: Answer, parts: int) -> Run | None:
     # What came back against what was driven, on the scale of the response.
     lost = (back.answer.response - path[:rows]) / max(np.abs(path).max(), 1e-300)
     response = answer.response + lost * answer.peak
-    setting = Setting(f"static driven by {other}", scene.column.kinematics)
+    setting = Setting(f"static driven by {other}", scene.column.kinematics, parts=parts)
     return Run(
         setting,
         replace(back.answer, response=response),

@@ -194,6 +194,8 @@ def third_method(rows: Sequence[Row], reference: Reference | None) -> Row | None
     others = [
         row
         for row in rows
-        if (row.setting.method in IMPLICIT) == reference.explicit and math.isfinite(row.error)
+        if (row.setting.method in IMPLICIT) == reference.explicit
+        and row.setting.method != "auto"
+        and math.isfinite(row.error)
     ]
     return min(others, key=lambda row: row.error, default=None)

@@ -80,8 +80,11 @@ def settings_table(trade: Trade) -> Table:
             cells = [seconds_text(row.seconds), *(_number(value, floor) for value in errors)]
         else:
             cells = ["-", f"[dim]{row.status}[/dim]"]
+        value = row.setting.value
+        if row.setting.method == "auto" and row.reason:
+            value = f"chose {row.reason.split(':')[0]}"
         style = "bold" if chosen else None
-        table.add_row(mark, f"  {row.setting.value}", *cells, style=style)
+        table.add_row(mark, f"  {value}", *cells, style=style)
     return table
 
 
