@@ -219,7 +219,7 @@ contains
                   call walk(self, i, line%d0 + (f - line%f0)/line%k)
                   return
                end if
-               if (abs(far) >= unbounded .or. .not. line%k > 0.0_wp) exit
+               if (abs(far) >= unbounded) exit
             end if
          end associate
          call self%leave(i, direction)

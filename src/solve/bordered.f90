@@ -7,7 +7,8 @@
 !> solvers and block elimination for bordered systems, SIAM J. Matrix Anal. Appl. 12 (1991) 469-483).
 module rbs_solve_bordered
    use rbs_base_kinds, only: wp
-   use rbs_base_linalg, only: factor_band, solve_band, solve_general_band
+   use rbs_base_linalg, only: solve_general_band
+   use rbs_base_narrow_band, only: factor_narrow_band, solve_narrow_band
    implicit none
    private
 
@@ -23,21 +24,28 @@ module rbs_solve_bordered
    real(wp), parameter :: no_answer = 1.0e-3_wp
 
    type :: bordered_band
-      !> Number of unknowns, and of diagonals below the main one
+      !> Number of unknowns, and of diagonals below the main one, 3 at the most
       integer :: size = 0, width = 0
-      !> The matrix, to be filled before `factor` (width + 1, size): band(1 + i - j, j) = a(i, j)
+      !> The matrix, to be filled before `factor` (4, size): band(1 + i - j, j) = a(i, j), zero elsewhere
       real(wp), allocatable :: band(:, :)
       !> Initial stiffness of the unknowns (size), to be given once: all is reckoned in shares of it
       real(wp), allocatable :: stiffness(:)
       !> Whether the matrix is positive definite, after `factor`
       logical :: positive = .false.
-      !> One over root of the stiffness (size), factor (width + 1, size), and the matrix as elimination
-      !> takes it
-      real(wp), allocatable, private :: scale(:), cholesky(:, :), general(:, :)
+      !> One over root of the stiffness and three zeros (size + 3), factor (4, size), and the matrix as
+      !> elimination takes it
+      real(wp), allocatable, private :: scale(:), triangle(:, :), general(:, :)
+      !> Columns a and c of the border, and A^-1 times them (size, 2), scaled
+      real(wp), allocatable, private :: border(:, :), flexible(:, :)
+      !> Products of the two: once from the left, once from the right
+      real(wp), private :: from_left = 0.0_wp, from_right = 0.0_wp
+      !> Work arrays (size, number of right-hand sides)
+      real(wp), allocatable, private :: right(:, :), more(:, :)
    contains
       procedure :: create
       procedure :: factor
       procedure :: solve
+      procedure :: set_border
       procedure :: solve_bordered
    end type bordered_band
 
@@ -52,24 +60,34 @@ contains
       self%size = size(stiffness)
       self%width = width
       self%stiffness = stiffness
-      self%scale = 1.0_wp/sqrt(stiffness)
-      allocate (self%band(width + 1, self%size), self%cholesky(width + 1, self%size), source=0.0_wp)
+      self%scale = [1.0_wp/sqrt(stiffness), 0.0_wp, 0.0_wp, 0.0_wp]
+      allocate (self%band(4, self%size), self%triangle(4, self%size), self%border(self%size, 2), &
+                self%flexible(self%size, 2), source=0.0_wp)
    end subroutine create
 
-   !> Scale the matrix and try its Cholesky factor.
+   !> Scale the matrix and factor it, if it is positive definite.
    subroutine factor(self)
       class(bordered_band), intent(inout) :: self
-      integer :: i, j
 
-      do j = 1, self%size
-         do i = j, min(j + self%width, self%size)
-            self%band(1 + i - j, j) = self%band(1 + i - j, j)*(self%scale(i)*self%scale(j))
-         end do
-      end do
-      self%cholesky = self%band
-      call factor_band(self%cholesky, self%positive)
-      if (self%positive) self%positive = all(self%cholesky(1, :)**2 > no_stiffness)
+      call scale_and_factor(self%size, self%scale, self%band, self%triangle, self%positive)
    end subroutine factor
+
+   pure subroutine scale_and_factor(n, scale, band, triangle, positive)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: scale(n + 3)
+      real(wp), intent(inout) :: band(4, n)
+      real(wp), intent(out) :: triangle(4, n)
+      logical, intent(out) :: positive
+      integer :: j
+
+      do j = 1, n
+         band(:, j) = band(:, j)*(scale(j)*scale(j:j + 3))
+         triangle(:, j) = band(:, j)
+      end do
+      call factor_narrow_band(n, triangle, positive)
+      ! The factor holds one over the pivots.
+      if (positive) positive = maxval(triangle(1, :)) < 1.0_wp/no_stiffness
+   end subroutine scale_and_factor
 
    !> Without border: A x = b.
    subroutine solve(self, b, regular)
@@ -83,44 +101,64 @@ contains
       call scale_rows(self, b)
    end subroutine solve
 
-   !> With border.
-   subroutine solve_bordered(self, column, row, f, g, x, y, regular)
+   !> Give the border of the matrix that has been factored.
+   subroutine set_border(self, column, row, regular)
       class(bordered_band), intent(inout) :: self
-      !> The border: a and c (size)
-      real(wp), intent(in) :: column(:), row(:)
+      !> a and c (size); without c it is a
+      real(wp), intent(in), contiguous :: column(:)
+      real(wp), intent(in), contiguous, optional :: row(:)
+      !> Whether there can be one answer
+      logical, intent(out) :: regular
+      integer :: m
+
+      m = 1
+      self%border(:, 1) = column*self%scale(:self%size)
+      if (present(row)) then
+         m = 2
+         self%border(:, 2) = row*self%scale(:self%size)
+      end if
+      self%flexible(:, :m) = self%border(:, :m)
+      call solve_scaled(self, self%flexible(:, :m), regular)
+      if (.not. present(row)) then
+         self%border(:, 2) = self%border(:, 1)
+         self%flexible(:, 2) = self%flexible(:, 1)
+      end if
+      self%from_left = dot_product(self%flexible(:, 2), self%border(:, 1))
+      self%from_right = dot_product(self%border(:, 2), self%flexible(:, 1))
+      regular = regular .and. abs(self%from_left) > 0.0_wp .and. abs(self%from_right) > 0.0_wp
+   end subroutine set_border
+
+   !> With border.
+   subroutine solve_bordered(self, f, g, x, y, regular)
+      class(bordered_band), intent(inout) :: self
       !> Right-hand sides (size, m), (m)
-      real(wp), intent(in) :: f(:, :), g(:)
+      real(wp), intent(in), contiguous :: f(:, :)
+      real(wp), intent(in) :: g(:)
       !> Solutions (size, m), (m)
       real(wp), intent(out), contiguous :: x(:, :)
       real(wp), intent(out) :: y(:)
       !> Whether there is one answer
       logical, intent(out) :: regular
-      real(wp), allocatable :: border(:, :), flexible(:, :), right(:, :), more(:, :)
       real(wp) :: change(size(g)), missing(size(g))
       integer :: j
 
-      allocate (border(self%size, 2))
-      border(:, 1) = column*self%scale
-      border(:, 2) = row*self%scale
-      flexible = border
-      call solve_scaled(self, flexible, regular)
-      right = f
-      call scale_rows(self, right)
-      if (regular) call eliminate(self, border, flexible, right, g, x, y, regular)
+      if (.not. allocated(self%right)) allocate (self%right, self%more, mold=f)
+      self%right = f
+      call scale_rows(self, self%right)
+      call eliminate(self, self%right, g, x, y, regular)
       if (.not. regular) return
       if (.not. self%positive) then
          ! What elimination left behind, once: also the proof that the answer is one.
          do j = 1, size(g)
-            right(:, j) = right(:, j) - times(self, x(:, j)) + border(:, 1)*y(j)
-            missing(j) = g(j) - dot_product(border(:, 2), x(:, j))
+            self%right(:, j) = self%right(:, j) - times(self, x(:, j)) + self%border(:, 1)*y(j)
+            missing(j) = g(j) - dot_product(self%border(:, 2), x(:, j))
          end do
-         allocate (more, mold=right)
-         call eliminate(self, border, flexible, right, missing, more, change, regular)
+         call eliminate(self, self%right, missing, self%more, change, regular)
          do j = 1, size(g)
-            regular = regular .and. maxval(abs(more(:, j))) <= no_answer*maxval(abs(x(:, j)))
+            regular = regular .and. maxval(abs(self%more(:, j))) <= no_answer*maxval(abs(x(:, j)))
          end do
          if (.not. regular) return
-         x = x + more
+         x = x + self%more
          y = y + change
       end if
       call scale_rows(self, x)
@@ -128,30 +166,24 @@ contains
 
    !> Mixed block elimination: once from the left, which gives most of y, and once from the right for
    !> what is missing.
-   subroutine eliminate(self, border, flexible, f, g, x, y, regular)
+   subroutine eliminate(self, f, g, x, y, regular)
       type(bordered_band), intent(inout) :: self
-      !> Columns a and c, and A^-1 times them (size, 2)
-      real(wp), intent(in) :: border(:, :), flexible(:, :)
       real(wp), intent(in) :: f(:, :), g(:)
       real(wp), intent(out), contiguous :: x(:, :)
       real(wp), intent(out) :: y(:)
       logical, intent(out) :: regular
-      real(wp) :: from_left, from_right, more
+      real(wp) :: more
       integer :: j
 
-      from_left = dot_product(flexible(:, 2), border(:, 1))
-      from_right = dot_product(border(:, 2), flexible(:, 1))
-      regular = abs(from_left) > 0.0_wp .and. abs(from_right) > 0.0_wp
-      if (.not. regular) return
       do j = 1, size(g)
-         y(j) = (g(j) - dot_product(flexible(:, 2), f(:, j)))/from_left
-         x(:, j) = f(:, j) + border(:, 1)*y(j)
+         y(j) = (g(j) - dot_product(self%flexible(:, 2), f(:, j)))/self%from_left
+         x(:, j) = f(:, j) + self%border(:, 1)*y(j)
       end do
       call solve_scaled(self, x, regular)
       if (.not. regular) return
       do j = 1, size(g)
-         more = (g(j) - dot_product(border(:, 2), x(:, j)))/from_right
-         x(:, j) = x(:, j) + flexible(:, 1)*more
+         more = (g(j) - dot_product(self%border(:, 2), x(:, j)))/self%from_right
+         x(:, j) = x(:, j) + self%flexible(:, 1)*more
          y(j) = y(j) + more
       end do
    end subroutine eliminate
@@ -167,7 +199,7 @@ contains
       regular = .true.
       if (self%positive) then
          do j = 1, size(b, 2)
-            call solve_band(self%cholesky, b(:, j))
+            call solve_narrow_band(self%size, self%triangle, b(:, j))
          end do
          return
       end if
@@ -223,7 +255,7 @@ contains
       integer :: j
 
       do j = 1, size(b, 2)
-         b(:, j) = b(:, j)*self%scale
+         b(:, j) = b(:, j)*self%scale(:self%size)
       end do
    end subroutine scale_rows
 

@@ -8,7 +8,7 @@ module rbs_solve_curve
    implicit none
    private
 
-   public :: curve_type, clean, largest_turn, most_turn, same_rate
+   public :: curve_type, clean, first_ahead, largest_turn, most_turn, same_rate
 
    !> Largest rotation in one stride [rad], how far it may be from its tangent as a share of it, and what
    !> the slopes may correct of its work as a share of the largest energy so far.
@@ -20,6 +20,9 @@ module rbs_solve_curve
    !> A rate below this share of that of the top is round-off, and a difference of rates below this share of
    !> their own size is none.
    real(wp), parameter :: noise = 1.0e-13_wp, same_rate = 1.0e-8_wp
+
+   !> A spring that goes back less than this share of its deformation has not turned.
+   real(wp), parameter :: no_way = 1.0e-10_wp
 
    type :: curve_type
       !> Change of what is driven from end to end, in size
@@ -177,6 +180,35 @@ contains
       end associate
    end function cubic
 
+   !> The first spring that would reach an end of its line along the tangent, before a length of what is
+   !> driven.
+   pure subroutine first_ahead(springs, here, length, spring, way, share)
+      type(spring_array), intent(in) :: springs
+      type(path_point), intent(in) :: here
+      real(wp), intent(in) :: length
+      !> The spring, 0 if there is none; the end, +1 or -1; and where, as a share of the length
+      integer, intent(out) :: spring, way
+      real(wp), intent(out) :: share
+      real(wp) :: room
+      integer :: i, side
+
+      spring = 0
+      way = 0
+      share = 1.0_wp
+      do i = 1, springs%count
+         associate (rise => length*here%rate(i))
+            if (.not. abs(rise) > 0.0_wp) cycle
+            side = merge(1, -1, rise > 0.0_wp)
+            room = side*(springs%line(i)%end_toward(side) - here%q(i))
+            if (room < share*abs(rise)) then
+               spring = i
+               way = side
+               share = max(room, 0.0_wp)/abs(rise)
+            end if
+         end associate
+      end do
+   end subroutine first_ahead
+
    !> Of the springs that are beyond an end of their line, the one that passed it first.
    subroutine first_end(self, springs, q, whole, spring, way, share)
       class(curve_type), intent(in) :: self
@@ -188,7 +220,7 @@ contains
       !> The spring, 0 if there is none; the end, +1 or -1; and where, as a share of the way
       integer, intent(out) :: spring, way
       real(wp), intent(out) :: share
-      real(wp) :: passed, beyond
+      real(wp) :: passed, beyond, reach
       integer :: i, side
 
       spring = 0
@@ -198,13 +230,21 @@ contains
          do side = -1, 1, 2
             if (springs%one_way(i) == -side) cycle
             associate (finish => springs%line(i)%end_toward(side))
-               if (.not. abs(finish) < huge(1.0_wp)) cycle
+               ! No cubic reaches farther; an end at infinity is never reached.
+               reach = max(side*self%near%q(i), side*self%far%q(i)) &
+                       + 0.25_wp*self%length*(abs(self%near%rate(i)) + abs(self%far%rate(i)))
+               if (side*finish > reach .or. .not. abs(finish) < huge(1.0_wp)) cycle
                beyond = 1.0_wp
                if (.not. side*(q(i) - finish) > on_the_end*abs(finish)) then
                   if (.not. whole) cycle
                   beyond = farthest(self, i, side)
                   if (.not. beyond > 0.0_wp) cycle
                   if (.not. side*(at_share(self, i, beyond) - finish) > on_the_end*abs(finish)) cycle
+               end if
+               ! Not there yet where another has been: it comes later.
+               if (share < beyond) then
+                  if (.not. side*(at_share(self, i, share) - finish) > 0.0_wp) cycle
+                  beyond = share
                end if
                passed = where_passed(self, i, side, finish, beyond)
             end associate
@@ -217,24 +257,24 @@ contains
       end do
    end subroutine first_end
 
-   !> Whether a spring on a one-way line turns back and turns again between the ends.
+   !> Whether a spring on a one-way line turns back and turns again between the ends. What it goes back
+   !> between the roots of the derivative a t^2 + b t + c is (b^2 - 4 a c)^(3/2)/(6 a^2).
    pure logical function hides_turn(self, springs)
       class(curve_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
-      real(wp) :: slope(3), least
+      real(wp) :: slope(3), back
       integer :: i
 
       hides_turn = .false.
       do i = 1, springs%count
          if (springs%one_way(i) == 0) cycle
          slope = springs%one_way(i)*slopes(self, i)
-         if (.not. slope(1) > 0.0_wp) cycle
-         least = -0.5_wp*slope(2)/slope(1)
-         if (least <= 0.0_wp .or. least >= 1.0_wp) cycle
-         least = slope(3) - 0.25_wp*slope(2)**2/slope(1)
-         ! Over a short way the rise is a difference of nearly equal numbers.
-         hides_turn = least < -same_rate*self%length*self%largest_rate(i) &
-                      - 50.0_wp*epsilon(1.0_wp)*abs(self%near%q(i))
+         ! The least derivative lies between the ends.
+         if (.not. slope(1) > sqrt(tiny(1.0_wp))) cycle
+         if (slope(2) >= 0.0_wp .or. -slope(2) >= 2.0_wp*slope(1)) cycle
+         back = max(slope(2)**2 - 4.0_wp*slope(1)*slope(3), 0.0_wp)
+         back = back*sqrt(back)/(6.0_wp*slope(1)**2)
+         hides_turn = back > no_way*max(abs(self%near%q(i)), abs(self%far%q(i)))
          if (hides_turn) return
       end do
    end function hides_turn
@@ -263,13 +303,14 @@ contains
       root = slope(2)**2 - 4.0_wp*slope(1)*slope(3)
       if (.not. root > 0.0_wp) return
       root = sqrt(root)
-      ! The root where the derivative falls, in the form that does not cancel.
+      ! The root where the derivative falls, in the form that does not cancel, if it is between the ends.
       if (slope(2) < 0.0_wp) then
-         share = 2.0_wp*slope(3)/(root - slope(2))
-      else if (slope(1) < 0.0_wp) then
+         if (slope(3) > 0.0_wp .and. 2.0_wp*slope(3) <= root - slope(2)) then
+            share = 2.0_wp*slope(3)/(root - slope(2))
+         end if
+      else if (slope(2) + root <= -2.0_wp*slope(1)) then
          share = (slope(2) + root)/(-2.0_wp*slope(1))
       end if
-      if (share < 0.0_wp .or. share > 1.0_wp) share = 0.0_wp
    end function farthest
 
    !> Where a spring passes its end, between 0 and a share where it is beyond.

@@ -28,7 +28,7 @@ module rbs_solve_equilibrium
    integer, parameter :: refinements = 1
 
    !> Most bodies for which full matrices are faster than bands.
-   integer, parameter :: few = 8
+   integer, parameter :: few = 2
 
    type :: equilibrium_type
       !> Number of unknowns, 2 n: openings keep still
@@ -46,6 +46,8 @@ module rbs_solve_equilibrium
       logical, private :: banded = .false.
       type(bordered_band), private :: tangent
       real(wp), allocatable, private :: lever(:)
+      !> Work arrays, one column for the rate and one for the correction (2 n, 2)
+      real(wp), allocatable, private :: wanted(:, :), found(:, :), missing(:, :), along(:, :), more(:, :)
    contains
       procedure :: create
       procedure :: residual
@@ -67,6 +69,8 @@ contains
       self%initial_stiffness = column%initial_stiffness(:self%unknowns)
       self%coupled = column%axially_loaded
       if (.not. self%coupled) return
+      allocate (self%wanted(self%unknowns, 2), self%found(self%unknowns, 2), &
+                self%missing(self%unknowns, 2), self%along(self%unknowns, 2), self%more(self%unknowns, 2))
       self%banded = column%n > few
       if (present(full)) self%banded = .not. full
       if (self%banded) then
@@ -170,7 +174,6 @@ contains
       real(wp), intent(in) :: k(:), r(:)
       real(wp), intent(out), contiguous :: rate(:), correction(:)
       logical, intent(out) :: positive
-      real(wp), allocatable :: missing(:, :), more(:, :), q(:, :)
       real(wp), parameter :: force(2) = [1.0_wp, 0.0_wp]
       logical :: regular
       integer :: j, again
@@ -179,19 +182,18 @@ contains
       call self%tangent%factor()
       positive = self%tangent%positive
       if (.not. positive) return
-      allocate (missing(self%unknowns, 2), more(self%unknowns, 2))
-      allocate (q(self%unknowns, 2), source=0.0_wp)
+      self%found = 0.0_wp
       do again = 0, refinements
          do j = 1, 2
-            call self%residual(q(:, j), k*q(:, j), force(j), missing(:, j))
-            if (j == 2) missing(:, j) = missing(:, j) + r
-            call along_joints(self%column%n, missing(:, j), more(:, j))
+            call self%residual(self%found(:, j), k*self%found(:, j), force(j), self%missing(:, j))
+            if (j == 2) self%missing(:, j) = self%missing(:, j) + r
+            call along_joints(self%column%n, self%missing(:, j), self%more(:, j))
          end do
-         call self%tangent%solve(more, regular)
-         call add_joints(self, more, q)
+         call self%tangent%solve(self%more, regular)
+         call add_joints(self, self%more, self%found)
       end do
-      rate = q(:, 1)
-      correction = q(:, 2)
+      rate = self%found(:, 1)
+      correction = self%found(:, 2)
    end subroutine follow_force_banded
 
    !> Driven by the displacement: K rate = a dF and a rate = 1; K correction = r + a F', a correction = gap.
@@ -207,23 +209,21 @@ contains
       real(wp), intent(out) :: force_rate, force_correction
       !> Whether there is one answer
       logical, intent(out) :: regular
-      real(wp), allocatable :: b(:, :), x(:, :)
       real(wp) :: g(2), y(2)
       real(wp) :: flexibility
 
       if (self%coupled) then
-         allocate (b(self%unknowns, 2), x(self%unknowns, 2))
          g = [1.0_wp, gap]
-         b(:, 1) = 0.0_wp
-         b(:, 2) = r
+         self%wanted(:, 1) = 0.0_wp
+         self%wanted(:, 2) = r
          if (self%banded) then
-            call solve_banded(self, k, b, g, x, y, regular)
+            call solve_banded(self, k, g, y, regular)
          else
-            call solve_full(self, k, b, g, x, y, regular)
+            call solve_full(self, k, g, y, regular)
          end if
          if (.not. regular) return
-         rate = x(:, 1)
-         correction = x(:, 2)
+         rate = self%found(:, 1)
+         correction = self%found(:, 2)
          force_rate = y(1)
          force_correction = y(2)
       else if (minval(k) > 0.0_wp) then
@@ -248,13 +248,13 @@ contains
       end if
    end subroutine follow_displacement
 
-   !> The whole system with its border as one full matrix.
-   subroutine solve_full(self, k, f, g, x, y, regular)
-      type(equilibrium_type), intent(in) :: self
-      real(wp), intent(in) :: k(:), f(:, :), g(:)
-      real(wp), intent(out) :: x(:, :), y(:)
+   !> The whole system with its border as one full matrix: from `wanted` to `found`.
+   subroutine solve_full(self, k, g, y, regular)
+      type(equilibrium_type), intent(inout) :: self
+      real(wp), intent(in) :: k(:), g(2)
+      real(wp), intent(out) :: y(2)
       logical, intent(out) :: regular
-      real(wp) :: a(self%unknowns + 1, self%unknowns + 1), b(self%unknowns + 1, size(g))
+      real(wp) :: a(self%unknowns + 1, self%unknowns + 1), b(self%unknowns + 1, 2)
       integer :: m
 
       m = self%unknowns
@@ -262,38 +262,38 @@ contains
       a(:m, m + 1) = -self%arm
       a(m + 1, :m) = self%arm
       a(m + 1, m + 1) = 0.0_wp
-      b(:m, :) = f
+      b(:m, :) = self%wanted
       b(m + 1, :) = g
       call solve_general(a, b, regular)
-      x = b(:m, :)
+      self%found = b(:m, :)
       y = b(m + 1, :)
    end subroutine solve_full
 
    !> The same system as a band with its border.
-   subroutine solve_banded(self, k, f, g, x, y, regular)
+   subroutine solve_banded(self, k, g, y, regular)
       type(equilibrium_type), intent(inout) :: self
-      real(wp), intent(in) :: k(:), f(:, :), g(:)
-      real(wp), intent(out) :: x(:, :), y(:)
+      real(wp), intent(in) :: k(:), g(2)
+      real(wp), intent(out) :: y(2)
       logical, intent(out) :: regular
-      real(wp), allocatable :: missing(:, :), more(:, :), b(:, :)
-      real(wp) :: gap(size(g)), more_force(size(g))
+      real(wp) :: gap(2), more_force(2)
       integer :: j, again
 
       call fill_tangent(self, k)
       call self%tangent%factor()
-      allocate (missing, b, more, mold=f)
-      x = 0.0_wp
+      call self%tangent%set_border(self%lever, regular=regular)
+      if (.not. regular) return
+      self%found = 0.0_wp
       y = 0.0_wp
       do again = 0, refinements
-         do j = 1, size(g)
-            call self%residual(x(:, j), k*x(:, j), y(j), missing(:, j))
-            missing(:, j) = missing(:, j) + f(:, j)
-            call along_joints(self%column%n, missing(:, j), b(:, j))
-            gap(j) = g(j) - sum(self%arm*x(:, j))
+         do j = 1, 2
+            call self%residual(self%found(:, j), k*self%found(:, j), y(j), self%missing(:, j))
+            self%missing(:, j) = self%missing(:, j) + self%wanted(:, j)
+            call along_joints(self%column%n, self%missing(:, j), self%along(:, j))
+            gap(j) = g(j) - sum(self%arm*self%found(:, j))
          end do
-         call self%tangent%solve_bordered(self%lever, self%lever, b, gap, more, more_force, regular)
+         call self%tangent%solve_bordered(self%along, gap, self%more, more_force, regular)
          if (.not. regular) return
-         call add_joints(self, more, x)
+         call add_joints(self, self%more, self%found)
          y = y + more_force
       end do
    end subroutine solve_banded

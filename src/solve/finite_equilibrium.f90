@@ -49,6 +49,7 @@ module rbs_solve_finite_equilibrium
       procedure :: create
       procedure :: find_point
       procedure :: find_rates
+      procedure :: remember
    end type finite_equilibrium
 
 contains
@@ -135,22 +136,24 @@ contains
       call self%tangent%factor()
       y = 0.0_wp
       if (spring > 0) then
-         call set_border(self, spring)
-         call self%tangent%solve_bordered(self%arm, self%border, self%load, [value - point%q(spring)], &
-                                          self%change, y, regular)
+         call find_border(self, spring)
+         call self%tangent%set_border(self%arm, self%border, regular)
+         if (regular) call self%tangent%solve_bordered(self%load, [value - point%q(spring)], self%change, y, &
+                                                       regular)
       else if (self%by_force) then
          self%change = self%load
          call self%tangent%solve(self%change, regular)
       else
-         call self%tangent%solve_bordered(self%arm, self%arm, self%load, [value - point%displacement], &
-                                          self%change, y, regular)
+         call self%tangent%set_border(self%arm, regular=regular)
+         if (regular) call self%tangent%solve_bordered(self%load, [value - point%displacement], self%change, &
+                                                       y, regular)
       end if
       more_force = y(1)
       if (regular) call to_joints(self%column, per_joint(self%column), self%change(:, 1), self%joints)
    end subroutine find_correction
 
    !> Derivative of the deformation of a spring.
-   subroutine set_border(self, spring)
+   subroutine find_border(self, spring)
       type(finite_equilibrium), intent(inout) :: self
       integer, intent(in) :: spring
       integer :: n, per, joint
@@ -167,7 +170,7 @@ contains
          self%border(per*joint) = 1.0_wp
          if (joint > 1) self%border(per*(joint - 1)) = -1.0_wp
       end if
-   end subroutine set_border
+   end subroutine find_border
 
    !> Whether the correction is one that can be believed in.
    pure logical function reasonable(self)
@@ -216,8 +219,9 @@ contains
          point%force_rate = 1.0_wp
          point%displacement_rate = dot_product(self%arm, self%change(:, 1))
       else
+         call self%tangent%set_border(self%arm, regular=found)
          self%load = 0.0_wp
-         call self%tangent%solve_bordered(self%arm, self%arm, self%load, [1.0_wp], self%change, y, found)
+         if (found) call self%tangent%solve_bordered(self%load, [1.0_wp], self%change, y, found)
          if (.not. found) return
          point%force_rate = y(1)
          point%displacement_rate = 1.0_wp
@@ -225,5 +229,17 @@ contains
       call to_joints(self%column, per_joint(self%column), self%change(:, 1), point%rate)
       if (direction < 0) point%rate = -point%rate
    end subroutine find_rates
+
+   !> Remember the largest deformations of each kind.
+   pure subroutine remember(self, q)
+      class(finite_equilibrium), intent(inout) :: self
+      real(wp), intent(in) :: q(:)
+      integer :: i, n
+
+      n = self%column%n
+      do i = 1, self%column%unknowns/n
+         self%scale(i) = max(self%scale(i), maxval(abs(q(n*(i - 1) + 1:n*i))))
+      end do
+   end subroutine remember
 
 end module rbs_solve_finite_equilibrium

@@ -77,25 +77,26 @@ contains
          do part = 1, parts
             call stepper%advance(state, h, error)
             if (allocated(error)) then
-               summary%steps = step + stepper%extra_steps
+               summary%steps = stepper%steps
                summary%cut_steps = stepper%cut_steps
                call keep_last(state, row, recorder, summary)
                return
             end if
             step = step + 1
             if (state%lost .or. state%springs%stuck) then
-               summary%steps = step + stepper%extra_steps
+               summary%steps = stepper%steps
                call report_state(state, error)
                return
             end if
-            state%time = begin + part*h
-            if (part == parts) state%time = finish
+            state%clock = begin + part*h
+            if (part == parts) state%clock = finish
+            state%time = state%clock - plan%begin
             displacement = state%motion%top_displacement(state%q)
             call summary%see_peak(displacement, state%load(lateral))
             summary%collapsed = abs(displacement) >= furthest
             if (summary%collapsed .or. step == next_row .or. &
                 (every == unset_integer .and. part == parts)) then
-               summary%steps = step + stepper%extra_steps
+               summary%steps = stepper%steps
                summary%cut_steps = stepper%cut_steps
                if (stepper%longest_step > 0.0_wp) summary%time_step = stepper%longest_step
                call keep(state, row, recorder, summary, error)
@@ -139,11 +140,13 @@ contains
       m = column%unknowns
       state%loads = loads
       call state%loads%find_acting()
+      call state%loads%set_begin(begin)
       call state%motion%create(column, state%loads%acts, error)
       if (allocated(error)) return
       call state%springs%create(column%spring)
-      state%time = begin
-      call state%loads%at_time(begin, state%load)
+      state%begin = begin
+      state%clock = begin
+      call state%loads%at_time(0.0_wp, state%load)
       allocate (state%q(m), state%v(m), source=0.0_wp)
       if (allocated(initial%deformation)) state%q = initial%deformation
       if (allocated(initial%velocity)) state%v = initial%velocity
@@ -186,26 +189,27 @@ contains
 
       if (state%lost) then
          call fatal_error(error, analysis_failed, 'the motion has no bounds any more at time '// &
-                          to_text(state%time)//' s (a deformation is beyond '//to_text(out_of_bounds)// &
-                          '): the step is beyond the stability limit, the column has lost its '// &
+                          to_text(state%begin + state%time)//' s (a deformation is beyond '// &
+                          to_text(out_of_bounds)//'): the step is beyond the stability limit, the column has lost its '// &
                           'stability under the axial load, or the loading has a wrong unit. Rows up to '// &
                           'there are kept')
       else
          call fatal_error(error, analysis_failed, 'a hysteresis rule goes in a circle at time '// &
-                          to_text(state%time)//' s; the parameters of a spring are too extreme '// &
-                          'for the arithmetic. Rows up to there are kept')
+                          to_text(state%begin + state%time)//' s; the parameters of a spring are too '// &
+                          'extreme for the arithmetic. Rows up to there are kept')
       end if
    end subroutine report_state
 
    !> Record the last good state before a failure.
    subroutine keep_last(state, row, recorder, summary)
-      type(state_type), intent(in) :: state
+      type(state_type), intent(inout) :: state
       real(wp), intent(inout) :: row(:)
       class(recorder_type), intent(inout) :: recorder
       type(summary_type), intent(inout) :: summary
       type(error_type), allocatable :: ignored
 
-      if (state%lost .or. .not. state%time > row(row_time)) return
+      state%clock = state%begin + state%time
+      if (state%lost .or. .not. state%clock > row(row_time)) return
       call keep(state, row, recorder, summary, ignored)
    end subroutine keep_last
 
@@ -221,7 +225,7 @@ contains
 
       m = state%springs%count
       top = state%motion%top(state%q)
-      row(row_time) = state%time
+      row(row_time) = state%clock
       row(row_displacement) = top(1)
       row(row_force) = state%load(lateral)
       row(row_input) = state%of_loads

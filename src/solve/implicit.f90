@@ -25,6 +25,9 @@ module rbs_solve_implicit
 
    public :: implicit_stepper, new_newmark, new_generalised_alpha, new_hht
 
+   !> What round-off leaves of the terms of a sum, as a share of the largest.
+   real(wp), parameter :: round_off = 32.0_wp*epsilon(1.0_wp)
+
    !> Trials of Newton's method, which mostly needs two or three; a step is cut in halves this often.
    integer, parameter :: most_iterations = 40, most_cuts = 24
 
@@ -42,12 +45,18 @@ module rbs_solve_implicit
       real(wp), allocatable, private :: v0(:), a0(:), g0(:), v1(:), a1(:), g1(:)
       !> Mass in that order
       real(wp), allocatable, private :: mass(:)
+      !> Largest force, moment and lift of the present trial and of all steps so far. Residuals are measured
+      !> by them: where a motion passes through zero, or springs and damping take each other away, all
+      !> forces of the moment are round-off.
+      real(wp), private :: scale(3) = 0.0_wp, largest(3) = 0.0_wp
       !> Residual, correction, and what the bodies have moved in the step (unknowns)
       real(wp), allocatable, private :: r(:), dx(:), moved(:)
       !> Deformations, velocities and correction of the joints (unknowns)
       real(wp), allocatable, private :: q1(:), w1(:), dq(:)
       !> Factor of the tangent (4, 2 n) and of what step and line changes; tangent of the openings
       real(wp), allocatable, private :: factor(:, :), diagonal(:), beside(:), k(:)
+      !> Diagonal of the tangent (2 n)
+      real(wp), allocatable, private :: stiffness(:)
       real(wp), private :: factor_step = -1.0_wp
       integer, private :: factor_version = -1
       logical, private :: positive = .true.
@@ -123,6 +132,8 @@ contains
       call body_velocities(state%motion%column, state%v, self%v0)
       call find_forces(self, state, state%q, state%v, self%v0, state%load, self%g0)
       self%a0 = self%g0/self%mass
+      call find_scale(n, m, self%mass, self%a0, self%g0, state%motion%f, state%load(lateral), &
+                      state%motion%column%upper(n), self%largest)
       self%ready = .true.
    end subroutine start
 
@@ -167,10 +178,9 @@ contains
          return
       end if
       self%cut_steps = self%cut_steps + 1
-      self%extra_steps = self%extra_steps + 1
       if (cuts == most_cuts) then
          call fatal_error(error, analysis_failed, 'the step of '//to_text(h)//' s at time '// &
-                          to_text(state%time)//' s does not converge although it was cut '// &
+                          to_text(state%begin + state%time)//' s does not converge although it was cut '// &
                           to_text(most_cuts)//' times; '// &
                           trim(joint_name(state%motion%column, max(busiest, 1)))// &
                           ' is the busiest. Rows up to there are kept, the last good state is that of '// &
@@ -231,7 +241,7 @@ contains
          slope_before = product_of(size(self%r), self%r, self%dx)
          call try(self, state, h, load, 1.0_wp, marked, size_now)
          if (.not. size_now < out_of_bounds) return
-         converged = has_converged(self, size_now, size_before)
+         converged = has_converged(self, h, size_now, size_before)
          if (converged) return
          slope = product_of(size(self%r), self%r, self%dx)
          if (slope < -0.05_wp*slope_before) then
@@ -352,21 +362,65 @@ contains
          end if
          call find_residual(self, state, h, load, size_now)
          if (i > 0) cycle
-         converged = has_converged(self, size_now, size_before)
+         converged = has_converged(self, h, size_now, size_before)
          if (converged .or. .not. size_now < size_before) return
          size_before = size_now
       end do
    end subroutine go_by_events
 
    !> Whether a residual is gone, or as small as round-off lets it be.
-   pure logical function has_converged(self, size_now, size_before)
+   pure logical function has_converged(self, h, size_now, size_before)
       type(implicit_stepper), intent(in) :: self
+      real(wp), intent(in) :: h
       !> Relative size now and at the last trial
       real(wp), intent(in) :: size_now, size_before
 
-      has_converged = size_now <= self%wanted .or. &
-                      (size_now <= self%acceptable .and. size_now > 0.5_wp*size_before)
+      integer :: n
+
+      has_converged = size_now <= self%wanted
+      if (has_converged .or. size_now > 1.0e5_wp*self%acceptable) return
+      has_converged = size_now <= self%acceptable .and. size_now > 0.5_wp*size_before
+      if (has_converged) return
+      n = size(self%stiffness)/2
+      has_converged = is_round_off(n, h, self%stiffness, self%r, self%moved, self%v0, self%a0)
+      if (size(self%r) > 2*n .and. has_converged) then
+         has_converged = is_round_off_of_lifts(n, h, self%diagonal, self%r(2*n + 1:), self%moved(2*n + 1:), &
+                                               self%v0(2*n + 1:), self%a0(2*n + 1:))
+      end if
    end function has_converged
+
+   !> Whether the residual is what round-off leaves of the terms of the step. Modes that the step does not
+   !> resolve have accelerations far beyond what comes of them: after a shock h^2 a0 is many turns.
+   pure logical function is_round_off(n, h, stiffness, r, moved, v0, a0)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: h, stiffness(2*n), r(2*n), moved(2*n), v0(2*n), a0(2*n)
+      real(wp) :: way, turn, along, about
+      integer :: i
+
+      way = 0.0_wp
+      turn = 0.0_wp
+      do i = 1, n
+         way = max(way, abs(moved(2*i - 1)) + h*abs(v0(2*i - 1)) + h**2*abs(a0(2*i - 1)))
+         turn = max(turn, abs(moved(2*i)) + h*abs(v0(2*i)) + h**2*abs(a0(2*i)))
+      end do
+      is_round_off = .true.
+      do i = 1, n
+         along = sqrt(max(stiffness(2*i - 1), 0.0_wp))
+         about = sqrt(max(stiffness(2*i), 0.0_wp))
+         is_round_off = is_round_off .and. abs(r(2*i - 1)) <= round_off*along*(along*way + about*turn) &
+                        .and. abs(r(2*i)) <= round_off*about*(along*way + about*turn)
+      end do
+   end function is_round_off
+
+   !> The same for the openings.
+   pure logical function is_round_off_of_lifts(n, h, stiffness, r, moved, v0, a0) result(is_round_off)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: h, stiffness(n), r(n), moved(n), v0(n), a0(n)
+      real(wp) :: way
+
+      way = maxval(abs(moved) + h*abs(v0) + h**2*abs(a0))
+      is_round_off = all(abs(r) <= round_off*stiffness*way)
+   end function is_round_off_of_lifts
 
    !> How much of a correction the first spring allows that comes to an end of its line.
    subroutine first_end(state, q, dq, share, first, way)
@@ -415,8 +469,9 @@ contains
       if (state%motion%damped) call to_joints(state%motion%column, self%v1, self%w1)
       call find_forces(self, state, self%q1, self%w1, self%v1, load, self%g1)
       call balance(m, self%alpha_m, self%alpha_f, self%mass, self%a0, self%a1, self%g0, self%g1, self%r)
-      relative = size_of(n, self%r, self%mass, self%a1, self%g1, state%motion%f, load(lateral), &
-                         state%motion%column%upper(n), m)
+      call find_scale(n, m, self%mass, self%a1, self%g1, state%motion%f, load(lateral), &
+                      state%motion%column%upper(n), self%scale)
+      relative = size_of(n, m, self%r, max(self%scale, self%largest))
    end subroutine find_residual
 
    pure subroutine end_of_step(m, h, beta, gamma, moved, v0, a0, v1, a1)
@@ -436,25 +491,34 @@ contains
       r = (1.0_wp - alpha_f)*g1 + alpha_f*g0 - mass*((1.0_wp - alpha_m)*a1 + alpha_m*a0)
    end subroutine balance
 
-   !> Largest residual over the largest force, at the most 1: forces, moments and lifts each by themselves.
-   pure real(wp) function size_of(n, r, mass, a, g, f, lateral_force, arm, m) result(relative)
+   !> Largest force, moment and lift at a state.
+   pure subroutine find_scale(n, m, mass, a, g, f, lateral_force, arm, scale)
       integer, intent(in) :: n, m
-      real(wp), intent(in) :: r(m), mass(m), a(m), g(m), f(m), lateral_force, arm
-      real(wp) :: rest(3), scale(3)
+      real(wp), intent(in) :: mass(m), a(m), g(m), f(m), lateral_force, arm
+      real(wp), intent(out) :: scale(3)
       integer :: i
 
-      rest = 0.0_wp
       scale = [abs(lateral_force), abs(lateral_force)*arm, 0.0_wp]
       do i = 1, n
-         rest(1) = max(rest(1), abs(r(2*i - 1)))
-         rest(2) = max(rest(2), abs(r(2*i)))
          scale(1) = max(scale(1), abs(f(i)), abs(mass(2*i - 1)*a(2*i - 1)))
          scale(2) = max(scale(2), abs(f(n + i)), abs(mass(2*i)*a(2*i)))
       end do
-      if (m > 2*n) then
-         rest(3) = maxval(abs(r(2*n + 1:)))
-         scale(3) = max(maxval(abs(f(2*n + 1:))), maxval(abs(g(2*n + 1:))))
-      end if
+      if (m > 2*n) scale(3) = max(maxval(abs(f(2*n + 1:))), maxval(abs(g(2*n + 1:))))
+   end subroutine find_scale
+
+   !> Largest residual over the largest force, at the most 1: forces, moments and lifts each by themselves.
+   pure real(wp) function size_of(n, m, r, scale) result(relative)
+      integer, intent(in) :: n, m
+      real(wp), intent(in) :: r(m), scale(3)
+      real(wp) :: rest(3)
+      integer :: i
+
+      rest = 0.0_wp
+      do i = 1, n
+         rest(1) = max(rest(1), abs(r(2*i - 1)))
+         rest(2) = max(rest(2), abs(r(2*i)))
+      end do
+      if (m > 2*n) rest(3) = maxval(abs(r(2*n + 1:)))
       relative = maxval(rest/max(scale, rest, tiny(1.0_wp)))
    end function size_of
 
@@ -529,6 +593,7 @@ contains
             self%diagonal = self%diagonal + of_mass*self%mass(2*n + 1:)
          end if
       end associate
+      self%stiffness = self%factor(1, :)
       if (springs_soften(state)) then
          band = self%factor
          call factor_narrow_band(2*n, self%factor, self%positive)
@@ -601,6 +666,8 @@ contains
       state%v = self%w1
       state%time = state%time + h
       state%load = load
+      self%steps = self%steps + 1
+      self%largest = max(self%largest, self%scale)
       self%v0 = self%v1
       self%a0 = self%a1
       self%g0 = self%g1

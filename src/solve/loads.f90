@@ -23,6 +23,7 @@ module rbs_solve_loads
       logical :: acts(4) = .false.
    contains
       procedure :: find_acting
+      procedure :: set_begin
       procedure :: at_time
       procedure :: corner_after
    end type loads_type
@@ -35,6 +36,18 @@ contains
 
       self%acts = [self%force%acts(), self%ground%acts(), self%vertical%acts(), self%axial%acts()]
    end subroutine find_acting
+
+   !> Count times from a begin.
+   subroutine set_begin(self, begin)
+      class(loads_type), intent(inout) :: self
+      !> Time of the clock there [s]
+      real(wp), intent(in) :: begin
+
+      if (self%force%acts()) self%force%time = self%force%time - begin
+      if (self%ground%acts()) self%ground%time = self%ground%time - begin
+      if (self%vertical%acts()) self%vertical%time = self%vertical%time - begin
+      if (self%axial%acts()) self%axial%time = self%axial%time - begin
+   end subroutine set_begin
 
    !> All four at a time [N, m/s2, m/s2, N].
    subroutine at_time(self, t, load)

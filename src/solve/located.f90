@@ -15,6 +15,9 @@ module rbs_solve_located
 
    public :: located_stepper
 
+   !> Error of an attempt that is not finite.
+   real(wp), parameter :: not_finite = 1.0e10_wp
+
    !> Where an event is looked for, and what it is.
    type :: event_type
       !> Spring, 0 for none
@@ -56,8 +59,6 @@ contains
       if (allocated(error)) return
       if (.not. allocated(self%a)) allocate (self%a(size(state%q)))
       finish = state%time + h
-      ! The last part is the step that was asked for.
-      self%extra_steps = self%extra_steps - 1
       left = h
       idle = 0
       do
@@ -66,6 +67,7 @@ contains
          if (.not. left > 4.0_wp*spacing(h)) exit
          ! A corner of the loading would cost the order as an event does.
          part = min(left, state%loads%corner_after(state%time) - state%time)
+         if (part < left) self%cut_steps = self%cut_steps + 1
          if (self%tolerance > 0.0_wp .and. self%next_step < 0.999_wp*part) then
             ! Two equal steps rather than a long and a short one.
             part = min(self%next_step, 0.5_wp*part)
@@ -76,6 +78,8 @@ contains
             call self%scheme%attempt(state, part)
             wrong = error_of(self, state)
             if (.not. wrong > 1.0_wp) exit
+            ! Within the last digits of the clock a load is there or not: no step is too short for that.
+            if (part <= 8.0_wp*spacing(finish) .and. wrong < not_finite) exit
             if (self%tolerance > 0.0_wp .and. part > self%shortest) then
                part = max(part*max(0.2_wp, 0.9_wp*wrong**(-1.0_wp/self%scheme%order)), 0.5_wp*self%shortest)
                self%cut_steps = self%cut_steps + 1
@@ -94,7 +98,7 @@ contains
             call report_standstill(state, event%spring, error)
             return
          end if
-         self%extra_steps = self%extra_steps + 1
+         self%steps = self%steps + 1
          if (state%springs%stuck) return
          if (state%lost) return
       end do
@@ -145,7 +149,7 @@ contains
 
       wrong = 0.0_wp
       if (.not. self%tolerance > 0.0_wp) return
-      wrong = 1.0e10_wp
+      wrong = not_finite
       if (.not. all(ieee_is_finite(self%scheme%v))) return
       if (.not. all(ieee_is_finite(self%scheme%q))) return
       wrong = 0.0_wp
@@ -210,7 +214,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
 
       call fatal_error(error, analysis_failed, trim(joint_name(state%motion%column, i))// &
-                       ' changes its line again and again at time '//to_text(state%time)// &
+                       ' changes its line again and again at time '//to_text(state%begin + state%time)// &
                        " s without moving. Rows up to there are kept; try method = 'newmark'")
    end subroutine report_standstill
 
@@ -372,7 +376,7 @@ contains
 
       i = maxloc(abs(self%scheme%error_q)*sqrt(state%motion%column%initial_stiffness), dim=1)
       call fatal_error(error, analysis_failed, 'the step of '//to_text(h)//' s at time '// &
-                       to_text(state%time)//' s does not reach the tolerance of '// &
+                       to_text(state%begin + state%time)//' s does not reach the tolerance of '// &
                        to_text(self%tolerance)//'; the largest error is in '// &
                        trim(joint_name(state%motion%column, i))//'. Rows up to there are kept. Give a '// &
                        "larger tolerance, or method = 'generalised_alpha' for a stiff column")

@@ -158,6 +158,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
 
       if (allocated(error)) return
+      self%steps = self%steps + 1
       if (state%motion%plain .and. state%motion%single) then
          call advance_one_body(state, h)
          return

@@ -19,8 +19,10 @@ module rbs_solve_state
       type(loads_type) :: loads
       !> Deformations of the joints and their velocities (unknowns)
       real(wp), allocatable :: q(:), v(:)
-      !> Time [s] and loads then
+      !> Time since the begin of the run [s], which does not round where the clock is late; and loads then
       real(wp) :: time = 0.0_wp, load(4) = 0.0_wp
+      !> Time of the clock at the begin, and now [s]
+      real(wp) :: begin = 0.0_wp, clock = 0.0_wp
       !> Works of loads and damping, and the energy at the begin [J]
       real(wp) :: of_loads = 0.0_wp, of_damping = 0.0_wp, at_begin = 0.0_wp
       !> Whether a deformation has gone out of bounds; one cannot go on from there
@@ -31,8 +33,8 @@ module rbs_solve_state
    type, abstract :: stepper_type
       !> Steps that were cut so far: at an event, for accuracy, or because they did not converge
       integer :: cut_steps = 0
-      !> Steps taken beyond one for each call: the parts of cut ones
-      integer :: extra_steps = 0
+      !> Steps taken so far, the parts of cut ones each for itself
+      integer :: steps = 0
       !> Longest step taken, if the method chooses its steps; 0: as planned [s]
       real(wp) :: longest_step = 0.0_wp
    contains

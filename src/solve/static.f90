@@ -12,7 +12,7 @@ module rbs_solve_static
    use rbs_results_summary, only: summary_type
    use rbs_solve_equilibrium, only: equilibrium_type
    use rbs_solve_static_corner, only: turn_corner
-   use rbs_solve_static_path, only: static_path, describe_state, kept_rows, put_springs, on_the_end
+   use rbs_solve_static_path, only: static_path, describe_state, kept_rows, is_on_end, on_the_end
    implicit none
    private
 
@@ -34,8 +34,7 @@ module rbs_solve_static
    contains
       procedure :: advance
       procedure :: solve_line
-      procedure :: axial_work
-      procedure :: height
+      procedure :: measure
    end type straight_path
 
 contains
@@ -170,11 +169,20 @@ contains
    subroutine go(self, control)
       class(straight_path), intent(inout) :: self
       real(wp), intent(in) :: control
-      real(wp) :: change, force, displacement
+      real(wp) :: change, force, displacement, d
+      integer :: i
 
       change = control - self%start
-      self%f = self%q + self%rate(:self%moving)*abs(change)
-      call put_springs(self, self%f, self%rate)
+      associate (springs => self%springs)
+         do i = 1, self%moving
+            d = self%q(i) + self%rate(i)*abs(change)
+            call springs%walk(i, min(max(d, springs%first(i)), springs%last(i)))
+            if (is_on_end(springs%line(i), d, self%rate(i))) then
+               call springs%arrive(i, merge(1, -1, self%rate(i) > 0.0_wp))
+               self%direction = 0
+            end if
+         end do
+      end associate
       force = self%force_start + self%force_rate*change
       displacement = self%displacement_start + self%displacement_rate*change
       if (self%by_force) then
@@ -199,34 +207,31 @@ contains
       self%direction = 0
    end subroutine end_line
 
-   !> Second-order work of the axial load, and its work on the openings.
-   pure real(wp) function axial_work(self)
+   !> The second-order work of the axial load and its work on the openings; the height of the top, with
+   !> `pdelta` to second order, as the axial load sees it.
+   pure subroutine measure(self, axial_work, height, rotation)
       class(straight_path), intent(in) :: self
-      integer :: n
-
-      n = self%column%n
-      axial_work = 0.0_wp
-      if (self%equilibrium%coupled) axial_work = axial_energy(self%column, self%springs%d)
-      if (self%column%opens) axial_work = axial_work + sum(self%column%axial_joint*self%springs%d(2*n + 1:))
-   end function axial_work
-
-   !> Height of the top; with `pdelta` to second order, as the axial load sees it.
-   pure real(wp) function height(self)
-      class(straight_path), intent(in) :: self
-      real(wp) :: rotation
+      real(wp), intent(out) :: axial_work, height, rotation
+      real(wp) :: turned, lost
       integer :: i, n
 
       n = self%column%n
+      rotation = 0.0_wp
+      turned = 0.0_wp
+      lost = 0.0_wp
+      do i = 1, n
+         lost = lost + self%springs%d(i)*turned
+         turned = turned + self%springs%d(n + i)
+         lost = lost + 0.5_wp*self%column%length(i)*turned**2
+         rotation = max(rotation, abs(turned))
+      end do
       height = self%column%joint_height(n + 1)
-      if (self%column%kinematics /= small) then
-         rotation = 0.0_wp
-         do i = 1, n
-            height = height - self%springs%d(i)*rotation
-            rotation = rotation + self%springs%d(n + i)
-            height = height - 0.5_wp*self%column%length(i)*rotation**2
-         end do
-      end if
-      if (self%column%opens) height = height + sum(self%springs%d(2*n + 1:))
-   end function height
+      if (self%column%kinematics /= small) height = height - lost
+      axial_work = 0.0_wp
+      if (self%equilibrium%coupled) axial_work = axial_energy(self%column, self%springs%d)
+      if (.not. self%column%opens) return
+      height = height + sum(self%springs%d(2*n + 1:))
+      axial_work = axial_work + sum(self%column%axial_joint*self%springs%d(2*n + 1:))
+   end subroutine measure
 
 end module rbs_solve_static

@@ -13,17 +13,20 @@ module rbs_solve_static_finite
    use rbs_results_progress, only: progress_type
    use rbs_results_recorder, only: recorder_type
    use rbs_results_summary, only: summary_type
-   use rbs_solve_curve, only: curve_type, clean, largest_turn, most_turn, same_rate
+   use rbs_solve_curve, only: curve_type, clean, first_ahead, largest_turn, most_turn, same_rate
    use rbs_solve_finite_equilibrium, only: finite_equilibrium, path_point
-   use rbs_solve_static_corner, only: turn_corner, report_no_line
-   use rbs_solve_static_path, only: static_path, describe_state, name_spring, put_springs
+   use rbs_solve_static_corner, only: turn_corner
+   use rbs_solve_static_path, only: static_path, describe_state, name_spring, is_on_end
    implicit none
    private
 
    public :: trace_finite
 
-   !> A stride below this share of what is driven is none.
+   !> A stride below this share of what is driven, or of what was tried, is none.
    real(wp), parameter :: no_stride = 1.0e-11_wp
+
+   !> A stride may be cut so often, however short it is.
+   integer, parameter :: fewest_cuts = 20
 
    type, extends(static_path) :: turning_path
       type(finite_equilibrium) :: equilibrium
@@ -40,8 +43,7 @@ module rbs_solve_static_finite
    contains
       procedure :: advance
       procedure :: solve_line
-      procedure :: axial_work
-      procedure :: height
+      procedure :: measure
    end type turning_path
 
 contains
@@ -119,21 +121,25 @@ contains
       class(turning_path), intent(inout) :: self
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: way, length, goal, turn
+      real(wp) :: way, length, shortest, goal, turn
+      integer :: cuts
       logical :: done
 
       way = abs(target - self%control)
       turn = largest_turn(self%column, self%here%rate)
       length = min(way, self%stride)
       if (turn*length > most_turn) length = most_turn/turn
+      shortest = no_stride*max(abs(self%control), length)
+      cuts = 0
       do
          goal = self%control + self%direction*length
          if (length >= way) goal = target
          call try_stride(self, goal, length, done)
          if (done) exit
+         cuts = cuts + 1
          self%cuts = self%cuts + 1
          length = 0.5_wp*length
-         if (length > no_stride*max(abs(target), abs(self%control))) cycle
+         if (cuts < fewest_cuts .or. length > shortest) cycle
          call report_no_way(self, target, error)
          return
       end do
@@ -149,22 +155,21 @@ contains
       real(wp), intent(in) :: goal, length
       logical, intent(out) :: done
       real(wp) :: reached, share
-      integer :: spring, way
+      integer :: spring, way, before, side
       logical :: turns
 
       turns = .false.
       associate (here => self%here, there => self%there)
-         there%q = here%q + here%rate*length
-         there%force = here%force + here%force_rate*(goal - self%control)
-         call self%equilibrium%find_point(self%springs, there, 0, goal, done)
+         call aim(self, goal, length, reached, spring, way, done)
          if (done) call self%equilibrium%find_rates(self%springs, there, self%direction, done)
          if (.not. done) return
-         reached = goal
-         call self%curve%set(self%column, length, here, there)
+         call self%curve%set(self%column, abs(reached - self%control), here, there)
          done = self%curve%is_gentle(self%column, self%springs, self%most_work)
          if (.not. done) return
-         call self%curve%first_end(self%springs, there%q, .true., spring, way, share)
-         if (spring > 0) then
+         call self%curve%first_end(self%springs, there%q, .true., before, side, share)
+         if (before > 0) then
+            spring = before
+            way = side
             call meet_end(self, spring, way, share, reached, done)
             if (.not. done) return
             call self%curve%set(self%column, abs(reached - self%control), here, there)
@@ -183,6 +188,38 @@ contains
       done = on_their_lines(self)
       if (done) call accept(self, reached, spring, way, turns)
    end subroutine try_stride
+
+   !> Find a point ahead: where the tangent says that the first spring reaches its end, if this is before
+   !> the goal, else the goal.
+   subroutine aim(self, goal, length, reached, spring, way, done)
+      class(turning_path), intent(inout) :: self
+      real(wp), intent(in) :: goal, length
+      !> What is driven there
+      real(wp), intent(out) :: reached
+      !> The spring that stands on its end there, 0 if none, and which end
+      integer, intent(out) :: spring, way
+      logical, intent(out) :: done
+      real(wp) :: share
+
+      associate (here => self%here, there => self%there)
+         call first_ahead(self%springs, here, length, spring, way, share)
+         if (spring > 0) then
+            there%q = here%q + here%rate*(share*length)
+            there%force = here%force + here%force_rate*(share*(goal - self%control))
+            call self%equilibrium%find_point(self%springs, there, spring, &
+                                             self%springs%line(spring)%end_toward(way), done)
+            reached = merge(there%force, there%displacement, self%by_force)
+            associate (way_there => self%direction*(reached - self%control))
+               if (done .and. way_there >= 0.0_wp .and. way_there <= length) return
+            end associate
+         end if
+         spring = 0
+         reached = goal
+         there%q = here%q + here%rate*length
+         there%force = here%force + here%force_rate*(goal - self%control)
+         call self%equilibrium%find_point(self%springs, there, 0, goal, done)
+      end associate
+   end subroutine aim
 
    !> Find the point where the first spring reaches its end; `there` becomes that point.
    subroutine meet_end(self, spring, way, share, reached, done)
@@ -298,7 +335,7 @@ contains
          ! Where it got nowhere its rate is zero and will not tell that it goes on.
          if (.not. abs(change) > 0.0_wp) call self%springs%leave(spring, way)
       end if
-      call put_springs(self, self%there%q, self%there%rate)
+      call put_springs(self)
       ! A motion may have turned by less than was looked for.
       if (turns .or. spring > 0 .or. any(self%springs%one_way*clean(self%column, self%there) < 0.0_wp)) then
          self%direction = 0
@@ -308,20 +345,23 @@ contains
       self%control = reached
       self%here = self%there
       self%here%q = self%springs%d
-      call see_scale(self)
+      call self%equilibrium%remember(self%here%q)
    end subroutine accept
 
-   !> Remember the largest deformations of each kind.
-   subroutine see_scale(self)
+   !> Move the springs along their lines; those that come to an open end are put on the next line.
+   subroutine put_springs(self)
       class(turning_path), intent(inout) :: self
-      integer :: i, n
+      integer :: i
 
-      n = self%column%n
-      do i = 1, self%moving/n
-         self%equilibrium%scale(i) = max(self%equilibrium%scale(i), &
-                                         maxval(abs(self%here%q(n*(i - 1) + 1:n*i))))
-      end do
-   end subroutine see_scale
+      associate (springs => self%springs, q => self%there%q, rate => self%there%rate)
+         do i = 1, self%moving
+            call springs%walk(i, min(max(q(i), springs%first(i)), springs%last(i)))
+            if (.not. is_on_end(springs%line(i), q(i), rate(i))) cycle
+            call springs%arrive(i, merge(1, -1, rate(i) > 0.0_wp))
+            self%direction = 0
+         end do
+      end associate
+   end subroutine put_springs
 
    !> Say why the path cannot be carried on.
    subroutine report_no_way(self, target, error)
@@ -330,30 +370,32 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(len=:), allocatable :: state, spring
 
-      if (self%by_force) then
-         call report_no_line(self, target, error)
-         return
-      end if
       call describe_state(self, state)
       call name_spring(self, spring)
-      call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//state// &
-                       ' on the way to '//to_text(target)//' m: the column snaps back there, or the '// &
-                       'top has come as far as its length lets it ('//spring//' has least stiffness '// &
-                       'left). A driven top cannot follow that; use a dynamic analysis')
+      if (self%by_force) then
+         call fatal_error(error, analysis_failed, 'the lateral force '//to_text(target)// &
+                          ' N is beyond the capacity of the column: no stable equilibrium was found '// &
+                          'beyond '//state//' ('//spring//' has least stiffness left). The path up '// &
+                          'to there is kept; drive the column by displacement, or give the springs '// &
+                          'more stiffness')
+      else
+         call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//state// &
+                          ' on the way to '//to_text(target)//' m: the column snaps back there, or '// &
+                          'the top has come as far as its length lets it ('//spring//' has least '// &
+                          'stiffness left). The path up to there is kept; a driven top cannot follow '// &
+                          'that, use a dynamic analysis')
+      end if
    end subroutine report_no_way
 
-   pure real(wp) function axial_work(self)
+   pure subroutine measure(self, axial_work, height, rotation)
       class(turning_path), intent(in) :: self
-
-      axial_work = finite_potential(self%column, self%springs%d)
-   end function axial_work
-
-   pure real(wp) function height(self)
-      class(turning_path), intent(in) :: self
+      real(wp), intent(out) :: axial_work, height, rotation
       real(wp) :: top(2)
 
+      axial_work = finite_potential(self%column, self%springs%d)
       top = finite_top(self%column, self%springs%d)
       height = top(2)
-   end function height
+      rotation = largest_turn(self%column, self%springs%d)
+   end subroutine measure
 
 end module rbs_solve_static_finite

@@ -5,7 +5,7 @@ module rbs_solve_static_path
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type
+   use rbs_column_column, only: column_type, joint_name
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_springs, only: spring_array
    use rbs_results_progress, only: progress_type
@@ -16,7 +16,7 @@ module rbs_solve_static_path
    implicit none
    private
 
-   public :: static_path, kept_rows, put_springs, describe_state, name_spring, on_the_end
+   public :: static_path, kept_rows, is_on_end, describe_state, name_spring, on_the_end
 
    !> A spring this close to an end of its line, relative to the end, is on it. Not a tolerance of the
    !> solution: where a cycle returns to its peak, round-off would else decide between outer and inner
@@ -51,8 +51,7 @@ module rbs_solve_static_path
       procedure :: follow
       procedure(advance_interface), deferred :: advance
       procedure(solve_line_interface), deferred :: solve_line
-      procedure(energy_interface), deferred :: axial_work
-      procedure(energy_interface), deferred :: height
+      procedure(measure_interface), deferred :: measure
    end type static_path
 
    abstract interface
@@ -75,12 +74,15 @@ module rbs_solve_static_path
          logical, intent(out) :: found
       end subroutine solve_line_interface
 
-      !> Potential of axial load and weight [J]; height of the top above the ground [m].
-      pure real(wp) function energy_interface(self)
+      !> What the springs do not know: for a row.
+      pure subroutine measure_interface(self, axial_work, height, rotation)
          import :: static_path, wp
          implicit none
          class(static_path), intent(in) :: self
-      end function energy_interface
+         !> Potential of axial load and weight [J], height of the top above the ground [m], and the largest
+         !> absolute rotation of a body, in size [rad]
+         real(wp), intent(out) :: axial_work, height, rotation
+      end subroutine measure_interface
    end interface
 
 contains
@@ -105,6 +107,7 @@ contains
       !> Number of springs that can move
       integer, intent(in) :: moving
       type(error_type), allocatable, intent(out) :: error
+      real(wp) :: axial_work, height, rotation
 
       self%column = column
       self%by_force = by_force
@@ -113,54 +116,33 @@ contains
       allocate (self%rate(column%unknowns), source=0.0_wp)
       allocate (self%changed(column%unknowns), source=0)
       if (column%opens) call compress(self, error)
-      self%at_begin = sum(self%springs%work) + self%axial_work()
+      call self%measure(axial_work, height, rotation)
+      self%at_begin = sum(self%springs%work) + axial_work
    end subroutine begin
 
-   !> The axial springs follow their lines to the forces of load and weight: N_i = -Q_i.
+   !> The axial springs follow their lines to the forces of load and weight.
    subroutine compress(self, error)
       class(static_path), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: wanted, d
-      integer :: i, j, way, lines
+      character(len=:), allocatable :: kind
+      real(wp) :: tension
+      logical :: found
+      integer :: i, joint
 
-      do i = 1, self%column%n
-         j = 2*self%column%n + i
-         wanted = -self%column%axial_joint(i)
-         associate (springs => self%springs)
-            do lines = 1, 100
-               if (abs(wanted - springs%force(j)) <= no_force*abs(wanted)) exit
-               way = merge(1, -1, wanted > springs%force(j))
-               if (.not. springs%k(j) > 0.0_wp) then
-                  call report_no_hold(self, i, wanted, error)
-                  return
-               end if
-               d = springs%d0(j) + (wanted - springs%f0(j))/springs%k(j)
-               if (way*(d - springs%line(j)%end_toward(way)) < 0.0_wp) then
-                  call springs%walk(j, d)
-                  exit
-               end if
-               call springs%walk(j, springs%line(j)%end_toward(way))
-               call springs%leave(j, way)
-            end do
-         end associate
+      do joint = 1, self%column%n
+         i = 2*self%column%n + joint
+         tension = -self%column%compression(joint)
+         call self%springs%load_to(i, tension, found)
+         if (found .or. abs(tension - self%springs%force(i)) <= no_force*abs(tension)) cycle
+         kind = 'tension'
+         if (tension < 0.0_wp) kind = 'compression'
+         call fatal_error(error, analysis_failed, trim(joint_name(self%column, i))//" (rule '"// &
+                          trim(self%column%spring(i)%rule)//"') cannot carry the "//kind//' of '// &
+                          to_text(abs(tension))//' N from axial load and weight: it has no stiffness '// &
+                          'left. Change axial_load, or give the joint a spring that holds')
+         return
       end do
    end subroutine compress
-
-   subroutine report_no_hold(self, joint, wanted, error)
-      class(static_path), intent(in) :: self
-      integer, intent(in) :: joint
-      real(wp), intent(in) :: wanted
-      type(error_type), allocatable, intent(out) :: error
-      character(len=:), allocatable :: kind
-
-      kind = 'tension'
-      if (wanted < 0.0_wp) kind = 'compression'
-      call fatal_error(error, analysis_failed, 'the axial spring of joint '//to_text(joint)// &
-                       " (rule '"//trim(self%column%spring(2*self%column%n + joint)%rule)// &
-                       "') cannot carry the "//kind//' of '//to_text(abs(wanted))// &
-                       ' N from axial load and weight: it has no stiffness left. Change axial_load, or '// &
-                       'give the joint a spring that holds')
-   end subroutine report_no_hold
 
    !> Follow the targets one after the other.
    subroutine follow(self, target, every, collapse_drift, recorder, summary, error, progress)
@@ -179,19 +161,20 @@ contains
       class(progress_type), intent(inout), optional :: progress
       type(error_type), allocatable :: failure
       real(wp), allocatable :: row(:)
-      real(wp) :: farthest
+      real(wp) :: height
+      logical :: may_collapse
       integer :: i, n
 
       n = every
       if (every == unset_integer) n = 1
-      farthest = huge(1.0_wp)
-      if (collapse_drift > unset) farthest = collapse_drift*self%column%joint_height(self%column%n + 1)
+      may_collapse = collapse_drift > unset
+      height = self%column%joint_height(self%column%n + 1)
       allocate (row(row_size(self%column%unknowns)))
       do i = 1, size(target)
          call self%advance(target(i), failure)
          if (allocated(failure)) failure%message = 'row '//to_text(i)//': '//failure%message
          call summary%see_peak(self%displacement, self%force)
-         summary%collapsed = abs(self%displacement) >= farthest
+         if (may_collapse) summary%collapsed = abs(self%displacement)/height >= collapse_drift
          if (mod(i - 1, n) == 0 .or. i == size(target) .or. allocated(failure) .or. &
              summary%collapsed) then
             call fill_row(self, row, i - 1, summary%peak_rotation)
@@ -211,28 +194,10 @@ contains
       end do
    end subroutine follow
 
-   !> Move the springs along their lines. Those that come to an open end are put on the next line, and the
-   !> line of the column ends with theirs.
-   subroutine put_springs(path, d, rate)
-      class(static_path), intent(inout) :: path
-      !> New deformations, and the way they go on, of which the sign counts (moving)
-      real(wp), intent(in) :: d(:), rate(:)
-      integer :: i
-
-      associate (springs => path%springs)
-         do i = 1, path%moving
-            call springs%walk(i, min(max(d(i), springs%first(i)), springs%last(i)))
-            if (is_on_end(springs%line(i), d(i), rate(i))) then
-               call springs%arrive(i, merge(1, -1, rate(i) > 0.0_wp))
-               path%direction = 0
-            end if
-         end do
-      end associate
-   end subroutine put_springs
-
    !> Whether a spring has come to the open end that it goes to.
    pure logical function is_on_end(line, d, rate)
       type(segment), intent(in) :: line
+      !> Deformation [m or rad], and its rate, of which the sign counts
       real(wp), intent(in) :: d, rate
 
       is_on_end = .false.
@@ -251,10 +216,9 @@ contains
       !> Largest absolute rotation so far, in size [rad]
       real(wp), intent(inout) :: peak_rotation
       real(wp) :: rotation
-      integer :: i, m, n
+      integer :: m
 
       associate (springs => self%springs)
-         n = self%column%n
          m = springs%count
          row(row_time) = number
          row(row_displacement) = self%displacement
@@ -263,16 +227,11 @@ contains
          row(row_kinetic) = 0.0_wp
          row(row_spring) = sum(springs%work)
          row(row_damping) = 0.0_wp
-         row(row_axial) = self%axial_work()
+         call self%measure(row(row_axial), row(row_top), rotation)
+         peak_rotation = max(peak_rotation, rotation)
          row(row_residual) = row(row_input) + self%at_begin - row(row_spring) - row(row_axial)
-         row(row_top) = self%height()
          row(row_joints:row_joints + m - 1) = springs%d
          row(row_joints + m:) = springs%f0 + springs%k*(springs%d - springs%d0)
-         rotation = 0.0_wp
-         do i = n + 1, 2*n
-            rotation = rotation + springs%d(i)
-            peak_rotation = max(peak_rotation, abs(rotation))
-         end do
       end associate
    end subroutine fill_row
 
@@ -288,17 +247,9 @@ contains
    subroutine name_spring(path, text)
       class(static_path), intent(in) :: path
       character(len=:), allocatable, intent(out) :: text
-      integer :: i, n
 
-      n = path%column%n
-      i = minloc(path%springs%k(:path%moving)/path%column%initial_stiffness(:path%moving), dim=1)
-      if (i > 2*n) then
-         text = 'the axial spring of joint '//to_text(i - 2*n)
-      else if (i > n) then
-         text = 'the flexural spring of joint '//to_text(i - n)
-      else
-         text = 'the shear spring of joint '//to_text(i)
-      end if
+      text = trim(joint_name(path%column, minloc(path%springs%k(:path%moving)/ &
+                                                 path%column%initial_stiffness(:path%moving), dim=1)))
    end subroutine name_spring
 
 end module rbs_solve_static_path

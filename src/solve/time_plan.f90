@@ -63,7 +63,13 @@ contains
          return
       end do
       do i = 2, size(time)
-         if (time(i) > time(i - 1)) cycle
+         if (time(i) - time(i - 1) >= 1.0_wp/beyond_meaning) cycle
+         if (time(i) > time(i - 1)) then
+            call fatal_error(error, bad_input, 'time: value '//to_text(i)//' of '//to_text(size(time))// &
+                             ' comes only '//to_text(time(i) - time(i - 1))//' s after the one before; '// &
+                             'check its exponent')
+            return
+         end if
          call fatal_error(error, bad_input, 'time: value '//to_text(i)//' of '//to_text(size(time))// &
                           ', '//to_text(time(i))//' s, does not come after the one before, '// &
                           to_text(time(i - 1))//' s; times must ascend strictly')

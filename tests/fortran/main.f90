@@ -8,10 +8,12 @@ program unit_tests
    use test_column, only: collect_column
    use test_finite, only: collect_finite
    use test_history, only: collect_history
+   use test_implicit, only: collect_implicit
    use test_linalg, only: collect_linalg
    use test_modal, only: collect_modal
    use test_protocol, only: collect_protocol
    use test_results, only: collect_results
+   use test_run, only: collect_run
    use test_segment, only: collect_segment
    use test_signal, only: collect_signal
    use test_spec, only: collect_spec
@@ -38,7 +40,7 @@ program unit_tests
       procedure(collect_interface), pointer, nopass :: collect => null()
    end type suite_type
 
-   type(suite_type) :: suites(20)
+   type(suite_type) :: suites(22)
    character(len=80) :: wanted, pattern
    integer :: i, run, failed, found
 
@@ -54,7 +56,9 @@ program unit_tests
              suite_type('modal', collect_modal), suite_type('static', collect_static), &
              suite_type('static_finite', collect_static_finite), &
              suite_type('history', collect_history), &
-             suite_type('steppers', collect_steppers)]
+             suite_type('run', collect_run), &
+             suite_type('steppers', collect_steppers), &
+             suite_type('implicit', collect_implicit)]
 
    call get_command_argument(1, wanted)
    call get_command_argument(2, pattern)

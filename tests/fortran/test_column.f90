@@ -7,10 +7,10 @@ module test_column
    use rbs_base_text, only: to_text
    use rbs_column_axial, only: geometric_stiffness, geometric_forces, axial_energy, critical_factor, &
                                check_stable
-   use rbs_column_column, only: column_type, small, pdelta, finite
+   use rbs_column_column, only: column_type, joint_name, small, pdelta, finite
    use rbs_column_mass, only: symmetric_mass, paper_mass
    use rbs_spec_column, only: column_spec
-   use samples, only: chain, column_1, made, random_type, k_c, s_k, mass_1, height_1
+   use samples, only: chain, column_1, elastic, made, random_type, k_c, s_k, mass_1, height_1
    implicit none
    private
 
@@ -39,7 +39,13 @@ contains
                unit_test('critical load of one body is k_M/l', critical_one), &
                unit_test('at the critical load the stiffness is singular', critical_chain), &
                unit_test('tension has no critical load', tension), &
-               unit_test('a column that buckles by itself is refused', buckling)]
+               unit_test('a column that buckles by itself is refused', buckling), &
+               unit_test('a mass lumped at the top is part of the last body', lumped), &
+               unit_test('rotary inertia: default, depth of the section, given', rotary), &
+               unit_test('axial forces of load and weight, body by body', weights), &
+               unit_test('axial forces per vertical acceleration', lifted), &
+               unit_test('joints that open', opening), &
+               unit_test('names of the springs', names)]
    end subroutine collect_column
 
    subroutine one_body(error)
@@ -388,5 +394,163 @@ contains
       call check_failed(error, outcome, bad_input, 'the axial load of 2e+08 N at the base')
       call check_failed(error, outcome, bad_input, 'the critical load of '//to_text(k_c/height_1)//' N')
    end subroutine buckling
+
+   !> Steiner: own mass at mid-length and a point with inertia at the top, about their common centroid; and
+   !> the mass matrix, with the two kept apart.
+   subroutine lumped(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp), parameter :: m = 700.0_wp, j = 35.0_wp
+      type(column_spec) :: spec
+      type(column_type) :: column, plain
+      real(wp) :: mass(2*n, 2*n), without(2*n, 2*n), expected(2*n, 2*n), own, l, centroid
+      integer :: a, b
+
+      spec = chain(n, 'pdelta')
+      plain = made(spec)
+      spec%top_mass = m
+      spec%top_inertia = j
+      column = made(spec)
+      own = spec%masses(n)
+      l = spec%lengths(n)
+      centroid = (own*0.5_wp*l + m*l)/(own + m)
+      call check_close(error, column%mass(n), own + m, 1.0e-15_wp, 0.0_wp, 'mass')
+      call check_close(error, [column%lower(n), column%upper(n)], [centroid, l - centroid], 1.0e-14_wp, &
+                       0.0_wp, 'centroid')
+      call check_close(error, column%inertia(n), own*l**2/12.0_wp + own*(centroid - 0.5_wp*l)**2 &
+                       + m*(l - centroid)**2 + j, 1.0e-14_wp, 0.0_wp, 'inertia')
+      call check_same(error, column%mass(:n - 1), plain%mass(:n - 1), 'the other bodies')
+      call check_same(error, column%lower(:n - 1), plain%lower(:n - 1), 'their centroids')
+      ! The point moves with the displacement arm of the top and the sum of the rotations.
+      call symmetric_mass(column, mass)
+      call symmetric_mass(plain, without)
+      do b = 1, 2*n
+         do a = 1, 2*n
+            expected(a, b) = without(a, b) + m*column%arm(a)*column%arm(b)
+            if (a > n .and. b > n) expected(a, b) = expected(a, b) + j
+         end do
+      end do
+      call check_close(error, pack(mass, .true.), pack(expected, .true.), 1.0e-13_wp, 0.0_wp, 'mass matrix')
+      call check_close(error, column%ground_arm, plain%ground_arm + m*column%arm, 1.0e-14_wp, 0.0_wp, &
+                       'ground')
+      ! Its weight is not the column's.
+      spec%self_weight = .true.
+      column = made(spec)
+      spec%top_mass = 0.0_wp
+      spec%top_inertia = 0.0_wp
+      plain = made(spec)
+      call check_same(error, column%axial_body, plain%axial_body, 'the weight belongs to the axial load')
+      call check_same(error, column%weight, plain%weight, 'weight')
+   end subroutine lumped
+
+   subroutine rotary(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(column_spec) :: spec
+      type(column_type) :: column
+
+      spec = chain(n, 'small')
+      column = made(spec)
+      call check_close(error, column%inertia, spec%masses*spec%lengths**2/12.0_wp, 1.0e-15_wp, 0.0_wp, 'rods')
+      spec%depth = 0.55_wp
+      column = made(spec)
+      call check_close(error, column%inertia, spec%masses*(spec%lengths**2 + 0.55_wp**2)/12.0_wp, &
+                       1.0e-15_wp, 0.0_wp, 'blocks')
+      spec%depth = 0.0_wp
+      spec%rotary_inertia = [7.0_wp]
+      column = made(spec)
+      call check_same(error, column%inertia, spread(7.0_wp, 1, n), 'one for all')
+      spec%rotary_inertia = [1.0_wp, 2.0_wp, 3.0_wp, 4.0_wp, 5.0_wp]
+      column = made(spec)
+      call check_same(error, column%inertia, spec%rotary_inertia, 'one for each')
+   end subroutine rotary
+
+   subroutine weights(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(column_spec) :: spec
+      type(column_type) :: column
+      integer :: i
+
+      spec = chain(n, 'pdelta')
+      spec%axial_load = 1000.0_wp
+      spec%self_weight = .true.
+      spec%gravity = 10.0_wp
+      column = made(spec)
+      do i = 1, n
+         call check_close(error, column%axial_joint(i), 1000.0_wp + 10.0_wp*sum(spec%masses(i:)), &
+                          1.0e-14_wp, 0.0_wp, 'in a joint: all above')
+         call check_close(error, column%axial_body(i), 1000.0_wp + 10.0_wp*(sum(spec%masses(i:)) &
+                                                                          - 0.5_wp*spec%masses(i)), &
+                          1.0e-14_wp, 0.0_wp, 'of a body: half of its own weight')
+         call check_close(error, column%weight(i), 10.0_wp*spec%masses(i), 1.0e-15_wp, 0.0_wp, 'weight')
+      end do
+      call check_true(error, column%axially_loaded, 'loaded')
+      spec%self_weight = .false.
+      column = made(spec)
+      call check_same(error, [column%axial_joint, column%axial_body], spread(1000.0_wp, 1, 2*n), 'load alone')
+      call check_same(error, column%weight, spread(0.0_wp, 1, n), 'no weight')
+   end subroutine weights
+
+   !> A vertical acceleration a of the ground is a weight of all masses, the lumped one included.
+   subroutine lifted(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(column_spec) :: spec
+      type(column_type) :: column
+      integer :: i
+
+      spec = chain(n, 'pdelta')
+      spec%top_mass = 400.0_wp
+      column = made(spec)
+      do i = 1, n
+         call check_close(error, column%lifted_joint(i), 400.0_wp + sum(spec%masses(i:)), 1.0e-14_wp, &
+                          0.0_wp, 'joint')
+         call check_close(error, column%lifted_body(i), &
+                          400.0_wp + sum(spec%masses(i:)) - 0.5_wp*spec%masses(i), 1.0e-14_wp, 0.0_wp, 'body')
+      end do
+   end subroutine lifted
+
+   subroutine opening(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(column_spec) :: spec
+      type(column_type) :: column, plain
+      real(wp) :: mass(3*n, 3*n), lateral(2*n, 2*n)
+      integer :: i, j
+
+      spec = chain(n, 'small')
+      plain = made(spec)
+      allocate (spec%axial(n))
+      spec%axial = [(elastic(1.0e9_wp*i), i=1, n)]
+      column = made(spec)
+      call check_equal(error, column%unknowns, 3*n, 'unknowns')
+      call check_true(error, column%opens .and. .not. plain%opens, 'opens')
+      call check_same(error, column%initial_stiffness(2*n + 1:), [(1.0e9_wp*i, i=1, n)], 'stiffness')
+      call check_same(error, column%arm, [plain%arm, spread(0.0_wp, 1, n)], 'arms of the top')
+      call check_same(error, column%ground_arm, [plain%ground_arm, spread(0.0_wp, 1, n)], &
+                      'arms of the ground')
+      call symmetric_mass(column, mass)
+      call symmetric_mass(plain, lateral)
+      call check_same(error, pack(mass(:2*n, :2*n), .true.), pack(lateral, .true.), 'slip and rotation')
+      call check_same(error, pack(mass(2*n + 1:, :2*n), .true.), spread(0.0_wp, 1, 2*n*n), 'not coupled')
+      do j = 1, n
+         do i = 1, n
+            call check_close(error, mass(2*n + i, 2*n + j), sum(spec%masses(max(i, j):)), 1.0e-14_wp, &
+                             0.0_wp, 'what an opening lifts')
+         end do
+      end do
+   end subroutine opening
+
+   subroutine names(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(column_spec) :: spec
+      type(column_type) :: column
+
+      spec = chain(n, 'small')
+      allocate (spec%axial(1))
+      spec%axial(1) = elastic(1.0e9_wp)
+      column = made(spec)
+      call check_equal(error, trim(joint_name(column, 1)), 'the shear spring of joint 1', 'first')
+      call check_equal(error, trim(joint_name(column, n)), 'the shear spring of joint 5', 'last shear')
+      call check_equal(error, trim(joint_name(column, n + 1)), 'the flexural spring of joint 1', &
+                       'first flexure')
+      call check_equal(error, trim(joint_name(column, 3*n)), 'the axial spring of joint 5', 'last')
+   end subroutine names
 
 end module test_column

@@ -3,9 +3,11 @@ module test_springs
    use check, only: unit_test, check_close, check_equal, check_same, check_true
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_spec_spring, only: spring_spec
-   use samples, only: elastic, bilinear_1, takeda_1, d_c, d_y, f_c, f_y, k_c, k_y, k_u, s_d, s_k, random_type
+   use samples, only: bilinear, bilinear_1, compression, elastic, random_type, takeda_1, d_c, d_y, f_c, f_y, &
+                      k_c, k_y, k_u, s_d, s_k
    implicit none
    private
 
@@ -26,7 +28,16 @@ contains
                unit_test('arrive at an open end is to be on the next line', arrive_open), &
                unit_test('arrive at a closed end stays on the line', arrive_closed), &
                unit_test('leave turns back a one-way line', leave_one_way), &
-               unit_test('create forgets everything', create_again)]
+               unit_test('create forgets everything', create_again), &
+               unit_test('restore brings back the marked state, to the last bit', restoring), &
+               unit_test('restore in the depth of Takeda loops', restoring_deep), &
+               unit_test('a mark that is forgotten leaves no trace', forgetting), &
+               unit_test('only springs that leave their line change the version', versions), &
+               unit_test('springs that stay on their lines are carried as they move', carried), &
+               unit_test('a contact presses, and does not pull', contact), &
+               unit_test('a contact gives back all work', contact_work), &
+               unit_test('load to a force', loaded), &
+               unit_test('load to a force that no line has', not_loaded)]
    end subroutine collect_springs
 
    !> One spring of every kind.
@@ -283,5 +294,318 @@ contains
       call check_same(error, [springs%force(1), springs%force(2)], [s_k*0.5_wp*s_d, k_c*0.5_wp*d_c], &
                       'uncracked again')
    end subroutine create_again
+
+   !> One more of every kind, for the tests of going back.
+   subroutine all_kinds(specs)
+      type(spring_spec), intent(out) :: specs(6)
+
+      call every_kind(specs(:5))
+      specs(6) = compression(3.0_wp)
+   end subroutine all_kinds
+
+   !> Every array of the springs is the same, and so is what they do from here on: rules remember alike.
+   subroutine check_alike(error, a, b, random, what)
+      type(error_type), allocatable, intent(inout) :: error
+      !> Copies, which move on
+      type(spring_array), intent(in) :: a, b
+      type(random_type), intent(in) :: random
+      character(len=*), intent(in) :: what
+      type(spring_array) :: one, other
+      type(random_type) :: dice
+      real(wp) :: point(a%count)
+      integer :: j
+
+      call check_same(error, [a%d, a%d0, a%f0, a%k, a%first, a%last, a%work], &
+                      [b%d, b%d0, b%f0, b%k, b%first, b%last, b%work], what)
+      call check_equal(error, a%events, b%events, what//': events')
+      call check_true(error, all(a%one_way == b%one_way), what//': one-way lines')
+      call check_same(error, [a%line%lo, a%line%hi], [b%line%lo, b%line%hi], what//': ends')
+      one = a
+      other = b
+      dice = random
+      do j = 1, 30
+         call random_move(dice, point)
+         call one%move_all(point)
+         call other%move_all(point)
+         call check_same(error, [one%f0, one%k, one%d0, one%work], &
+                         [other%f0, other%k, other%d0, other%work], what//': later')
+      end do
+   end subroutine check_alike
+
+   !> A point for springs of all kinds, some of whose deformations are far and some near.
+   subroutine random_move(random, d)
+      type(random_type), intent(inout) :: random
+      real(wp), intent(out) :: d(:)
+      real(wp), parameter :: scale(6) = [1.0_wp, s_d, d_y, d_y, d_y, 1.0_wp]
+      integer :: i
+
+      do i = 1, size(d)
+         d(i) = scale(i)*random%uniform(-4.0_wp, 4.0_wp)*10.0_wp**(-random%uniform(0.0_wp, 3.0_wp))
+      end do
+   end subroutine random_move
+
+   !> Mark, wild moves, back; mark again somewhere else; springs one by one and all together.
+   subroutine restoring(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: specs(6)
+      type(spring_array) :: springs, undisturbed
+      real(wp) :: point(6)
+      integer :: round, trial, j, i
+
+      call all_kinds(specs)
+      call springs%create(specs)
+      call undisturbed%create(specs)
+      do round = 1, 60
+         call springs%mark()
+         do trial = 1, 4
+            do j = 1, 3*trial
+               call random_move(random, point)
+               if (mod(j, 3) == 0) then
+                  i = 1 + mod(j + trial, 6)
+                  call springs%move(i, point(i))
+               else if (mod(j, 7) == 0) then
+                  ! Turn back where the line goes one way.
+                  i = 2 + mod(j + round, 4)
+                  if (springs%one_way(i) /= 0) call springs%leave(i, -springs%one_way(i))
+               else
+                  call springs%move_all(point)
+               end if
+            end do
+            call springs%restore()
+            call check_alike(error, springs, undisturbed, random, 'round '//to_text(round))
+            if (allocated(error)) return
+         end do
+         ! The way that is taken: from the mark or after it, with or without the mark still set.
+         call random_move(random, point)
+         if (mod(round, 3) == 0) call springs%forget_mark()
+         call springs%move_all(point)
+         if (mod(round, 3) == 1) call springs%forget_mark()
+         call undisturbed%move_all(point)
+         call check_alike(error, springs, undisturbed, random, 'after round '//to_text(round))
+      end do
+      call check_true(error, springs%events > 100, 'lines were left')
+   end subroutine restoring
+
+   !> Two hundred loops inside each other, then away from there and back, closing a few or all of them.
+   subroutine restoring_deep(error)
+      type(error_type), allocatable, intent(inout) :: error
+      character(len=3), parameter :: inner(3) = ['kc ', 'kr ', 'one']
+      integer, parameter :: depth = 200
+      type(random_type) :: random
+      type(spring_array) :: springs, undisturbed
+      real(wp) :: d
+      integer :: i, j, kind
+
+      do kind = 1, 3
+         call springs%create([takeda_1(trim(inner(kind)))])
+         d = 4.0_wp*d_y
+         do j = 1, depth
+            call springs%move(1, d)
+            d = -0.97_wp*d
+         end do
+         undisturbed = springs
+         do i = 1, 40
+            call springs%mark()
+            do j = 1, i
+               call springs%move(1, random%uniform(-1.0_wp, 1.0_wp)*4.0_wp*d_y*0.97_wp**(depth - 5*i))
+            end do
+            call springs%move(1, 6.0_wp*d_y)
+            call springs%restore()
+            call check_alike(error, springs, undisturbed, random, inner(kind)//', trip '//to_text(i))
+            d = -0.97_wp*d
+            call springs%move(1, d)
+            call undisturbed%move(1, d)
+            call check_alike(error, springs, undisturbed, random, inner(kind)//', loop '//to_text(depth + i))
+            if (allocated(error)) return
+         end do
+      end do
+   end subroutine restoring_deep
+
+   !> With a mark and without, the same moves are the same, and a later mark goes back to its own place.
+   subroutine forgetting(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: specs(6)
+      type(spring_array) :: springs, plain, copy
+      real(wp) :: point(6)
+      integer :: j
+
+      call all_kinds(specs)
+      call springs%create(specs)
+      call plain%create(specs)
+      do j = 1, 100
+         call random_move(random, point)
+         if (mod(j, 4) == 1) call springs%mark()
+         call springs%move_all(point)
+         call plain%move_all(point)
+         if (mod(j, 4) == 3) call springs%forget_mark()
+         call check_alike(error, springs, plain, random, 'move '//to_text(j))
+      end do
+      ! A copy takes the mark along, and neither disturbs the other.
+      call springs%mark()
+      copy = springs
+      call random_move(random, point)
+      call springs%move_all(2.0_wp*point)
+      call random_move(random, point)
+      call copy%move_all(3.0_wp*point)
+      call copy%restore()
+      call check_alike(error, copy, plain, random, 'copy')
+      call springs%restore()
+      call check_alike(error, springs, plain, random, 'original')
+   end subroutine forgetting
+
+   subroutine versions(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_array) :: springs
+      integer :: before
+
+      call springs%create([bilinear_1(), elastic(2.0_wp)])
+      before = springs%version
+      call springs%move_all([0.5_wp*s_d, 100.0_wp])
+      call springs%move_all([-0.9_wp*s_d, -100.0_wp])
+      call check_equal(error, springs%version, before, 'elastic')
+      call springs%mark()
+      call springs%restore()
+      call check_equal(error, springs%version, before, 'nothing to restore')
+      call springs%mark()
+      call springs%move_all([2.0_wp*s_d, 0.0_wp])
+      call check_true(error, springs%version /= before, 'yielded')
+      before = springs%version
+      call springs%restore()
+      ! Who has factored the yielded lines must not take them for the present ones.
+      call check_true(error, springs%version /= before, 'restored')
+      call check_equal(error, springs%events, 0, 'events are those of the mark')
+   end subroutine versions
+
+   subroutine carried(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: specs(6)
+      type(spring_array) :: springs, moved
+      real(wp) :: point(6)
+      integer :: j, within
+
+      call all_kinds(specs)
+      call springs%create(specs)
+      within = 0
+      do j = 1, 3000
+         call random_move(random, point)
+         ! Mostly small moves from where the springs are.
+         if (mod(j, 5) /= 0) point = springs%d + 0.01_wp*point
+         moved = springs
+         call moved%move_all(point)
+         if (springs%stay_on_lines(point)) then
+            within = within + 1
+            call check_equal(error, moved%version, springs%version, 'no line has changed')
+            call springs%carry_to(point)
+         else
+            call check_true(error, moved%version /= springs%version, 'a line has changed')
+            call springs%move_all(point)
+         end if
+         call check_same(error, [springs%d, springs%first, springs%last, springs%work], &
+                         [moved%d, moved%first, moved%last, moved%work], 'carried or moved')
+      end do
+      call check_true(error, within > 100 .and. within < 2900, 'both happen')
+   end subroutine carried
+
+   subroutine contact(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_array) :: springs
+      real(wp) :: d
+      integer :: j
+
+      call springs%create([compression(3.0_wp)])
+      call check_same(error, [springs%d(1), springs%force(1)], [0.0_wp, 0.0_wp], 'closed, without force')
+      do j = 1, 1000
+         d = random%uniform(-1.0_wp, 1.0_wp)
+         if (mod(j, 10) == 0) d = 0.0_wp
+         call springs%move(1, d)
+         call check_same(error, springs%force(1), 3.0_wp*min(d, 0.0_wp), 'force')
+         call check_close(error, springs%work(1), 1.5_wp*min(d, 0.0_wp)**2, 1.0e-12_wp, 1.0e-13_wp, 'work')
+      end do
+      call check_true(error, .not. springs%stuck, 'not stuck')
+   end subroutine contact
+
+   !> Through zero in steps of any size: nothing is won or lost, the last bit of the anchor is exact.
+   subroutine contact_work(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_array) :: springs
+      real(wp), parameter :: steps(5) = [1.0_wp, 0.3_wp, 1.0e-8_wp, 1.0e-160_wp, 1.0e-300_wp]
+      integer :: i, round
+
+      call springs%create([compression(2.0_wp)])
+      do round = 1, 10
+         do i = 1, 5
+            call springs%move(1, steps(i))
+            call check_same(error, springs%force(1), 0.0_wp, 'open')
+            call springs%move(1, -steps(i))
+            call check_same(error, springs%force(1), -2.0_wp*steps(i), 'closed')
+         end do
+      end do
+      call springs%move(1, 1.0_wp)
+      call check_close(error, springs%work(1), 0.0_wp, 0.0_wp, 1.0e-15_wp, 'work')
+   end subroutine contact_work
+
+   !> There by the lines that a path of deformations takes, and no further.
+   subroutine loaded(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_array) :: springs, moved
+      real(wp), parameter :: force(9) = [0.5_wp, 1.3_wp, 0.0_wp, -0.4_wp, -1.2_wp, -1.1_wp, 1.2_wp, 0.2_wp, &
+                                         1.5_wp]
+      logical :: found
+      integer :: i
+
+      call springs%create([takeda_1('kc'), bilinear(10.0_wp, 0.1_wp, 1.0_wp), compression(4.0_wp), &
+                           elastic(2.0_wp)])
+      moved = springs
+      do i = 1, size(force)
+         call springs%load_to(1, f_y*force(i), found)
+         call check_true(error, found, 'Takeda: found')
+         call check_close(error, springs%force(1), f_y*force(i), 1.0e-13_wp, 1.0e-12_wp*f_y, 'Takeda: force')
+         call springs%load_to(2, force(i), found)
+         call check_true(error, found, 'bilinear: found')
+         call check_close(error, springs%force(2), force(i), 1.0e-13_wp, 1.0e-14_wp, 'bilinear: force')
+         call moved%move_all([springs%d(1), springs%d(2), 0.0_wp, 0.0_wp])
+         call check_close(error, [moved%force(1)/f_y, moved%force(2)], &
+                          [springs%force(1)/f_y, springs%force(2)], 1.0e-12_wp, 1.0e-12_wp, &
+                          'the same by deformation')
+         call check_close(error, moved%work(:2), springs%work(:2), 1.0e-12_wp, 1.0e-12_wp, 'work')
+      end do
+      call springs%load_to(3, -8.0_wp, found)
+      call check_true(error, found, 'contact: found')
+      call check_same(error, springs%d(3), -2.0_wp, 'contact: closed')
+      call springs%load_to(3, 0.0_wp, found)
+      call check_true(error, found, 'contact: found')
+      call check_same(error, [springs%d(3), springs%force(3)], [0.0_wp, 0.0_wp], 'contact: without force')
+      call springs%load_to(4, -8.0_wp, found)
+      call check_same(error, springs%d(4), -4.0_wp, 'elastic')
+      call springs%load_to(4, -8.0_wp, found)
+      call check_true(error, found, 'there already')
+      call check_same(error, springs%d(4), -4.0_wp, 'it stays there')
+      ! From where the contact is open, back to pressure.
+      call springs%move(3, 1.0_wp)
+      call springs%load_to(3, -8.0_wp, found)
+      call check_true(error, found, 'contact: found from the open side')
+      call check_same(error, springs%d(3), -2.0_wp, 'contact: closed again')
+   end subroutine loaded
+
+   subroutine not_loaded(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_array) :: springs
+      logical :: found
+
+      call springs%create([compression(4.0_wp), bilinear(10.0_wp, 0.1_wp, 0.0_wp)])
+      call springs%load_to(1, 1.0_wp, found)
+      call check_true(error, .not. found, 'a contact does not pull')
+      call springs%load_to(2, 1.0_wp, found)
+      call check_true(error, found, 'the yield force itself')
+      call springs%load_to(2, 1.01_wp, found)
+      call check_true(error, .not. found, 'beyond a plateau')
+      call springs%load_to(2, -1.01_wp, found)
+      call check_true(error, .not. found, 'beyond the other plateau')
+      call check_true(error, .not. springs%stuck, 'not stuck')
+   end subroutine not_loaded
 
 end module test_springs

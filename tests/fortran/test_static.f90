@@ -13,6 +13,7 @@ module test_static
    use rbs_results_row, only: row_size, row_time, row_displacement, row_force, row_axial, row_residual, &
                               row_joints, row_spring, row_input, row_top
    use rbs_results_summary, only: summary_type
+   use rbs_solve_equilibrium, only: equilibrium_type
    use rbs_solve_run, only: run_static
    use rbs_solve_static, only: kept_rows
    use rbs_spec_column, only: column_spec
@@ -55,7 +56,13 @@ contains
                unit_test('no targets, no rows', nothing), &
                unit_test('the first target may be zero, targets may repeat', standstill), &
                unit_test('a recorder that fails ends the path', failing), &
-               unit_test('a target that is no number is refused', not_a_number)]
+               unit_test('a target that is no number is refused', not_a_number), &
+               unit_test('bands and full matrices give the same line', bands), &
+               unit_test('pdelta: a long chain, beyond its peak', long_chain), &
+               unit_test('a mechanism in a band', band_mechanism), &
+               unit_test('openings keep still and change nothing else', openings), &
+               unit_test('height of the top, largest rotation', height_of_top), &
+               unit_test('collapse ends the path', collapse)]
    end subroutine collect_static
 
    subroutine record_and_fail(self, row, error)
@@ -570,5 +577,212 @@ contains
       call run(column_1('small'), .true., [0.0_wp, -1.0e60_wp], rows, outcome)
       call check_failed(error, outcome, bad_input, 'force: value 2 of 2 is -1e+60')
    end subroutine not_a_number
+
+   !> Random stiffness on both sides of the loss of stability, residuals, gap; n up to a few bodies.
+   subroutine bands(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(equilibrium_type) :: full, band
+      type(random_type) :: random
+      type(column_type) :: column
+      type(column_spec) :: spec
+      real(wp), allocatable, dimension(:) :: k, r, rate, correction, rate_band, correction_band
+      real(wp) :: gap, force(2), force_band(2), largest(2)
+      logical :: regular, regular_band
+      integer :: weakest, weakest_band, stable, unstable, i, j, n
+
+      stable = 0
+      unstable = 0
+      do n = 1, 12
+         spec = chain(n, 'pdelta')
+         spec%self_weight = .true.
+         do j = 1, 20
+            spec%axial_load = random%uniform(-4.0e7_wp, 4.0e7_wp)/n
+            column = made(spec)
+            call full%create(column, full=.true.)
+            call band%create(column, full=.false.)
+            k = column%initial_stiffness*[(10.0_wp**random%uniform(-3.0_wp, 0.0_wp), i=1, 2*n)]
+            r = [(random%uniform(-1.0_wp, 1.0_wp), i=1, 2*n)]
+            gap = random%uniform(-1.0e-6_wp, 1.0e-6_wp)
+            allocate (rate(2*n), correction(2*n), rate_band(2*n), correction_band(2*n))
+            call full%follow_displacement(k, r, gap, rate, force(1), correction, force(2), regular)
+            call band%follow_displacement(k, r, gap, rate_band, force_band(1), correction_band, &
+                                          force_band(2), regular_band)
+            call check_true(error, regular .and. regular_band, 'both have an answer')
+            call compare('displacement')
+            call check_close(error, force_band(1), force(1), 1.0e-8_wp, 1.0e-12_wp*s_k, 'rate of the force')
+            call full%follow_force(k, r, rate, correction, weakest)
+            call band%follow_force(k, r, rate_band, correction_band, weakest_band)
+            call check_equal(error, weakest_band, weakest, 'weakest spring')
+            call compare('force')
+            if (weakest == 0) stable = stable + 1
+            if (weakest > 0) unstable = unstable + 1
+            deallocate (rate, correction, rate_band, correction_band)
+         end do
+      end do
+      call check_true(error, stable > 40 .and. unstable > 40, 'stable and unstable columns')
+
+   contains
+
+      !> Slips and rotations in shares of the largest: the residual is of mixed size.
+      subroutine compare(drive)
+         character(len=*), intent(in) :: drive
+
+         do i = 1, 2
+            associate (first => (i - 1)*n + 1, last => i*n)
+               largest = [maxval(abs(rate(first:last))), maxval(abs(correction(first:last)))]
+               call check_close(error, rate_band(first:last), rate(first:last), 0.0_wp, &
+                                1.0e-10_wp*largest(1), 'rates by '//drive)
+               call check_close(error, correction_band(first:last), correction(first:last), 0.0_wp, &
+                                1.0e-10_wp*largest(2), 'corrections by '//drive)
+            end associate
+         end do
+      end subroutine compare
+
+   end subroutine bands
+
+   subroutine long_chain(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(random_type) :: random
+      type(column_spec) :: spec
+      type(column_type) :: column
+      type(summary_type) :: summary
+      integer, parameter :: n = 60
+      real(wp), allocatable :: rows(:, :)
+      real(wp) :: x(40), g(2*n), largest
+      integer :: i
+
+      spec = yielding_chain(n, 'pdelta')
+      spec%axial_load = 1.0e6_wp
+      spec%self_weight = .true.
+      column = made(spec)
+      call random_targets(random, x, 0.3_wp)
+      x(1) = 0.3_wp
+      call run(spec, .false., x, rows, outcome, summary=summary)
+      call check_passed(error, outcome, 'static path')
+      if (allocated(error)) return
+      do i = 1, size(x)
+         call geometric_forces(column, rows(row_joints:row_joints + 2*n - 1, i), g)
+         call check_close(error, rows(row_joints + 2*n:, i), column%arm*rows(row_force, i) - g, 1.0e-9_wp, &
+                          1.0e-4_wp, 'equilibrium')
+      end do
+      largest = maxval(abs(rows(row_input, :)))
+      call check_true(error, maxval(abs(rows(row_residual, :))) < 1.0e-11_wp*largest, 'energy balance')
+      call check_true(error, abs(rows(row_force, 1)) < 0.8_wp*summary%peak_force .or. summary%events > n, &
+                      'springs yield')
+      ! It softens: more force at a third of the way.
+      call run(spec, .false., [0.1_wp, 0.2_wp, 0.3_wp], rows, outcome)
+      call check_passed(error, outcome, 'static path')
+      call check_true(error, rows(row_force, 3) < rows(row_force, 2), 'the force falls')
+   end subroutine long_chain
+
+   !> The shear spring of the base has no stiffness left: its row of K is zero, and K has no inverse.
+   subroutine band_mechanism(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      real(wp), allocatable :: rows(:, :)
+      integer :: i, n
+
+      do n = 1, 5
+         spec = chain(n, 'pdelta')
+         spec%axial_load = 1.0e5_wp
+         spec%shear(1) = bilinear(1.0e8_wp, 1.0e-3_wp, 0.0_wp)
+         call run(spec, .false., [0.01_wp, 0.05_wp], rows, outcome)
+         call check_passed(error, outcome, 'static path')
+         if (allocated(error)) return
+         call check_close(error, rows(row_force, :), [1.0e5_wp, 1.0e5_wp], 1.0e-12_wp, 0.0_wp, 'force')
+         call check_close(error, rows(row_joints, 2) - rows(row_joints, 1), 0.04_wp, 1.0e-11_wp, 0.0_wp, &
+                          'the base slips')
+         do i = 1, 2*n - 1
+            call check_close(error, rows(row_joints + i, 2), rows(row_joints + i, 1), 1.0e-9_wp, 0.0_wp, &
+                             'the rest keeps still')
+         end do
+      end do
+   end subroutine band_mechanism
+
+   subroutine openings(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(random_type) :: random
+      type(column_spec) :: spec
+      real(wp), allocatable :: rows(:, :), closed(:, :)
+      character(len=6), parameter :: kinematics(2) = ['small ', 'pdelta']
+      integer, parameter :: bodies(3) = [1, 2, 6]
+      real(wp) :: x(30)
+      integer :: i, j, n
+
+      do j = 1, 2
+         do i = 1, size(bodies)
+            n = bodies(i)
+            spec = yielding_chain(n, kinematics(j))
+            spec%axial_load = 5.0e5_wp
+            call random_targets(random, x, 0.05_wp)
+            call run(spec, .false., x, closed, outcome)
+            call check_passed(error, outcome, 'closed joints')
+            spec%axial = [bilinear(1.0e9_wp, 1.0e-4_wp, 1.0e8_wp)]
+            call run(spec, .false., x, rows, outcome)
+            call check_passed(error, outcome, 'joints that open')
+            if (allocated(error)) return
+            call check_close(error, rows(row_force, :), closed(row_force, :), 0.0_wp, 0.0_wp, 'force')
+            call check_close(error, maxval(abs(rows(row_residual, :))), 0.0_wp, 0.0_wp, &
+                             1.0e-10_wp*maxval(abs(rows(row_input, :))), 'energy balance')
+            call check_close(error, reshape(rows(row_joints + 2*n:row_joints + 3*n - 1, :), [30*n]), &
+                             spread(-1.0e-4_wp - 4.0e5_wp/1.0e8_wp, 1, 30*n), 1.0e-12_wp, 0.0_wp, 'openings')
+            call check_close(error, reshape(rows(row_joints + 5*n:, :), [30*n]), &
+                             spread(-5.0e5_wp, 1, 30*n), 1.0e-12_wp, 0.0_wp, 'axial forces')
+            call check_close(error, rows(row_top, :) - closed(row_top, :), spread(-n*4.1e-3_wp, 1, 30), &
+                             1.0e-9_wp, 0.0_wp, 'height')
+         end do
+      end do
+   end subroutine openings
+
+   subroutine height_of_top(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(column_type) :: column
+      type(summary_type) :: summary
+      real(wp), allocatable :: rows(:, :)
+      real(wp) :: turn(3)
+
+      spec = chain(3, 'small')
+      call run(spec, .false., [0.1_wp, -0.05_wp], rows, outcome, summary=summary)
+      call check_passed(error, outcome, 'small')
+      call check_close(error, rows(row_top, :), [2.0_wp, 2.0_wp], 1.0e-15_wp, 0.0_wp, 'height')
+      turn = [rows(row_joints + 3, 1), sum(rows(row_joints + 3:row_joints + 4, 1)), &
+              sum(rows(row_joints + 3:row_joints + 5, 1))]
+      call check_close(error, summary%peak_rotation, maxval(abs(turn)), 1.0e-14_wp, 0.0_wp, &
+                       'largest rotation')
+      spec%kinematics = 'pdelta'
+      spec%axial_load = 1.0e6_wp
+      column = made(spec)
+      call run(spec, .false., [0.1_wp], rows, outcome)
+      call check_passed(error, outcome, 'pdelta')
+      turn = [rows(row_joints + 3, 1), sum(rows(row_joints + 3:row_joints + 4, 1)), &
+              sum(rows(row_joints + 3:row_joints + 5, 1))]
+      call check_close(error, rows(row_top, 1), 2.0_wp - sum(0.5_wp*column%length*turn**2) &
+                       - sum(rows(row_joints + 1:row_joints + 2, 1)*turn(:2)), 1.0e-15_wp, 0.0_wp, 'height')
+      call check_close(error, rows(row_axial, 1), 1.0e6_wp*(rows(row_top, 1) - 2.0_wp), 1.0e-10_wp, 0.0_wp, &
+                       'work of the axial load')
+   end subroutine height_of_top
+
+   subroutine collapse(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(summary_type) :: summary
+      real(wp), allocatable :: rows(:, :)
+
+      call run(column_1('small'), .false., [0.01_wp, -0.081_wp, 0.1_wp], rows, outcome, every=5, &
+               summary=summary, collapse_drift=0.05_wp)
+      call check_passed(error, outcome, 'static path')
+      call check_true(error, summary%collapsed, 'collapsed')
+      call check_close(error, rows(row_displacement, :), [0.01_wp, -0.081_wp], 0.0_wp, 0.0_wp, 'rows')
+      call run(column_1('small'), .false., [0.01_wp, -0.07_wp, 0.075_wp], rows, outcome, summary=summary, &
+               collapse_drift=0.05_wp)
+      call check_passed(error, outcome, 'static path')
+      call check_true(error, .not. summary%collapsed, 'not collapsed')
+      call check_equal(error, size(rows, 2), 3, 'rows')
+   end subroutine collapse
 
 end module test_static

@@ -12,26 +12,16 @@ module test_steppers
    use rbs_solve_modal, only: modes_type, find_modes
    use rbs_solve_pair45, only: pair45_scheme
    use rbs_solve_rk4, only: rk4_stepper
-   use rbs_solve_state, only: state_type, stepper_type
+   use rbs_solve_state, only: state_type
    use rbs_spec_column, only: column_spec
-   use rbs_spec_spring, only: spring_spec
-   use runs, only: new_state, new_located, signal_of, order_of, check_order, residual_of, distance
+   use runs, only: scene_type, scenes, new_scene, new_mass, play, play_located, find_reference, new_state, &
+                   new_located, signal_of, check_order, residual_of, distance
    use samples, only: bilinear, chain, column_1, compression, elastic, made, random_type, takeda_1, d_c, &
                       d_y, k_c
    implicit none
    private
 
    public :: collect_steppers
-
-   !> A column, its loads, how it begins and how long it moves.
-   type :: scene_type
-      type(column_type) :: column
-      type(loads_type) :: loads
-      real(wp), allocatable :: q(:), v(:)
-      real(wp) :: finish = 0.0_wp
-   end type scene_type
-
-   integer, parameter :: scenes = 6
 
 contains
 
@@ -59,95 +49,6 @@ contains
                unit_test('a tolerance that cannot be met: an error, the last good state', hopeless), &
                unit_test('a column that falls has no bounds', falling)]
    end subroutine collect_steppers
-
-   !> Columns that yield and unload many times; the force has corners that meet no step.
-   subroutine new_scene(scene, number)
-      type(scene_type), intent(out) :: scene
-      integer, intent(in) :: number
-      type(column_spec) :: spec
-      type(random_type) :: random
-      real(wp) :: value(8)
-      integer :: i
-
-      select case (number)
-      case (1)
-         spec = column_1('small')
-         spec%flexure(1) = bilinear(k_c, d_c, 0.1_wp*k_c)
-      case (2)
-         spec = column_1('small')
-      case (3)
-         spec = column_1('pdelta')
-         spec%axial_load = 1.0e6_wp
-      case (4)
-         spec = column_1('small')
-         spec%n = 3
-         spec%flexure(1) = bilinear(k_c, d_c, 0.1_wp*k_c)
-      case (5)
-         spec = column_1('pdelta')
-         spec%n = 3
-         spec%axial_load = 1.0e6_wp
-         spec%self_weight = .true.
-         spec%mass_damping = 5.0_wp
-      case default
-         spec = column_1('finite')
-         spec%axial_load = 1.0e6_wp
-      end select
-      scene%column = made(spec)
-      scene%finish = 0.05_wp
-      value = [(random%uniform(-2.0e5_wp, 2.0e5_wp), i=1, 8)]
-      value(1) = 0.0_wp
-      scene%loads%force = signal_of([(scene%finish*i/7, i=0, 7)], value)
-      allocate (scene%q(scene%column%unknowns), scene%v(scene%column%unknowns), source=0.0_wp)
-      scene%v(1) = 0.3_wp
-      scene%v(scene%column%n + 1) = 1.0_wp
-   end subroutine new_scene
-
-   !> One mass on an axial spring, which nothing couples to the rest, without load.
-   subroutine new_mass(scene, spring, mass, w, v)
-      type(scene_type), intent(out) :: scene
-      type(spring_spec), intent(in) :: spring
-      !> Mass [kg], opening and its velocity
-      real(wp), intent(in) :: mass, w, v
-      type(column_spec) :: spec
-
-      spec = chain(1, 'small')
-      spec%masses = [mass]
-      allocate (spec%axial(1))
-      spec%axial(1) = spring
-      scene%column = made(spec)
-      scene%q = [0.0_wp, 0.0_wp, w]
-      scene%v = [0.0_wp, 0.0_wp, v]
-   end subroutine new_mass
-
-   !> Begin a scene and move it to its end in equal steps.
-   subroutine play(scene, stepper, steps, state, outcome)
-      type(scene_type), intent(in) :: scene
-      class(stepper_type), intent(inout) :: stepper
-      integer, intent(in) :: steps
-      type(state_type), intent(out) :: state
-      type(error_type), allocatable, intent(out) :: outcome
-      integer :: i
-
-      call new_state(state, scene%column, scene%loads, scene%q, scene%v)
-      do i = 1, steps
-         call stepper%advance(state, scene%finish/steps, outcome)
-         if (allocated(outcome)) return
-      end do
-   end subroutine play
-
-   !> The same by rk4 with located events, or by the pair with a tolerance.
-   subroutine play_located(scene, tolerance, steps, state, outcome)
-      type(scene_type), intent(in) :: scene
-      !> 0: rk4
-      real(wp), intent(in) :: tolerance
-      integer, intent(in) :: steps
-      type(state_type), intent(out) :: state
-      type(error_type), allocatable, intent(out) :: outcome
-      type(located_stepper) :: stepper
-
-      call new_located(stepper, scene%column, tolerance, scene%finish/100.0_wp)
-      call play(scene, stepper, steps, state, outcome)
-   end subroutine play_located
 
    !> Falls on a spring, is thrown back, flies under a constant load, falls again.
    subroutine bounce(error)
@@ -266,20 +167,6 @@ contains
          call check_same(error, located%of_loads, plain%of_loads, 'work of the loads')
       end do
    end subroutine no_events
-
-   !> The end of a scene to ten digits or more, by the pair.
-   subroutine find_reference(scene, state, error)
-      type(scene_type), intent(in) :: scene
-      type(state_type), intent(out) :: state
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-
-      call play_located(scene, 1.0e-13_wp, 1, state, outcome)
-      call check_passed(error, outcome, 'reference')
-      call check_true(error, state%springs%events > 20, 'the springs change their lines')
-      call check_true(error, abs(residual_of(state)) < 1.0e-11_wp*sum(state%springs%work), &
-                      'energy of the reference')
-   end subroutine find_reference
 
    !> The longest step of a scene, in whole steps.
    pure integer function coarse(scene)

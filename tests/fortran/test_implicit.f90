@@ -1,0 +1,870 @@
+!> The implicit steppers: the scalar theory step by step, orders, damping of high frequencies, energy, stiff
+!> chains, contact, and the way back from a step that fails.
+module test_implicit
+   use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_same, check_true
+   use rbs_base_constants, only: pi
+   use rbs_base_error, only: error_type, analysis_failed
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_column_column, only: column_type
+   use rbs_solve_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha
+   use rbs_solve_loads, only: loads_type
+   use rbs_solve_modal, only: modes_type, find_modes, frequency_bounds
+   use rbs_solve_state, only: state_type
+   use rbs_spec_column, only: column_spec
+   use runs, only: scene_type, scenes, new_scene, new_mass, play, play_located, find_reference, new_state, &
+                   signal_of, check_order, residual_of, distance
+   use samples, only: chain, column_1, compression, elastic, made, random_type, takeda_1, d_y, k_u
+   implicit none
+   private
+
+   public :: collect_implicit
+
+   !> Newmark, HHT with two radii, generalised-alpha with four.
+   integer, parameter :: methods = 7
+   real(wp), parameter :: radius(methods) = [1.0_wp, 0.5_wp, 0.9_wp, 1.0_wp, 0.8_wp, 0.5_wp, 0.0_wp]
+
+contains
+
+   subroutine collect_implicit(tests)
+      type(unit_test), allocatable, intent(out) :: tests(:)
+
+      tests = [unit_test('one mass: the steps of the scalar theory', scalar_theory), &
+               unit_test('infinite frequency: the spectral radius that was asked for', high_frequency), &
+               unit_test('free and damped vibration: closed form, order 2', vibration), &
+               unit_test('order 2 through yielding and unloading', yielding_order), &
+               unit_test('average acceleration keeps the energy of elastic chains', elastic_energy), &
+               unit_test('damping of low frequencies is small', low_frequency), &
+               unit_test('ten bodies that yield, against located rk4', ten_bodies), &
+               unit_test('axial load and vertical motion in time, against rk45', axial_history), &
+               unit_test('modal damping: the exact decay of every mode', modal_decay), &
+               unit_test('modal damping of a column that yields, against rk45', modal_yielding), &
+               unit_test('present stiffness in the damping, against rk45', tangent_damping), &
+               unit_test('a step much longer than all periods stays bounded', long_step), &
+               unit_test('stiff chains come to rest where statics says', stiff_chain), &
+               unit_test('stiff chains that yield', stiff_yielding), &
+               unit_test('a contact that bounces, against the closed form', bounce), &
+               unit_test('a chain of contacts falls onto its base', impact), &
+               unit_test('a column that falls has no bounds', falling), &
+               unit_test('a step that fails leaves no trace', no_trace), &
+               unit_test('a failure names spring and time', failure), &
+               unit_test('parts of a step add up to it', halves)]
+   end subroutine collect_implicit
+
+   !> One of the methods by number.
+   type(implicit_stepper) function method(number) result(stepper)
+      integer, intent(in) :: number
+
+      select case (number)
+      case (1)
+         stepper = new_newmark()
+      case (2, 3)
+         stepper = new_hht(radius(number))
+      case default
+         stepper = new_generalised_alpha(radius(number))
+      end select
+   end function method
+
+   !> One mass, openings only: m w'' + c w' + k w = -P(t). The generalised-alpha method in its textbook form
+   !> (Chung and Hulbert 1993, eqs 1 to 4), with the parameters of the method (eq 25; HHT: their eq 29).
+   subroutine scalar_theory(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(column_type) :: column
+      type(loads_type) :: loads
+      type(state_type) :: state
+      type(implicit_stepper) :: stepper
+      real(wp), parameter :: mass = 2.0_wp, k = 800.0_wp
+      real(wp), parameter :: ratio(5) = [0.05_wp, 0.7_wp, 3.0_wp, 50.0_wp, 1.0e3_wp]
+      real(wp) :: am, af, b, g, h, w, v, a, next, predictor, speed, p0, p1, c, rho
+      integer :: number, i, step
+
+      spec = chain(1, 'small')
+      spec%masses = [mass]
+      allocate (spec%axial(1))
+      spec%axial(1) = elastic(k)
+      spec%mass_damping = 2.0_wp
+      spec%stiffness_damping = 1.0e-3_wp
+      column = made(spec)
+      c = 2.0_wp*mass + 1.0e-3_wp*k
+      loads%axial = signal_of([0.0_wp, 1.0e6_wp], [30.0_wp, 30.0_wp + 1.0e6_wp])
+      do number = 1, methods
+         rho = radius(number)
+         am = 0.0_wp
+         af = 0.0_wp
+         if (number == 2 .or. number == 3) af = (1.0_wp - rho)/(1.0_wp + rho)
+         if (number > 3) then
+            am = (2.0_wp*rho - 1.0_wp)/(rho + 1.0_wp)
+            af = rho/(rho + 1.0_wp)
+         end if
+         g = 0.5_wp - am + af
+         b = 0.25_wp*(1.0_wp - am + af)**2
+         do i = 1, 5
+            h = ratio(i)*sqrt(mass/k)
+            w = 0.1_wp
+            v = 1.0_wp
+            a = (-30.0_wp - c*v - k*w)/mass
+            call new_state(state, column, loads, [0.0_wp, 0.0_wp, w], [0.0_wp, 0.0_wp, v])
+            stepper = method(number)
+            do step = 1, 30
+               p0 = -30.0_wp - (step - 1)*h
+               p1 = -30.0_wp - step*h
+               predictor = w + h*v + h**2*(0.5_wp - b)*a
+               speed = v + h*(1.0_wp - g)*a
+               next = (1.0_wp - af)*(p1 - c*speed - k*predictor) + af*(p0 - c*v - k*w) - am*mass*a
+               next = next/((1.0_wp - am)*mass + (1.0_wp - af)*(c*g*h + k*b*h**2))
+               w = predictor + h**2*b*next
+               v = speed + h*g*next
+               a = next
+               call stepper%advance(state, h, outcome)
+               call check_passed(error, outcome, 'step')
+               call check_close(error, [state%q(3), state%v(3)], [w, v], 0.0_wp, &
+                                1.0e-9_wp*(abs(w) + abs(v)*h), 'method '//to_text(number)// &
+                                ', h omega = '//to_text(ratio(i)))
+               if (allocated(error)) return
+            end do
+            call check_equal(error, stepper%cut_steps, 0, 'no step is cut')
+         end do
+      end do
+   end subroutine scalar_theory
+
+   !> At h omega -> infinity all three roots of generalised-alpha are -rho, those of HHT -rho twice and
+   !> -alpha_f/(1 - alpha_f): w_{i+3} + c2 w_{i+2} + c1 w_{i+1} + c0 w_i = 0 with these roots.
+   subroutine high_frequency(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: state
+      type(implicit_stepper) :: stepper
+      real(wp) :: w(0:12), third, rho, h, rest
+      integer :: number, step
+
+      do number = 1, methods
+         call new_mass(scene, elastic(800.0_wp), 2.0_wp, 0.1_wp, 0.0_wp)
+         h = 1.0e6_wp*sqrt(2.0_wp/800.0_wp)
+         call new_state(state, scene%column, scene%loads, scene%q, scene%v)
+         stepper = method(number)
+         w(0) = scene%q(3)
+         do step = 1, 12
+            call stepper%advance(state, h, outcome)
+            call check_passed(error, outcome, 'step')
+            w(step) = state%q(3)
+         end do
+         rho = radius(number)
+         third = rho
+         if (number < 4) third = (1.0_wp - rho)/(2.0_wp*rho)
+         do step = 0, 9
+            rest = w(step + 3) + (2.0_wp*rho + third)*w(step + 2) + (rho**2 + 2.0_wp*rho*third)*w(step + 1) &
+                   + rho**2*third*w(step)
+            call check_close(error, rest, 0.0_wp, 0.0_wp, 1.0e-8_wp*maxval(abs(w)), &
+                             'method '//to_text(number))
+         end do
+         if (number > 3 .and. rho < 0.6_wp) then
+            call check_true(error, abs(w(12)) < 0.3_wp*abs(w(0)), 'it dies away')
+         end if
+      end do
+   end subroutine high_frequency
+
+   !> Rayleigh damping keeps the modes: exp(-c t/2) (cos w t + c/(2 w) sin w t).
+   subroutine vibration(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(column_type) :: column
+      type(modes_type) :: modes
+      type(state_type) :: state
+      type(implicit_stepper) :: stepper
+      real(wp), parameter :: alpha(3) = [0.0_wp, 60.0_wp, 30.0_wp], beta(3) = [0.0_wp, 0.0_wp, 2.0e-5_wp]
+      real(wp) :: wrong(4), c, w, t
+      integer :: kind, i, mode, number, step, steps
+
+      do kind = 1, 3
+         spec = chain(3, 'pdelta')
+         if (kind < 3) spec%axial_load = 1.0e7_wp
+         spec%mass_damping = alpha(kind)
+         spec%stiffness_damping = beta(kind)
+         column = made(spec)
+         call find_modes(column, modes, outcome)
+         call check_passed(error, outcome, 'find_modes')
+         do mode = 1, 6, 5
+            c = alpha(kind) + beta(kind)*modes%omega(mode)**2
+            w = sqrt(modes%omega(mode)**2 - c**2/4)
+            t = 4.7_wp/w
+            do number = 1, methods
+               do i = 1, 4
+                  steps = 40*2**i
+                  call new_state(state, column, loads_type(), modes%shapes(:, mode), spread(0.0_wp, 1, 6))
+                  stepper = method(number)
+                  do step = 1, steps
+                     call stepper%advance(state, t/steps, outcome)
+                     call check_passed(error, outcome, 'step')
+                  end do
+                  wrong(i) = maxval(abs(state%q - modes%shapes(:, mode) &
+                                        *exp(-c*t/2)*(cos(w*t) + c/(2*w)*sin(w*t)))) &
+                             /maxval(abs(modes%shapes(:, mode)))
+               end do
+               call check_order(error, wrong(2:), 1.9_wp, 2.1_wp, 'method '//to_text(number)//', mode '// &
+                                to_text(mode)//', damping '//to_text(kind))
+               call check_true(error, wrong(4) < 2.0e-3_wp, 'error '//to_text(wrong(4)))
+               if (allocated(error)) return
+            end do
+         end do
+      end do
+   end subroutine vibration
+
+   !> Where within the step a line ends is by chance: order 2 on the mean over five halvings.
+   subroutine yielding_order(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: reference, state
+      type(implicit_stepper) :: stepper
+      character(len=:), allocatable :: place
+      real(wp) :: wrong(6)
+      integer :: i, number, scene_number
+
+      do scene_number = 1, 5
+         call new_scene(scene, scene_number)
+         call find_reference(scene, reference, error)
+         do number = 1, methods, 2
+            place = 'scene '//to_text(scene_number)//', method '//to_text(number)
+            do i = 1, 6
+               stepper = method(number)
+               call play(scene, stepper, merge(360, 1500, scene%column%n == 1)*2**(i - 1), state, outcome)
+               call check_passed(error, outcome, 'scene '//to_text(scene_number))
+               wrong(i) = distance(state, reference)
+            end do
+            call check_order(error, wrong(2:), 1.4_wp, 2.6_wp, place)
+            call check_true(error, wrong(6) < 3.0e-3_wp, place//': error '//to_text(wrong(6)))
+            if (allocated(error)) return
+         end do
+      end do
+   end subroutine yielding_order
+
+   !> Work of the loads, of damping and of the springs by the trapezoidal rule balances exactly.
+   subroutine elastic_energy(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: bodies(4) = [1, 3, 20, 100]
+      type(error_type), allocatable :: outcome
+      type(random_type) :: random
+      type(column_spec) :: spec
+      type(column_type) :: column
+      type(loads_type) :: loads
+      type(state_type) :: state
+      type(implicit_stepper) :: stepper
+      real(wp) :: largest
+      integer :: i, kind, m, step
+
+      do i = 1, 4
+         do kind = 0, 3
+            spec = chain(bodies(i), 'pdelta')
+            spec%axial_load = 1.0e5_wp
+            spec%self_weight = .true.
+            spec%top_mass = 300.0_wp
+            if (btest(kind, 0)) then
+               spec%mass_damping = 3.0_wp
+               spec%stiffness_damping = 1.0e-4_wp
+            end if
+            if (btest(kind, 1)) then
+               allocate (spec%axial(1))
+               spec%axial(1) = elastic(2.0e9_wp)
+            end if
+            column = made(spec)
+            m = column%unknowns
+            loads%force = signal_of([0.0_wp, 0.013_wp, 0.1_wp], [0.0_wp, 1.0e6_wp, -1.0e6_wp])
+            loads%ground = signal_of([0.0_wp, 0.017_wp, 0.1_wp], [3.0_wp, -5.0_wp, 9.0_wp])
+            call new_state(state, column, loads, spread(0.0_wp, 1, m), &
+                           random%uniform_array(-1.0_wp, 1.0_wp, m))
+            largest = state%at_begin
+            stepper = method(1)
+            do step = 1, 100
+               call stepper%advance(state, 1.0e-3_wp, outcome)
+               call check_passed(error, outcome, 'step')
+               largest = max(largest, sum(state%springs%work))
+               call check_close(error, residual_of(state), 0.0_wp, 0.0_wp, 1.0e-11_wp*largest, &
+                                'n = '//to_text(bodies(i))//', kind '//to_text(kind)//': energy')
+            end do
+            call check_equal(error, stepper%cut_steps, 0, 'no step is cut')
+            if (allocated(error)) return
+         end do
+      end do
+   end subroutine elastic_energy
+
+   !> Generalised-alpha with rho = 0.8 and 20 steps a period: the amplitude falls by less than 0.1 per cent a
+   !> period, and never grows.
+   subroutine low_frequency(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: state
+      type(implicit_stepper) :: stepper
+      real(wp) :: energy, before, period
+      integer :: number, step
+
+      do number = 1, methods
+         call new_mass(scene, elastic(800.0_wp), 2.0_wp, 0.1_wp, 0.0_wp)
+         period = 2.0_wp*pi*sqrt(2.0_wp/800.0_wp)
+         call new_state(state, scene%column, scene%loads, scene%q, scene%v)
+         stepper = method(number)
+         energy = 1.0_wp
+         do step = 1, 400
+            call stepper%advance(state, period/20.0_wp, outcome)
+            call check_passed(error, outcome, 'step')
+            before = energy
+            if (mod(step, 20) /= 0) cycle
+            energy = (0.5_wp*2.0_wp*state%v(3)**2 + 0.5_wp*800.0_wp*state%q(3)**2)/4.0_wp
+            call check_true(error, energy < 1.01_wp, 'method '//to_text(number)//' gives energy')
+         end do
+         if (number == 5) call check_true(error, energy > 0.95_wp, 'rho = 0.8: energy after 20 periods '// &
+                                          to_text(energy))
+         if (number == 1) call check_close(error, energy, 1.0_wp, 1.0e-10_wp, 0.0_wp, 'Newmark')
+      end do
+   end subroutine low_frequency
+
+   subroutine ten_bodies(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(scene_type) :: scene
+      type(state_type) :: reference, state
+      type(implicit_stepper) :: stepper
+      real(wp) :: wrong(3)
+      integer :: i, number
+
+      spec = column_1('pdelta')
+      spec%n = 10
+      spec%axial_load = 5.0e5_wp
+      spec%top_mass = 2.0e4_wp
+      scene%column = made(spec)
+      allocate (scene%q(20), scene%v(20), source=0.0_wp)
+      scene%finish = 0.4_wp
+      scene%loads%ground = signal_of(0.1_wp*[0.0_wp, 1.0_wp, 2.0_wp, 3.0_wp, 4.0_wp], &
+                                     [0.0_wp, 30.0_wp, -40.0_wp, 40.0_wp, -30.0_wp])
+      call play_located(scene, 0.0_wp, 20000, reference, outcome)
+      call check_passed(error, outcome, 'located rk4')
+      call check_true(error, reference%springs%events > 30, 'the springs yield and unload')
+      do number = 1, methods, 4
+         do i = 1, 3
+            stepper = method(number)
+            call play(scene, stepper, 400*2**i, state, outcome)
+            call check_passed(error, outcome, 'method '//to_text(number))
+            wrong(i) = abs(sum(state%motion%column%arm*(state%q - reference%q))) &
+                       /abs(sum(state%motion%column%arm*reference%q))
+            call check_equal(error, stepper%cut_steps, 0, 'no step is cut')
+         end do
+         call check_true(error, wrong(3) < 2.0e-3_wp .and. wrong(3) < 0.3_wp*wrong(1), 'method '// &
+                         to_text(number)//': top is wrong by '//to_text(wrong(3)))
+      end do
+   end subroutine ten_bodies
+
+   !> All four loads on a column with axial springs.
+   subroutine axial_history(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(scene_type) :: scene
+      type(state_type) :: reference, state
+      type(implicit_stepper) :: stepper
+      real(wp) :: wrong(4), time(5)
+      integer :: i, number, kind
+
+      do kind = 1, 2
+         spec = chain(3, 'pdelta')
+         spec%axial_load = 1.0e7_wp
+         spec%self_weight = .true.
+         spec%stiffness_damping = 1.0e-5_wp
+         if (kind == 2) then
+            allocate (spec%axial(1))
+            spec%axial(1) = elastic(2.0e9_wp)
+         end if
+         scene = scene_type()
+         scene%column = made(spec)
+         allocate (scene%q(scene%column%unknowns), scene%v(scene%column%unknowns), source=0.0_wp)
+         scene%finish = 0.04_wp
+         time = scene%finish*[0.0_wp, 0.25_wp, 0.5_wp, 0.75_wp, 1.0_wp]
+         scene%loads%force = signal_of(time, 1.0e5_wp*[0.0_wp, 1.0_wp, -1.0_wp, 2.0_wp, 0.0_wp])
+         scene%loads%ground = signal_of(time, [0.0_wp, 5.0_wp, -5.0_wp, 0.0_wp, 5.0_wp])
+         scene%loads%vertical = signal_of(time, 1.0e4_wp*[0.0_wp, 1.0_wp, 0.0_wp, -1.0_wp, 0.0_wp])
+         scene%loads%axial = signal_of(time, 1.0e7_wp*[0.0_wp, 1.0_wp, 1.0_wp, -2.0_wp, 0.0_wp])
+         call play_located(scene, 1.0e-12_wp, 1, reference, outcome)
+         call check_passed(error, outcome, 'reference')
+         call check_close(error, residual_of(reference)/reference%of_loads, 0.0_wp, 0.0_wp, 1.0e-9_wp, &
+                          'energy of the reference')
+         do number = 1, methods, 2
+            do i = 1, 4
+               stepper = method(number)
+               call play(scene, stepper, 500*2**i, state, outcome)
+               call check_passed(error, outcome, 'method '//to_text(number))
+               wrong(i) = distance(state, reference)
+            end do
+            call check_order(error, wrong(2:), 1.85_wp, 2.15_wp, 'kind '//to_text(kind)//', method '// &
+                             to_text(number))
+            call check_true(error, wrong(4) < 1.0e-2_wp, 'error '//to_text(wrong(4)))
+            call check_true(error, abs(residual_of(state)) < 1.0e-3_wp*sum(state%springs%work), 'energy')
+         end do
+      end do
+   end subroutine axial_history
+
+   !> Each mode by itself: exp(-zeta w t) (cos w_d t + ...), every mode with its own ratio.
+   subroutine modal_decay(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(scene_type) :: scene
+      type(modes_type) :: modes
+      type(state_type) :: state
+      type(implicit_stepper) :: stepper
+      real(wp) :: exact, z, w, wrong(3), rest(6)
+      integer :: i, mode, number
+
+      spec = chain(2, 'pdelta')
+      spec%axial_load = 1.0e7_wp
+      spec%modal_damping = [0.02_wp, 0.3_wp, 0.9_wp]
+      allocate (spec%axial(1))
+      spec%axial(1) = elastic(2.0e9_wp)
+      scene%column = made(spec)
+      ! The openings vibrate about what the axial load closes.
+      rest = 0.0_wp
+      rest(5:) = -1.0e7_wp/2.0e9_wp
+      call find_modes(scene%column, modes, outcome)
+      call check_passed(error, outcome, 'find_modes')
+      do mode = 1, 6
+         z = 0.0_wp
+         if (mode <= 3) z = spec%modal_damping(mode)
+         w = modes%omega(mode)*sqrt(1.0_wp - z**2)
+         scene%finish = 4.7_wp/w
+         scene%q = rest + modes%shapes(:, mode)
+         scene%v = 0.0_wp*scene%q
+         exact = exp(-z*modes%omega(mode)*scene%finish)*(cos(4.7_wp) + z/sqrt(1.0_wp - z**2)*sin(4.7_wp))
+         call play_located(scene, 1.0e-11_wp, 1, state, outcome)
+         call check_passed(error, outcome, 'rk45')
+         call check_close(error, state%q, rest + exact*modes%shapes(:, mode), 0.0_wp, &
+                          1.0e-8_wp*maxval(abs(scene%q)), 'rk45, mode '//to_text(mode))
+         call check_close(error, residual_of(state), 0.0_wp, 0.0_wp, 1.0e-8_wp*state%at_begin, 'energy')
+         do number = 1, methods
+            do i = 1, 3
+               stepper = method(number)
+               call play(scene, stepper, 100*2**i, state, outcome)
+               call check_passed(error, outcome, 'method '//to_text(number))
+               wrong(i) = maxval(abs(state%q - rest - exact*modes%shapes(:, mode))) &
+                          /maxval(abs(modes%shapes(:, mode)))
+            end do
+            call check_order(error, wrong, 1.8_wp, 2.2_wp, &
+                             'mode '//to_text(mode)//', method '//to_text(number))
+            call check_true(error, wrong(3) < 5.0e-4_wp, 'error '//to_text(wrong(3)))
+            call check_equal(error, stepper%cut_steps, 0, 'no step is cut')
+            if (number == 1) then
+               call check_close(error, residual_of(state), 0.0_wp, 0.0_wp, 1.0e-6_wp*state%at_begin, &
+                                'energy of the average acceleration')
+            end if
+            if (allocated(error)) return
+         end do
+      end do
+   end subroutine modal_decay
+
+   subroutine modal_yielding(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(scene_type) :: scene
+      type(state_type) :: reference, state
+      type(implicit_stepper) :: stepper
+      real(wp) :: wrong(3)
+      integer :: i
+
+      call new_scene(scene, 4)
+      spec = column_1('small')
+      spec%n = 3
+      spec%modal_damping = [0.05_wp]
+      scene%column = made(spec)
+      scene%v = scene%v*3.0_wp
+      call play_located(scene, 1.0e-11_wp, 1, reference, outcome)
+      call check_passed(error, outcome, 'reference')
+      call check_true(error, reference%of_damping > 0.1_wp*reference%at_begin, 'damping takes part')
+      do i = 1, 3
+         stepper = method(5)
+         call play(scene, stepper, 500*4**(i - 1), state, outcome)
+         call check_passed(error, outcome, 'generalised-alpha')
+         wrong(i) = maxval(abs(state%q - reference%q))/maxval(abs(reference%q))
+      end do
+      call check_order(error, wrong, 2.5_wp, 5.0_wp, 'over quarters of the step')
+      call check_true(error, wrong(3) < 1.0e-3_wp, 'error '//to_text(wrong(3)))
+      ! A step of many periods of the higher modes: Newton's method without the damping in its tangent.
+      stepper = method(5)
+      call play(scene, stepper, 20, state, outcome)
+      call check_passed(error, outcome, 'long steps')
+      call check_true(error, all(abs(state%q) < 0.1_wp), 'long steps stay bounded')
+   end subroutine modal_yielding
+
+   subroutine tangent_damping(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(scene_type) :: scene
+      type(state_type) :: reference, state
+      type(implicit_stepper) :: stepper
+      real(wp) :: wrong(3)
+      integer :: i, number
+
+      call new_scene(scene, 1)
+      spec = column_1('pdelta')
+      spec%axial_load = 1.0e6_wp
+      spec%stiffness_damping = 1.0e-5_wp
+      spec%tangent_damping = .true.
+      scene%column = made(spec)
+      call play_located(scene, 1.0e-12_wp, 1, reference, outcome)
+      call check_passed(error, outcome, 'rk45')
+      call play_located(scene, 0.0_wp, 4000, state, outcome)
+      call check_passed(error, outcome, 'rk4')
+      call check_true(error, distance(state, reference) < 1.0e-6_wp, 'rk4 against rk45')
+      do number = 1, methods, 4
+         do i = 1, 3
+            stepper = method(number)
+            call play(scene, stepper, 500*4**(i - 1), state, outcome)
+            call check_passed(error, outcome, 'method '//to_text(number))
+            wrong(i) = distance(state, reference)
+         end do
+         call check_true(error, wrong(3) < 0.05_wp*wrong(1) .and. wrong(3) < 1.0e-3_wp, 'method '// &
+                         to_text(number)//': '//to_text(wrong(3)))
+      end do
+   end subroutine tangent_damping
+
+   !> Ten longest periods in one step.
+   subroutine long_step(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: state
+      type(implicit_stepper) :: stepper
+      character(len=:), allocatable :: place
+      real(wp) :: h, lowest, highest
+      integer :: number, scene_number, step
+
+      do scene_number = 1, 5
+         call new_scene(scene, scene_number)
+         call frequency_bounds(scene%column, lowest, highest, outcome)
+         h = 20.0_wp*pi/lowest
+         do number = 1, methods
+            place = 'scene '//to_text(scene_number)//', method '//to_text(number)
+            call new_state(state, scene%column, loads_type(), scene%q, 5.0_wp*scene%v)
+            stepper = method(number)
+            do step = 1, 200
+               call stepper%advance(state, h, outcome)
+               call check_passed(error, outcome, place)
+               call check_true(error, all(abs(state%q) < 1.0_wp), place//': it grows')
+               if (allocated(error)) return
+            end do
+         end do
+      end do
+   end subroutine long_step
+
+   !> Statics with small rotations: every joint has the force of its lever arm, q_i = arm_i F/k_i.
+   subroutine stiff_chain(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: bodies(3) = [10, 200, 1000]
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(column_type) :: column
+      type(loads_type) :: loads
+      type(state_type) :: state
+      type(implicit_stepper) :: stepper
+      real(wp), allocatable :: expected(:)
+      real(wp), parameter :: push = 1.0e5_wp
+      integer :: i, number, step
+
+      do i = 1, 3
+         spec = chain(bodies(i), 'small')
+         allocate (spec%axial(1))
+         spec%axial(1) = elastic(2.0e9_wp*bodies(i))
+         ! The same column, finer: equal flexibility and mass in all.
+         spec%shear%k = spec%shear%k*bodies(i)
+         spec%flexure%k = spec%flexure%k*bodies(i)
+         spec%masses = spec%masses/bodies(i)
+         spec%axial_load = 1.0e6_wp
+         spec%stiffness_damping = 0.1_wp
+         column = made(spec)
+         expected = column%arm*push/column%initial_stiffness
+         expected(2*bodies(i) + 1:) = -1.0e6_wp/column%initial_stiffness(2*bodies(i) + 1:)
+         loads%force = signal_of([0.0_wp, 1.0_wp], [push, push])
+         do number = 6, 7
+            call new_state(state, column, loads, 0.0_wp*expected, 0.0_wp*expected)
+            stepper = method(number)
+            do step = 1, 60
+               call stepper%advance(state, 0.2_wp, outcome)
+               call check_passed(error, outcome, 'n = '//to_text(bodies(i)))
+            end do
+            ! With hundreds of bodies the first forces of damping are differences of round-off.
+            if (i == 1) call check_equal(error, stepper%cut_steps, 0, 'no step is cut')
+            call check_true(error, stepper%cut_steps < 20, 'cut steps: '//to_text(stepper%cut_steps))
+            call check_close(error, state%q, expected, 1.0e-6_wp, 0.0_wp, 'n = '//to_text(bodies(i))// &
+                             ', method '//to_text(number)//': deformation')
+         end do
+      end do
+   end subroutine stiff_chain
+
+   !> Many springs that change their lines in one step: no cut, energy to the order of the step.
+   subroutine stiff_yielding(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: bodies(2) = [200, 1000]
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(scene_type) :: scene
+      type(state_type) :: state
+      type(implicit_stepper) :: stepper
+      real(wp) :: share
+      integer :: i
+
+      do i = 1, 2
+         spec = column_1('pdelta')
+         spec%n = bodies(i)
+         share = 1.0_wp/bodies(i)
+         ! The flexibility of one joint, spread over all; shear elastic.
+         spec%shear(1) = elastic(spec%shear(1)%k*bodies(i))
+         spec%flexure(1)%k_c = spec%flexure(1)%k_c*bodies(i)
+         spec%flexure(1)%k_y = spec%flexure(1)%k_y*bodies(i)
+         spec%flexure(1)%k_u = spec%flexure(1)%k_u*bodies(i)
+         spec%flexure(1)%d_c = spec%flexure(1)%d_c*share
+         spec%flexure(1)%d_y = spec%flexure(1)%d_y*share
+         spec%axial_load = 5.0e5_wp
+         spec%top_mass = 2.0e4_wp
+         spec%stiffness_damping = 1.0e-3_wp
+         scene = scene_type()
+         scene%column = made(spec)
+         allocate (scene%q(2*bodies(i)), scene%v(2*bodies(i)), source=0.0_wp)
+         scene%finish = 0.5_wp
+         scene%loads%ground = signal_of(0.1_wp*[0.0_wp, 1.0_wp, 2.0_wp, 3.0_wp, 4.0_wp, 5.0_wp], &
+                                        [0.0_wp, 20.0_wp, -25.0_wp, 20.0_wp, -15.0_wp, 10.0_wp])
+         stepper = method(5)
+         call play(scene, stepper, 100, state, outcome)
+         call check_passed(error, outcome, 'n = '//to_text(bodies(i)))
+         call check_true(error, state%springs%events > bodies(i), 'springs change their lines: '// &
+                         to_text(state%springs%events))
+         call check_true(error, stepper%cut_steps <= 2, 'cut steps: '//to_text(stepper%cut_steps))
+         call check_true(error, abs(residual_of(state)) < 0.05_wp*state%of_damping, 'energy')
+      end do
+   end subroutine stiff_yielding
+
+   !> The contact of the explicit tests: five falls, the energy of the last flight.
+   subroutine bounce(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: state
+      type(implicit_stepper) :: stepper
+      real(wp), parameter :: mass = 2.0_wp, k = 800.0_wp, v0 = 3.0_wp, push = 20.0_wp
+      real(wp) :: omega, sag, flight, contact, wrong(3)
+      integer :: i, number
+
+      call new_mass(scene, compression(k), mass, 0.0_wp, v0)
+      scene%column%axial_load = push
+      scene%column%axial_joint = push
+      omega = sqrt(k/mass)
+      sag = push/k
+      flight = 2.0_wp*v0*mass/push
+      contact = (2.0_wp*pi - 2.0_wp*acos(sag/hypot(sag, v0/omega)))/omega
+      scene%finish = 5.0_wp*(flight + contact) + 0.5_wp*flight
+      do number = 1, methods, 2
+         do i = 1, 3
+            stepper = method(number)
+            call play(scene, stepper, 1000*4**i, state, outcome)
+            call check_passed(error, outcome, 'method '//to_text(number))
+            wrong(i) = abs(state%q(3)/(0.5_wp*v0**2*mass/push) - 1.0_wp) + abs(state%v(3))/v0
+            call check_equal(error, stepper%cut_steps, 0, 'no step is cut')
+         end do
+         call check_true(error, wrong(3) < 2.0e-4_wp .and. wrong(3) < 0.1_wp*wrong(1), 'method '// &
+                         to_text(number)//': '//to_text(wrong(3)))
+         call check_equal(error, state%springs%events, 11, 'opened six times, closed five times')
+         ! The contact itself has taken nothing.
+         call check_close(error, state%springs%work(3), 0.0_wp, 0.0_wp, 1.0e-12_wp*mass*v0**2, 'work')
+      end do
+   end subroutine bounce
+
+   !> Twenty loose blocks fall onto each other, with steps far beyond the limit of explicit methods.
+   subroutine impact(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: n = 20
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(scene_type) :: scene
+      type(state_type) :: state
+      type(implicit_stepper) :: stepper
+      real(wp) :: energy
+      integer :: number, step
+
+      spec = chain(n, 'small')
+      allocate (spec%axial(1))
+      spec%axial(1) = compression(1.0e9_wp)
+      spec%self_weight = .true.
+      spec%stiffness_damping = 1.0e-4_wp
+      scene%column = made(spec)
+      allocate (scene%q(3*n), scene%v(3*n), source=0.0_wp)
+      scene%q(2*n + 1:) = 0.01_wp
+      do number = 1, methods
+         call new_state(state, scene%column, scene%loads, scene%q, scene%v)
+         stepper = method(number)
+         energy = state%at_begin
+         do step = 1, 1000
+            call stepper%advance(state, 2.0e-3_wp, outcome)
+            call check_passed(error, outcome, 'method '//to_text(number))
+            call check_true(error, all(abs(state%q) < 1.0_wp), 'method '//to_text(number)//': it flies away')
+            if (allocated(error)) return
+         end do
+         ! They lie on each other: the weight above over the stiffness.
+         if (number == 5 .or. number == 6) then
+            call check_close(error, state%q(2*n + 1:), -scene%column%axial_joint/1.0e9_wp, 0.0_wp, &
+                             1.0e-7_wp, 'method '//to_text(number)//': they lie')
+         end if
+      end do
+   end subroutine impact
+
+   !> Beyond the critical load of the yielded springs the column falls: an error or no bounds, no crash.
+   subroutine falling(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(scene_type) :: scene
+      type(state_type) :: state
+      type(implicit_stepper) :: stepper
+      real(wp), parameter :: steps(4) = [1.0e-4_wp, 1.0e-3_wp, 1.0e-2_wp, 0.1_wp]
+      real(wp) :: before
+      integer :: i, number, step
+
+      spec = column_1('pdelta')
+      spec%axial_load = 10.0_wp*k_u/1.6_wp
+      scene%column = made(spec)
+      do i = 1, 4
+         do number = 1, methods
+            call new_state(state, scene%column, loads_type(), [0.0_wp, 2.0_wp*d_y], [0.0_wp, 10.0_wp])
+            stepper = method(number)
+            before = 0.0_wp
+            do step = 1, 20000
+               before = state%time
+               call stepper%advance(state, steps(i), outcome)
+               if (allocated(outcome) .or. state%lost) exit
+            end do
+            call check_true(error, all(abs(state%q) < 1.0e101_wp), 'the state is finite')
+            if (allocated(outcome)) then
+               call check_failed(error, outcome, analysis_failed, 'Rows up to there are kept')
+            else
+               call check_true(error, state%lost .or. steps(i) > 5.0e-3_wp, 'step '//to_text(steps(i))// &
+                               ', method '//to_text(number)//': it has fallen')
+            end if
+         end do
+      end do
+   end subroutine falling
+
+   !> Force the failure of a step in the middle of a run, after all its work; then go on.
+   subroutine no_trace(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: state, plain, before
+      type(implicit_stepper) :: stepper, undisturbed
+      real(wp) :: wanted, acceptable, h
+      integer :: number, scene_number, step
+
+      do scene_number = 1, 5
+         call new_scene(scene, scene_number)
+         h = 4.0e-4_wp
+         do number = 1, methods, 4
+            call new_state(state, scene%column, scene%loads, scene%q, scene%v)
+            call new_state(plain, scene%column, scene%loads, scene%q, scene%v)
+            stepper = method(number)
+            undisturbed = method(number)
+            wanted = stepper%wanted
+            acceptable = stepper%acceptable
+            do step = 1, 120
+               call undisturbed%advance(plain, h, outcome)
+               call check_passed(error, outcome, 'undisturbed')
+               if (mod(step, 10) == 0) then
+                  before = state
+                  stepper%wanted = -1.0_wp
+                  stepper%acceptable = -1.0_wp
+                  call stepper%advance(state, h, outcome)
+                  call check_failed(error, outcome, analysis_failed, 'does not converge although it was cut')
+                  call check_same(error, [state%q, state%v, state%time, state%load, state%of_loads, &
+                                          state%of_damping], &
+                                  [before%q, before%v, before%time, before%load, before%of_loads, &
+                                   before%of_damping], 'state')
+                  associate (now => state%springs, then => before%springs)
+                     call check_same(error, [now%d, now%d0, now%f0, now%k, now%first, now%last, now%work], &
+                                     [then%d, then%d0, then%f0, then%k, then%first, then%last, then%work], &
+                                     'springs')
+                     call check_equal(error, now%events, then%events, 'events')
+                     call check_true(error, all(now%one_way == then%one_way), 'one-way lines')
+                  end associate
+                  stepper%wanted = wanted
+                  stepper%acceptable = acceptable
+                  deallocate (outcome)
+               end if
+               call stepper%advance(state, h, outcome)
+               call check_passed(error, outcome, 'go on')
+               call check_same(error, [state%q, state%v, state%time, state%of_loads, state%springs%work], &
+                               [plain%q, plain%v, plain%time, plain%of_loads, plain%springs%work], &
+                               'scene '//to_text(scene_number)//', method '//to_text(number))
+               if (allocated(error)) return
+            end do
+            call check_true(error, state%springs%events > 10, 'the springs change their lines')
+         end do
+      end do
+   end subroutine no_trace
+
+   subroutine failure(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(scene_type) :: scene
+      type(state_type) :: state
+      type(implicit_stepper) :: stepper
+
+      call new_scene(scene, 5)
+      call new_state(state, scene%column, scene%loads, scene%q, scene%v)
+      stepper = method(1)
+      call stepper%advance(state, 0.25_wp, outcome)
+      call check_passed(error, outcome, 'first step')
+      stepper%wanted = -1.0_wp
+      stepper%acceptable = -1.0_wp
+      call stepper%advance(state, 0.01_wp, outcome)
+      call check_failed(error, outcome, analysis_failed, 's at time 0.25 s does not converge')
+      call check_failed(error, outcome, analysis_failed, ' spring of joint ')
+      call check_true(error, stepper%cut_steps > 20, 'cut steps')
+      ! An error that is there already: nothing moves.
+      call stepper%advance(state, 0.01_wp, outcome)
+      call check_same(error, state%time, 0.25_wp, 'time')
+   end subroutine failure
+
+   !> What is cut in two by the stepper is what two steps would have been.
+   subroutine halves(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(random_type) :: random
+      type(column_spec) :: spec
+      type(column_type) :: column
+      type(state_type) :: state
+      type(implicit_stepper) :: stepper
+      real(wp) :: q(6), v(6)
+      integer :: trial
+
+      ! Steps of all lengths, in any order, on a column whose springs know many lines.
+      spec = column_1('pdelta')
+      spec%n = 3
+      spec%axial_load = 2.0e6_wp
+      spec%flexure(1) = takeda_1('one')
+      column = made(spec)
+      q = 0.0_wp
+      do trial = 1, 20
+         v = random%uniform_array(-5.0_wp, 5.0_wp, 6)
+         v(:3) = 0.1_wp*v(:3)
+         call new_state(state, column, loads_type(), q, v)
+         stepper = method(1 + mod(trial, methods))
+         do while (state%time < 0.05_wp)
+            call stepper%advance(state, 10.0_wp**random%uniform(-6.0_wp, -2.0_wp), outcome)
+            call check_passed(error, outcome, 'trial '//to_text(trial))
+            if (allocated(error)) return
+            call check_same(error, state%springs%d, state%q, 'the springs are where the joints are')
+            call check_true(error, all(abs(state%q) < 1.0_wp), 'bounded')
+         end do
+      end do
+   end subroutine halves
+
+end module test_implicit
