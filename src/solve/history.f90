@@ -190,9 +190,9 @@ contains
       if (state%lost) then
          call fatal_error(error, analysis_failed, 'the motion has no bounds any more at time '// &
                           to_text(state%begin + state%time)//' s (a deformation is beyond '// &
-                          to_text(out_of_bounds)//'): the step is beyond the stability limit, the column has lost its '// &
-                          'stability under the axial load, or the loading has a wrong unit. Rows up to '// &
-                          'there are kept')
+                          to_text(out_of_bounds)//'): the step is beyond the stability limit, the column '// &
+                          'has lost its stability under the axial load, or the loading has a wrong unit. '// &
+                          'Rows up to there are kept')
       else
          call fatal_error(error, analysis_failed, 'a hysteresis rule goes in a circle at time '// &
                           to_text(state%begin + state%time)//' s; the parameters of a spring are too '// &

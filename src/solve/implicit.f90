@@ -380,7 +380,8 @@ contains
       has_converged = size_now <= self%wanted
       if (has_converged .or. size_now > 1.0e5_wp*self%acceptable) return
       has_converged = size_now <= self%acceptable .and. size_now > 0.5_wp*size_before
-      if (has_converged) return
+      ! As long as it becomes much smaller, it is not round-off yet.
+      if (has_converged .or. size_now < 0.1_wp*size_before) return
       n = size(self%stiffness)/2
       has_converged = is_round_off(n, h, self%stiffness, self%r, self%moved, self%v0, self%a0)
       if (size(self%r) > 2*n .and. has_converged) then
