@@ -378,7 +378,7 @@ contains
       integer :: n
 
       has_converged = size_now <= self%wanted
-      if (has_converged .or. size_now > 1.0e5_wp*self%acceptable) return
+      if (has_converged .or. self%acceptable < 0.0_wp) return
       has_converged = size_now <= self%acceptable .and. size_now > 0.5_wp*size_before
       ! As long as it becomes much smaller, it is not round-off yet.
       if (has_converged .or. size_now < 0.1_wp*size_before) return

@@ -53,7 +53,7 @@ contains
       real(wp), intent(in) :: h
       type(error_type), allocatable, intent(inout) :: error
       type(event_type) :: event
-      real(wp) :: finish, left, part, wrong
+      real(wp) :: finish, left, part, corner, wrong
       integer :: tries, idle
 
       if (allocated(error)) return
@@ -66,8 +66,12 @@ contains
          ! rounds where times are large.
          if (.not. left > 4.0_wp*spacing(h)) exit
          ! A corner of the loading would cost the order as an event does.
-         part = min(left, state%loads%corner_after(state%time) - state%time)
-         if (part < left) self%cut_steps = self%cut_steps + 1
+         part = left
+         corner = state%loads%corner_after(state%time) - state%time
+         if (corner < left - 8.0_wp*spacing(finish)) then
+            part = corner
+            self%cut_steps = self%cut_steps + 1
+         end if
          if (self%tolerance > 0.0_wp .and. self%next_step < 0.999_wp*part) then
             ! Two equal steps rather than a long and a short one.
             part = min(self%next_step, 0.5_wp*part)

@@ -48,7 +48,8 @@ contains
                unit_test('a column that falls has no bounds', falling), &
                unit_test('a step that fails leaves no trace', no_trace), &
                unit_test('a failure names spring and time', failure), &
-               unit_test('parts of a step add up to it', halves)]
+               unit_test('steps of all lengths, in any order', halves), &
+               unit_test('very short steps from a velocity alone', short_steps)]
    end subroutine collect_implicit
 
    !> One of the methods by number.
@@ -833,7 +834,7 @@ contains
       call check_same(error, state%time, 0.25_wp, 'time')
    end subroutine failure
 
-   !> What is cut in two by the stepper is what two steps would have been.
+   !> Steps that differ by four orders, on a column whose springs know many lines.
    subroutine halves(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -845,7 +846,6 @@ contains
       real(wp) :: q(6), v(6)
       integer :: trial
 
-      ! Steps of all lengths, in any order, on a column whose springs know many lines.
       spec = column_1('pdelta')
       spec%n = 3
       spec%axial_load = 2.0e6_wp
@@ -866,5 +866,46 @@ contains
          end do
       end do
    end subroutine halves
+
+   !> At the begin there are no forces, and those of the first step are small differences of large numbers:
+   !> nothing but the velocity tells what is round-off.
+   subroutine short_steps(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_type) :: column
+      type(state_type) :: state
+      type(implicit_stepper) :: stepper
+      real(wp), parameter :: h(5) = [1.0e-4_wp, 1.0e-5_wp, 1.0e-6_wp, 1.0e-7_wp, 1.0e-8_wp]
+      real(wp), allocatable :: v(:)
+      integer, parameter :: bodies(3) = [1, 3, 20]
+      integer :: i, j, number, step
+
+      do j = 1, 3
+         column = made(chain(bodies(j), 'small'))
+         allocate (v(2*bodies(j)), source=0.0_wp)
+         v(bodies(j) + 1) = -0.5_wp
+         do i = 1, 5
+            do number = 1, methods
+               call new_state(state, column, loads_type(), 0.0_wp*v, v)
+               stepper = method(number)
+               do step = 1, 5
+                  call stepper%advance(state, h(i), outcome)
+                  call check_passed(error, outcome, 'step of '//to_text(h(i))//' s')
+               end do
+               call check_equal(error, stepper%cut_steps, 0, 'n = '//to_text(bodies(j))//', method '// &
+                                to_text(number)//', step of '//to_text(h(i))//' s: cut steps')
+               ! It has not had time to be stopped.
+               if (h(i) < 2.0e-7_wp) then
+                  call check_close(error, state%q(bodies(j) + 1), 5.0_wp*h(i)*v(bodies(j) + 1), 1.0e-2_wp, &
+                                   0.0_wp, 'rotation')
+                  call check_close(error, residual_of(state), 0.0_wp, 0.0_wp, 1.0e-2_wp*state%at_begin, &
+                                   'energy')
+               end if
+               if (allocated(error)) return
+            end do
+         end do
+         deallocate (v)
+      end do
+   end subroutine short_steps
 
 end module test_implicit

@@ -1,4 +1,4 @@
-"""The executable: arguments, exit codes, messages, output files, progress, memory (issue 2).
+"""The executable: arguments, exit codes, messages, output files, progress, memory.
 
 Every fault is looked at through `check` and `run`: both say the same, and nothing is written.
 """
@@ -711,7 +711,7 @@ FAULTY_COLUMNS = [
 
 @pytest.mark.parametrize("numbers", FAULTY_COLUMNS)
 def test_text_of_an_error_is_the_same_in_python(run_cli, dynamic_text, tmp_path, numbers):
-    """Issue 2, Python: errors as exceptions with the same text."""
+    """Python: errors as exceptions with the same text."""
     entries = []
     for name, value in numbers.items():
         if isinstance(value, str):
@@ -783,7 +783,7 @@ def test_text_of_an_error_of_the_analysis_is_the_same_in_python(
 
 
 def test_step_beyond_the_stability_limit_is_refused_with_the_limit(run_cli, dynamic_text, tmp_path):
-    """Issue 2, Dynamics; theory section 6: 2 sqrt(2) / omega_max."""
+    """Dynamics; theory section 6: 2 sqrt(2) / omega_max."""
     limit = float(2 * np.sqrt(2) / rbsdem.modes(COLUMN).omega[-1])
     write(tmp_path, dynamic_text(analysis=f"method = 'rk4', dt = {limit * 1.001!r}"))
     text = check_and_run(run_cli, tmp_path, ["beyond the stability limit"])
@@ -911,7 +911,7 @@ def test_output_that_cannot_be_written_is_refused(run_cli, case_text, tmp_path, 
 def test_force_beyond_the_capacity_keeps_the_path_and_the_old_output(
     run_cli, overloaded, tmp_path, read_csv
 ):
-    """Issue 2, Static path: the force reached is said, the path up to there is kept."""
+    """Static path: the force reached is said, the path up to there is kept."""
     write(tmp_path, overloaded)
     (tmp_path / "out.csv").write_text("old")
     assert run_cli(["check", "case.nml"], tmp_path).returncode == 0
@@ -1189,7 +1189,7 @@ def peak_memory(executable: Path, cwd: Path) -> int:
 
 
 def test_million_steps_in_constant_memory(executable, dynamic_text, tmp_path, read_csv):
-    """Issue 2: constant memory when only every n-th step is kept."""
+    """Constant memory when only every n-th step is kept."""
     (tmp_path / "ground.csv").write_text("time_s,acceleration_g\n0,0.1\n0.3,-0.1\n1e5,0.1\n")
     peaks = {}
     for steps in (100_000, 1_000_000):

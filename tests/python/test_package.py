@@ -1,4 +1,4 @@
-"""The package as a whole: names, documentation, types, versions, errors, immutability (issue 2)."""
+"""The package as a whole: names, documentation, types, versions, errors, immutability."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def test_class_says_what_its_fields_are(one):
 
 @pytest.mark.parametrize("one", [rbsdem.Elastic, rbsdem.Bilinear, rbsdem.Takeda, rbsdem.Column])
 def test_signature_is_the_promised_one(one):
-    """Issue 2, Python: names and defaults that independent checks use."""
+    """Python: names and defaults that independent checks use."""
     promised = {
         "Elastic": "(k)",
         "Bilinear": "(k, d_y, k_post)",

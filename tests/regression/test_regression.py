@@ -680,7 +680,7 @@ def test_every_case_of_the_folder_is_tested():
 
 @pytest.mark.parametrize("name", CASES)
 def test_executable_equals_python_to_the_last_digit(rows, name):
-    """Issue 2: the same case through the executable and through Python."""
+    """Both doors lead to the same analysis."""
     expected = rows_of(CASES[name].run())
     got = rows(name)
     assert len(expected) == len(got)

@@ -1,0 +1,410 @@
+"""Extremes of the column: ratios of stiffness and mass, up to 5000 bodies, axial loads about the
+critical one.
+
+Static answers are held against exact fractions, motions against the cosine of a single mode, for
+which the average acceleration has a phase in closed form. Frequencies themselves: test_modes.py.
+"""
+
+from __future__ import annotations
+
+import itertools
+import re
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.linalg import eigh
+
+import rbsdem
+
+IMPLICIT = ("newmark", "hht", "generalised_alpha")
+METHODS = ("rk4", "rk45", *IMPLICIT)
+
+
+def elastic(values) -> list[rbsdem.Elastic]:
+    return [rbsdem.Elastic(float(k)) for k in values]
+
+
+def chain(lengths, masses, shear, flexure, **options) -> rbsdem.Column:
+    return rbsdem.Column(
+        float(np.sum(lengths)), None, elastic(shear), elastic(flexure), n=len(lengths),
+        lengths=list(lengths), masses=list(masses), **options,
+    )  # fmt: skip
+
+
+def deformations(run: rbsdem.Result) -> np.ndarray:
+    return np.hstack([run.slip, run.rotation])
+
+
+def exact_static(column: rbsdem.Column, force: float) -> tuple[list[Fraction], Fraction]:
+    """Deformations and displacement of the top under a lateral force, without round-off.
+
+    (diag(k) - P G) q = a F with the second derivatives G of sum l_k th_k^2/2 + sum u_k th_{k-1}.
+    """
+    n, load = column.n, Fraction(column.axial_load)
+    if column.kinematics == "small":
+        load = Fraction(0)
+    length = [Fraction(value) for value in column.lengths]
+    size = 2 * n
+    matrix = [[Fraction(0)] * (size + 1) for _ in range(size)]
+    arm = [Fraction(1)] * n + [sum(length[i:], Fraction(0)) for i in range(n)]
+    for i, spring in enumerate((*column.shear, *column.flexure)):
+        matrix[i][i] += Fraction(spring.k)
+        matrix[i][size] = arm[i] * Fraction(force)
+    for k in range(n):
+        for i in range(k + 1):
+            for j in range(k + 1):
+                matrix[n + i][n + j] -= load * length[k]
+        for j in range(k):
+            matrix[k][n + j] -= load
+            matrix[n + j][k] -= load
+    for j in range(size):
+        for row in range(j + 1, size):
+            factor = matrix[row][j] / matrix[j][j]
+            if factor:
+                for place in range(j, size + 1):
+                    matrix[row][place] -= factor * matrix[j][place]
+    answer = [Fraction(0)] * size
+    for j in reversed(range(size)):
+        rest = sum((matrix[j][i] * answer[i] for i in range(j + 1, size)), Fraction(0))
+        answer[j] = (matrix[j][size] - rest) / matrix[j][j]
+    return answer, sum((a * q for a, q in zip(arm, answer, strict=True)), Fraction(0))
+
+
+def worst(seen, exact) -> float:
+    """Largest error of deformations, each relative to itself."""
+    return max(
+        abs(float((Fraction(float(one)) - other) / other))
+        for one, other in zip(seen, exact, strict=True)
+    )
+
+
+def critical_load(column: rbsdem.Column) -> float:
+    """Least compression that takes the stiffness away."""
+    n, lengths = column.n, np.asarray(column.lengths)
+    absolute = np.hstack([np.zeros((n, n)), np.tril(np.ones((n, n)))])
+    below = np.vstack([np.zeros(2 * n), absolute[:-1]])
+    slip = np.eye(2 * n)[:n]
+    second = absolute.T * lengths @ absolute + slip.T @ below + below.T @ slip
+    root = np.sqrt([s.k for s in (*column.shear, *column.flexure)])
+    return 1.0 / eigh(second / root / root[:, None], eigvals_only=True)[-1]
+
+
+# ---- ratios --------------------------------------------------------------------------------------
+
+
+def measure_static_ratio(n: int, ratio: float, share: float) -> float:
+    """Largest relative error of a deformation for k_V l^2/k_M = ratio, under axial load."""
+    rng = np.random.default_rng(n)
+    lengths = rng.uniform(0.5, 1.5, n)
+    flexure = 1e7 * rng.uniform(1, 2, n)
+    shear = ratio * flexure / lengths**2
+    load = share * critical_load(chain(lengths, lengths, shear, flexure))
+    column = chain(lengths, lengths, shear, flexure, kinematics="pdelta", axial_load=load)
+    answer, top = exact_static(column, 1.0)
+    run = rbsdem.cyclic(column, force=[1.0])
+    back = rbsdem.cyclic(column, displacement=[float(top)])
+    return max(
+        worst(deformations(run)[0], answer), worst(deformations(back)[0], answer),
+        worst([back.force[0]], [Fraction(1)]),
+    )  # fmt: skip
+
+
+@pytest.mark.filterwarnings("ignore:the rotation of a body")
+@pytest.mark.parametrize("ratio", [1e-9, 1e-3, 1.0, 1e3, 1e9])
+@pytest.mark.parametrize("n", [1, 2, 5, 12])
+def test_static_path_for_stiffness_ratios(n, ratio):
+    assert measure_static_ratio(n, ratio, 0.0) < 1e-13
+    assert measure_static_ratio(n, ratio, 0.5) < 1e-12
+
+
+@pytest.mark.filterwarnings("ignore:the rotation of a body")
+@pytest.mark.parametrize("n", [2, 5, 12])
+def test_static_path_for_random_stiffnesses_over_18_decades(n):
+    for seed in range(10):
+        rng = np.random.default_rng(seed)
+        k_v, k_m = 10 ** rng.uniform(0, 18, (2, n))
+        column = chain(rng.uniform(0.5, 1.5, n), np.ones(n), k_v, k_m)
+        answer, _ = exact_static(column, 1.0)
+        assert worst(deformations(rbsdem.cyclic(column, force=[1.0]))[0], answer) < 1e-13
+
+
+def measure_single_mode(column: rbsdem.Column, method: str, periods: float, steps: int = 0):
+    """Let a column go in its lowest mode: error of the deformations, relative, and of the energy.
+
+    `newmark` with a number of steps per period: against its own phase 2 atan(omega h/2) a step.
+    """
+    modes = rbsdem.modes(column)
+    n, omega = column.n, modes.omega[0]
+    shape = 1e-3 * modes.shapes[:, 0] / np.max(np.abs(modes.shapes[n:, 0]))
+    times = np.linspace(0.0, periods * 2 * np.pi / omega, 9)
+    h = times[1] / max(round(steps * periods / 8), 1)
+    options = {"dt": h} if method == "newmark" else {"tolerance": 1e-9}
+    run = rbsdem.time_history(
+        column, times, method=method, initial={"slip": shape[:n], "rotation": shape[n:]}, **options
+    )
+    phase = omega * times if method == "rk45" else 2 * np.arctan(omega * h / 2) / h * times
+    k = np.array([s.k for s in (*column.shear, *column.flexure)])
+    measure = np.sqrt(k) * np.abs(deformations(run) - np.cos(phase)[:, None] * shape)
+    whole = run.energy["kinetic"] + 0.5 * deformations(run) ** 2 @ k
+    return (
+        float(np.max(measure) / np.max(np.sqrt(k) * np.abs(shape))),
+        float(np.max(np.abs(whole / whole[0] - 1))),
+    )
+
+
+@pytest.mark.parametrize("ratio", [1e-9, 1e-6, 1e-3, 1e3, 1e6, 1e9])
+@pytest.mark.parametrize("n", [1, 3])
+def test_motion_for_stiffness_ratios(n, ratio):
+    """`rk45` follows the slow mode over the fast ones, and `newmark` need not see them."""
+    length = 2.0 / n
+    column = chain([length] * n, [100.0 / n] * n, [ratio * 2e7 / length**2] * n, [2e7] * n)
+    assert max(measure_single_mode(column, "newmark", 20.0, 200)) < 1e-8
+    error, energy = measure_single_mode(column, "rk45", 0.25 if ratio in (1e-9, 1e9) else 2.0)
+    assert error < 1e-6
+    assert energy < 1e-6
+
+
+@pytest.mark.parametrize("ratio", [1e-6, 1e-3, 1e3, 1e6])
+@pytest.mark.parametrize("n", [2, 4])
+def test_motion_for_mass_ratios_of_neighbours(n, ratio):
+    masses = 100.0 * np.where(np.arange(n) % 2 == 0, 1.0, ratio)
+    column = chain([0.5] * n, masses, [3e7] * n, [2e7] * n)
+    assert max(measure_single_mode(column, "newmark", 20.0, 200)) < 1e-8
+    error, energy = measure_single_mode(column, "rk45", 0.5)
+    assert error < 1e-6
+    assert energy < 1e-6
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_mass_at_the_top_a_million_times_that_of_the_column(method):
+    """One mass on a spring of three in series, its rotary inertia that of a point: none."""
+    k_v, k_m, mass = 3e8, 2e8, 1e6
+    column = rbsdem.Column(
+        3.0, 1.0, rbsdem.Elastic(k_v), rbsdem.Elastic(k_m), top_mass=mass, n=2
+    )  # fmt: skip
+    stiffness = 1.0 / (2 / k_v + (3.0**2 + 1.5**2) / k_m)
+    omega = np.sqrt(stiffness / mass)
+    force = 1e-3 * stiffness
+    initial = {"slip": [force / k_v] * 2, "rotation": [force * 3.0 / k_m, force * 1.5 / k_m]}
+    times = np.linspace(0.0, 2.0 / omega, 9)
+    run = rbsdem.time_history(column, times, method=method, initial=initial)
+    np.testing.assert_allclose(run.displacement, 1e-3 * np.cos(omega * times), atol=5e-6)
+
+
+# ---- number of bodies ----------------------------------------------------------------------------
+
+HEIGHT, BENDING, SHEAR = 2.0, 1.2e7, 2.5e8
+
+
+def cantilever(n: int, **options) -> rbsdem.Column:
+    """A uniform cantilever; in bending the joint at the foot stands for half a body only."""
+    length = HEIGHT / n
+    bending = BENDING * np.concatenate([[2.0], np.ones(n - 1)]) / length
+    return chain([length] * n, [800.0 / n] * n, [SHEAR / length] * n, bending, **options)
+
+
+def measure_deflection(n: int, kinematics: str, load: float = 0.0) -> float:
+    """Relative error of the deflection by a force at the top, against the beam of Timoshenko.
+
+    With an axial load the beam of Euler and Bernoulli: tan(c L)/(c^3 EI) - L/(c^2 EI), c^2 = P/EI.
+    """
+    column = cantilever(n, kinematics=kinematics, axial_load=load)
+    force = 1.0
+    exact = HEIGHT**3 / (3 * BENDING) + HEIGHT / SHEAR
+    if load:
+        stiff = elastic([1e18 * n] * n)
+        column = rbsdem.Column(
+            HEIGHT, 800.0, stiff, list(column.flexure), n=n, kinematics=kinematics, axial_load=load
+        )
+        c = np.sqrt(load / BENDING)
+        exact = (np.tan(c * HEIGHT) / c - HEIGHT) / load
+    return float(rbsdem.cyclic(column, force=[force]).displacement[0] / (force * exact) - 1)
+
+
+@pytest.mark.parametrize(
+    ("kinematics", "load"), [("small", 0.0), ("pdelta", 0.0), ("pdelta", 3e6), ("finite", 3e6)]
+)
+def test_deflection_tends_to_the_beam_with_order_2_up_to_5000_bodies(kinematics, load):
+    bodies = np.array([1, 5, 50, 500, 5000])
+    wrong = np.array([measure_deflection(n, kinematics, load) for n in bodies])
+    orders = -np.diff(np.log10(np.abs(wrong))) / np.diff(np.log10(bodies))
+    np.testing.assert_allclose(orders[1:], 2.0, atol=0.06)
+    assert abs(wrong[-1]) < 0.65 * float(bodies[-1]) ** -2
+
+
+@pytest.mark.parametrize("n", [1, 2, 10, 100, 1000, 5000])
+def test_implicit_run_stays_in_equilibrium(n):
+    """From the static answer under force and axial load nothing may move."""
+    column = cantilever(n, kinematics="pdelta", axial_load=2e6)
+    static = rbsdem.cyclic(column, force=[1e4])
+    for method in IMPLICIT:
+        run = rbsdem.time_history(
+            column, [0.0, 1.0], [1e4, 1e4], method=method, dt=0.05,
+            initial={"slip": static.slip[0], "rotation": static.rotation[0]},
+        )  # fmt: skip
+        moved = np.max(np.abs(run.displacement - static.displacement[0]))
+        assert moved < 1e-9 * abs(static.displacement[0]), method
+
+
+@pytest.mark.parametrize("method", ["newmark", "rk4"])
+def test_let_go_5000_bodies_keep_their_energy(method):
+    """RK4 only for some steps: its limit is 4e-10 s here."""
+    column = cantilever(5000)
+    static = rbsdem.cyclic(column, force=[1e4])
+    span, options = (0.1, {"dt": 1e-3}) if method == "newmark" else (1e-8, {"every": 10})
+    run = rbsdem.time_history(
+        column, [0.0, span], method=method, **options,
+        initial={"slip": static.slip[0], "rotation": static.rotation[0]},
+    )  # fmt: skip
+    k = np.array([s.k for s in (*column.shear, *column.flexure)])
+    whole = run.energy["kinetic"] + 0.5 * deformations(run) ** 2 @ k
+    assert np.max(np.abs(whole / whole[0] - 1)) < 1e-7
+
+
+# ---- axial load ----------------------------------------------------------------------------------
+
+
+def loaded(n: int, share: float, **options) -> rbsdem.Column:
+    rng = np.random.default_rng(n)
+    lengths = rng.uniform(0.5, 1.5, n)
+    shear, flexure = rng.uniform(1e7, 3e7, n), rng.uniform(1e6, 3e6, n)
+    critical = critical_load(chain(lengths, lengths, shear, flexure))
+    masses = rng.uniform(50, 100, n)
+    options = {"kinematics": "pdelta"} | options
+    return chain(lengths, masses, shear, flexure, axial_load=share * critical, **options)
+
+
+@pytest.mark.parametrize("share", [-1.0, 0.5, 0.999, 1.001, 2.0])
+@pytest.mark.parametrize("n", [1, 2, 3, 10, 20])
+def test_static_path_under_axial_load(n, share):
+    """Near the critical load an error of a stiffness grows by 1/|1 - share|."""
+    column = loaded(n, share)
+    answer, top = exact_static(column, 1.0)
+    way = 1e-4 if top > 0 else -1e-4
+    run = rbsdem.cyclic(column, displacement=[way])
+    scale = Fraction(way) / top
+    assert worst([run.force[0]], [scale]) < 1e-13 / abs(1 - share) * n
+    largest = max(abs(q) for q in answer)
+    wrong = [
+        abs(Fraction(float(q)) - e * scale)
+        for q, e in zip(deformations(run)[0], answer, strict=True)
+    ]
+    assert float(max(wrong) / abs(largest * scale)) < 1e-13 / abs(1 - share) * n
+    if share > 1:
+        # A dropping path: the column must be held back.
+        assert top < 0 and run.force[0] * way < 0  # noqa: PT018
+        with pytest.raises(rbsdem.SolveError, match=r"is [.\d]+ times the critical load"):
+            rbsdem.cyclic(column, force=[1.0])
+    else:
+        forced = rbsdem.cyclic(column, force=[float(scale)])
+        assert forced.displacement[0] == pytest.approx(way, rel=1e-13 / abs(1 - share) * n)
+    bent = loaded(n, share, kinematics="finite")
+    small = rbsdem.cyclic(bent, displacement=[way * 1e-2])
+    assert small.force[0] == pytest.approx(float(scale) * 1e-2, rel=1e-6 / abs(1 - share))
+
+
+@pytest.mark.parametrize("share", [-1.0, 0.5, 0.999])
+@pytest.mark.parametrize("n", [1, 3, 10])
+def test_motion_under_axial_load(n, share):
+    column = loaded(n, share)
+    error, _ = measure_single_mode(column, "newmark", 5.0, 200)
+    assert error < 1e-8 / abs(1 - share)
+    error, _ = measure_single_mode(column, "rk45", 2.0)
+    assert error < 1e-6 / abs(1 - share)
+
+
+@pytest.mark.parametrize("share", [1.001, 2.0])
+@pytest.mark.parametrize("level", ["pdelta", "finite"])
+@pytest.mark.parametrize("n", [1, 3, 10])
+def test_motion_beyond_the_critical_load_is_refused_with_it(n, level, share):
+    column = loaded(n, share, kinematics=level)
+    for run in (
+        lambda: rbsdem.modes(column),
+        *(
+            lambda method=method: rbsdem.time_history(column, [0.0, 1.0], method=method)
+            for method in METHODS
+        ),
+    ):
+        with pytest.raises(rbsdem.InputError, match="buckles by itself") as caught:
+            run()
+        told = float(re.search(r"critical load of ([-+.e\d]+) N", str(caught.value)).group(1))
+        assert told == pytest.approx(column.axial_load / share, rel=1e-5)
+
+
+@pytest.mark.parametrize("method", [*METHODS, "located"])
+@pytest.mark.parametrize("kind", ["axial_load", "vertical_acceleration"])
+def test_load_that_goes_beyond_the_critical_one_for_a_while(method, kind):
+    """One body: (I + m l^2/3) th'' + (k_M - P(t) l) th = 0 with P up to twice critical and back.
+
+    By vertical motion P = m_above (g + a); the slip follows from the shear spring, stiff here.
+    """
+    length, mass, k_m, k_v = 1.5, 200.0, 3e5, 1e11
+    column = chain([length], [mass], [k_v], [k_m], kinematics="pdelta")
+    inertia = mass * length**2 / 3
+    times = np.linspace(0.0, 0.4, 41)
+    load = 2 * k_m / length * np.sin(np.pi * times / 0.4) ** 2
+    given = load if kind == "axial_load" else load / (mass / 2)
+
+    def rates(time, state):
+        p = np.interp(time, times, load)
+        return [state[1], -(k_m - p * length) / inertia * state[0]]
+
+    start = 2e-5
+    states = [np.array([start, 0.0])]
+    for span in itertools.pairwise(times):
+        part = solve_ivp(rates, span, states[-1], method="DOP853", rtol=1e-11, atol=1e-17)
+        states.append(part.y[:, -1])
+    expected = np.array(states)[:, 0]
+    assert np.max(np.abs(expected)) > 500 * start
+    options = {"method": "rk4", "events": "located"} if method == "located" else {"method": method}
+    if method in IMPLICIT:
+        options["dt"] = 2e-5
+    run = rbsdem.time_history(
+        column, times, **{kind: given}, **options, initial={"rotation": [start]}
+    )
+    np.testing.assert_allclose(run.rotation[:, 0], expected, atol=2e-5 * np.max(expected))
+    assert run.summary["relative_energy_residual"] < 1e-3
+
+
+def follower_growth(n: int, load: float) -> tuple[rbsdem.Column, float]:
+    """A chain under a load that turns with its top, and the growth rate of its motion [1/s].
+
+    The force at the top has a lateral part -P th_n, which has no potential: flutter.
+    """
+    length, mass, k_m, k_v = 1.0 / n, 10.0 / n, 2e3 * n, 1e8 * n
+    column = chain(
+        [length] * n, [mass] * n, [k_v] * n, [k_m] * n, kinematics="finite", axial_load=load,
+        axial_follows=True,
+    )  # fmt: skip
+    m = rbsdem.mass_matrix(column)
+    absolute = np.hstack([np.zeros((n, n)), np.tril(np.ones((n, n)))])
+    below = np.vstack([np.zeros(2 * n), absolute[:-1]])
+    slip = np.eye(2 * n)[:n]
+    second = absolute.T * length @ absolute + slip.T @ below + below.T @ slip
+    arm = np.concatenate([np.ones(n), 1.0 - np.arange(n) / n])
+    stiffness = np.diag([k_v] * n + [k_m] * n) - load * second + load * np.outer(arm, absolute[-1])
+    values = np.linalg.eigvals(np.linalg.solve(m, -stiffness)).astype(complex)
+    return column, float(np.max(np.sqrt(values).real))
+
+
+@pytest.mark.parametrize("n", [2, 5])
+def test_follower_load_flutters_where_the_linear_problem_says(n):
+    """Far above the critical load of a dead one (2.5 EI/l^2) the straight column is stable."""
+    loads = 2e3 * np.arange(0.5, 60.0, 0.25)
+    stable = np.array([follower_growth(n, load)[1] < 1e-3 for load in loads])
+    flutter = loads[np.argmin(stable)]
+    assert flutter > 3 * 2.5e3
+    start = {"rotation": np.full(n, 1e-9)}
+    calm, _ = follower_growth(n, 0.9 * flutter)
+    run = rbsdem.time_history(
+        calm, [0.0, 1.0], method="rk45", initial=start, tolerance=1e-9, every=5
+    )
+    assert np.max(np.abs(run.rotation)) < 1e-7
+    wild, growth = follower_growth(n, 1.3 * flutter)
+    times = np.linspace(0.0, 15 / growth, 601)
+    run = rbsdem.time_history(wild, times, method="rk45", initial=start, tolerance=1e-9)
+    size = np.linalg.norm(run.rotation, axis=1)
+    later = [np.max(size[200:400]), np.max(size[400:])]
+    assert np.log(later[1] / later[0]) == pytest.approx(5.0, rel=0.05)

@@ -1,0 +1,234 @@
+"""Extremes of the input: NaN, Inf, denormal and enormous numbers in every place; threads.
+
+Every number of every record is tried in turn; each must be refused by its name, and by its index
+where it has one. What is only just allowed must run.
+"""
+
+from __future__ import annotations
+
+import re
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+import rbsdem
+
+NAN, INF = float("nan"), float("inf")
+#: No number, and numbers whose products would not be finite or would vanish.
+MEANINGLESS = [NAN, INF, -INF, 5e-324, 1e-51, 1e51, 1.7976931348623157e308]
+IMPLICIT = ("newmark", "hht", "generalised_alpha")
+METHODS = ("rk4", "rk45", *IMPLICIT)
+
+SPRINGS = {
+    rbsdem.Elastic: {"k": 1e8},
+    rbsdem.Compression: {"k": 1e8},
+    rbsdem.Bilinear: {"k": 1e8, "d_y": 1e-3, "k_post": 1e6},
+    rbsdem.Takeda: {
+        "k_c": 2e8, "d_c": 3e-4, "k_y": 6e7, "d_y": 3e-3, "k_u": 7e6, "b0": 0.4, "b1": 0.3,
+    },
+}  # fmt: skip
+COLUMN = {
+    "height": 2.0, "mass": None, "n": 2,
+    "shear": rbsdem.Elastic(1e8), "flexure": rbsdem.Elastic(1e8),
+    "lengths": [0.9, 1.1], "masses": [300.0, 200.0], "axial_load": 1e4, "gravity": 9.8,
+    "top_mass": 100.0, "top_inertia": 3.0, "rotary_inertia": [30.0, 20.0], "mass_damping": 0.1,
+    "stiffness_damping": 1e-5, "kinematics": "pdelta", "self_weight": True,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("value", MEANINGLESS)
+@pytest.mark.parametrize(
+    ("spring", "name"), [(spring, name) for spring, names in SPRINGS.items() for name in names]
+)
+def test_number_of_a_spring(spring, name, value):
+    with pytest.raises(rbsdem.InputError) as caught:
+        spring(**(SPRINGS[spring] | {name: value}))
+    assert re.search(rf"{spring.rule} spring: {name} = ", str(caught.value))
+
+
+def places():
+    for name, value in COLUMN.items():
+        if isinstance(value, float):
+            yield name, None
+        elif isinstance(value, list):
+            yield from ((name, i) for i in range(len(value)))
+
+
+@pytest.mark.parametrize("value", MEANINGLESS)
+@pytest.mark.parametrize(("name", "index"), list(places()))
+def test_number_of_a_column(name, index, value):
+    changed = value
+    if index is not None:
+        changed = list(COLUMN[name])
+        changed[index] = value
+    with pytest.raises(rbsdem.InputError) as caught:
+        rbsdem.Column(**(COLUMN | {name: changed}))
+    where = "" if index is None else f"({index + 1})"
+    assert f"column: {name}{where} = " in str(caught.value)
+
+
+@pytest.mark.parametrize("value", MEANINGLESS)
+@pytest.mark.parametrize(
+    ("name", "others"),
+    [
+        ("depth", {"rotary_inertia": None}),
+        ("rotary_inertia", {}),
+        ("mass", {"masses": None}),
+        ("damping", {"mass_damping": 0.0, "stiffness_damping": 0.0}),
+    ],
+)
+def test_number_for_all_bodies(name, others, value):
+    with pytest.raises(rbsdem.InputError, match=f"column: (modal_)?{name}"):
+        rbsdem.Column(**(COLUMN | others | {name: value}))
+
+
+@pytest.mark.parametrize("value", [NAN, INF, -INF, 1e51, -1.7e308])
+@pytest.mark.parametrize("index", [0, 3, 5])
+@pytest.mark.parametrize(
+    "name", ["force", "ground_acceleration", "vertical_acceleration", "axial_load", "time"]
+)
+def test_value_of_a_history(name, index, value):
+    """Denormal values are small values like others."""
+    column = rbsdem.Column(**COLUMN)
+    arrays = {"time": np.arange(6) * 1e-3, name: np.linspace(0.0, 5e-3, 6)}
+    arrays[name][index] = value
+    for method in METHODS:
+        with pytest.raises(rbsdem.InputError) as caught:
+            rbsdem.time_history(column, method=method, **arrays)
+        assert f"{name}: value {index + 1} of 6" in str(caught.value)
+
+
+@pytest.mark.parametrize("value", [NAN, INF, -INF, 1e51, -1.7e308])
+@pytest.mark.parametrize("name", ["displacement", "force"])
+@pytest.mark.parametrize("level", ["small", "pdelta", "finite"])
+def test_value_of_a_static_path(level, name, value):
+    column = rbsdem.Column(**(COLUMN | {"kinematics": level}))
+    with pytest.raises(rbsdem.InputError, match=f"{name}: value 2 of 3"):
+        rbsdem.cyclic(column, **{name: [0.0, value, 0.0]})
+
+
+@pytest.mark.parametrize("value", [NAN, INF, -INF, 1e51, -1.7e308])
+@pytest.mark.parametrize("name", ["slip", "rotation", "slip_velocity", "rotation_velocity"])
+@pytest.mark.parametrize("method", METHODS)
+def test_value_of_an_initial_state(method, name, value):
+    with pytest.raises(rbsdem.InputError, match="initial") as caught:
+        rbsdem.time_history(
+            rbsdem.Column(**COLUMN), [0.0, 1.0], method=method, initial={name: [0.0, value]}
+        )
+    assert "value" in str(caught.value)
+
+
+@pytest.mark.parametrize("value", [NAN, INF, -INF, 0.0, -1.0, 5e-324, 1e51])
+@pytest.mark.parametrize("name", ["dt", "tolerance", "rho_infinity", "collapse_drift"])
+def test_number_of_an_analysis(name, value):
+    method = {"tolerance": "rk45", "rho_infinity": "hht"}.get(name, "rk4")
+    with pytest.raises(rbsdem.InputError, match=f"analysis: {name}"):
+        rbsdem.time_history(rbsdem.Column(**COLUMN), [0.0, 1.0], method=method, **{name: value})
+
+
+@pytest.mark.parametrize("word", ["nan", "NaN", "inf", "-Infinity", "1e999", "5e-324", "1e60"])
+@pytest.mark.parametrize(
+    ("group", "name"),
+    [
+        ("column", "height"), ("column", "mass"), ("column", "top_mass"), ("axial", "load"),
+        ("shear", "k"), ("flexure", "d_c"), ("loading", "amplitudes"), ("analysis", "dt"),
+        ("loading", "period"),
+    ],
+)  # fmt: skip
+def test_number_of_a_case(run_cli, dynamic_text, tmp_path, group, name, word):
+    """The executable; in the checked build an operation on a NaN or Inf would end it."""
+    groups = {
+        "column": {"height": "1.6", "mass": "614.4", "kinematics": "'pdelta'"},
+        "axial": {"load": "1e4"},
+        "shear": {"rule": "'bilinear'", "k": "7e8", "d_y": "1.3e-4", "k_post": "8e6"},
+        "flexure": {
+            "rule": "'takeda'", "k_c": "2.5e8", "d_c": "3e-4", "k_y": "6e7", "d_y": "2.7e-3",
+            "k_u": "7.5e6",
+        },
+        "loading": {"drive": "'ground'", "amplitudes": "3.0", "period": "0.1", "points": "4"},
+        "analysis": {"method": "'rk4'", "dt": "1e-4"},
+    }  # fmt: skip
+    groups[group][name] = word
+    text = dynamic_text(**{
+        key: ", ".join(f"{entry} = {value}" for entry, value in entries.items())
+        for key, entries in groups.items()
+    })  # fmt: skip
+    (tmp_path / "case.nml").write_text(text, "utf-8")
+    run = run_cli(["check", "case.nml"], tmp_path)
+    assert run.returncode == 2, run.stdout + run.stderr
+    assert name in run.stderr
+
+
+def test_numbers_at_the_edge_of_meaning_run():
+    """The largest and smallest that are allowed, in the units that go with them."""
+    for length, mass in ((1e-24, 1e-49), (1e24, 1e49), (1e-24, 1e49), (1e24, 1e-49)):
+        k_v = min(max(mass, 1e-49), 1e49)
+        k_m = min(max(k_v * length**2, 1e-49), 1e49)
+        k_v = k_m / length**2
+        if not 1e-50 < k_v < 1e50:
+            continue
+        column = rbsdem.Column(length, mass, rbsdem.Elastic(k_v), rbsdem.Elastic(k_m), n=2)
+        omega = rbsdem.modes(column).omega
+        assert np.all(np.isfinite(omega))
+        assert np.all(omega > 0)
+        period = 2 * np.pi / omega[0]
+        if not 1e-40 < period < 1e40:
+            continue
+        for method in METHODS:
+            run = rbsdem.time_history(
+                column, np.linspace(0.0, period, 5), method=method,
+                initial={"rotation": [1e-3, 1e-3]},
+            )  # fmt: skip
+            assert np.all(np.isfinite(run.slip))
+            assert np.max(np.abs(run.rotation)) < 0.1
+
+
+# ---- threads -------------------------------------------------------------------------------------
+
+
+def jobs():
+    """Every analysis and method, each with springs that remember."""
+    shear = rbsdem.Bilinear(7.0387e8, 1.2960e-4, 8.3185e6)
+    flexure = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
+    rng = np.random.default_rng(8)
+    times, ground = 2e-3 * np.arange(60), rng.uniform(-30, 30, 60)
+    path = rng.uniform(-0.04, 0.04, 40)
+    for n, level, opens in ((1, "small", False), (3, "pdelta", True), (12, "finite", False)):
+        column = rbsdem.Column(
+            1.6, 614.4, shear, flexure, n=n, kinematics=level, axial_load=1e5,
+            axial=rbsdem.Compression(1e9) if opens else None, top_mass=500.0,
+        )  # fmt: skip
+        yield lambda c=column: rbsdem.cyclic(c, displacement=path[: 40 // c.n])
+        yield lambda c=column: rbsdem.cyclic(c, force=3e5 * path)
+        for method in METHODS:
+            if level == "finite" and method in IMPLICIT:
+                continue
+            yield lambda c=column, m=method: rbsdem.time_history(
+                c, times, ground_acceleration=ground, method=m
+            )
+        yield lambda c=column: rbsdem.time_history(
+            c, times, ground_acceleration=ground, events="located"
+        )
+    yield lambda: flexure.response(np.tile(path, 50))
+    yield lambda: rbsdem.modes(column)
+
+
+def same(one, other) -> bool:
+    if isinstance(one, np.ndarray):
+        return np.array_equal(one, other)
+    if isinstance(one, dict):
+        return all(same(one[key], other[key]) for key in one)
+    if hasattr(one, "__dataclass_fields__"):
+        return all(same(getattr(one, key), getattr(other, key)) for key in one.__dataclass_fields__)
+    return one == other
+
+
+@pytest.mark.filterwarnings("ignore:the rotation of a body")
+@pytest.mark.parametrize("threads", [2, 4, 8])
+def test_threads_at_once_give_the_bits_of_one_alone(threads):
+    alone = [job() for job in jobs()]
+    with ThreadPoolExecutor(threads) as pool:
+        many = [pool.submit(job) for _ in range(threads) for job in jobs()]
+        for i, run in enumerate(many):
+            assert same(alone[i % len(alone)], run.result()), i
