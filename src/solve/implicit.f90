@@ -31,6 +31,9 @@ module rbs_solve_implicit
    !> Trials of Newton's method, which mostly needs two or three; a step is cut in halves this often.
    integer, parameter :: most_iterations = 40, most_cuts = 24
 
+   !> Trials in which Newton's method may go too far.
+   integer, parameter :: most_free = 8
+
    type, extends(stepper_type) :: implicit_stepper
       !> Parameters of the method; those of Newmark's average acceleration
       real(wp) :: alpha_m = 0.0_wp, alpha_f = 0.0_wp, beta = 0.25_wp, gamma = 0.5_wp
@@ -223,7 +226,7 @@ contains
       logical, intent(out) :: converged
       !> Whether springs have changed their lines, and a mark was set
       logical, intent(inout) :: marked
-      real(wp) :: size_now, size_before, slope_before, slope
+      real(wp) :: size_now, size_before, slope_before, slope, too_far
       integer :: iteration, most
 
       converged = .false.
@@ -244,8 +247,10 @@ contains
          converged = has_converged(self, h, size_now, size_before)
          if (converged) return
          slope = product_of(size(self%r), self%r, self%dx)
-         if (slope < -0.05_wp*slope_before) then
-            call search_line(self, state, h, load, slope_before, slope, marked, size_now)
+         ! Too far is mostly no harm; where Newton's method has gone back and forth, it is made certain of.
+         too_far = merge(0.9_wp, 0.05_wp, iteration <= most_free)
+         if (slope < -too_far*slope_before) then
+            call search_line(self, state, h, load, slope_before, slope, too_far/3.0_wp, marked, size_now)
          end if
          if (state%springs%stuck) return
       end do
@@ -253,12 +258,14 @@ contains
 
    !> The trial has gone too far: find the share of the correction at which the residual does little work
    !> on it, by false position (Illinois).
-   subroutine search_line(self, state, h, load, slope_before, slope_at_end, marked, size_now)
+   subroutine search_line(self, state, h, load, slope_before, slope_at_end, share_left, marked, size_now)
       type(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
       real(wp), intent(in) :: h, load(4)
       !> Work of the residual on the correction at its begin and at its end
       real(wp), intent(in) :: slope_before, slope_at_end
+      !> What of the first may be left
+      real(wp), intent(in) :: share_left
       logical, intent(inout) :: marked
       real(wp), intent(inout) :: size_now
       real(wp) :: low, high, at_low, at_high, share, slope, now
@@ -274,7 +281,7 @@ contains
          call try(self, state, h, load, share - now, marked, size_now)
          now = share
          slope = product_of(size(self%r), self%r, self%dx)
-         if (abs(slope) <= 0.05_wp*slope_before .or. state%springs%stuck) return
+         if (abs(slope) <= share_left*slope_before .or. state%springs%stuck) return
          if (slope > 0.0_wp) then
             low = share
             at_low = slope
