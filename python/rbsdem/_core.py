@@ -22,6 +22,9 @@ UNSET = -float(np.finfo(np.float64).max)
 #: The same for a whole number.
 UNSET_INTEGER = -int(np.iinfo(np.int32).max)
 
+#: Larger numbers have no meaning in any unit (the constant `beyond_meaning`).
+BEYOND_MEANING = 1e50
+
 #: Order of the numbers of a spring, and of the names of rules (`rule_names`, `inner_names`).
 SPRING_NUMBERS = ("k", "d_y", "k_post", "k_c", "d_c", "k_y", "k_u", "b0", "b1")
 RULES = ("elastic", "bilinear", "takeda", "compression")
@@ -121,6 +124,12 @@ def finite_vector(values: ArrayLike, name: str) -> Array:
         raise InputError(
             f"{name}: value {bad[0] + 1} of {array.size} is {array[bad[0]]}; "
             "it must be a finite number"
+        )
+    beyond = np.flatnonzero(np.abs(array) > BEYOND_MEANING)
+    if beyond.size:
+        raise InputError(
+            f"{name}: value {beyond[0] + 1} of {array.size} is {array[beyond[0]]}; "
+            "products of it would not be finite: check its exponent and unit"
         )
     return array
 
