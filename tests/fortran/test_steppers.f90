@@ -40,6 +40,7 @@ contains
                unit_test('an event at the exact end of a step', exact_end), &
                unit_test('a contact that is just touched', grazing), &
                unit_test('several springs at the same instant', at_once), &
+               unit_test('many springs, one soon after the other', in_a_row), &
                unit_test('begin on the end of a line', begin_on_end), &
                unit_test('begin with a velocity against a one-way line', against_one_way), &
                unit_test('begin at rest, on the yield plateau', rest_on_line), &
@@ -421,6 +422,41 @@ contains
       call check_true(error, all(state%q(5:6) > 0.0_wp), 'open')
       call check_close(error, state%q(5:6), reference%q(5:6), 0.0_wp, 1.0e-5_wp, 'openings')
    end subroutine at_once
+
+   !> Blocks thrown at each other in long steps: within one step many contacts open and close, and which is
+   !> the first is not known before it is located.
+   subroutine in_a_row(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: n = 8
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(random_type) :: random
+      type(scene_type) :: scene
+      type(state_type) :: state
+      real(wp) :: wrong(4)
+      integer :: i, trial
+
+      spec = chain(n, 'small')
+      spec%masses = 1.0_wp
+      allocate (spec%axial(1))
+      spec%axial(1) = compression(100.0_wp)
+      scene%column = made(spec)
+      allocate (scene%q(3*n), scene%v(3*n), source=0.0_wp)
+      scene%finish = 3.0_wp
+      do trial = 1, 5
+         scene%q(2*n + 1:) = random%uniform_array(0.0_wp, 0.05_wp, n)
+         scene%v(2*n + 1:) = random%uniform_array(-1.0_wp, 0.2_wp, n)
+         do i = 1, 4
+            call play_located(scene, 0.0_wp, 40*2**i, state, outcome)
+            call check_passed(error, outcome, 'rk4')
+            wrong(i) = abs(residual_of(state))/state%at_begin
+         end do
+         call check_true(error, state%springs%events > 20, 'events')
+         call check_order(error, wrong, 3.7_wp, 7.0_wp, 'trial '//to_text(trial)//': energy')
+         call check_true(error, wrong(4) < 1.0e-5_wp, 'trial '//to_text(trial)//': energy is wrong by '// &
+                         to_text(wrong(4)))
+      end do
+   end subroutine in_a_row
 
    !> The deformation of yield belongs to the yielded line; a spring that goes back from there is elastic.
    subroutine begin_on_end(error)
