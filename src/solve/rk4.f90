@@ -49,7 +49,7 @@ contains
       type(state_type), intent(inout) :: state
       !> Step [s]
       real(wp), intent(in) :: h
-      real(wp) :: load(4, 3)
+      real(wp) :: load(4, 3), push(3), ground(3)
 
       load(:, 1) = state%load
       call state%loads%at_time(state%time + 0.5_wp*h, load(:, 2))
@@ -57,10 +57,12 @@ contains
       self%load = load(:, 3)
       if (state%motion%plain .and. state%motion%single) then
          self%of_damping = 0.0_wp
+         push = load(lateral, :)
+         ground = load(horizontal, :)
          self%q(:) = state%q
          self%v(:) = state%v
          call step_of_one_body(state%motion, state%springs%d0, state%springs%f0, state%springs%k, h, &
-                               load(lateral, :), load(horizontal, :), self%q, self%v, self%of_loads)
+                               push, ground, self%q, self%v, self%of_loads)
       else
          call step_of_chain(self, state, h, load)
       end if
