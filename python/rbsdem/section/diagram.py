@@ -1,0 +1,200 @@
+"""A moment-curvature diagram, its events, and the confinement of the core."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rbsdem import _core
+from rbsdem._core import Array
+from rbsdem.errors import InputError
+from rbsdem.section.materials import tension_place
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from rbsdem.section.shapes import Section
+
+__all__ = ["Confinement", "Diagram", "Events", "Point", "make_diagram", "make_point"]
+
+
+@dataclass(frozen=True, slots=True)
+class Confinement:
+    """The core inside the ties (Mander, Priestley, Park 1988).
+
+    Attributes
+    ----------
+    fcc : float
+        Strength of the confined concrete [Pa].
+    eps_cc : float
+        Strain at its peak.
+    r : float
+        Exponent of its curve.
+    eps_cu : float
+        Strain at hoop fracture.
+    effectiveness : float
+        Coefficient k_e.
+    lateral_stress : float
+        Effective lateral stress f_l [Pa].
+    ratio : float
+        Volume of the transverse bars over that of the core, rho_s.
+    width, depth : float
+        Core between hoop centre lines [m].
+    """
+
+    fcc: float
+    eps_cc: float
+    r: float
+    eps_cu: float
+    effectiveness: float
+    lateral_stress: float
+    ratio: float
+    width: float
+    depth: float
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """A point of the diagram.
+
+    Attributes
+    ----------
+    curvature : float
+        [1/m].
+    moment : float
+        About mid-depth [N m].
+    strain : float
+        At mid-depth, compression positive.
+    """
+
+    curvature: float
+    moment: float
+    strain: float
+
+
+@dataclass(frozen=True, slots=True)
+class Events:
+    """Named points; None where the diagram has none.
+
+    Attributes
+    ----------
+    cracking : Point or None
+        The extreme fibre in tension is at f_t/E_c.
+    yielding : Point or None
+        Yield by the rule that was asked for.
+    peak : Point or None
+        The largest moment.
+    ultimate : Point or None
+        By the rule that was asked for.
+    """
+
+    cracking: Point | None
+    yielding: Point | None
+    peak: Point | None
+    ultimate: Point | None
+
+
+@dataclass(frozen=True, eq=False)
+class Diagram:
+    """Moment against curvature under a constant axial load.
+
+    Attributes
+    ----------
+    section : Section
+        The section.
+    axial_load : float
+        Compression positive [N].
+    tension : str
+        Tension law of the concrete.
+    confined : bool
+        Whether the core is taken as confined.
+    curvature, moment, strain : ndarray, shape (n,)
+        Rising curvatures [1/m], moments about mid-depth [N m], strains at mid-depth (compression
+        positive). The events are among them.
+    events : Events
+        Cracking, yielding, peak, ultimate.
+    end : Point
+        Where the moment has fallen by 20 per cent of its peak, or the axial load is lost.
+    lost : bool
+        Whether the diagram ends because the axial load is no longer carried.
+    """
+
+    section: Section
+    axial_load: float
+    tension: str
+    confined: bool
+    curvature: Array
+    moment: Array
+    strain: Array
+    events: Events
+    end: Point
+    lost: bool
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the diagram with its events, in kN m and mrad/m.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; a new figure without it.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+        """
+        from rbsdem.section.figure import draw_diagram  # noqa: PLC0415
+
+        return draw_diagram(self, ax)
+
+
+def make_point(numbers: Array) -> Point | None:
+    """Return a point from curvature, moment, strain and whether it was found."""
+    curvature, moment, strain, found = numbers.tolist()
+    return Point(curvature, moment, strain) if found else None
+
+
+def make_diagram(
+    section: Section,
+    axial_load: float,
+    tension: str,
+    confined: bool,
+    rules: tuple[str, str],
+    strains: tuple[float, float],
+    points: int,
+    furthest: float | None,
+) -> Diagram:
+    """Return the diagram; see `Section.diagram`."""
+    place = tension_place(tension)
+    numbers, lost = _core.section_events(
+        section._packed, axial_load, place, confined, *rules, np.array(strains, dtype=np.float64)
+    )
+    events = Events(*(make_point(column) for column in numbers.T[:4]))
+    end = make_point(numbers.T[4])
+    if end is None:
+        raise AssertionError("every diagram ends")
+    if furthest is None:
+        furthest = end.curvature
+        if events.ultimate:
+            furthest = min(furthest, 1.15 * events.ultimate.curvature)
+    else:
+        furthest = _core.number(furthest, "furthest")
+        if not 0.0 < furthest * section.depth <= 1.0:
+            raise InputError(f"furthest = {furthest} 1/m must be above zero and below 1/depth")
+    points = _core.whole(points, "points")
+    if points < 2:
+        raise InputError(f"points = {points} must be 2 or more")
+    named = [point.curvature for point in (*_points(events), end) if point.curvature <= furthest]
+    # Closer together where the diagram turns, at small curvatures.
+    curvature = np.unique(np.concatenate([furthest * np.linspace(0.0, 1.0, points) ** 2, named]))
+    moment, strain = section.strains(axial_load, curvature, tension, confined)
+    return Diagram(
+        section, axial_load, tension, confined, curvature, moment, strain, events, end, lost
+    )
+
+
+def _points(events: Events) -> list[Point]:
+    found = (events.cracking, events.yielding, events.peak, events.ultimate)
+    return [point for point in found if point is not None]

@@ -1,0 +1,222 @@
+"""Figures of a section: as drawn, and its moment-curvature diagram with the events.
+
+In the style of `rbsdem.plot`; mm, kN m and mrad/m.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rbsdem.plot import MODEL_LINE, TEST_LINE, style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from rbsdem.section.diagram import Diagram, Events
+    from rbsdem.section.shapes import Section
+    from rbsdem.section.spring_fit import SectionSprings
+
+__all__ = ["EVENT_MARKS", "draw_diagram", "draw_section", "draw_springs", "new_axes"]
+
+EVENT_MARKS: dict[str, dict[str, Any]] = {
+    "cracking": {"marker": "o", "markerfacecolor": "white"},
+    "yielding": {"marker": "s", "markerfacecolor": "white"},
+    "peak": {"marker": "^", "markerfacecolor": "black"},
+    "ultimate": {"marker": "D", "markerfacecolor": "black"},
+}
+"""Marks of the events."""
+
+_CONCRETE = {"facecolor": "0.93", "edgecolor": "black", "linewidth": 0.8}
+_TIE = {"facecolor": "0.35", "linewidth": 0.0}
+_INSIDE = {"facecolor": "0.93", "linewidth": 0.0}
+_BAR = {"facecolor": "black", "edgecolor": "black", "linewidth": 0.0}
+
+
+def new_axes(ax: Axes | None, size: tuple[float, float]) -> Axes:
+    """Return the axes, or those of a new figure of a size in inches."""
+    if ax is not None:
+        return ax
+    import matplotlib.pyplot as plt  # noqa: PLC0415
+
+    return plt.subplots(figsize=size, layout="constrained")[1]
+
+
+def draw_diagram(diagram: Diagram, ax: Axes | None = None) -> Axes:
+    """Draw moment against curvature and mark the events; see `Diagram.plot`."""
+    with style():
+        ax = new_axes(ax, (3.5, 2.8))
+        ax.plot(1e3 * diagram.curvature, diagram.moment / 1e3, **MODEL_LINE)
+        _draw_events(diagram.events, float(diagram.curvature[-1]), ax)
+        _dress(ax)
+        ax.set_ylim(bottom=min(0.0, float(np.min(diagram.moment)) / 1e3))
+    return ax
+
+
+def _draw_events(
+    events: Events, furthest: float, ax: Axes, names: Iterable[str] = tuple(EVENT_MARKS)
+) -> None:
+    for name in names:
+        point = getattr(events, name)
+        if point is not None and point.curvature <= furthest:
+            ax.plot(
+                1e3 * point.curvature,
+                point.moment / 1e3,
+                linestyle="none",
+                color="black",
+                markersize=4.5,
+                markeredgewidth=0.8,
+                zorder=5,
+                label=name.capitalize(),
+                **EVENT_MARKS[name],
+            )
+
+
+def _dress(ax: Axes) -> None:
+    ax.set_xlim(left=0.0)
+    ax.set_ylim(bottom=0.0)
+    ax.set_xlabel("Curvature (mrad/m)")
+    ax.set_ylabel("Moment (kN m)")
+    ax.tick_params(right=True, top=True)
+    ax.legend(loc="lower right", handletextpad=0.3)
+
+
+def draw_springs(springs: SectionSprings) -> Figure:
+    """Draw the diagrams and the lines fitted to them; see `SectionSprings.plot`."""
+    from matplotlib.figure import Figure  # noqa: PLC0415
+
+    section, events = springs.section, springs.events
+    with style():
+        panels = 1 if springs.shear_fit is None else 2
+        figure = Figure(figsize=(3.5 * panels, 2.9), layout="constrained")
+        axes = figure.subplots(1, panels, squeeze=False)[0]
+        if springs.shear_fit is not None:
+            section.shear_diagram(
+                springs.length,
+                springs.axial_load,
+                furthest=events.ultimate.curvature,
+                confined=springs.confined,
+            ).plot(axes[0], spring=springs.shear_fit)
+        ax = axes[-1]
+        load, last = springs.axial_load, 1.1 * events.ultimate.curvature
+        found = (events.cracking, events.yielding, events.ultimate)
+        line = np.array([(0.0, 0.0)] + [(1e3 * p.curvature, p.moment / 1e3) for p in found])
+        ax.plot(*line.T, **TEST_LINE, label="Spring")
+        curvature = last * np.linspace(0.0, 1.0, 150) ** 2
+        for tension, look, label in (
+            ("ts", {**MODEL_LINE, "color": "0.6"}, "Tension stiffening"),
+            ("bare", MODEL_LINE, "No stiffening"),
+        ):
+            moment = section.moment_curvature(load, curvature, tension, springs.confined)
+            ax.plot(1e3 * curvature, moment / 1e3, **look, label=label)
+        _draw_events(events, last, ax, ("cracking", "yielding", "ultimate"))
+        _dress(ax)
+    return figure
+
+
+def draw_section(section: Section, ax: Axes | None = None) -> Axes:
+    """Draw outline, ties and bars to scale, the tension face below; see `Section.plot`."""
+    from matplotlib.patches import Circle, Rectangle  # noqa: PLC0415
+
+    with style():
+        ax = new_axes(ax, (2.6, 2.8))
+        w, h = 1e3 * section.width, 1e3 * section.depth
+        if section.circular:
+            ax.add_patch(Circle((0.0, 0.0), 0.5 * h, **_CONCRETE))
+        else:
+            ax.add_patch(Rectangle((-0.5 * w, -0.5 * h), w, h, **_CONCRETE))
+        if section.ties is not None:
+            _draw_ties(section, ax)
+        for x, y, diameter in _bars_to_draw(section):
+            ax.add_patch(Circle((x, -y), 0.5 * diameter, zorder=3, **_BAR))
+        reach_x, reach_y = 0.54 * w, 0.54 * h
+        ax.set_xlim(-reach_x, reach_x)
+        ax.set_ylim(-reach_y, reach_y)
+        ax.set_aspect("equal")
+        ax.set_xticks([-0.5 * w, 0.0, 0.5 * w])
+        ax.set_yticks([-0.5 * h, 0.0, 0.5 * h], [f"{0.5 * h:g}", "0", f"\N{MINUS SIGN}{0.5 * h:g}"])
+        ax.set_xlabel("Width (mm)")
+        ax.set_ylabel("$y$ (mm), tension below")
+        for spine in ax.spines.values():
+            spine.set_visible(False)
+    return ax
+
+
+def _draw_ties(section: Section, ax: Axes) -> None:
+    """Draw hoop and inner legs as bands of their true thickness."""
+    from matplotlib.patches import Circle, FancyBboxPatch, Rectangle  # noqa: PLC0415
+
+    core, ties = section.confinement, section.ties
+    if core is None or ties is None:
+        return
+    b, d, thick = 1e3 * core.width, 1e3 * core.depth, 1e3 * ties.diameter
+    if section.circular:
+        for radius, look in ((0.5 * (d + thick), _TIE), (0.5 * (d - thick), _INSIDE)):
+            ax.add_patch(Circle((0.0, 0.0), radius, zorder=2, **look))
+        return
+    bend = 0.5 * 1e3 * (section.bar_diameter or 0.0)
+    for more, look in ((thick, _TIE), (-thick, _INSIDE)):
+        rounding = bend + 0.5 * more + 0.5 * thick
+        ax.add_patch(
+            FancyBboxPatch(
+                (-0.5 * (b + more) + rounding, -0.5 * (d + more) + rounding),
+                b + more - 2 * rounding,
+                d + more - 2 * rounding,
+                boxstyle=f"round,pad={rounding},rounding_size={rounding}",
+                zorder=2,
+                **look,
+            )
+        )
+    inset = 0.5 * thick + bend
+    for x in np.linspace(-0.5 * b + inset, 0.5 * b - inset, round(ties.legs))[1:-1]:
+        ax.add_patch(Rectangle((x - 0.5 * thick, -0.5 * d), thick, d, zorder=2, **_TIE))
+    for y in np.linspace(-0.5 * d + inset, 0.5 * d - inset, round(ties.legs_across))[1:-1]:
+        ax.add_patch(Rectangle((-0.5 * b, y - 0.5 * thick), b, thick, zorder=2, **_TIE))
+
+
+def _bars_to_draw(section: Section) -> list[tuple[float, float, float]]:
+    """Return x, y and diameter of every bar [mm]; only y is known, so rows are spread evenly."""
+    bars = []
+    for y, area, _ in section.bars:
+        one = 0.25 * math.pi * (section.bar_diameter or 0.0) ** 2
+        count = max(1, round(area / one)) if one > 0.0 else 1  # an entry may be a row
+        bars += [(1e3 * y, 2e3 * math.sqrt(area / count / math.pi))] * count
+    if section.circular:
+        return [(x, y, d) for (y, d), x in zip(bars, _around(bars), strict=True)]
+    core = section.confinement
+    inner = 1e3 * (section.width - 2.0 * section.side_cover)
+    if core is not None:
+        inner = 1e3 * (core.width - section.ties.diameter)
+    drawn = []
+    for level in dict.fromkeys(_level(y, section) for y, _ in bars):
+        row = [(y, d) for y, d in bars if _level(y, section) == level]
+        # The thickest stand in the corners.
+        row.sort(key=lambda bar: bar[1])
+        ends = row[-2:] if len(row) > 1 else []
+        row = [*ends[:1], *row[: len(row) - len(ends)], *ends[1:]]
+        edge = 0.5 * inner - 0.5 * row[0][1]
+        places = np.linspace(-edge, edge, len(row)) if len(row) > 1 else [0.0]
+        drawn += [(float(x), y, d) for x, (y, d) in zip(places, row, strict=True)]
+    return drawn
+
+
+def _level(y: float, section: Section) -> int:
+    """Return the row that a bar belongs to: bars of other diameters touch the same tie."""
+    return round(y / max(5.0, 0.6e3 * (section.bar_diameter or 0.01)))
+
+
+def _around(bars: list[tuple[float, float]]) -> list[float]:
+    """Return x of the bars of a circle [mm], left and right in turn."""
+    radius = max((abs(y) for y, _ in bars), default=0.0)
+    seen: dict[int, int] = {}
+    places = []
+    for y, _ in bars:
+        level = round(y)
+        side = 1 if seen.setdefault(level, 0) % 2 == 0 else -1
+        seen[level] += 1
+        places.append(side * math.sqrt(max(0.0, radius**2 - y**2)))
+    return places

@@ -1,0 +1,59 @@
+"""Figure of a shear diagram with its knee, and the spring through it (the paper's figure 2, left).
+
+In the style of `rbsdem.plot`; kN and mm/m.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rbsdem.plot import MODEL_LINE, TEST_LINE, style
+from rbsdem.section.figure import EVENT_MARKS, new_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from rbsdem.section.shear import ShearDiagram, ShearSpring
+
+__all__ = ["draw_shear"]
+
+
+def draw_shear(diagram: ShearDiagram, ax: Axes | None, spring: ShearSpring | None) -> Axes:
+    """Draw shear force against shear strain; see `ShearDiagram.plot`."""
+    with style():
+        ax = new_axes(ax, (3.5, 2.8))
+        strain = 1e3 * np.concatenate([[0.0], diagram.strain])
+        force = np.concatenate([[0.0], diagram.force]) / 1e3
+        ax.plot(strain, force, **MODEL_LINE, label="Section")
+        marks = {"yielding": diagram.knee, "ultimate": diagram.end}
+        if spring is not None:
+            marks = {"yielding": spring.knee, "ultimate": spring.end}
+            points = [(0.0, 0.0)] + [(p.strain, p.force) for p in (spring.knee, spring.end)]
+            x, y = np.array(points).T
+            ax.plot(1e3 * x, y / 1e3, **TEST_LINE, label="Spring")
+            # A strength far above the diagram would only flatten it.
+            if spring.strength < 1.3e3 * force.max():
+                ax.axhline(spring.strength / 1e3, color="0.75", linewidth=0.6, label="$V_n$")
+        for name, label in (("yielding", "Knee"), ("ultimate", "End")):
+            point = marks[name]
+            if point is not None:
+                ax.plot(
+                    1e3 * point.strain,
+                    point.force / 1e3,
+                    linestyle="none",
+                    color="black",
+                    markersize=4.5,
+                    markeredgewidth=0.8,
+                    zorder=5,
+                    label=label,
+                    **EVENT_MARKS[name],
+                )
+        ax.set_xlim(0.0, 1.08 * strain.max())
+        ax.set_ylim(bottom=0.0)
+        ax.set_xlabel("Shear strain (mm/m)")
+        ax.set_ylabel("Shear force (kN)")
+        ax.tick_params(right=True, top=True)
+        ax.legend(loc="lower right", handletextpad=0.5)
+    return ax

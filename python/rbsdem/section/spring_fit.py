@@ -1,0 +1,268 @@
+"""Springs of a column from its section: bilinear in shear, trilinear in flexure."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rbsdem import _core
+from rbsdem._core import UNSET
+from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.section.diagram import Events, make_point
+from rbsdem.section.shear import ShearSpring, closed_form_shear, fit_shear_spring
+from rbsdem.springs import Bilinear, Takeda
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rbsdem.section.shapes import Section
+
+__all__ = ["SHEAR", "YIELD_RULES", "SectionSprings", "fit_springs"]
+
+YIELD_RULES = ("A", "B", "first")
+"""How the yield rotation is read from the diagrams."""
+
+SHEAR = ("mcft", "closed", "none")
+"""How the shear spring is found."""
+
+
+@dataclass(frozen=True)
+class SectionSprings:
+    """Springs of a column and how they were found.
+
+    Attributes
+    ----------
+    section : Section
+        The section.
+    confined : bool
+        Whether its core is taken as confined.
+    flexure : rbsdem.Takeda
+        Trilinear spring of the hinge.
+    shear : rbsdem.Bilinear or None
+        Shear spring over the length of the column.
+    shear_fit : ShearSpring or None
+        Points, strength and warnings of the shear spring, where it comes from a shear diagram.
+    events : Events
+        Cracking (with tension stiffening), yielding, peak and ultimate (without).
+    hinge_length : float
+        Curvature times this is the rotation [m].
+    length, axial_load : float
+        Of the column [m], [N].
+    d_m : float
+        Rotation at which eq 7 of the paper was taken for B_1 [rad].
+    notes : tuple of str
+        What to know before the springs are used.
+    report : str
+        All of this as a table, in mm, kN and MPa.
+    """
+
+    section: Section
+    confined: bool
+    flexure: Takeda
+    shear: Bilinear | None
+    shear_fit: ShearSpring | None
+    events: Events
+    hinge_length: float
+    length: float
+    axial_load: float
+    d_m: float
+    notes: tuple[str, ...]
+    report: str
+
+    def plot(self) -> Figure:
+        """Draw the diagrams of the section and the lines of the springs (figure 2 of the paper).
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Shear force against shear strain, where there is a shear diagram, and moment against
+            curvature; `rbsdem.plot.save` writes it.
+        """
+        from rbsdem.section.figure import draw_springs  # noqa: PLC0415
+
+        return draw_springs(self)
+
+
+def fit_springs(
+    section: Section,
+    length: float,
+    axial_load: float,
+    *,
+    hinge_length: float | None = None,
+    yield_rule: str = "A",
+    ultimate: str = "cover",
+    eps_yield: float = 0.002,
+    eps_cover: float = 0.003,
+    confined: bool = False,
+    moment_factor: float = 1.0,
+    b0: float = 0.4,
+    b1: float | None = None,
+    d_m: float | None = None,
+    shear: str = "mcft",
+) -> SectionSprings:
+    """Fit the springs of a column to the diagrams of its section.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    length : float
+        From the base to the point of contraflexure, or the lateral load [m].
+    axial_load : float
+        Compression positive [N].
+    hinge_length : float, optional
+        Length of the hinge [m]; 0.08 L + 0.022 f_y d_b (MPa; Paulay and Priestley 1992, without
+        its lower bound).
+    yield_rule : {"A", "B", "first"}, optional
+        Yield where the first bar in tension yields, without tension stiffening ("A"); with that
+        moment, but the curvature at which the diagram with tension stiffening reaches it ("B");
+        as "A", or where the extreme fibre in compression is at `eps_yield`, whichever comes first
+        ("first"; Priestley, Calvi, Kowalsky 2007): for sections controlled by compression.
+    ultimate : {"cover", "mander", "steel", "drop"}, optional
+        Ultimate point, see `Section.diagram`.
+    eps_yield, eps_cover : float, optional
+        Strains of the extreme fibre, compression positive.
+    confined : bool, optional
+        Whether the core is taken as confined and the cover falls off.
+    moment_factor : float, optional
+        Factor of M_y and M_u for the shear that acts with the moment; 0.95 is what a coupled
+        analysis of the paper's columns gives.
+    b0 : float, optional
+        Exponent B_0 of the unloading stiffness.
+    b1 : float, optional
+        Factor B_1 of the inner unloading stiffness, a share of K_c. By default from eq 7 of the
+        paper at the rotation `d_m`.
+    d_m : float, optional
+        Rotation for eq 7 [rad]; by default the ultimate one.
+    shear : {"mcft", "closed", "none"}, optional
+        Shear spring from the shear diagram of the section with V = M/L (modified compression field
+        theory), from the closed form (without stiffness after yield), or none.
+
+    Returns
+    -------
+    SectionSprings
+        The springs, the events, a report.
+
+    Raises
+    ------
+    InputError
+        If a value is refused, or the section has no trilinear line.
+
+    Warns
+    -----
+    AccuracyWarning
+        If the moment falls after yield (K_u is then zero), or shear governs.
+    """
+    if yield_rule not in YIELD_RULES:
+        raise InputError(
+            f"springs: yield_rule = {yield_rule!r} is not known; it is one of "
+            f"{', '.join(YIELD_RULES)}"
+        )
+    if shear not in SHEAR:
+        raise InputError(
+            f"springs: shear = {shear!r} is not known; it is one of {', '.join(SHEAR)}"
+        )
+    confined = section._confined(confined)
+    given = {
+        "length": length,
+        "axial_load": axial_load,
+        "hinge_length": hinge_length,
+        "moment_factor": moment_factor,
+        "b0": b0,
+        "d_m": d_m,
+        "eps_yield": eps_yield,
+        "eps_cover": eps_cover,
+    }
+    settings = [
+        UNSET if value is None else _core.number(value, f"springs: {name}")
+        for name, value in given.items()
+    ]
+    points, figures = _core.section_flexure(
+        section._packed,
+        settings,
+        yield_rule == "B",
+        confined,
+        "first" if yield_rule == "first" else "tension",
+        ultimate,
+    )
+    k_c, d_c, k_y, d_y, k_u, b0, b1_found, k_u_found, l_p, d_m = figures.tolist()
+    notes = []
+    if k_u_found < 0.0:
+        notes.append(
+            f"K_u = {k_u_found:.4g} N m/rad: the moment falls from yield to the ultimate point; "
+            f"the spring has K_u = 0"
+        )
+    flexure = Takeda(k_c, d_c, k_y, d_y, k_u, b0=b0, b1=b1_found if b1 is None else b1)
+    events = Events(*(make_point(column) for column in points.T))
+    spring, shear_fit = None, None
+    if shear == "mcft":
+        shear_fit = fit_shear_spring(
+            section, float(length), axial_load, events.ultimate.curvature, confined=confined
+        )
+        spring = shear_fit.spring
+        notes += shear_fit.warnings
+    elif shear == "closed":
+        spring = Bilinear(
+            *closed_form_shear(section, float(length), events.cracking.moment), k_post=0.0
+        )
+    for note in notes:
+        warnings.warn(note, AccuracyWarning, stacklevel=3)
+    springs = SectionSprings(
+        section,
+        confined,
+        flexure,
+        spring,
+        shear_fit,
+        events,
+        l_p,
+        float(length),
+        axial_load,
+        d_m,
+        tuple(notes),
+        "",
+    )
+    object.__setattr__(springs, "report", _report(section, springs))
+    return springs
+
+
+def _report(section: Section, springs: SectionSprings) -> str:
+    """Return the springs, the events and what they rest on, one to a line."""
+    law = section.concrete_law
+    load, f = springs.axial_load, springs.flexure
+    share = load / (law["fc"] * section.gross_area)
+    lines = [
+        f"{section.shape} {1e3 * section.width:.0f} x {1e3 * section.depth:.0f} mm, "
+        f"{len(section.bars)} bars ({100 * section.steel_ratio:.2f} %), "
+        f"f'c {law['fc'] / 1e6:.1f} MPa",
+        f"length {1e3 * springs.length:.0f} mm, axial load {load / 1e3:.0f} kN "
+        f"({share:.3f} of f'c A), hinge {1e3 * springs.hinge_length:.0f} mm",
+        "",
+        f"{'point':<12}{'curvature':>14}{'moment':>12}{'rotation':>12}",
+        f"{'':<12}{'mrad/m':>14}{'kN m':>12}{'mrad':>12}",
+    ]
+    for name in ("cracking", "yielding", "peak", "ultimate"):
+        point = getattr(springs.events, name)
+        if point is None or not math.isfinite(point.moment):
+            continue
+        rotation = 1e3 * point.curvature * springs.hinge_length
+        lines.append(
+            f"{name:<12}{1e3 * point.curvature:>14.3f}{point.moment / 1e3:>12.1f}{rotation:>12.3f}"
+        )
+    lines += [
+        "",
+        f"flexure  K_c {f.k_c:.4e}  D_c {f.d_c:.4e}  K_y {f.k_y:.4e}  D_y {f.d_y:.4e}  "
+        f"K_u {f.k_u:.4e}  (N m/rad, rad)",
+        f"         B_0 {f.b0:.3f}  B_1 {f.b1:.3f} (eq 7 at {1e3 * springs.d_m:.2f} mrad)",
+    ]
+    if springs.shear is not None:
+        v = springs.shear
+        lines.append(f"shear    K_y {v.k:.4e}  D_y {v.d_y:.4e}  K_u {v.k_post:.4e}  (N/m, m)")
+    if springs.shear_fit is not None and springs.events.ultimate is not None:
+        lines.append(
+            f"         strength {springs.shear_fit.strength / 1e3:.0f} kN, flexure "
+            f"{springs.events.ultimate.moment / springs.length / 1e3:.0f} kN"
+        )
+    lines += [f"note: {note}" for note in springs.notes]
+    return "\n".join(lines)

@@ -1,0 +1,354 @@
+"""Shear strength of a column, and the drift at which shear and axial load are lost.
+
+Published relations with their sources; SI throughout. The empirical ones are written by their
+authors in MPa, N and mm. Depth d is from the compression face to the centre of the bars in the half
+in tension, and 0.8 of the diameter for circles (ACI 318-19, 22.5.2.2).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rbsdem.errors import InputError
+
+if TYPE_CHECKING:
+    from rbsdem.section.shapes import Section
+
+__all__ = [
+    "ShearSizes",
+    "axial_failure_drift",
+    "shear_failure_drift",
+    "shear_sizes",
+    "shear_strength_aci",
+    "shear_strength_mcft",
+    "shear_strength_sezen",
+]
+
+_MPA = 1.0e6
+_ES = 200.0e9
+
+
+@dataclass(frozen=True, slots=True)
+class ShearSizes:
+    """What the relations take from a section.
+
+    Attributes
+    ----------
+    fc : float
+        Cylinder strength [Pa].
+    width, depth, d : float
+        Width, whole depth and effective depth [m].
+    gross_area : float
+        Of the concrete [m2].
+    tension_steel : float
+        Bars in the half in tension; a bar at mid-depth counts half [m2].
+    tie_area : float
+        Legs times area of a bar, in the direction of the shear [m2]; 0 without ties.
+    spacing : float
+        Of the ties [m]; infinite without.
+    tie_yield : float
+        Their yield stress [Pa]; 0 without.
+    core_depth : float
+        Between centre lines of the ties [m]; the whole depth without.
+    """
+
+    fc: float
+    width: float
+    depth: float
+    d: float
+    gross_area: float
+    tension_steel: float
+    tie_area: float
+    spacing: float
+    tie_yield: float
+    core_depth: float
+
+    @property
+    def tie_ratio(self) -> float:
+        """Ties over width times spacing, rho''."""
+        return self.tie_area / (self.width * self.spacing)
+
+
+def shear_sizes(section: Section) -> ShearSizes:
+    """Return what the relations take from a section.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+
+    Returns
+    -------
+    ShearSizes
+        Its sizes.
+    """
+    half = [
+        (y, area if y > 1e-9 * section.depth else 0.5 * area)
+        for y, area, _ in section.bars
+        if y > -1e-9 * section.depth
+    ]
+    steel = sum(area for _, area in half)
+    outer = [(y, area) for y, area in half if y > 1e-9 * section.depth]
+    d = 0.8 * section.depth
+    if outer and not section.circular:
+        d = 0.5 * section.depth + sum(y * a for y, a in outer) / sum(a for _, a in outer)
+    ties = section.ties
+    area = spacing = tie_yield = 0.0
+    core = section.depth
+    if ties is not None:
+        legs = 2.0 if section.circular else getattr(ties, "legs", 2.0)
+        area = legs * 0.25 * math.pi * ties.diameter**2
+        tie_yield = ties.steel.fy
+        core = section.depth - 2.0 * section.cover - ties.diameter
+    spacing = ties.spacing if ties is not None else math.inf
+    return ShearSizes(
+        section.concrete_law["fc"],
+        section.width,
+        section.depth,
+        d,
+        section.gross_area,
+        steel,
+        area,
+        spacing,
+        tie_yield,
+        core,
+    )
+
+
+def shear_strength_mcft(
+    section: Section, length: float, axial_load: float, aggregate: float = 0.019
+) -> float:
+    """Return the shear strength of the simplified modified compression field theory.
+
+    V_n = beta sqrt(f'c) b z + A_v f_yt z cot(theta)/s, z = 0.9 d, with
+    beta = 0.4/(1 + 1500 eps_x) 1300/(1000 + s_ze), theta = (29 + 7000 eps_x)(0.88 + s_ze/2500) up
+    to 75 degrees, and eps_x = (M/d + V - N/2)/(2 E_s A_s) >= 0 the strain at mid-depth. M and V are
+    those at d from the base when V_n is reached, M at least V d.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    length : float
+        From the base to the lateral load [m].
+    axial_load : float
+        Compression positive [N].
+    aggregate : float, optional
+        Largest grain of the concrete [m]; counts only with fewer ties than the least.
+
+    Returns
+    -------
+    float
+        V_n [N], at most 0.25 f'c b z.
+
+    Raises
+    ------
+    InputError
+        If the length is not positive.
+
+    Notes
+    -----
+    Bentz, Vecchio, Collins 2006 (ACI Structural Journal 103(4)). With ties of at least
+    0.06 sqrt(f'c)/f_yt the crack spacing s_ze is 300 mm, else 35 z/(16 + aggregate) >= 0.85 z (mm).
+    """
+    sizes = shear_sizes(section)
+    span = _positive(length, "length")
+    if not sizes.tension_steel > 0.0:
+        return 0.0
+    z = 0.9 * sizes.d
+    root = min(math.sqrt(sizes.fc / _MPA), 8.0)
+    least = 0.06 * root * _MPA / sizes.tie_yield if sizes.tie_yield > 0.0 else math.inf
+    if sizes.tie_ratio >= least:
+        s_ze = 300.0
+    else:
+        s_ze = max(35.0 * z * 1e3 / (16.0 + aggregate * 1e3), 0.85 * z * 1e3)
+    arm = max(span - sizes.d, sizes.d)
+
+    def strength(v: float) -> float:
+        eps_x = (v * arm / sizes.d + v - 0.5 * axial_load) / (2.0 * _ES * sizes.tension_steel)
+        eps_x = max(eps_x, 0.0)
+        beta = 0.4 / (1.0 + 1500.0 * eps_x) * 1300.0 / (1000.0 + s_ze)
+        theta = math.radians(min((29.0 + 7000.0 * eps_x) * (0.88 + s_ze / 2500.0), 75.0))
+        v_c = beta * root * _MPA * sizes.width * z
+        v_s = sizes.tie_area * sizes.tie_yield * z / (math.tan(theta) * sizes.spacing)
+        return min(v_c + v_s, 0.25 * sizes.fc * sizes.width * z)
+
+    # More shear opens the cracks: strength(v) falls, so there is one v that equals it.
+    low, high = 0.0, strength(0.0)
+    for _ in range(100):
+        v = 0.5 * (low + high)
+        if strength(v) > v:
+            low = v
+        else:
+            high = v
+    return 0.5 * (low + high)
+
+
+def shear_strength_sezen(
+    section: Section, length: float, axial_load: float, ductility: float = 1.0
+) -> float:
+    """Return the shear strength of Sezen and Moehle, which falls with ductility.
+
+    V_n = k (V_c + V_s), V_s = A_v f_yt d/s,
+    V_c = 0.5 sqrt(f'c)/(a/d) sqrt(1 + P/(0.5 sqrt(f'c) A_g)) 0.8 A_g with a/d from 2 to 4, and k
+    from 1 at displacement ductilities up to 2 to 0.7 from 6 on.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    length : float
+        Shear span a [m].
+    axial_load : float
+        Compression positive [N]; tension counts up to the root of zero.
+    ductility : float, optional
+        Displacement over yield displacement.
+
+    Returns
+    -------
+    float
+        V_n [N].
+
+    Raises
+    ------
+    InputError
+        If the length is not positive or the ductility negative.
+
+    Notes
+    -----
+    Sezen, Moehle 2004 (ASCE Journal of Structural Engineering 130(11)).
+    """
+    sizes = shear_sizes(section)
+    span = _positive(length, "length")
+    if not ductility >= 0.0:
+        raise InputError(f"shear strength: ductility = {ductility} must not be negative")
+    tensile = 0.5 * math.sqrt(sizes.fc / _MPA) * _MPA
+    slender = min(max(span / sizes.d, 2.0), 4.0)
+    pressed = math.sqrt(max(1.0 + axial_load / (tensile * sizes.gross_area), 0.0))
+    v_c = tensile / slender * pressed * 0.8 * sizes.gross_area
+    v_s = sizes.tie_area * sizes.tie_yield * sizes.d / sizes.spacing
+    return min(max(1.15 - 0.075 * ductility, 0.7), 1.0) * (v_c + v_s)
+
+
+def shear_strength_aci(section: Section, axial_load: float) -> float:
+    """Return the nominal shear strength of ACI 318-19, normal-weight concrete.
+
+    V_c = (0.17 sqrt(f'c) + N/(6 A_g)) b d with the least ties, else
+    V_c = (0.66 lambda_s rho_w^(1/3) sqrt(f'c) + N/(6 A_g)) b d; V_s = A_v f_yt d/s.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    axial_load : float
+        Compression positive [N].
+
+    Returns
+    -------
+    float
+        V_n, without the factor phi [N].
+
+    Notes
+    -----
+    ACI 318-19, 22.5.1.2, 22.5.3, 22.5.5, 22.5.8.5.3, 9.6.3.4. sqrt(f'c) up to 8.3 MPa, f_yt up to
+    420 MPa, N/(6 A_g) up to 0.05 f'c, V_c from 0 to 0.42 sqrt(f'c) b d, V_s up to
+    0.66 sqrt(f'c) b d.
+    """
+    sizes = shear_sizes(section)
+    root = min(math.sqrt(sizes.fc / _MPA), 8.3)
+    tie_yield = min(sizes.tie_yield, 420.0 * _MPA)
+    area = sizes.width * sizes.d
+    pressed = min(axial_load / (6.0 * sizes.gross_area), 0.05 * sizes.fc)
+    least = max(0.062 * root, 0.35) * _MPA / tie_yield if tie_yield > 0.0 else math.inf
+    if sizes.tie_ratio >= least:
+        v_c = (0.17 * root * _MPA + pressed) * area
+    else:
+        size = min(math.sqrt(2.0 / (1.0 + 4.0 * sizes.d)), 1.0)
+        ratio = sizes.tension_steel / area
+        v_c = (0.66 * size * ratio ** (1.0 / 3.0) * root * _MPA + pressed) * area
+    v_c = min(max(v_c, 0.0), 0.42 * root * _MPA * area)
+    v_s = min(sizes.tie_area * tie_yield * sizes.d / sizes.spacing, 0.66 * root * _MPA * area)
+    return v_c + v_s
+
+
+def shear_failure_drift(section: Section, shear_force: float, axial_load: float) -> float:
+    """Return the drift ratio at which a column that has yielded loses its shear strength.
+
+    3/100 + 4 rho'' - v/(40 sqrt(f'c)) - P/(40 A_g f'c) (MPa), not below 1/100, v = V/(b d).
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    shear_force : float
+        Largest shear force [N].
+    axial_load : float
+        Compression positive [N].
+
+    Returns
+    -------
+    float
+        Drift over length.
+
+    Notes
+    -----
+    Elwood, Moehle 2005 (Earthquake Spectra 21(1)); from columns that yield in flexure and then fail
+    in shear, rectangular, with light ties.
+    """
+    sizes = shear_sizes(section)
+    stress = abs(shear_force) / (sizes.width * sizes.d)
+    drift = (
+        0.03
+        + 4.0 * sizes.tie_ratio
+        - stress / _MPA / (40.0 * math.sqrt(sizes.fc / _MPA))
+        - axial_load / (40.0 * sizes.gross_area * sizes.fc)
+    )
+    return max(drift, 0.01)
+
+
+def axial_failure_drift(section: Section, axial_load: float, angle: float = 65.0) -> float:
+    """Return the drift ratio at which a column that has failed in shear loses its axial load.
+
+    (4/100) (1 + tan^2)/(tan + P s/(A_v f_yt d_c tan)) with the tangent of the angle of the shear
+    crack and the depth d_c of the core between centre lines of the ties.
+
+    Parameters
+    ----------
+    section : Section
+        The section; without ties the drift is zero under any compression.
+    axial_load : float
+        Compression positive [N]; tension counts as zero.
+    angle : float, optional
+        Of the crack from the horizontal [degrees].
+
+    Returns
+    -------
+    float
+        Drift over length.
+
+    Raises
+    ------
+    InputError
+        If the angle is not between 0 and 90 degrees.
+
+    Notes
+    -----
+    Elwood, Moehle 2005 (ACI Structural Journal 102(4)): friction along the crack.
+    """
+    if not 0.0 < angle < 90.0:
+        raise InputError(f"axial failure: angle = {angle} must be between 0 and 90 degrees")
+    sizes = shear_sizes(section)
+    tangent = math.tan(math.radians(angle))
+    load = max(axial_load, 0.0)
+    ties = sizes.tie_area * sizes.tie_yield * sizes.core_depth / sizes.spacing
+    if not ties > 0.0:
+        return 0.0 if load > 0.0 else 0.04 * (1.0 + tangent**2) / tangent
+    return 0.04 * (1.0 + tangent**2) / (tangent + load / (ties * tangent))
+
+
+def _positive(value: float, name: str) -> float:
+    if not (math.isfinite(value) and value > 0.0):
+        raise InputError(f"shear strength: {name} = {value} m must be above zero")
+    return value

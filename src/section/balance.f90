@@ -1,0 +1,286 @@
+!> The strain at mid-depth at which a section carries its axial load, curvature by curvature.
+!>
+!> Past the peak there may be several such strains. The one taken is that which the section comes to from
+!> the last curvature when the unbalanced axial load pushes it: it is stable, and continuous as long as there
+!> is a continuous one.
+module rbs_section_balance
+   use rbs_base_constants, only: unbounded
+   use rbs_base_error, only: error_type, fatal_error, bad_input, analysis_failed
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_section_resultants, only: laws_type, resultants_type, resultants, force_scale
+   use rbs_section_section, only: section_type
+   implicit none
+   private
+
+   public :: state_type, begin, advance, follow, axial_capacity
+
+   !> A section in equilibrium.
+   type :: state_type
+      !> Curvature [1/m], strain at mid-depth (compression positive), moment about mid-depth [N m]
+      real(wp) :: curvature = 0.0_wp, eps0 = 0.0_wp, moment = 0.0_wp
+      !> Change of the strain with the curvature over the last step [m], to guess the next one
+      real(wp) :: trend = 0.0_wp
+   end type state_type
+
+   !> Residual of the axial force, as a share of the forces at play.
+   real(wp), parameter :: tolerance = 1.0e-10_wp
+   integer, parameter :: most_newton = 8, most_bisections = 200
+
+   !> Strain over the depth that one step may add [-], so that no branch is jumped over, and its share of
+   !> what is there already.
+   real(wp), parameter :: longest_step = 1.0e-3_wp, longest_growth = 0.05_wp
+   !> First step of a search for the strain, its growth and the longest one; share of the strain over the
+   !> depth that may be added to that.
+   real(wp), parameter :: first_search = 2.0e-6_wp, search_growth = 1.4_wp, longest_search = 1.0e-4_wp, &
+                          search_share = 0.02_wp
+   !> Strain in compression at which a section counts as crushed.
+   real(wp), parameter :: crushed = 0.05_wp
+
+contains
+
+   !> The section under its axial load before it is bent.
+   subroutine begin(section, laws, axial_load, state, error)
+      type(section_type), intent(in) :: section
+      type(laws_type), intent(in) :: laws
+      !> Compression positive [N]
+      real(wp), intent(in) :: axial_load
+      type(state_type), intent(out) :: state
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: most, least
+      logical :: found
+
+      call settle(section, laws, axial_load, 0.0_wp, state, found)
+      if (found) return
+      call axial_capacity(section, laws, least, most)
+      if (axial_load > 0.0_wp) then
+         call fatal_error(error, bad_input, 'section: axial load = '//to_text(axial_load)// &
+                          ' N (compression) is above what the section carries, '//to_text(most)// &
+                          ' N; reduce it, or enlarge the section')
+      else
+         call fatal_error(error, bad_input, 'section: axial load = '//to_text(axial_load)// &
+                          ' N (tension) is above what the bars carry, '//to_text(-least)// &
+                          ' N; reduce it, or add bars')
+      end if
+   end subroutine begin
+
+   !> Bend the section to a curvature of the present sign and larger size, in steps of its own.
+   subroutine advance(section, laws, axial_load, curvature, state, found)
+      type(section_type), intent(in) :: section
+      type(laws_type), intent(in) :: laws
+      !> [N]
+      real(wp), intent(in) :: axial_load
+      !> [1/m]
+      real(wp), intent(in) :: curvature
+      !> Moves to `curvature`, or to the last one at which the section carries the axial load
+      type(state_type), intent(inout) :: state
+      logical, intent(out) :: found
+      type(state_type) :: next
+      integer :: steps, i
+      real(wp) :: first
+
+      found = .true.
+      first = state%curvature
+      steps = max(1, ceiling(abs(curvature - first)*section%depth/ &
+                             max(longest_step, longest_growth*abs(first)*section%depth)))
+      do i = 1, steps
+         next = state
+         next%curvature = curvature
+         if (i < steps) next%curvature = first + i*(curvature - first)/steps
+         call find_strain(section, laws, axial_load, state, next, found)
+         if (.not. found) return
+         state = next
+      end do
+   end subroutine advance
+
+   !> Moments for curvatures of one sign in rising size.
+   subroutine follow(section, laws, axial_load, curvature, moment, eps0, error)
+      type(section_type), intent(in) :: section
+      type(laws_type), intent(in) :: laws
+      !> Compression positive [N]
+      real(wp), intent(in) :: axial_load
+      !> [1/m]
+      real(wp), intent(in) :: curvature(:)
+      !> About mid-depth [N m], and strain at mid-depth, compression positive; zero from a failure on
+      real(wp), intent(out) :: moment(:), eps0(:)
+      type(error_type), allocatable, intent(out) :: error
+      type(state_type) :: state
+      logical :: found
+      integer :: i
+
+      moment = 0.0_wp
+      eps0 = 0.0_wp
+      call begin(section, laws, axial_load, state, error)
+      if (allocated(error)) return
+      do i = 1, size(curvature)
+         call advance(section, laws, axial_load, curvature(i), state, found)
+         if (.not. found) then
+            call fatal_error(error, analysis_failed, 'section: beyond a curvature of '// &
+                             to_text(state%curvature)//' 1/m it no longer carries the axial load of '// &
+                             to_text(axial_load)//' N (asked for '//to_text(curvature(i))// &
+                             ' 1/m); end the curvatures there, or reduce the axial load')
+            return
+         end if
+         moment(i) = state%moment
+         eps0(i) = state%eps0
+      end do
+   end subroutine follow
+
+   !> Equilibrium at next%curvature, coming from `last`: Newton's method from the trend; the search if that
+   !> leads anywhere else than close by.
+   subroutine find_strain(section, laws, axial_load, last, next, found)
+      type(section_type), intent(in) :: section
+      type(laws_type), intent(in) :: laws
+      real(wp), intent(in) :: axial_load
+      type(state_type), intent(in) :: last
+      type(state_type), intent(inout) :: next
+      logical, intent(out) :: found
+      type(resultants_type) :: sums
+      real(wp) :: residual, near, guess, limit, turn
+      integer :: i
+
+      turn = next%curvature - last%curvature
+      guess = last%eps0 + last%trend*turn
+      near = 2.0e-5_wp + 0.3_wp*abs(turn)*section%depth
+      limit = tolerance*force_scale(section)
+      next%eps0 = guess
+      found = .false.
+      do i = 1, most_newton
+         sums = resultants(section, laws, next%eps0, next%curvature)
+         if (.not. sums%stiffness > 0.0_wp) exit
+         residual = sums%n - axial_load
+         if (abs(residual) <= limit) then
+            found = .true.
+            next%moment = sums%m
+            exit
+         end if
+         next%eps0 = next%eps0 - residual/sums%stiffness
+         if (abs(next%eps0 - guess) > near) exit
+      end do
+      if (.not. found) then
+         next%eps0 = last%eps0
+         call settle(section, laws, axial_load, next%curvature, next, found)
+      end if
+      if (found .and. abs(turn) > 0.0_wp) next%trend = (next%eps0 - last%eps0)/turn
+   end subroutine find_strain
+
+   !> From state%eps0 go where the unbalanced axial load pushes, up to the first equilibrium.
+   subroutine settle(section, laws, axial_load, curvature, state, found)
+      type(section_type), intent(in) :: section
+      type(laws_type), intent(in) :: laws
+      real(wp), intent(in) :: axial_load, curvature
+      type(state_type), intent(inout) :: state
+      logical, intent(out) :: found
+      type(resultants_type) :: here, there
+      real(wp) :: step, direction, at, next, furthest
+
+      found = .true.
+      state%curvature = curvature
+      at = state%eps0
+      here = resultants(section, laws, at, curvature)
+      state%moment = here%m
+      if (abs(here%n - axial_load) <= tolerance*force_scale(section)) return
+      direction = sign(1.0_wp, axial_load - here%n)
+      furthest = crushed
+      if (direction < 0.0_wp) furthest = largest_opening(section)
+      furthest = furthest + abs(curvature)*section%depth
+      step = first_search
+      do
+         next = at + direction*step
+         if (abs(next) > furthest) exit
+         there = resultants(section, laws, next, curvature)
+         if ((there%n - axial_load)*direction >= 0.0_wp) then
+            call close_in(section, laws, axial_load, curvature, at, here, next, there, state)
+            return
+         end if
+         at = next
+         here = there
+         step = min(longest_search + search_share*abs(curvature)*section%depth, search_growth*step)
+      end do
+      found = .false.
+   end subroutine settle
+
+   !> Between two strains with residuals of opposite sign: regula falsi as of Illinois, every third step a
+   !> bisection. Where the force jumps (a bar breaks) the equilibrium is within the jump.
+   subroutine close_in(section, laws, axial_load, curvature, first, at_first, second, at_second, state)
+      type(section_type), intent(in) :: section
+      type(laws_type), intent(in) :: laws
+      real(wp), intent(in) :: axial_load, curvature
+      !> The two strains and what they need
+      real(wp), intent(in) :: first, second
+      type(resultants_type), intent(in) :: at_first, at_second
+      type(state_type), intent(inout) :: state
+      type(resultants_type) :: a_sums, b_sums, sums
+      real(wp) :: a, b, at, weight_a, weight_b, limit, share
+      integer :: i, kept
+
+      a = first
+      b = second
+      kept = 0
+      a_sums = at_first
+      b_sums = at_second
+      weight_a = a_sums%n - axial_load
+      weight_b = b_sums%n - axial_load
+      limit = tolerance*force_scale(section)
+      do i = 1, most_bisections
+         at = 0.5_wp*(a + b)
+         if (mod(i, 3) /= 0) at = b - weight_b*(b - a)/(weight_b - weight_a)
+         sums = resultants(section, laws, at, curvature)
+         if (abs(sums%n - axial_load) <= limit) then
+            state%eps0 = at
+            state%moment = sums%m
+            return
+         end if
+         if ((sums%n - axial_load)*(b_sums%n - axial_load) > 0.0_wp) then
+            if (kept > 0) weight_a = 0.5_wp*weight_a
+            kept = 1
+            b = at
+            b_sums = sums
+            weight_b = sums%n - axial_load
+         else
+            if (kept < 0) weight_b = 0.5_wp*weight_b
+            kept = -1
+            a = at
+            a_sums = sums
+            weight_a = sums%n - axial_load
+         end if
+         if (abs(b - a) <= 4.0_wp*spacing(max(abs(a), abs(b)))) exit
+      end do
+      share = (axial_load - a_sums%n)/(b_sums%n - a_sums%n)
+      state%eps0 = b
+      state%moment = a_sums%m + share*(b_sums%m - a_sums%m)
+   end subroutine close_in
+
+   !> Largest strain that a bar bears, 0.1 without bars.
+   pure real(wp) function largest_opening(section)
+      type(section_type), intent(in) :: section
+
+      largest_opening = 0.1_wp
+      if (size(section%steels) > 0) largest_opening = maxval(section%steels%eps_u)
+   end function largest_opening
+
+   !> Least (tension) and largest (compression) axial force of the section without curvature [N].
+   subroutine axial_capacity(section, laws, least, most)
+      type(section_type), intent(in) :: section
+      type(laws_type), intent(in) :: laws
+      real(wp), intent(out) :: least, most
+      type(resultants_type) :: sums
+      real(wp) :: strain
+
+      least = 0.0_wp
+      most = 0.0_wp
+      strain = longest_search
+      do while (strain < crushed)
+         sums = resultants(section, laws, strain, 0.0_wp)
+         most = max(most, sums%n)
+         strain = strain + longest_search
+      end do
+      strain = first_search
+      do while (strain < largest_opening(section))
+         sums = resultants(section, laws, -strain, 0.0_wp)
+         least = min(least, sums%n)
+         strain = strain + merge(first_search, longest_search, strain < 2.0e-4_wp)
+      end do
+   end subroutine axial_capacity
+
+end module rbs_section_balance

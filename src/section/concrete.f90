@@ -1,0 +1,226 @@
+!> Stress of concrete under a uniaxial strain; compression is positive.
+!>
+!> Compression: Popovics' curve f = f_p n x/(n - 1 + x^(n k)), x = eps/eps_0. Plain concrete has n, eps_0
+!> and the decay k past the peak from its strength (Thorenfeldt, Tomaszewicz, Jensen 1987; Collins and
+!> Mitchell 1991); confined concrete has k = 1, and peak and n of Mander, Priestley, Park 1988 (ASCE 114(8)).
+!> The initial slope is E_c in both. Tension: E_c eps up to f_t, then one of three laws.
+module rbs_section_concrete
+   use rbs_base_constants, only: unset, unbounded
+   use rbs_base_error, only: message_list
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_spec_check, only: is_given, check_positive, check_not_negative
+   implicit none
+   private
+
+   public :: concrete_type, plain_concrete, confined_concrete, spalling_concrete, check_concrete
+   public :: concrete_stress, concrete_tangent, concrete_both
+
+   !> What is left of the tension beyond cracking: no tension at any strain; none beyond f_t; tension
+   !> stiffening f_t/(1 + sqrt(500 eps)) (Collins and Mitchell 1987).
+   character(len=4), parameter, public :: tension_names(3) = ['zero', 'bare', 'ts  ']
+   integer, parameter, public :: tension_zero = 1, tension_bare = 2, tension_ts = 3
+
+   real(wp), parameter :: mpa = 1.0e6_wp
+
+   type :: concrete_type
+      !> Peak stress in compression and in tension [Pa], modulus of elasticity [Pa]
+      real(wp) :: fc = 0.0_wp, ft = 0.0_wp, ec = 0.0_wp
+      !> Strain at the peak of compression, exponent of Popovics' curve, factor of it past the peak
+      real(wp) :: eps0 = 0.0_wp, n = 0.0_wp, decay = 1.0_wp
+      !> Strain from which a straight line leads to no stress, and where that is: spalling
+      real(wp) :: eps_line = unbounded, eps_spall = unbounded
+      !> Strain at which the confinement is lost: first hoop fracture; unbounded without confinement
+      real(wp) :: eps_cu = unbounded
+      !> Place of the tension law among `tension_names`
+      integer :: tension = tension_ts
+   end type concrete_type
+
+contains
+
+   !> Concrete without confinement. What is not given follows from the strength:
+   !> E_c = 3320 sqrt(f'c) + 6900, f_t = 0.45 f'c^0.4, n = 0.8 + f'c/17 (MPa), eps_0 = f'c/E_c n/(n - 1).
+   elemental type(concrete_type) function plain_concrete(fc, ft, ec, eps0) result(law)
+      !> Cylinder strength [Pa]
+      real(wp), intent(in) :: fc
+      !> Tensile strength, modulus [Pa] and strain at the peak, or `unset`
+      real(wp), intent(in) :: ft, ec, eps0
+      real(wp) :: strength
+
+      strength = fc/mpa
+      law%fc = fc
+      law%ft = ft
+      if (.not. is_given(ft)) law%ft = 0.45_wp*strength**0.4_wp*mpa
+      law%ec = ec
+      if (.not. is_given(ec)) law%ec = (3320.0_wp*sqrt(strength) + 6900.0_wp)*mpa
+      law%n = 0.8_wp + strength/17.0_wp
+      if (is_given(eps0)) then
+         law%eps0 = eps0
+         law%n = law%ec*eps0/(law%ec*eps0 - fc)    ! keeps E_c as the initial slope
+      else
+         law%eps0 = fc/law%ec*law%n/(law%n - 1.0_wp)
+      end if
+      law%decay = max(1.0_wp, 0.67_wp + strength/62.0_wp)
+   end function plain_concrete
+
+   !> The same concrete under lateral stress (Mander, Priestley, Park 1988).
+   elemental type(concrete_type) function confined_concrete(plain, lateral, eps_cu) result(law)
+      type(concrete_type), intent(in) :: plain
+      !> Effective lateral stress f_l [Pa]
+      real(wp), intent(in) :: lateral
+      !> Strain at hoop fracture
+      real(wp), intent(in) :: eps_cu
+      real(wp) :: share, eps_co
+
+      law = plain
+      share = lateral/plain%fc
+      law%fc = plain%fc*(-1.254_wp + 2.254_wp*sqrt(1.0_wp + 7.94_wp*share) - 2.0_wp*share)
+      ! 0.002 as in the source; strong concrete (above about 50 MPa) peaks later, and with 0.002 its secant
+      ! would come to E_c, where the curve has no meaning.
+      eps_co = max(0.002_wp, 0.9_wp*plain%eps0, 1.1_wp*plain%fc/plain%ec)
+      law%eps0 = eps_co*(1.0_wp + 5.0_wp*(law%fc/plain%fc - 1.0_wp))
+      law%n = law%ec/(law%ec - law%fc/law%eps0)
+      law%decay = 1.0_wp
+      law%eps_cu = eps_cu
+   end function confined_concrete
+
+   !> The same concrete as cover that falls off: from 2 eps_0 on a straight line to no stress at eps_spall.
+   elemental type(concrete_type) function spalling_concrete(plain, eps_spall) result(law)
+      type(concrete_type), intent(in) :: plain
+      real(wp), intent(in) :: eps_spall
+
+      law = plain
+      law%eps_line = min(2.0_wp*plain%eps0, 0.75_wp*eps_spall)
+      law%eps_spall = eps_spall
+   end function spalling_concrete
+
+   !> Stress [Pa] at a strain, compression positive.
+   elemental real(wp) function concrete_stress(law, strain) result(stress)
+      type(concrete_type), intent(in) :: law
+      real(wp), intent(in) :: strain
+      real(wp) :: tangent
+
+      call concrete_both(law, strain, stress, tangent)
+   end function concrete_stress
+
+   !> Slope of the law [Pa].
+   elemental real(wp) function concrete_tangent(law, strain) result(tangent)
+      type(concrete_type), intent(in) :: law
+      real(wp), intent(in) :: strain
+      real(wp) :: stress
+
+      call concrete_both(law, strain, stress, tangent)
+   end function concrete_tangent
+
+   !> Stress and slope at once: they share the costly power.
+   elemental subroutine concrete_both(law, strain, stress, tangent)
+      type(concrete_type), intent(in) :: law
+      !> Compression positive
+      real(wp), intent(in) :: strain
+      !> [Pa]
+      real(wp), intent(out) :: stress, tangent
+
+      if (strain <= 0.0_wp) then
+         call in_tension(law, -strain, stress, tangent)
+      else if (strain <= law%eps_line) then
+         call in_compression(law, strain, stress, tangent)
+      else if (strain < law%eps_spall) then
+         call in_compression(law, law%eps_line, stress, tangent)
+         tangent = -stress/(law%eps_spall - law%eps_line)
+         stress = -tangent*(law%eps_spall - strain)
+      else
+         stress = 0.0_wp
+         tangent = 0.0_wp
+      end if
+   end subroutine concrete_both
+
+   pure subroutine in_compression(law, strain, stress, tangent)
+      type(concrete_type), intent(in) :: law
+      real(wp), intent(in) :: strain
+      real(wp), intent(out) :: stress, tangent
+      real(wp) :: x, power, exponent, below
+
+      x = strain/law%eps0
+      exponent = law%n
+      if (x > 1.0_wp) exponent = law%n*law%decay
+      power = x**exponent
+      below = 1.0_wp/(law%n - 1.0_wp + power)
+      stress = law%fc*law%n*x*below
+      tangent = law%fc*law%n*(law%n - 1.0_wp + (1.0_wp - exponent)*power)*below**2/law%eps0
+   end subroutine in_compression
+
+   !> `opening` is the strain, tension positive.
+   pure subroutine in_tension(law, opening, stress, tangent)
+      type(concrete_type), intent(in) :: law
+      real(wp), intent(in) :: opening
+      real(wp), intent(out) :: stress, tangent
+      real(wp) :: root
+
+      stress = 0.0_wp
+      tangent = 0.0_wp
+      if (law%tension == tension_zero) then
+         if (.not. opening > 0.0_wp) tangent = law%ec
+      else if (law%ec*opening <= law%ft) then
+         stress = -law%ec*opening
+         tangent = law%ec
+      else if (law%tension == tension_ts) then
+         root = sqrt(500.0_wp*opening)
+         stress = -law%ft/(1.0_wp + root)
+         tangent = -law%ft*250.0_wp/(root*(1.0_wp + root)**2)
+      end if
+   end subroutine in_tension
+
+   !> Add a message for every number that is refused.
+   subroutine check_concrete(fc, ft, ec, eps0, eps_spall, messages)
+      !> As for `plain_concrete`
+      real(wp), intent(in) :: fc, ft, ec, eps0, eps_spall
+      type(message_list), intent(inout) :: messages
+      type(concrete_type) :: law
+      logical :: ok, all_ok
+
+      call check_positive(fc, 'concrete: fc', 'Pa', messages, all_ok)
+      if (all_ok .and. (fc < 5.0_wp*mpa .or. fc > 200.0_wp*mpa)) then
+         call messages%add('concrete: fc = '//to_text(fc)//' Pa must be between 5e6 and 200e6: '// &
+                           '30 MPa is fc = 30e6')
+         all_ok = .false.
+      end if
+      if (is_given(ft)) then
+         call check_not_negative(ft, 'concrete: ft', 'Pa', messages, ok)
+         if (ok .and. all_ok .and. .not. ft < fc) then
+            call messages%add('concrete: ft = '//to_text(ft)//' Pa must be below fc = '//to_text(fc)//' Pa')
+         end if
+         all_ok = all_ok .and. ok
+      end if
+      if (is_given(ec)) then
+         call check_positive(ec, 'concrete: ec', 'Pa', messages, ok)
+         if (ok .and. (ec < 1.0e9_wp .or. ec > 1.0e12_wp)) then
+            call messages%add('concrete: ec = '//to_text(ec)//' Pa must be between 1e9 and 1e12: '// &
+                              '25 GPa is ec = 25e9')
+            ok = .false.
+         end if
+         all_ok = all_ok .and. ok
+      end if
+      if (is_given(eps0)) then
+         call check_positive(eps0, 'concrete: eps0', '', messages, ok)
+         all_ok = all_ok .and. ok
+      end if
+      call check_positive(eps_spall, 'concrete: eps_spall', '', messages, ok)
+      if (.not. all_ok) return
+      law = plain_concrete(fc, ft, ec, unset)
+      if (is_given(eps0)) then
+         if (law%ec*eps0 < 1.02_wp*fc) then
+            call messages%add('concrete: eps0 = '//to_text(eps0)//' must be above fc/ec = '// &
+                              to_text(fc/law%ec)//', where the curve would be straight up to its peak')
+         else if (eps0 > 0.02_wp) then
+            call messages%add('concrete: eps0 = '//to_text(eps0)//' must be below 0.02; 2 per mille is '// &
+                              'eps0 = 0.002')
+         end if
+         law%eps0 = eps0
+      end if
+      if (ok .and. eps_spall < 1.2_wp*law%eps0) then
+         call messages%add('concrete: eps_spall = '//to_text(eps_spall)//' must be above 1.2 times the '// &
+                           'strain at the peak, '//to_text(law%eps0))
+      end if
+   end subroutine check_concrete
+
+end module rbs_section_concrete

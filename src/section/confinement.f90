@@ -1,0 +1,97 @@
+!> Confinement of the core by hoops, ties or a spiral (Mander, Priestley, Park 1988, ASCE 114(8)).
+module rbs_section_confinement
+   use rbs_base_kinds, only: wp
+   use rbs_section_concrete, only: confined_concrete, spalling_concrete
+   use rbs_section_section, only: section_type, no_ties, spiral, circular_hoops, core_width, core_depth, &
+                                  hoop_area, steel_area
+   use rbs_base_constants, only: pi
+   implicit none
+   private
+
+   public :: confine, volumetric_ratio
+
+contains
+
+   !> Set the laws of core and cover, the lateral stress and its effectiveness.
+   pure subroutine confine(section, eps_spall)
+      type(section_type), intent(inout) :: section
+      !> Strain at which the cover has fallen off
+      real(wp), intent(in) :: eps_spall
+      real(wp) :: ratio, eps_cu, yield
+
+      section%core = section%plain
+      section%shell = section%plain
+      section%lateral_stress = 0.0_wp
+      section%effectiveness = 0.0_wp
+      if (section%transverse%kind == no_ties) return
+      if (.not. min(core_width(section), core_depth(section)) > 0.0_wp) return
+      section%effectiveness = effectiveness(section)
+      ratio = volumetric_ratio(section)
+      yield = section%transverse%steel%fy
+      ! Ties: the mean of the two directions, rho_s is the sum of both; circular: rho_s f_yh/2 as well.
+      section%lateral_stress = 0.5_wp*section%effectiveness*ratio*yield
+      section%core = confined_concrete(section%plain, section%lateral_stress, 0.0_wp)
+      eps_cu = 0.004_wp + 1.4_wp*ratio*yield*section%transverse%steel%eps_u/section%core%fc
+      section%core%eps_cu = eps_cu
+      section%shell = spalling_concrete(section%plain, eps_spall)
+   end subroutine confine
+
+   !> Volume of transverse steel over that of the core.
+   pure real(wp) function volumetric_ratio(section) result(ratio)
+      type(section_type), intent(in) :: section
+      real(wp) :: across, along
+
+      ratio = 0.0_wp
+      if (section%transverse%kind == no_ties) return
+      associate (t => section%transverse)
+         if (section%circular) then
+            ratio = 4.0_wp*hoop_area(t)/(core_depth(section)*t%spacing)
+         else
+            along = t%legs*hoop_area(t)/(t%spacing*core_width(section))
+            across = t%legs_across*hoop_area(t)/(t%spacing*core_depth(section))
+            ratio = along + across
+         end if
+      end associate
+   end function volumetric_ratio
+
+   !> k_e: the effectively confined part of the core, halfway between two hoops.
+   pure real(wp) function effectiveness(section) result(k_e)
+      type(section_type), intent(in) :: section
+      real(wp) :: b_c, d_c, clear, part, core
+
+      b_c = core_width(section)
+      d_c = core_depth(section)
+      core = b_c*d_c
+      if (section%circular) core = 0.25_wp*pi*d_c**2
+      clear = max(0.0_wp, section%transverse%spacing - section%transverse%diameter)
+      part = max(0.0_wp, 1.0_wp - 0.5_wp*clear/d_c)
+      select case (section%transverse%kind)
+      case (spiral)
+         k_e = part
+      case (circular_hoops)
+         k_e = part**2
+      case default
+         k_e = part*max(0.0_wp, 1.0_wp - 0.5_wp*clear/b_c)
+         k_e = k_e*max(0.0_wp, 1.0_wp - arches(section, b_c, d_c)/(6.0_wp*core))
+      end select
+      k_e = min(1.0_wp, k_e/(1.0_wp - min(0.5_wp, steel_area(section)/core)))
+   end function effectiveness
+
+   !> Sum of the squares of the clear distances between bars that a leg holds, around the core [m2].
+   !> A leg holds one bar at each of its ends; between two of them the concrete arches.
+   pure real(wp) function arches(section, b_c, d_c)
+      type(section_type), intent(in) :: section
+      !> Core between hoop centre lines [m]
+      real(wp), intent(in) :: b_c, d_c
+      real(wp) :: inset, gaps, clear
+
+      inset = section%transverse%diameter + section%bar_diameter
+      gaps = max(1.0_wp, section%transverse%legs - 1.0_wp)
+      clear = max(0.0_wp, (b_c - inset)/gaps - section%bar_diameter)
+      arches = 2.0_wp*gaps*clear**2
+      gaps = max(1.0_wp, section%transverse%legs_across - 1.0_wp)
+      clear = max(0.0_wp, (d_c - inset)/gaps - section%bar_diameter)
+      arches = arches + 2.0_wp*gaps*clear**2
+   end function arches
+
+end module rbs_section_confinement

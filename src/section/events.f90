@@ -1,0 +1,348 @@
+!> Points of a moment-curvature diagram that have a name: cracking, first yield, peak, ultimate.
+module rbs_section_events
+   use rbs_base_error, only: error_type, message_list
+   use rbs_base_kinds, only: wp
+   use rbs_section_balance, only: state_type, begin, advance
+   use rbs_section_resultants, only: laws_type
+   use rbs_section_section, only: section_type, core_depth
+   use rbs_section_steel, only: steel_yield_strain
+   use rbs_spec_check, only: check_name, check_positive
+   implicit none
+   private
+
+   public :: events_type, point_type, rule_type, find_events, check_rules, reach_moment
+
+   !> Rules of yield: the first bar in tension at its yield strain; that, or the extreme fibre at a strain of
+   !> compression, whichever comes first (Priestley, Calvi, Kowalsky 2007: 0.002).
+   character(len=7), parameter, public :: yield_names(2) = ['tension', 'first  ']
+   integer, parameter, public :: yield_tension = 1, yield_first = 2
+
+   !> Rules of the ultimate point: the extreme fibre at `eps_cover`; the edge of the core at the strain of
+   !> hoop fracture (Mander, Priestley, Park 1988); the first bar breaks in tension; the moment has fallen by
+   !> 20 per cent of its peak.
+   character(len=6), parameter, public :: ultimate_names(4) = ['cover ', 'mander', 'steel ', 'drop  ']
+   integer, parameter, public :: ultimate_cover = 1, ultimate_mander = 2, ultimate_steel = 3, &
+                                 ultimate_drop = 4
+
+   !> Share of the peak moment at which a section counts as failed.
+   real(wp), parameter :: failed_share = 0.8_wp
+   !> No diagram goes further: strain over the depth.
+   real(wp), parameter :: furthest = 0.5_wp
+   !> First step of the curvature, as strain over the depth; growth of it.
+   real(wp), parameter :: first_step = 2.0e-5_wp, growth = 0.05_wp
+
+   type :: rule_type
+      !> Places among `yield_names` and `ultimate_names`
+      integer :: yield = yield_tension, ultimate = ultimate_cover
+      !> Strains of the extreme fibre in compression for yield 'first' and ultimate 'cover'
+      real(wp) :: eps_yield = 0.002_wp, eps_cover = 0.003_wp
+   end type rule_type
+
+   type :: point_type
+      !> Whether the diagram has this point
+      logical :: found = .false.
+      !> [1/m], [N m], strain at mid-depth (compression positive)
+      real(wp) :: curvature = 0.0_wp, moment = 0.0_wp, eps0 = 0.0_wp
+   end type point_type
+
+   type :: events_type
+      !> The extreme fibre in tension at f_t/E_c; yield and ultimate by their rules; largest moment
+      type(point_type) :: cracking, yield, peak, ultimate
+      !> Where the diagram ends: the moment down by 20 per cent, or the axial load no longer carried
+      type(point_type) :: last
+      !> Whether it ended because the axial load was no longer carried
+      logical :: lost = .false.
+   end type events_type
+
+   !> What is sought between two states: a quantity of the section passes zero upward.
+   integer, parameter :: seek_cracking = 1, seek_yield = 2, seek_ultimate = 3, seek_drop = 4, seek_moment = 5
+
+contains
+
+   !> March along the diagram of positive curvature and catch its points.
+   subroutine find_events(section, laws, axial_load, rule, events, error, only_cracking)
+      type(section_type), intent(in) :: section
+      type(laws_type), intent(in) :: laws
+      !> Compression positive [N]
+      real(wp), intent(in) :: axial_load
+      type(rule_type), intent(in) :: rule
+      type(events_type), intent(out) :: events
+      type(error_type), allocatable, intent(out) :: error
+      !> Stop there; the other points are not looked for
+      logical, intent(in), optional :: only_cracking
+      type(state_type) :: last, here, before_peak
+      type(point_type) :: drop
+      logical :: found, in_peak, short
+
+      short = .false.
+      if (present(only_cracking)) short = only_cracking
+      call begin(section, laws, axial_load, here, error)
+      if (allocated(error)) return
+      before_peak = here
+      events%peak = as_point(here)
+      in_peak = .false.
+      do
+         last = here
+         call advance(section, laws, axial_load, last%curvature + step_of(section, last%curvature), &
+                      here, found)
+         if (.not. found) then
+            events%lost = .true.
+            exit
+         end if
+         if (in_peak .and. here%moment < events%peak%moment) then
+            call refine_peak(section, laws, axial_load, before_peak, here%curvature, events%peak)
+         end if
+         in_peak = .false.
+         if (here%moment > events%peak%moment) then
+            before_peak = last
+            events%peak = as_point(here)
+            in_peak = .true.
+         end if
+         call catch(seek_cracking, 0.0_wp, events%cracking)
+         if (short .and. events%cracking%found) return
+         call catch(seek_yield, 0.0_wp, events%yield)
+         if (rule%ultimate /= ultimate_drop) call catch(seek_ultimate, 0.0_wp, events%ultimate)
+         ! A lightly reinforced section drops at cracking already and comes back.
+         if (events%peak%moment > 0.0_wp .and. &
+             (events%yield%found .or. compressed(section, here) > section%plain%eps0)) then
+            call catch(seek_drop, failed_share*events%peak%moment, drop)
+         end if
+         if (drop%found .or. here%curvature*section%depth > furthest) exit
+      end do
+      events%last = as_point(here)
+      if (rule%ultimate == ultimate_drop) events%ultimate = drop
+      if (drop%found) events%last = drop
+
+   contains
+
+      subroutine catch(what, level, point)
+         integer, intent(in) :: what
+         real(wp), intent(in) :: level
+         type(point_type), intent(inout) :: point
+
+         if (point%found) return
+         if (beyond(section, laws, rule, what, level, here) < 0.0_wp) return
+         call locate(section, laws, axial_load, rule, what, level, last, here, point)
+      end subroutine catch
+
+   end subroutine find_events
+
+   !> The first point of the diagram at which the moment reaches a level.
+   subroutine reach_moment(section, laws, axial_load, moment, point, error)
+      type(section_type), intent(in) :: section
+      type(laws_type), intent(in) :: laws
+      real(wp), intent(in) :: axial_load
+      !> [N m]
+      real(wp), intent(in) :: moment
+      type(point_type), intent(out) :: point
+      type(error_type), allocatable, intent(out) :: error
+      type(state_type) :: last, here
+      logical :: found
+
+      call begin(section, laws, axial_load, here, error)
+      if (allocated(error)) return
+      if (here%moment >= moment) then
+         point = as_point(here)
+         return
+      end if
+      do while (here%moment < moment)
+         last = here
+         call advance(section, laws, axial_load, last%curvature + step_of(section, last%curvature), &
+                      here, found)
+         if (.not. found .or. here%curvature*section%depth > furthest) return
+      end do
+      call locate(section, laws, axial_load, rule_type(), seek_moment, moment, last, here, point)
+   end subroutine reach_moment
+
+   elemental real(wp) function step_of(section, curvature)
+      type(section_type), intent(in) :: section
+      real(wp), intent(in) :: curvature
+
+      step_of = first_step/section%depth + growth*curvature
+   end function step_of
+
+   !> Negative before, positive beyond what is sought; a pure number.
+   pure real(wp) function beyond(section, laws, rule, what, level, state)
+      type(section_type), intent(in) :: section
+      type(laws_type), intent(in) :: laws
+      type(rule_type), intent(in) :: rule
+      integer, intent(in) :: what
+      !> Level of the moment for `seek_drop` and `seek_moment` [N m]
+      real(wp), intent(in) :: level
+      type(state_type), intent(in) :: state
+      real(wp) :: core_edge
+
+      select case (what)
+      case (seek_cracking)
+         beyond = (0.5_wp*state%curvature*section%depth - state%eps0 - laws%shell%ft/laws%shell%ec)/ &
+                  laws%shell%eps0
+      case (seek_yield)
+         beyond = bar_ratio(section, state, at_rupture=.false.) - 1.0_wp
+         if (rule%yield == yield_first) then
+            beyond = max(beyond, compressed(section, state)/rule%eps_yield - 1.0_wp)
+         end if
+      case (seek_drop)
+         beyond = 1.0_wp - state%moment/level
+      case (seek_moment)
+         beyond = state%moment/level - 1.0_wp
+      case default
+         select case (rule%ultimate)
+         case (ultimate_mander)
+            core_edge = state%eps0 + 0.5_wp*state%curvature*core_depth(section)
+            beyond = core_edge/section%core%eps_cu - 1.0_wp
+         case (ultimate_steel)
+            beyond = bar_ratio(section, state, at_rupture=.true.) - 1.0_wp
+         case default
+            beyond = compressed(section, state)/rule%eps_cover - 1.0_wp
+         end select
+      end select
+   end function beyond
+
+   !> Strain of the extreme fibre in compression.
+   elemental real(wp) function compressed(section, state)
+      type(section_type), intent(in) :: section
+      type(state_type), intent(in) :: state
+
+      compressed = state%eps0 + 0.5_wp*state%curvature*section%depth
+   end function compressed
+
+   !> Largest tensile strain of the bars over that of yield or of rupture; -1 without bars.
+   pure real(wp) function bar_ratio(section, state, at_rupture)
+      type(section_type), intent(in) :: section
+      type(state_type), intent(in) :: state
+      logical, intent(in) :: at_rupture
+      real(wp) :: limit
+      integer :: i
+
+      bar_ratio = -1.0_wp
+      do i = 1, size(section%bar_y)
+         associate (steel => section%steels(section%bar_steel(i)))
+            limit = steel_yield_strain(steel)
+            if (at_rupture) limit = steel%eps_u
+         end associate
+         bar_ratio = max(bar_ratio, (state%curvature*section%bar_y(i) - state%eps0)/limit)
+      end do
+   end function bar_ratio
+
+   !> The point between two states at which `beyond` passes zero: regula falsi as of Illinois, every third
+   !> step a bisection. Where a bar breaks the state jumps: the last one before it is taken.
+   subroutine locate(section, laws, axial_load, rule, what, level, first, second, point)
+      type(section_type), intent(in) :: section
+      type(laws_type), intent(in) :: laws
+      real(wp), intent(in) :: axial_load
+      type(rule_type), intent(in) :: rule
+      integer, intent(in) :: what
+      real(wp), intent(in) :: level
+      type(state_type), intent(in) :: first, second
+      type(point_type), intent(out) :: point
+      type(state_type) :: low, high, here
+      real(wp) :: at, below, above, past
+      logical :: found
+      integer :: i, kept
+
+      low = first
+      high = second
+      kept = 0
+      below = beyond(section, laws, rule, what, level, low)
+      above = beyond(section, laws, rule, what, level, high)
+      if (below >= 0.0_wp) high = low               ! so before it was bent
+      do i = 1, 100
+         if (high%curvature - low%curvature <= 1.0e-10_wp*high%curvature) exit
+         at = 0.5_wp*(low%curvature + high%curvature)
+         if (mod(i, 3) /= 0) at = low%curvature - below*(high%curvature - low%curvature)/(above - below)
+         if (at <= low%curvature .or. at >= high%curvature) at = 0.5_wp*(low%curvature + high%curvature)
+         here = low
+         call advance(section, laws, axial_load, at, here, found)
+         past = beyond(section, laws, rule, what, level, here)
+         if (past >= 0.0_wp .or. .not. found) then
+            high = here
+            above = past
+            if (kept > 0) below = 0.5_wp*below
+            kept = 1
+         else
+            low = here
+            below = past
+            if (kept < 0) above = 0.5_wp*above
+            kept = -1
+         end if
+         if (abs(past) > 1.0e-11_wp) cycle
+         low = here
+         exit
+      end do
+      point = as_point(low)
+   end subroutine locate
+
+   !> Golden section: the diagram may have a corner at its peak.
+   subroutine refine_peak(section, laws, axial_load, first, end, peak)
+      type(section_type), intent(in) :: section
+      type(laws_type), intent(in) :: laws
+      real(wp), intent(in) :: axial_load
+      !> The state before the largest moment of the march, and the curvature after it [1/m]
+      type(state_type), intent(in) :: first
+      real(wp), intent(in) :: end
+      type(point_type), intent(inout) :: peak
+      real(wp), parameter :: golden = 0.6180339887498949_wp
+      type(state_type) :: state
+      real(wp) :: a, b, x(2), m(2)
+      logical :: found
+      integer :: i, k
+
+      a = first%curvature
+      b = end
+      x = [b - golden*(b - a), a + golden*(b - a)]
+      do k = 1, 2
+         state = first
+         call advance(section, laws, axial_load, x(k), state, found)
+         if (.not. found) return
+         m(k) = state%moment
+      end do
+      do i = 1, 20
+         if (m(1) > m(2)) then
+            b = x(2)
+            x = [b - golden*(b - a), x(1)]
+            m(2) = m(1)
+            k = 1
+         else
+            a = x(1)
+            x = [x(2), a + golden*(b - a)]
+            m(1) = m(2)
+            k = 2
+         end if
+         state = first
+         call advance(section, laws, axial_load, x(k), state, found)
+         if (.not. found) return
+         m(k) = state%moment
+         if (m(k) > peak%moment) peak = as_point(state)
+      end do
+   end subroutine refine_peak
+
+   elemental type(point_type) function as_point(state)
+      type(state_type), intent(in) :: state
+
+      as_point = point_type(.true., state%curvature, state%moment, state%eps0)
+   end function as_point
+
+   !> Read the names of the rules; add a message for each that is refused.
+   subroutine check_rules(section, confined, yield, ultimate, rule, messages)
+      type(section_type), intent(in) :: section
+      logical, intent(in) :: confined
+      !> One of `yield_names` and of `ultimate_names`
+      character(len=*), intent(in) :: yield, ultimate
+      !> Its strains are checked, its places filled
+      type(rule_type), intent(inout) :: rule
+      type(message_list), intent(inout) :: messages
+
+      call check_name(yield, yield_names, 'yield', messages, rule%yield)
+      call check_name(ultimate, ultimate_names, 'ultimate', messages, rule%ultimate)
+      call check_positive(rule%eps_yield, 'eps_yield', '', messages)
+      call check_positive(rule%eps_cover, 'eps_cover', '', messages)
+      if (rule%ultimate == ultimate_mander .and. .not. (confined .and. section%core%eps_cu < 1.0_wp)) then
+         call messages%add("ultimate = 'mander' needs the confined core: give ties and confined = true, "// &
+                           "or take 'cover'")
+      end if
+      if (rule%ultimate == ultimate_steel .and. size(section%bar_y) == 0) then
+         call messages%add("ultimate = 'steel' needs bars, and this section has none; take 'cover'")
+      end if
+   end subroutine check_rules
+
+end module rbs_section_events

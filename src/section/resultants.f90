@@ -1,0 +1,174 @@
+!> Axial force and moment of a section under a plane strain, and how the axial force changes with it.
+module rbs_section_resultants
+   use rbs_base_kinds, only: wp
+   use rbs_section_concrete, only: concrete_type, concrete_both, tension_zero
+   use rbs_section_section, only: section_type
+   use rbs_section_steel, only: steel_both
+   implicit none
+   private
+
+   public :: laws_type, section_laws, resultants_type, resultants, edge_strain, force_scale
+
+   !> The laws of concrete in force: outside and inside the hoops.
+   type :: laws_type
+      type(concrete_type) :: shell, core
+      !> Whether the two differ
+      logical :: confined = .false.
+   end type laws_type
+
+   !> What a plane strain needs: compression positive; moment about mid-depth, positive with the curvature
+   !> that puts y > 0 in tension.
+   type :: resultants_type
+      !> Axial force [N], moment [N m]
+      real(wp) :: n = 0.0_wp, m = 0.0_wp
+      !> Change of the axial force with the strain at mid-depth [N]
+      real(wp) :: stiffness = 0.0_wp
+   end type resultants_type
+
+contains
+
+   !> Laws with one of the tension laws, with or without confinement.
+   elemental type(laws_type) function section_laws(section, tension, confined) result(laws)
+      type(section_type), intent(in) :: section
+      !> Place of the tension law among `tension_names`
+      integer, intent(in) :: tension
+      logical, intent(in) :: confined
+
+      laws%confined = confined
+      laws%shell = section%plain
+      laws%core = section%plain
+      if (confined) then
+         laws%shell = section%shell
+         laws%core = section%core
+      end if
+      laws%shell%tension = tension
+      laws%core%tension = tension
+   end function section_laws
+
+   !> Sum over strips and bars. A strip in which the crack ends is cut there: the axial force is then a
+   !> continuous function of the strain, though the stress falls at cracking.
+   pure type(resultants_type) function resultants(section, laws, eps0, curvature) result(sums)
+      type(section_type), intent(in) :: section
+      type(laws_type), intent(in) :: laws
+      !> Strain at mid-depth, compression positive
+      real(wp), intent(in) :: eps0
+      !> [1/m]
+      real(wp), intent(in) :: curvature
+      real(wp) :: stress, tangent, stress_core, tangent_core, strain, force, stiffness
+      integer :: i, cut
+
+      cut = cut_strip(section, laws, eps0, curvature)
+      do i = 1, size(section%y)
+         if (i == cut) cycle
+         strain = eps0 - curvature*section%y(i)
+         call concrete_both(laws%shell, strain, stress, tangent)
+         force = stress*section%area(i)
+         stiffness = tangent*section%area(i)
+         if (laws%confined .and. section%core_area(i) > 0.0_wp) then
+            call concrete_both(laws%core, strain, stress_core, tangent_core)
+            force = force + (stress_core - stress)*section%core_area(i)
+            stiffness = stiffness + (tangent_core - tangent)*section%core_area(i)
+         end if
+         sums%n = sums%n + force
+         sums%m = sums%m - force*section%y(i)
+         sums%stiffness = sums%stiffness + stiffness
+      end do
+      if (cut > 0) call add_cut_strip(section, laws, eps0, curvature, cut, sums)
+      call add_bars(section, laws, eps0, curvature, sums)
+   end function resultants
+
+   !> Place of the strip in which the strain of cracking lies; 0 if in none, or if nothing falls there.
+   pure integer function cut_strip(section, laws, eps0, curvature)
+      type(section_type), intent(in) :: section
+      type(laws_type), intent(in) :: laws
+      real(wp), intent(in) :: eps0, curvature
+      real(wp) :: place
+
+      cut_strip = 0
+      if (laws%shell%tension == tension_zero .or. .not. abs(curvature) > 0.0_wp) return
+      place = crack_tip(laws, eps0, curvature)
+      if (abs(place) < 0.5_wp*section%depth) then
+         cut_strip = min(size(section%y), 1 + int((place + 0.5_wp*section%depth)/section%dy))
+      end if
+   end function cut_strip
+
+   !> Where the strain of cracking is [m from mid-depth].
+   elemental real(wp) function crack_tip(laws, eps0, curvature)
+      type(laws_type), intent(in) :: laws
+      real(wp), intent(in) :: eps0, curvature
+
+      crack_tip = (eps0 + laws%shell%ft/laws%shell%ec)/curvature
+   end function crack_tip
+
+   !> The two parts of a strip on both sides of the tip of the crack; tension is the same in core and cover.
+   pure subroutine add_cut_strip(section, laws, eps0, curvature, i, sums)
+      type(section_type), intent(in) :: section
+      type(laws_type), intent(in) :: laws
+      real(wp), intent(in) :: eps0, curvature
+      integer, intent(in) :: i
+      type(resultants_type), intent(inout) :: sums
+      real(wp) :: tip, ends(3), width, y, area, strain, stress, tangent, after
+      integer :: part
+
+      tip = crack_tip(laws, eps0, curvature)
+      ends = [section%y(i) - 0.5_wp*section%dy, tip, section%y(i) + 0.5_wp*section%dy]
+      width = section%area(i)/section%dy
+      do part = 1, 2
+         y = 0.5_wp*(ends(part) + ends(part + 1))
+         area = width*(ends(part + 1) - ends(part))
+         strain = eps0 - curvature*y
+         call concrete_both(laws%shell, strain, stress, tangent)
+         sums%n = sums%n + stress*area
+         sums%m = sums%m - stress*area*y
+         sums%stiffness = sums%stiffness + tangent*area
+      end do
+      ! The tip moves by d(eps_0)/phi, and what it passes comes back to f_t.
+      strain = laws%shell%ft/laws%shell%ec*(1.0_wp + 1.0e-9_wp)
+      call concrete_both(laws%shell, -strain, after, tangent)
+      sums%stiffness = sums%stiffness - (laws%shell%ft + after)*width/abs(curvature)
+   end subroutine add_cut_strip
+
+   pure subroutine add_bars(section, laws, eps0, curvature, sums)
+      type(section_type), intent(in) :: section
+      type(laws_type), intent(in) :: laws
+      real(wp), intent(in) :: eps0, curvature
+      type(resultants_type), intent(inout) :: sums
+      real(wp) :: strain, stress, tangent, displaced, slope, force
+      integer :: i
+
+      do i = 1, size(section%bar_y)
+         strain = eps0 - curvature*section%bar_y(i)
+         call steel_both(section%steels(section%bar_steel(i)), strain, stress, tangent)
+         if (section%bar_in_core(i)) then
+            call concrete_both(laws%core, strain, displaced, slope)
+         else
+            call concrete_both(laws%shell, strain, displaced, slope)
+         end if
+         force = (stress - displaced)*section%bar_area(i)
+         sums%n = sums%n + force
+         sums%m = sums%m - force*section%bar_y(i)
+         sums%stiffness = sums%stiffness + (tangent - slope)*section%bar_area(i)
+      end do
+   end subroutine add_bars
+
+   !> Strain at a distance from mid-depth.
+   elemental real(wp) function edge_strain(eps0, curvature, y)
+      real(wp), intent(in) :: eps0, curvature
+      !> [m]
+      real(wp), intent(in) :: y
+
+      edge_strain = eps0 - curvature*y
+   end function edge_strain
+
+   !> Size of the forces at play, to measure residuals with [N].
+   pure real(wp) function force_scale(section)
+      type(section_type), intent(in) :: section
+      integer :: i
+
+      force_scale = section%plain%fc*sum(section%area)
+      do i = 1, size(section%bar_y)
+         force_scale = force_scale + section%steels(section%bar_steel(i))%fy*section%bar_area(i)
+      end do
+   end function force_scale
+
+end module rbs_section_resultants

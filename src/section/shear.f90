@@ -1,0 +1,293 @@
+!> Shear force and shear strain of a section that bends under a constant axial load: V = M/a with the shear
+!> span a, layer by layer with the modified compression field theory.
+!>
+!> For each curvature the section in flexure gives the strain and the shear stress of each layer, which
+!> answers with its shear strain; gamma is their mean over the area, so that an uncracked section of concrete
+!> has V = (E_c/2) A gamma exactly.
+module rbs_section_shear
+   use rbs_base_error, only: error_type, message_list
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_section_balance, only: state_type, begin, advance
+   use rbs_section_mcft_layer, only: layer_type, layer_state, solve_layer
+   use rbs_section_resultants, only: section_laws
+   use rbs_section_section, only: section_type, slice, gross_area
+   use rbs_section_shear_coupling, only: couple
+   use rbs_section_shear_flow, only: flow_type, begin_flow, shear_stresses, transverse_ratio
+   use rbs_spec_check, only: check_finite, check_positive
+   implicit none
+   private
+
+   public :: shear_point, shear_diagram_type, follow_shear, check_shear
+
+   !> Layers over the depth.
+   integer, parameter, public :: default_layers = 80
+
+   !> The shear spring leaves its first branch where V/gamma has fallen to this share of (E_c/2) A;
+   !> calibrated on table 3 of the paper, whose columns have 0.41 to 0.53.
+   real(wp), parameter, public :: default_knee = 0.48_wp
+
+   integer, parameter :: most_bisections = 40, fewest_layers = 4, most_layers = 10000
+
+   !> A point of the diagram: curvature [1/m], moment [N m], shear force [N], shear strain.
+   type :: shear_point
+      real(wp) :: curvature = 0.0_wp, moment = 0.0_wp, force = 0.0_wp, strain = 0.0_wp
+   end type shear_point
+
+   type :: shear_diagram_type
+      !> The points asked for, as far as the section carries them
+      type(shear_point), allocatable :: points(:)
+      !> Where the secant has fallen to the share of the knee
+      type(shear_point) :: knee
+      logical :: knee_found = .false.
+      !> The last point: the last one asked for, or where a layer or the section carries no more
+      type(shear_point) :: last
+      !> A layer carries no more shear (coupled: there is no equilibrium any more); the section carries its
+      !> axial load no more
+      logical :: sheared = .false., lost = .false.
+      !> The layers at the last point [top of the section first]: y [m], longitudinal strain (tension
+      !> positive), shear stress [Pa], shear strain and transverse strain
+      real(wp), allocatable :: y(:), eps_x(:), tau(:), gamma(:), eps_z(:)
+   end type shear_diagram_type
+
+   !> What does not change along the diagram.
+   type :: model_type
+      type(flow_type) :: flow
+      type(layer_type), allocatable :: layers(:)
+      !> [N]
+      real(wp) :: axial_load = 0.0_wp
+      !> Whether shear changes the longitudinal stress and the moment
+      logical :: coupled = .false.
+   end type model_type
+
+   !> What changes.
+   type :: shear_state
+      type(state_type) :: flexure
+      type(layer_state), allocatable :: layers(:)
+      type(shear_point) :: point
+   end type shear_state
+
+contains
+
+   !> Follow the diagram along rising curvatures.
+   subroutine follow_shear(section, tension, confined, coupled, axial_load, span, layers, knee_share, &
+                           curvature, diagram, error)
+      type(section_type), intent(in) :: section
+      !> Place of the tension law among `tension_names`
+      integer, intent(in) :: tension
+      !> Whether the core has the law of confined concrete, and whether shear changes the moment
+      logical, intent(in) :: confined, coupled
+      !> Compression positive [N]
+      real(wp), intent(in) :: axial_load
+      !> M/V [m]
+      real(wp), intent(in) :: span
+      !> Layers over the depth
+      integer, intent(in) :: layers
+      !> Share of (E_c/2) A at the knee
+      real(wp), intent(in) :: knee_share
+      !> Positive and rising [1/m]
+      real(wp), intent(in) :: curvature(:)
+      type(shear_diagram_type), intent(out) :: diagram
+      type(error_type), allocatable, intent(out) :: error
+      type(model_type) :: model
+      type(shear_state) :: last, here
+      type(shear_point), allocatable :: points(:)
+      real(wp) :: knee_stiffness
+      integer :: i, count
+      logical :: sheared, lost
+
+      model%coupled = coupled
+      call prepare(section, tension, confined, axial_load, span, layers, model, here, error)
+      if (allocated(error)) return
+      knee_stiffness = knee_share*0.5_wp*section%plain%ec*gross_area(section)
+      allocate (points(size(curvature)))
+      count = 0
+      do i = 1, size(curvature)
+         last = here
+         call bend(model, curvature(i), here, sheared, lost)
+         if (sheared .or. lost) then
+            diagram%sheared = sheared
+            diagram%lost = lost
+            here = last
+            call find_end(model, curvature(i), here)
+         end if
+         if (.not. diagram%knee_found .and. beyond_knee(here%point, knee_stiffness)) then
+            diagram%knee_found = .true.
+            call find_knee(model, knee_stiffness, last, here, diagram%knee)
+         end if
+         if (sheared .or. lost) exit
+         count = i
+         points(i) = here%point
+      end do
+      diagram%points = points(:count)
+      diagram%last = here%point
+      diagram%y = model%flow%section%y
+      diagram%eps_x = here%layers%eps_x
+      diagram%tau = here%layers%tau
+      diagram%gamma = here%layers%gamma
+      diagram%eps_z = here%layers%eps_z
+   end subroutine follow_shear
+
+   !> Cut the section into layers and put it under its axial load.
+   subroutine prepare(section, tension, confined, axial_load, span, layers, model, state, error)
+      type(section_type), intent(in) :: section
+      integer, intent(in) :: tension, layers
+      logical, intent(in) :: confined
+      real(wp), intent(in) :: axial_load, span
+      type(model_type), intent(inout) :: model
+      type(shear_state), intent(out) :: state
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      model%axial_load = axial_load
+      model%flow%section = section
+      call slice(model%flow%section, layers)
+      model%flow%laws = section_laws(section, tension, confined)
+      model%flow%span = span
+      allocate (model%layers(layers), state%layers(layers))
+      associate (cut => model%flow%section, laws => model%flow%laws)
+         do i = 1, layers
+            model%layers(i)%concrete = laws%shell
+            if (2.0_wp*cut%core_area(i) > cut%area(i)) model%layers(i)%concrete = laws%core
+            model%layers(i)%stirrup = section%transverse%steel
+            model%layers(i)%rho_z = transverse_ratio(cut, cut%y(i), cut%area(i)/cut%dy)
+         end do
+         call begin(cut, laws, axial_load, state%flexure, error)
+      end associate
+      if (allocated(error)) return
+      call begin_flow(model%flow, state%flexure)
+   end subroutine prepare
+
+   !> Bend the section to a larger curvature and solve its layers.
+   subroutine bend(model, curvature, state, sheared, lost)
+      type(model_type), intent(in) :: model
+      real(wp), intent(in) :: curvature
+      type(shear_state), intent(inout) :: state
+      !> Some layer carries no more shear; the section carries its axial load no more
+      logical, intent(out) :: sheared, lost
+      real(wp) :: tau(size(state%layers)), eps_x
+      logical :: carried
+      integer :: i
+
+      sheared = .false.
+      lost = .false.
+      if (model%coupled) then
+         call couple(model%flow, model%layers, model%axial_load, curvature, state%flexure, state%layers, &
+                     carried)
+         sheared = .not. carried
+         if (sheared) return
+      else
+         call advance(model%flow%section, model%flow%laws, model%axial_load, curvature, state%flexure, &
+                      carried)
+         lost = .not. carried
+         if (lost) return
+         call shear_stresses(model%flow, state%flexure, tau)
+         do i = 1, size(tau)
+            eps_x = curvature*model%flow%section%y(i) - state%flexure%eps0
+            call solve_layer(model%layers(i), eps_x, tau(i), state%layers(i), carried)
+            sheared = .not. carried
+            if (sheared) return
+         end do
+      end if
+      associate (area => model%flow%section%area)
+         state%point = shear_point(curvature, state%flexure%moment, state%flexure%moment/model%flow%span, &
+                                   dot_product(state%layers%gamma, area)/sum(area))
+      end associate
+   end subroutine bend
+
+   !> Whether the secant is at or below that of the knee.
+   elemental logical function beyond_knee(point, stiffness)
+      type(shear_point), intent(in) :: point
+      real(wp), intent(in) :: stiffness
+
+      beyond_knee = point%strain > 0.0_wp .and. point%force <= stiffness*point%strain
+   end function beyond_knee
+
+   !> Halve the step in which the knee is passed.
+   subroutine find_knee(model, stiffness, first, second, knee)
+      type(model_type), intent(in) :: model
+      real(wp), intent(in) :: stiffness
+      type(shear_state), intent(in) :: first, second
+      type(shear_point), intent(out) :: knee
+      type(shear_state) :: low, here
+      real(wp) :: above, middle
+      integer :: i
+      logical :: sheared, lost
+
+      low = first
+      above = second%point%curvature
+      knee = second%point
+      do i = 1, most_bisections
+         middle = 0.5_wp*(low%point%curvature + above)
+         if (above - low%point%curvature <= 1.0e-9_wp*above) exit
+         here = low
+         call bend(model, middle, here, sheared, lost)
+         if (sheared .or. lost .or. beyond_knee(here%point, stiffness)) then
+            above = middle
+            if (.not. (sheared .or. lost)) knee = here%point
+         else
+            low = here
+         end if
+      end do
+   end subroutine find_knee
+
+   !> The last curvature that is carried, between that of `state` and one that is not.
+   subroutine find_end(model, not_carried, state)
+      type(model_type), intent(in) :: model
+      real(wp), intent(in) :: not_carried
+      type(shear_state), intent(inout) :: state
+      type(shear_state) :: here
+      real(wp) :: above, middle
+      integer :: i
+      logical :: sheared, lost
+
+      above = not_carried
+      do i = 1, most_bisections
+         if (above - state%point%curvature <= 1.0e-4_wp*above) exit
+         middle = 0.5_wp*(state%point%curvature + above)
+         here = state
+         call bend(model, middle, here, sheared, lost)
+         if (sheared .or. lost) then
+            above = middle
+         else
+            state = here
+         end if
+      end do
+   end subroutine find_end
+
+   !> Add a message for every number that is refused.
+   subroutine check_shear(axial_load, span, layers, knee_share, curvature, messages)
+      !> As for `follow_shear`
+      real(wp), intent(in) :: axial_load, span, knee_share, curvature(:)
+      integer, intent(in) :: layers
+      type(message_list), intent(inout) :: messages
+      real(wp) :: before
+      logical :: ok
+      integer :: i
+
+      call check_finite(axial_load, 'shear: axial_load', 'N', messages)
+      call check_positive(span, 'shear: length', 'm', messages)
+      call check_positive(knee_share, 'shear: knee', '', messages, ok)
+      if (ok .and. knee_share >= 1.0_wp) then
+         call messages%add('shear: knee = '//to_text(knee_share)//' must be below 1, the secant of the '// &
+                           'section before it cracks')
+      end if
+      if (layers < fewest_layers .or. layers > most_layers) then
+         call messages%add('shear: layers = '//to_text(layers)//' must be from '//to_text(fewest_layers)// &
+                           ' to '//to_text(most_layers)//'; 80 are enough')
+      end if
+      if (size(curvature) == 0) call messages%add('shear: curvature is empty; give at least one')
+      before = 0.0_wp
+      do i = 1, size(curvature)
+         call check_positive(curvature(i), 'shear: curvature '//to_text(i), '1/m', messages, ok)
+         if (.not. ok) return
+         if (curvature(i) <= before) then
+            call messages%add('shear: curvature '//to_text(i)//' = '//to_text(curvature(i))//' 1/m is '// &
+                              'not above the one before it; they must rise')
+            return
+         end if
+         before = curvature(i)
+      end do
+   end subroutine check_shear
+
+end module rbs_section_shear

@@ -1,0 +1,152 @@
+!> Shear stress over the depth of a section that bends: V = M/a with the shear span a.
+!>
+!> The shear flow is the difference of the forces of two sections, here the bent one and the same without
+!> moment (Bentz 2000, with the secant in place of the tangent, ill conditioned at cracking and yield):
+!>
+!>     q(y) = 1/a  integral from the compression face to y of (sigma(M) - sigma(M = 0)) dA,   tau = q/b
+module rbs_section_shear_flow
+   use rbs_base_kinds, only: wp
+   use rbs_section_balance, only: state_type
+   use rbs_section_concrete, only: concrete_type, concrete_stress
+   use rbs_section_resultants, only: laws_type
+   use rbs_section_section, only: section_type, no_ties, core_depth, hoop_area
+   use rbs_section_steel, only: steel_stress
+   implicit none
+   private
+
+   public :: flow_type, begin_flow, shear_stresses, stresses_of_forces, transverse_ratio
+
+   !> A section cut into layers, and its longitudinal forces without moment.
+   type :: flow_type
+      type(section_type) :: section
+      type(laws_type) :: laws
+      !> Shear span M/V [m]
+      real(wp) :: span = 0.0_wp
+      !> Forces of the concrete of each layer, and of each bar less the concrete it displaces [N]
+      real(wp), allocatable :: concrete_force(:), bar_force(:)
+   end type flow_type
+
+contains
+
+   !> Keep the forces of the section before it is bent.
+   subroutine begin_flow(flow, state)
+      type(flow_type), intent(inout) :: flow
+      type(state_type), intent(in) :: state
+      real(wp), allocatable :: concrete_force(:), bar_force(:)
+
+      call longitudinal_forces(flow, state, concrete_force, bar_force)
+      call move_alloc(concrete_force, flow%concrete_force)
+      call move_alloc(bar_force, flow%bar_force)
+   end subroutine begin_flow
+
+   !> Shear stress in the middle of each layer of the bent section [Pa].
+   pure subroutine shear_stresses(flow, state, tau)
+      type(flow_type), intent(in) :: flow
+      type(state_type), intent(in) :: state
+      real(wp), intent(out) :: tau(:)
+      real(wp), allocatable :: concrete_force(:), bar_force(:)
+
+      call longitudinal_forces(flow, state, concrete_force, bar_force)
+      call stresses_of_forces(flow, concrete_force, bar_force, tau)
+   end subroutine shear_stresses
+
+   !> Shear stress in the middle of each layer from the longitudinal forces of layers and bars; a bar hands
+   !> over its force along the height of a layer.
+   pure subroutine stresses_of_forces(flow, concrete_force, bar_force, tau)
+      type(flow_type), intent(in) :: flow
+      !> [N]
+      real(wp), intent(in) :: concrete_force(:), bar_force(:)
+      !> [Pa]
+      real(wp), intent(out) :: tau(:)
+      real(wp) :: along, gained, share
+      integer :: i, j
+
+      associate (section => flow%section)
+         along = 0.0_wp
+         do i = 1, size(tau)
+            gained = concrete_force(i) - flow%concrete_force(i)
+            tau(i) = along + 0.5_wp*gained
+            along = along + gained
+            do j = 1, size(bar_force)
+               share = (section%y(i) - section%bar_y(j))/section%dy + 0.5_wp
+               tau(i) = tau(i) + (bar_force(j) - flow%bar_force(j))*min(max(share, 0.0_wp), 1.0_wp)
+            end do
+            tau(i) = tau(i)/flow%span*section%dy/section%area(i)
+         end do
+      end associate
+   end subroutine stresses_of_forces
+
+   !> Forces of the concrete of each layer, and of each bar less the concrete it displaces [N].
+   pure subroutine longitudinal_forces(flow, state, concrete_force, bar_force)
+      type(flow_type), intent(in) :: flow
+      type(state_type), intent(in) :: state
+      real(wp), allocatable, intent(out) :: concrete_force(:), bar_force(:)
+      real(wp) :: strain
+      integer :: i
+
+      associate (section => flow%section, laws => flow%laws)
+         allocate (concrete_force(size(section%y)), bar_force(size(section%bar_y)))
+         do i = 1, size(section%y)
+            strain = state%eps0 - state%curvature*section%y(i)
+            concrete_force(i) = mean_stress(laws%shell, strain, state%curvature*section%dy)*section%area(i)
+            if (laws%confined .and. section%core_area(i) > 0.0_wp) then
+               concrete_force(i) = concrete_force(i) + section%core_area(i)* &
+                                   (concrete_stress(laws%core, strain) - concrete_stress(laws%shell, strain))
+            end if
+         end do
+         do i = 1, size(section%bar_y)
+            strain = state%eps0 - state%curvature*section%bar_y(i)
+            bar_force(i) = steel_stress(section%steels(section%bar_steel(i)), strain)
+            if (section%bar_in_core(i)) then
+               bar_force(i) = bar_force(i) - concrete_stress(laws%core, strain)
+            else
+               bar_force(i) = bar_force(i) - concrete_stress(laws%shell, strain)
+            end if
+            bar_force(i) = bar_force(i)*section%bar_area(i)
+         end do
+      end associate
+   end subroutine longitudinal_forces
+
+   !> Stress of a layer. One in which the crack ends has two parts, as in the axial force of the section.
+   elemental real(wp) function mean_stress(law, strain, fall) result(stress)
+      type(concrete_type), intent(in) :: law
+      !> Strain in the middle of the layer, and how much it falls over its height
+      real(wp), intent(in) :: strain, fall
+      !> Share of the layer that is not cracked
+      real(wp) :: whole
+
+      whole = 1.0_wp
+      if (fall > 0.0_wp) whole = (strain + law%ft/law%ec)/fall + 0.5_wp
+      if (whole > 0.0_wp .and. whole < 1.0_wp) then
+         stress = whole*concrete_stress(law, strain + 0.5_wp*(1.0_wp - whole)*fall) + &
+                  (1.0_wp - whole)*concrete_stress(law, strain - 0.5_wp*whole*fall)
+      else
+         stress = concrete_stress(law, strain)
+      end if
+   end function mean_stress
+
+   !> Transverse reinforcement in the direction of the shear, smeared over width and spacing.
+   !>
+   !> Ties: legs A/(b s) inside their outer edge. A spiral crosses a layer at y twice and pulls along it only
+   !> with sqrt(1 - (y/r)^2) of its force, r the radius of its centre line.
+   elemental real(wp) function transverse_ratio(section, y, width) result(ratio)
+      type(section_type), intent(in) :: section
+      !> Place and width of the layer [m]
+      real(wp), intent(in) :: y, width
+      real(wp) :: radius
+
+      ratio = 0.0_wp
+      associate (ties => section%transverse)
+         if (ties%kind == no_ties) return
+         if (section%circular) then
+            radius = 0.5_wp*core_depth(section)
+            if (abs(y) < radius) then
+               ratio = 2.0_wp*hoop_area(ties)*sqrt(1.0_wp - (y/radius)**2)/(width*ties%spacing)
+            end if
+         else if (abs(y) <= 0.5_wp*section%depth - section%cover) then
+            ratio = ties%legs*hoop_area(ties)/(width*ties%spacing)
+         end if
+      end associate
+   end function transverse_ratio
+
+end module rbs_section_shear_flow

@@ -1,0 +1,214 @@
+"""Springs from the section: the paper's four columns, rules, refusals, figures."""
+
+from __future__ import annotations
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+
+import rbsdem
+from rbsdem import AccuracyWarning, InputError, Layout, RectangularSection
+from rbsdem.paper import KEYS, paper_columns, paper_sections
+
+mpl.use("Agg")
+
+# By an independent program with the same laws and rules (not part of the project): K_c [N m/rad],
+# D_c [rad], K_y, D_y, K_u, B_1; shear K_y [N/m], D_y [m], K_u.
+REFERENCE = {
+    "soesianawati_1": (2.5108e8, 3.0723e-4, 7.2997e7, 2.7202e-3, 7.3730e6, 0.26373),
+    "tanaka_park_1": (1.6605e8, 4.4627e-4, 4.3916e7, 4.4219e-3, 4.0341e6, 0.33141),
+    "tanaka_park_5": (6.0637e8, 2.4026e-4, 1.4567e8, 2.9170e-3, 1.4838e7, 0.23938),
+    "zahn_7": (2.1163e8, 4.3067e-4, 6.7329e7, 3.0846e-3, 9.1183e6, 0.37334),
+}
+REFERENCE_SHEAR = {
+    "soesianawati_1": (7.0806e8, 1.2895e-4, 1.8737e7),
+    "tanaka_park_1": (5.6768e8, 1.5171e-4, 4.0512e7),
+    "tanaka_park_5": (1.1286e9, 1.4929e-4, 4.7981e7),
+    "zahn_7": (5.8831e8, 1.7618e-4, 3.5179e7),
+}
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_flexure_agrees_with_the_other_program(key):
+    f = paper_sections()[key].springs().flexure
+    assert (f.k_c, f.d_c, f.k_y, f.d_y, f.k_u, f.b1) == pytest.approx(REFERENCE[key], rel=0.005)
+    assert f.b0 == 0.4
+    assert f.inner == "kc"
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_shear_agrees_with_the_other_program(key):
+    v = paper_sections()[key].springs().shear
+    assert (v.k, v.d_y, v.k_post) == pytest.approx(REFERENCE_SHEAR[key], rel=0.03)
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_bands_of_table_3(key):
+    """What a section analysis reproduces of table 3, and how far."""
+    springs = paper_sections()[key].springs()
+    f, v = springs.flexure, springs.shear
+    printed = paper_columns()[key]
+    m, s = printed.flexure, printed.shear
+    assert 0.93 < f.k_c / m.k_c < 1.07
+    assert 0.94 < f.d_c / m.d_c < 1.06
+    assert 0.80 < f.k_y / m.k_y < 1.20
+    assert 0.95 < f.d_y / m.d_y < 1.20
+    factor = 2.6 if key == "tanaka_park_5" else 1.6
+    assert 1 / factor < f.k_u / m.k_u < factor
+    assert 0.80 < v.k / s.k < 1.20
+    assert 0.83 < v.d_y / s.d_y < 1.17
+    assert 0.95 < v.k * v.d_y / (s.k * s.d_y) < 1.05
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_initial_stiffness_is_that_of_the_transformed_section(key):
+    """E_c I/l_p with (E_s/E_c - 1) A_s y^2, within 3 per cent."""
+    paper = paper_sections()[key]
+    section = paper.section
+    springs = paper.springs()
+    ec = section.concrete_law["ec"]
+    inertia = section.width * section.depth**3 / 12
+    inertia += sum((200e9 / ec - 1) * area * y**2 for y, area, _ in section.bars)
+    assert springs.flexure.k_c == pytest.approx(ec * inertia / springs.hinge_length, rel=0.03)
+    assert springs.hinge_length == pytest.approx(
+        0.08 * paper.length
+        + 0.022e-6 * paper.longitudinal_yield_stress * paper.longitudinal_diameter
+    )
+
+
+def test_the_line_goes_through_the_events():
+    springs = paper_sections()["zahn_7"].springs()
+    f, events, l_p = springs.flexure, springs.events, springs.hinge_length
+    turn = [getattr(events, name).curvature * l_p for name in ("cracking", "yielding", "ultimate")]
+    moment = [getattr(events, name).moment for name in ("cracking", "yielding", "ultimate")]
+    np.testing.assert_allclose(f.response(turn), moment, rtol=1e-9)
+
+
+def test_options_of_the_fit():
+    paper = paper_sections()["soesianawati_1"]
+    plain = paper.springs(shear="none")
+    assert plain.shear is None
+    # Coexisting shear: the moments of yield and ultimate fall, cracking stays.
+    lower = paper.springs(moment_factor=0.95, shear="none").flexure
+    f = plain.flexure
+    assert (lower.k_c, lower.d_c, lower.d_y) == (f.k_c, f.d_c, f.d_y)
+    m_y = [s.k_c * s.d_c + s.k_y * (s.d_y - s.d_c) for s in (f, lower)]
+    assert m_y[1] / m_y[0] == pytest.approx(0.95, rel=1e-12)
+    # Rule B: the same moment at a smaller curvature; 0.89 to 1.08 of table 3.
+    b = paper.springs(yield_rule="B", shear="none")
+    assert b.events.yielding.moment == pytest.approx(plain.events.yielding.moment, rel=1e-9)
+    assert b.flexure.d_y < f.d_y
+    # Hinge length scales rotations and stiffnesses.
+    half = paper.springs(hinge_length=plain.hinge_length / 2, shear="none").flexure
+    assert half.k_c == pytest.approx(2 * f.k_c)
+    assert half.d_y == pytest.approx(f.d_y / 2)
+    # B_1 by eq 7 at another rotation, or given.
+    other = paper.springs(d_m=f.d_y, shear="none").flexure
+    assert other.b1 == pytest.approx((m_y[0] + f.k_c * f.d_c) / (f.d_c + f.d_y) / f.k_c)
+    assert paper.springs(b1=0.5, shear="none").flexure.b1 == 0.5
+    closed = paper.springs(shear="closed")
+    assert closed.shear.k == pytest.approx(plain_shear_stiffness(paper), rel=1e-12)
+    assert closed.shear.k_post == 0.0
+
+
+def plain_shear_stiffness(paper) -> float:
+    """0.48 (E_c/2) A/L."""
+    return 0.48 * 0.5 * paper.section.concrete_law["ec"] * paper.gross_area / paper.length
+
+
+def test_ranges_of_the_rules():
+    """The rules of yield, each against table 3 over the four columns."""
+    for rule, factor, low, high in (
+        ("A", 1.0, (1.00, 1.04, 0.92), (1.17, 1.19, 1.16)),
+        ("A", 0.95, (1.00, 0.99, 0.85), (1.17, 1.13, 1.08)),
+        ("B", 1.0, (0.89, 1.04, 1.01), (1.08, 1.19, 1.33)),
+        ("B", 0.95, (0.89, 0.99, 0.94), (1.08, 1.13, 1.23)),
+    ):
+        ratios = []
+        for key, paper in paper_sections().items():
+            f = paper.springs(yield_rule=rule, moment_factor=factor, shear="none").flexure
+            m = paper_columns()[key].flexure
+            m_y = [s.k_c * s.d_c + s.k_y * (s.d_y - s.d_c) for s in (f, m)]
+            ratios.append((f.d_y / m.d_y, m_y[0] / m_y[1], f.k_y / m.k_y))
+        np.testing.assert_allclose(np.min(ratios, axis=0), low, atol=0.006)
+        np.testing.assert_allclose(np.max(ratios, axis=0), high, atol=0.006)
+
+
+def test_a_falling_moment_is_told():
+    paper = paper_sections()["zahn_7"]
+    with pytest.warns(AccuracyWarning, match="K_u = -"):
+        springs = paper.springs(ultimate="drop", shear="none")
+    assert springs.flexure.k_u == 0.0
+    assert "K_u = -" in springs.report
+
+
+def test_report_names_what_was_found():
+    report = paper_sections()["zahn_7"].springs().report
+    for words in ("400 x 400 mm", "12 bars", "cracking", "yielding", "ultimate", "K_c", "hinge"):
+        assert words in report
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"length": -1.0}, "length = -1"),
+        ({"yield_rule": "C"}, "A, B, first"),
+        ({"ultimate": "never"}, "ultimate"),
+        ({"shear": "beam"}, "mcft, closed, none"),
+        ({"hinge_length": 0.0}, "hinge_length"),
+        ({"eps_cover": float("nan")}, "eps_cover"),
+        ({"b0": "x"}, "must be a number"),
+        ({"confined": 3}, "True or False"),
+    ],
+)
+def test_wrong_options_are_named(options, words):
+    with pytest.raises(InputError, match=words):
+        paper_sections()["zahn_7"].springs(**options)
+
+
+def test_paper_sections_are_those_of_table_2():
+    for paper in paper_sections().values():
+        section = paper.section
+        assert isinstance(section, RectangularSection)
+        assert len(section.bars) == paper.longitudinal_number
+        assert section.steel_ratio == pytest.approx(paper.longitudinal_ratio, rel=1e-4)
+        curvature = np.linspace(0.0, 0.02, 5)
+        np.testing.assert_array_equal(
+            paper.moment_curvature(None, curvature),
+            section.moment_curvature(paper.axial_load, curvature),
+        )
+        assert paper.diagram().axial_load == paper.axial_load
+        assert isinstance(section.layout, Layout)
+
+
+def test_columns_with_computed_springs_run():
+    """From the drawing of the section to a loop."""
+    paper = paper_sections()["soesianawati_1"]
+    springs = paper.springs()
+    column = rbsdem.Column(
+        paper.length,
+        paper.mass,
+        springs.shear,
+        springs.flexure,
+        axial_load=paper.axial_load,
+        kinematics="pdelta",
+    )
+    result = rbsdem.cyclic(column, displacement=[0.0, 0.016, -0.016, 0.032])
+    assert 1.4e5 < result.force.max() < 2.5e5
+
+
+def test_figures():
+    import matplotlib.pyplot as plt  # noqa: PLC0415
+
+    paper = paper_sections()["soesianawati_1"]
+    ax = paper.section.plot()
+    assert len(ax.patches) == 1 + 2 + 4 + 12  # concrete, hoop, legs, bars
+    ax = paper.diagram().plot()
+    assert ax.get_xlabel() == "Curvature (mrad/m)"
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == [
+        "Cracking",
+        "Yielding",
+        "Peak",
+        "Ultimate",
+    ]
+    plt.close("all")
