@@ -25,9 +25,20 @@ UNSET_INTEGER = -int(np.iinfo(np.int32).max)
 #: Larger numbers have no meaning in any unit (the constant `beyond_meaning`).
 BEYOND_MEANING = 1e50
 
-#: Order of the numbers of a spring, and of the names of rules (`rule_names`, `inner_names`).
-SPRING_NUMBERS = ("k", "d_y", "k_post", "k_c", "d_c", "k_y", "k_u", "b0", "b1")
-RULES = ("elastic", "bilinear", "takeda", "compression")
+#: Order of the numbers of a spring, and of the names of rules (`rbs_spec_spring_table`).
+SPRING_NUMBERS = (
+    *("k", "d_y", "k_post", "k_c", "d_c", "k_y", "k_u", "b0", "b1"),
+    *("f_c", "f_y", "d_cap", "f_cap", "d_pc", "f_res", "d_u"),
+    *("d_c_neg", "f_c_neg", "d_y_neg", "f_y_neg", "d_cap_neg", "f_cap_neg"),
+    *("d_pc_neg", "f_res_neg", "d_u_neg"),
+    *("lambda_s", "lambda_c", "lambda_k", "lambda_a", "c", "kappa_f", "kappa_d"),
+    *("f_peak", "d_peak", "k_fall", "plastic", "contact", "misfit", "wear"),
+    *("r0", "r1", "r2", "growth", "endurance", "axial_load"),
+)
+RULES = (
+    *("elastic", "bilinear", "takeda", "compression", "peak_oriented", "pinching"),
+    *("concrete", "steel", "layered"),
+)
 INNER = ("kc", "kr", "one")
 
 _ANALYSIS_FAILED = 1
@@ -255,6 +266,116 @@ def read_history(path: str) -> tuple[str, Array, Array]:
     rows, name, displacement, force, status, message = answer
     _raise(status, message)
     return _text(name), displacement[:rows].copy(), force[:rows].copy()
+
+
+#: A section on its way to Fortran (`rbs_flat_section`): whole numbers and reals.
+PackedSection = tuple[NDArray[np.int32], Array]
+
+
+def check_section(section: PackedSection) -> Array:
+    """Return what follows from a section, or raise `InputError` for everything wrong with it."""
+    figures, status, message = _rbsdem.rbs_check_section(*section)
+    _raise(status, message)
+    return figures
+
+
+def axial_capacity(section: PackedSection) -> tuple[float, float]:
+    """Return least (tension) and largest axial load without bending."""
+    least, most, status, message = _rbsdem.rbs_axial_capacity(*section)
+    _raise(status, message)
+    return least, most
+
+
+def concrete_response(numbers: list[float], tension: int, strain: Array) -> Array:
+    """Return the stresses of unconfined concrete, compression positive."""
+    stress, status, message = _rbsdem.rbs_concrete_response(numbers, tension, strain)
+    _raise(status, message)
+    return stress
+
+
+def steel_response(numbers: list[float], strain: Array) -> Array:
+    """Return the stresses of steel."""
+    stress, status, message = _rbsdem.rbs_steel_response(numbers, strain)
+    _raise(status, message)
+    return stress
+
+
+def section_concrete(section: PackedSection, tension: int, part: int, strain: Array) -> Array:
+    """Return the stresses of the concrete of a section: 0 plain, 1 core, 2 spalling cover."""
+    stress, status, message = _rbsdem.rbs_section_concrete(*section, tension, part, strain)
+    _raise(status, message)
+    return stress
+
+
+def moment_curvature(
+    section: PackedSection, axial_load: float, tension: int, confined: bool, curvature: Array
+) -> tuple[Array, Array]:
+    """Return moments and strains for curvatures of one sign in rising size."""
+    moment, strain, status, message = _rbsdem.rbs_moment_curvature(
+        *section, axial_load, tension, int(confined), curvature
+    )
+    _raise(status, message)
+    return moment, strain
+
+
+def section_events(
+    section: PackedSection,
+    axial_load: float,
+    tension: int,
+    confined: bool,
+    yielding: str,
+    ultimate: str,
+    strains: Array,
+) -> tuple[Array, bool]:
+    """Return cracking, yield, peak, ultimate and end, one a column, and whether N was lost."""
+    points, lost, status, message = _rbsdem.rbs_section_events(
+        *section, axial_load, tension, int(confined), word(yielding), word(ultimate), strains
+    )
+    _raise(status, message)
+    return points, bool(lost)
+
+
+def section_flexure(
+    section: PackedSection,
+    settings: list[float],
+    stiffened: bool,
+    confined: bool,
+    yielding: str,
+    ultimate: str,
+) -> tuple[Array, Array]:
+    """Return the points of the diagram, one a column, and the numbers of the flexural spring."""
+    points, figures, status, message = _rbsdem.rbs_section_flexure(
+        *section, settings, int(stiffened), int(confined), word(yielding), word(ultimate)
+    )
+    _raise(status, message)
+    return points, figures
+
+
+def section_shear(
+    section: PackedSection,
+    axial_load: float,
+    length: float,
+    tension: int,
+    confined: bool,
+    coupled: bool,
+    layers: int,
+    knee: float,
+    curvature: Array,
+) -> tuple[Array, Array, tuple[bool, bool, bool], Array]:
+    """Return points, layers, events (knee found, sheared, axial load lost), knee and last point."""
+    points, profile, kept, events, ends, status, message = _rbsdem.rbs_section_shear(
+        *section, axial_load, length, tension, int(confined), int(coupled), layers, knee, curvature
+    )
+    _raise(status, message)
+    found, sheared, lost = (bool(event) for event in events)
+    return points[:, :kept].copy(), profile, (found, sheared, lost), ends
+
+
+def layer_response(
+    concrete: list[float], tension: int, stirrup: list[float], path: Array
+) -> tuple[Array, Array]:
+    """Return states of a layer along a path (a column each), and whether they carry the stress."""
+    return _rbsdem.rbs_layer_response(concrete, tension, stirrup, path)
 
 
 def _path(path: str) -> str:

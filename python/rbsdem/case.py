@@ -16,9 +16,23 @@ from rbsdem.analysis import cyclic, time_history
 from rbsdem.column import Column
 from rbsdem.damping import Damping
 from rbsdem.results import Result
-from rbsdem.springs import Bilinear, Compression, Elastic, Spring, Takeda
+from rbsdem.springs import (
+    Bilinear,
+    Compression,
+    ConcreteSpring,
+    Elastic,
+    Layered,
+    PeakOriented,
+    Pinching,
+    Spring,
+    SteelSpring,
+    Takeda,
+)
 
-_SPRINGS = (Elastic, Bilinear, Takeda, Compression)
+_SPRINGS = (
+    *(Elastic, Bilinear, Takeda, Compression, PeakOriented, Pinching),
+    *(ConcreteSpring, SteelSpring, Layered),
+)
 _DRIVES = ("displacement", "force", "ground_acceleration", "vertical_acceleration", "axial_load")
 _SETTINGS = ("dt", "tolerance", "rho_infinity", "collapse_drift")
 
@@ -124,7 +138,8 @@ def _column(codes: Array, numbers: Array, kinematics: str) -> Column:
     height, mass, load, gravity, top_mass, top_inertia, depth, *damping = islice(values, 9)
     lengths, masses, rotary_inertia, modal = (list(islice(values, size)) for size in sizes[:4])
     springs = [
-        [_spring(next(rules), next(rules), values) for _ in range(size)] for size in sizes[4:]
+        [_spring(next(rules), next(rules), next(rules), values) for _ in range(size)]
+        for size in sizes[4:]
     ]
     shear, flexure, axial = (group[0] if len(group) == 1 else group for group in springs)
     damped = Damping(*damping, bool(tangent), (modal[0] if len(modal) == 1 else modal) or None)
@@ -151,14 +166,19 @@ def _column(codes: Array, numbers: Array, kinematics: str) -> Column:
     )
 
 
-def _spring(rule: int, inner: int, values: Iterator[float]) -> Spring:
+def _spring(rule: int, inner: int, layers: int, values: Iterator[float]) -> Spring:
     """Return the spring of a rule by its place, from the next numbers."""
     kind = _SPRINGS[rule - 1]
+    numbers = islice(values, len(_core.SPRING_NUMBERS))
     given = {
         name: value
-        for name, value in zip(_core.SPRING_NUMBERS, list(islice(values, 9)), strict=True)
-        if name in kind.__dataclass_fields__
+        for name, value in zip(_core.SPRING_NUMBERS, list(numbers), strict=True)
+        if name in kind.__dataclass_fields__ and value != UNSET
     }
     if kind is Takeda:
         given["inner"] = _core.INNER[inner - 1]
+    if kind is Layered:
+        given["layers"] = [
+            (next(values), _spring(int(next(values)), 1, 0, values)) for _ in range(layers)
+        ]
     return kind(**given)

@@ -194,7 +194,7 @@ def _springs(springs: Any, name: str) -> Spring | tuple[Spring, ...]:
         if not isinstance(spring, Spring):
             raise InputError(
                 f"column: {name} = {spring!r} must be a spring (Elastic, Bilinear, Takeda, "
-                "for axial also Compression) or a sequence of them"
+                "PeakOriented, Pinching, for axial also Compression) or a sequence of them"
             )
     if not several:
         raise InputError(f"column: {name} is empty; give one spring, or one for each joint")

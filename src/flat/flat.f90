@@ -12,7 +12,7 @@ subroutine rbs_version_text(text)
    text = version
 end subroutine rbs_version_text
 
-subroutine rbs_check_spring(rule, numbers, inner, status, message)
+subroutine rbs_check_spring(rule, nn, numbers, inner, status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list
    use rbs_flat_door, only: tell
@@ -20,7 +20,8 @@ subroutine rbs_check_spring(rule, numbers, inner, status, message)
    use rbs_spec_spring, only: spring_spec
    implicit none
    character(len=*), intent(in) :: rule, inner
-   real(c_double), intent(in) :: numbers(9)
+   integer(c_int), intent(in) :: nn
+   real(c_double), intent(in) :: numbers(nn)
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
@@ -34,14 +35,14 @@ subroutine rbs_check_spring(rule, numbers, inner, status, message)
    call tell(error, status, message)
 end subroutine rbs_check_spring
 
-subroutine rbs_spring_response(rule, numbers, inner, m, deformation, force)
+subroutine rbs_spring_response(rule, nn, numbers, inner, m, deformation, force)
    use iso_c_binding, only: c_double, c_int
    use rbs_flat_pack, only: spring_from_numbers
    use rbs_hysteresis_springs, only: follow_path
    implicit none
    character(len=*), intent(in) :: rule, inner
-   real(c_double), intent(in) :: numbers(9)
-   integer(c_int), intent(in) :: m
+   integer(c_int), intent(in) :: nn, m
+   real(c_double), intent(in) :: numbers(nn)
    real(c_double), intent(in) :: deformation(m)
    real(c_double), intent(out) :: force(m)
    !f2py threadsafe
@@ -307,3 +308,315 @@ subroutine rbs_kept_rows(points, every, rows)
 
    rows = kept_rows(points, every)
 end subroutine rbs_kept_rows
+
+subroutine rbs_check_section(nc, codes, nn, numbers, figures, status, message)
+   use iso_c_binding, only: c_double, c_int
+   use rbs_base_error, only: error_type
+   use rbs_flat_door, only: tell
+   use rbs_flat_section, only: section_from_numbers, figures_of_section
+   use rbs_section_section, only: section_type
+   implicit none
+   integer(c_int), intent(in) :: nc, nn, codes(nc)
+   real(c_double), intent(in) :: numbers(nn)
+   real(c_double), intent(out) :: figures(15)
+   integer(c_int), intent(out) :: status
+   character(len=8192), intent(out) :: message
+   !f2py threadsafe
+   type(section_type) :: section
+   type(error_type), allocatable :: error
+
+   figures = 0.0_c_double
+   call section_from_numbers(section, codes, numbers, error)
+   call tell(error, status, message)
+   if (status == 0) call figures_of_section(section, figures)
+end subroutine rbs_check_section
+
+subroutine rbs_axial_capacity(nc, codes, nn, numbers, least, most, status, message)
+   use iso_c_binding, only: c_double, c_int
+   use rbs_base_error, only: error_type
+   use rbs_flat_door, only: tell
+   use rbs_flat_section, only: section_from_numbers
+   use rbs_section_balance, only: axial_capacity
+   use rbs_section_concrete, only: tension_bare
+   use rbs_section_resultants, only: section_laws
+   use rbs_section_section, only: section_type
+   implicit none
+   integer(c_int), intent(in) :: nc, nn, codes(nc)
+   real(c_double), intent(in) :: numbers(nn)
+   real(c_double), intent(out) :: least, most
+   integer(c_int), intent(out) :: status
+   character(len=8192), intent(out) :: message
+   !f2py threadsafe
+   type(section_type) :: section
+   type(error_type), allocatable :: error
+
+   least = 0.0_c_double
+   most = 0.0_c_double
+   call section_from_numbers(section, codes, numbers, error)
+   call tell(error, status, message)
+   if (status == 0) call axial_capacity(section, section_laws(section, tension_bare, .false.), least, most)
+end subroutine rbs_axial_capacity
+
+subroutine rbs_moment_curvature(nc, codes, nn, numbers, axial_load, tension, confined, m, curvature, &
+                                moment, strain, status, message)
+   ! Curvatures of one sign in rising size.
+   use iso_c_binding, only: c_double, c_int
+   use rbs_base_error, only: error_type
+   use rbs_flat_door, only: tell
+   use rbs_flat_section, only: section_from_numbers
+   use rbs_section_balance, only: follow
+   use rbs_section_resultants, only: section_laws
+   use rbs_section_section, only: section_type
+   implicit none
+   integer(c_int), intent(in) :: nc, nn, tension, confined, m, codes(nc)
+   real(c_double), intent(in) :: numbers(nn), axial_load, curvature(m)
+   real(c_double), intent(out) :: moment(m), strain(m)
+   integer(c_int), intent(out) :: status
+   character(len=8192), intent(out) :: message
+   !f2py threadsafe
+   type(section_type) :: section
+   type(error_type), allocatable :: error
+
+   moment = 0.0_c_double
+   strain = 0.0_c_double
+   call section_from_numbers(section, codes, numbers, error)
+   if (.not. allocated(error)) then
+      call follow(section, section_laws(section, tension, confined /= 0), axial_load, curvature, &
+                  moment, strain, error)
+   end if
+   call tell(error, status, message)
+end subroutine rbs_moment_curvature
+
+subroutine rbs_section_events(nc, codes, nn, numbers, axial_load, tension, confined, yield, ultimate, &
+                              strains, points, lost, status, message)
+   ! A column of `points` each for cracking, yield, peak, ultimate and the end; strains: eps_yield, eps_cover.
+   use iso_c_binding, only: c_double, c_int
+   use rbs_base_error, only: error_type, message_list
+   use rbs_flat_door, only: tell
+   use rbs_flat_section, only: section_from_numbers, point_numbers
+   use rbs_section_events, only: check_rules, events_type, find_events, rule_type
+   use rbs_section_resultants, only: section_laws
+   use rbs_section_section, only: section_type
+   implicit none
+   integer(c_int), intent(in) :: nc, nn, tension, confined, codes(nc)
+   real(c_double), intent(in) :: numbers(nn), axial_load, strains(2)
+   character(len=*), intent(in) :: yield, ultimate
+   real(c_double), intent(out) :: points(4, 5)
+   integer(c_int), intent(out) :: lost, status
+   character(len=8192), intent(out) :: message
+   !f2py threadsafe
+   type(section_type) :: section
+   type(events_type) :: events
+   type(rule_type) :: rule
+   type(message_list) :: messages
+   type(error_type), allocatable :: error
+
+   points = 0.0_c_double
+   lost = 0
+   rule%eps_yield = strains(1)
+   rule%eps_cover = strains(2)
+   call section_from_numbers(section, codes, numbers, error)
+   if (.not. allocated(error)) then
+      call check_rules(section, confined /= 0, yield, ultimate, rule, messages)
+      call messages%raise(error)
+   end if
+   if (.not. allocated(error)) then
+      call find_events(section, section_laws(section, tension, confined /= 0), axial_load, rule, events, &
+                       error)
+   end if
+   call tell(error, status, message)
+   if (status /= 0) return
+   points(:, 1) = point_numbers(events%cracking)
+   points(:, 2) = point_numbers(events%yield)
+   points(:, 3) = point_numbers(events%peak)
+   points(:, 4) = point_numbers(events%ultimate)
+   points(:, 5) = point_numbers(events%last)
+   lost = merge(1, 0, events%lost)
+end subroutine rbs_section_events
+
+subroutine rbs_section_flexure(nc, codes, nn, numbers, settings, stiffened, confined, yield, ultimate, &
+                               points, figures, status, message)
+   ! settings: length, axial load, hinge length, factor of the moments, B_0, D_m, eps_yield, eps_cover.
+   use iso_c_binding, only: c_double, c_int
+   use rbs_base_error, only: error_type, message_list
+   use rbs_flat_door, only: tell
+   use rbs_flat_section, only: section_from_numbers, point_numbers, spring_figures
+   use rbs_section_events, only: check_rules, rule_type
+   use rbs_section_flexural_spring, only: check_hinge, fit_flexural_spring, flexural_spring_type, hinge_type
+   use rbs_section_section, only: section_type
+   implicit none
+   integer(c_int), intent(in) :: nc, nn, stiffened, confined, codes(nc)
+   real(c_double), intent(in) :: numbers(nn), settings(8)
+   character(len=*), intent(in) :: yield, ultimate
+   real(c_double), intent(out) :: points(4, 4), figures(10)
+   integer(c_int), intent(out) :: status
+   character(len=8192), intent(out) :: message
+   !f2py threadsafe
+   type(section_type) :: section
+   type(hinge_type) :: hinge
+   type(flexural_spring_type) :: spring
+   type(message_list) :: messages
+   type(error_type), allocatable :: error
+
+   points = 0.0_c_double
+   figures = 0.0_c_double
+   hinge%length = settings(1)
+   hinge%axial_load = settings(2)
+   hinge%hinge_length = settings(3)
+   hinge%moment_factor = settings(4)
+   hinge%b0 = settings(5)
+   hinge%d_m = settings(6)
+   hinge%rule%eps_yield = settings(7)
+   hinge%rule%eps_cover = settings(8)
+   hinge%stiffened_yield = stiffened /= 0
+   hinge%confined = confined /= 0
+   call section_from_numbers(section, codes, numbers, error)
+   if (.not. allocated(error)) then
+      call check_rules(section, hinge%confined, yield, ultimate, hinge%rule, messages)
+      call check_hinge(hinge, messages)
+      call messages%raise(error)
+   end if
+   if (.not. allocated(error)) call fit_flexural_spring(section, hinge, spring, error)
+   call tell(error, status, message)
+   if (status /= 0) return
+   points(:, 1) = point_numbers(spring%cracking)
+   points(:, 2) = point_numbers(spring%yield)
+   points(:, 3) = point_numbers(spring%peak)
+   points(:, 4) = point_numbers(spring%ultimate)
+   figures = spring_figures(spring)
+end subroutine rbs_section_flexure
+
+subroutine rbs_section_concrete(nc, codes, nn, numbers, tension, part, m, strain, stress, status, message)
+   ! part: 0 without confinement, 1 core, 2 cover that spalls; compression positive.
+   use iso_c_binding, only: c_double, c_int
+   use rbs_base_error, only: error_type
+   use rbs_flat_door, only: tell
+   use rbs_flat_section, only: section_from_numbers
+   use rbs_section_concrete, only: concrete_stress
+   use rbs_section_resultants, only: laws_type, section_laws
+   use rbs_section_section, only: section_type
+   implicit none
+   integer(c_int), intent(in) :: nc, nn, tension, part, m, codes(nc)
+   real(c_double), intent(in) :: numbers(nn), strain(m)
+   real(c_double), intent(out) :: stress(m)
+   integer(c_int), intent(out) :: status
+   character(len=8192), intent(out) :: message
+   !f2py threadsafe
+   type(section_type) :: section
+   type(laws_type) :: laws
+   type(error_type), allocatable :: error
+
+   stress = 0.0_c_double
+   call section_from_numbers(section, codes, numbers, error)
+   call tell(error, status, message)
+   if (status /= 0) return
+   laws = section_laws(section, tension, part /= 0)
+   if (part == 1) then
+      stress = concrete_stress(laws%core, strain)
+   else
+      stress = concrete_stress(laws%shell, strain)
+   end if
+end subroutine rbs_section_concrete
+
+subroutine rbs_section_shear(nc, codes, nn, numbers, axial_load, span, tension, confined, coupled, layers, &
+                             share, m, curvature, points, profile, kept, events, ends, status, message)
+   ! A column each: `points` curvature, moment, shear force, shear strain; `profile` y, eps_x, tau, gamma,
+   ! eps_z of the layers at the last point; `ends` as points, of the knee and the last one. `events`: knee
+   ! found, a layer sheared, axial load lost.
+   use iso_c_binding, only: c_double, c_int
+   use rbs_base_error, only: error_type
+   use rbs_flat_door, only: tell
+   use rbs_flat_section, only: section_from_numbers
+   use rbs_flat_shear, only: shear_into_arrays
+   use rbs_section_section, only: section_type
+   implicit none
+   integer(c_int), intent(in) :: nc, nn, tension, confined, coupled, layers, m, codes(nc)
+   real(c_double), intent(in) :: numbers(nn), axial_load, span, share, curvature(m)
+   real(c_double), intent(out) :: points(4, m), profile(5, layers), ends(4, 2)
+   integer(c_int), intent(out) :: kept, events(3), status
+   character(len=8192), intent(out) :: message
+   !f2py threadsafe
+   type(section_type) :: section
+   type(error_type), allocatable :: error
+
+   points = 0.0_c_double
+   profile = 0.0_c_double
+   ends = 0.0_c_double
+   kept = 0
+   events = 0
+   call section_from_numbers(section, codes, numbers, error)
+   if (.not. allocated(error)) then
+      call shear_into_arrays(section, tension, confined /= 0, coupled /= 0, axial_load, span, layers, share, &
+                             curvature, points, profile, kept, events, ends, error)
+   end if
+   call tell(error, status, message)
+end subroutine rbs_section_shear
+
+subroutine rbs_layer_response(concrete, tension, stirrup, m, path, states, carried)
+   ! concrete: fc, ft, ec, eps0; stirrup: rho_z, fy, fu, es, eps_sh, eps_u; path: eps_x and tau; a column of
+   ! `states`: eps_z, gamma, sigma_x, sigma_z, tau.
+   use iso_c_binding, only: c_double, c_int
+   use rbs_flat_shear, only: layer_into_arrays
+   implicit none
+   integer(c_int), intent(in) :: tension, m
+   real(c_double), intent(in) :: concrete(4), stirrup(6), path(2, m)
+   real(c_double), intent(out) :: states(5, m)
+   integer(c_int), intent(out) :: carried(m)
+   !f2py threadsafe
+
+   call layer_into_arrays(concrete, tension, stirrup, path, states, carried)
+end subroutine rbs_layer_response
+
+subroutine rbs_concrete_response(numbers, tension, m, strain, stress, status, message)
+   ! numbers: fc, ft, ec, eps0, eps_spall; without confinement, compression positive.
+   use iso_c_binding, only: c_double, c_int
+   use rbs_base_error, only: error_type, message_list
+   use rbs_flat_door, only: tell
+   use rbs_section_concrete, only: check_concrete, concrete_stress, concrete_type, plain_concrete
+   implicit none
+   real(c_double), intent(in) :: numbers(5)
+   integer(c_int), intent(in) :: tension, m
+   real(c_double), intent(in) :: strain(m)
+   real(c_double), intent(out) :: stress(m)
+   integer(c_int), intent(out) :: status
+   character(len=8192), intent(out) :: message
+   !f2py threadsafe
+   type(concrete_type) :: law
+   type(message_list) :: messages
+   type(error_type), allocatable :: error
+
+   stress = 0.0_c_double
+   call check_concrete(numbers(1), numbers(2), numbers(3), numbers(4), numbers(5), messages)
+   call messages%raise(error)
+   call tell(error, status, message)
+   if (status /= 0) return
+   law = plain_concrete(numbers(1), numbers(2), numbers(3), numbers(4))
+   law%tension = tension
+   stress = concrete_stress(law, strain)
+end subroutine rbs_concrete_response
+
+subroutine rbs_steel_response(numbers, m, strain, stress, status, message)
+   ! numbers: fy, fu, es, eps_sh, eps_u.
+   use iso_c_binding, only: c_double, c_int
+   use rbs_base_error, only: error_type, message_list
+   use rbs_flat_door, only: tell
+   use rbs_section_steel, only: check_steel, steel_stress, steel_type
+   implicit none
+   real(c_double), intent(in) :: numbers(5)
+   integer(c_int), intent(in) :: m
+   real(c_double), intent(in) :: strain(m)
+   real(c_double), intent(out) :: stress(m)
+   integer(c_int), intent(out) :: status
+   character(len=8192), intent(out) :: message
+   !f2py threadsafe
+   type(message_list) :: messages
+   type(error_type), allocatable :: error
+   type(steel_type) :: law
+
+   stress = 0.0_c_double
+   law = steel_type(numbers(1), numbers(2), numbers(3), numbers(4), numbers(5))
+   call check_steel(law, 'steel', messages)
+   call messages%raise(error)
+   call tell(error, status, message)
+   if (status == 0) stress = steel_stress(law, strain)
+end subroutine rbs_steel_response

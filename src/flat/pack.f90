@@ -9,7 +9,8 @@ module rbs_flat_pack
    use rbs_column_column, only: column_type
    use rbs_solve_run, only: make_column
    use rbs_spec_column, only: column_spec
-   use rbs_spec_spring, only: spring_spec, rule_names, inner_names
+   use rbs_spec_spring, only: spring_spec
+   use rbs_spec_spring_table, only: rule_names, inner_names, number_count
    implicit none
    private
 
@@ -25,9 +26,9 @@ module rbs_flat_pack
    !> mass_damping, stiffness_damping.
    integer, parameter :: scalars = 9
 
-   !> Numbers of a spring: k, d_y, k_post, k_c, d_c, k_y, k_u, b0, b1. Its codes: places of rule and inner
-   !> rule among their names.
-   integer, parameter :: spring_size = 9, spring_codes = 2
+   !> Codes of a spring: places of rule and inner rule among their names, number of layers. Its numbers are
+   !> in the order of `number_names`; for each layer its place, rule and numbers follow.
+   integer, parameter :: spring_codes = 3, layer_size = 2 + number_count
 
 contains
 
@@ -123,15 +124,16 @@ contains
       integer, intent(in) :: count
       !> Places of the last code and the last number taken
       integer, intent(inout) :: code, at
-      integer :: i
+      integer :: i, length
 
       if (count == 0) return
       allocate (springs(count))
       do i = 1, count
-         springs(i) = spring_from_numbers(rule_names(codes(code + 1)), numbers(at + 1:at + spring_size), &
+         length = number_count + codes(code + 3)*layer_size
+         springs(i) = spring_from_numbers(rule_names(codes(code + 1)), numbers(at + 1:at + length), &
                                           inner_names(codes(code + 2)))
          code = code + spring_codes
-         at = at + spring_size
+         at = at + length
       end do
    end subroutine take_springs
 
@@ -140,37 +142,45 @@ contains
       integer(c_int), allocatable, intent(inout) :: codes(:)
       real(c_double), allocatable, intent(inout) :: numbers(:)
       integer(c_int) :: their_codes(spring_codes, size(springs))
-      real(c_double) :: their_numbers(spring_size, size(springs))
-      integer :: i
+      real(c_double), allocatable :: their_numbers(:)
+      integer :: i, at, length, layers
 
+      ! Not longer with each spring: a column may have 20000 of them.
+      length = size(springs)*number_count
+      do i = 1, size(springs)
+         if (allocated(springs(i)%layers)) length = length + size(springs(i)%layers)
+      end do
+      allocate (their_numbers(length))
+      at = 0
       do i = 1, size(springs)
          associate (s => springs(i))
+            layers = 0
+            if (allocated(s%layers)) layers = size(s%layers, 2)
             their_codes(:, i) = [findloc(rule_names == s%rule, .true., dim=1), &
-                                 findloc(inner_names == s%inner, .true., dim=1)]
-            their_numbers(:, i) = [s%k, s%d_y, s%k_post, s%k_c, s%d_c, s%k_y, s%k_u, s%b0, s%b1]
+                                 findloc(inner_names == s%inner, .true., dim=1), layers]
+            their_numbers(at + 1:at + number_count) = s%numbers()
+            at = at + number_count
+            if (layers == 0) cycle
+            their_numbers(at + 1:at + size(s%layers)) = reshape(s%layers, [size(s%layers)])
+            at = at + size(s%layers)
          end associate
       end do
       codes = [codes, reshape(their_codes, [size(their_codes)])]
-      numbers = [numbers, reshape(their_numbers, [size(their_numbers)])]
+      numbers = [numbers, their_numbers]
    end subroutine put_springs
 
-   !> A spring from its numbers.
+   !> A spring from its numbers, and those of its layers behind them.
    pure function spring_from_numbers(rule, numbers, inner) result(spring)
       character(len=*), intent(in) :: rule, inner
-      real(c_double), intent(in) :: numbers(spring_size)
+      real(c_double), intent(in) :: numbers(:)
       type(spring_spec) :: spring
+      integer :: layers
 
       spring%rule = rule
       spring%inner = inner
-      spring%k = numbers(1)
-      spring%d_y = numbers(2)
-      spring%k_post = numbers(3)
-      spring%k_c = numbers(4)
-      spring%d_c = numbers(5)
-      spring%k_y = numbers(6)
-      spring%k_u = numbers(7)
-      spring%b0 = numbers(8)
-      spring%b1 = numbers(9)
+      call spring%set_numbers(numbers(:number_count))
+      layers = (size(numbers) - number_count)/layer_size
+      if (layers > 0) spring%layers = reshape(numbers(number_count + 1:), [layer_size, layers])
    end function spring_from_numbers
 
 end module rbs_flat_pack

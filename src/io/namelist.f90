@@ -6,7 +6,7 @@ module rbs_io_namelist
    use rbs_io_namelist_entry, only: key_type, key, check_group_name, entry_text, text_length
    use rbs_io_namelist_group, only: reader, find_groups, check_status, take_text, given_reals, given_integers
    use rbs_io_namelist_scan, only: scan_namelist
-   use rbs_io_namelist_springs, only: read_springs
+   use rbs_io_namelist_springs, only: read_springs, read_layers
    use rbs_io_text_file, only: text_file, load_text
    use rbs_spec_analysis, only: analysis_spec, output_spec
    use rbs_spec_case, only: case_spec, most_loadings
@@ -25,9 +25,9 @@ module rbs_io_namelist
    !> A column that takes modal damping has no more modes.
    integer, parameter :: most_modes = 3*most_dense
 
-   character(len=8), parameter :: group_names(9) = [ &
+   character(len=8), parameter :: group_names(10) = [ &
       'case    ', 'column  ', 'axial   ', 'shear   ', 'flexure ', 'opening ', 'loading ', 'analysis', &
-      'output  ']
+      'output  ', 'layer   ']
 
 contains
 
@@ -62,6 +62,7 @@ contains
       call read_axial(r, case%column, messages)
       call read_springs(r, 'shear', 1, case%column%n, case%column%shear, messages)
       call read_springs(r, 'flexure', 1, case%column%n, case%column%flexure, messages)
+      if (allocated(case%column%flexure)) call read_layers(r, case%column%flexure, messages)
       call read_springs(r, 'opening', 0, case%column%n, case%column%axial, messages)
       call read_loadings(r, case, messages)
       call read_analysis(r, case%analysis, messages)

@@ -1,6 +1,7 @@
 !> Springs of the joints from the groups of a namelist file.
 module rbs_io_namelist_springs
    use rbs_base_error, only: message_list
+   use rbs_base_constants, only: unset
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_io_namelist_entry, only: key_type, key, entry_text, location, text_length
@@ -8,10 +9,11 @@ module rbs_io_namelist_springs
    use rbs_io_namelist_scan, only: most_messages
    use rbs_spec_column, only: most_bodies
    use rbs_spec_spring, only: spring_spec
+   use rbs_spec_spring_table, only: number_names, number_count, rule_names
    implicit none
    private
 
-   public :: read_springs
+   public :: read_springs, read_layers
 
 contains
 
@@ -68,58 +70,105 @@ contains
       springs = springs(1:)
    end subroutine read_springs
 
-   subroutine read_spring(r, name, place, joint_read, spec, messages)
+   !> Give the layers of a case to its layered springs: a group with joint = 0 is for all of them.
+   subroutine read_layers(r, springs, messages)
+      type(reader), intent(in) :: r
+      !> Springs of the joints, or one for all
+      type(spring_spec), intent(inout) :: springs(:)
+      type(message_list), intent(inout) :: messages
+      type(spring_spec) :: layer
+      integer, allocatable :: found(:)
+      real(wp) :: column(2 + number_count)
+      integer :: g, i, joint
+      logical :: taken
+
+      call find_groups(r, 'layer', 0, huge(1), found, messages)
+      do g = 1, size(found)
+         if (messages%count > most_messages) return
+         call read_spring(r, 'layer', found(g), joint, layer, messages, column(1))
+         column(2) = findloc(rule_names == layer%rule, .true., dim=1)
+         column(3:) = layer%numbers()
+         taken = .false.
+         do i = 1, size(springs)
+            if (springs(i)%rule /= 'layered' .or. (joint /= 0 .and. joint /= i .and. size(springs) > 1)) cycle
+            if (.not. allocated(springs(i)%layers)) allocate (springs(i)%layers(size(column), 0))
+            springs(i)%layers = reshape([springs(i)%layers, column], &
+                                        [size(column), size(springs(i)%layers, 2) + 1])
+            taken = .true.
+         end do
+         if (.not. taken) then
+            call messages%add(location(r%path, r%scanned%group(found(g))%line)//': &layer with joint = '// &
+                              to_text(joint)//" belongs to no flexural spring with rule = 'layered'; "// &
+                              'remove it, or choose that rule for the spring')
+         end if
+      end do
+   end subroutine read_layers
+
+   !> One spring. The names of its numbers are those of the table, so a Fortran namelist is not of use.
+   subroutine read_spring(r, name, place, joint, spec, messages, y)
       type(reader), intent(in) :: r
       character(len=*), intent(in) :: name
       !> Number of the group
       integer, intent(in) :: place
-      integer, intent(out) :: joint_read
+      integer, intent(out) :: joint
       type(spring_spec), intent(out) :: spec
       type(message_list), intent(inout) :: messages
-      type(key_type) :: keys(12)
-      integer :: joint, i, status
-      real(wp) :: k, d_y, k_post, k_c, d_c, k_y, k_u, b0, b1
-      character(len=text_length) :: rule, inner, iomsg
+      !> Distance of a layer from the middle of the section [m]; only layers have one
+      real(wp), intent(out), optional :: y
+      type(key_type) :: keys(4 + number_count)
+      real(wp) :: numbers(number_count)
+      character(len=text_length) :: iomsg
       character(len=:), allocatable :: text
-      namelist /spring/ joint, rule, k, d_y, k_post, k_c, d_c, k_y, k_u, b0, b1, inner
+      integer :: i, j, status
 
-      keys = [key('joint', 'i'), key('rule', 's'), key('k', 'r'), key('d_y', 'r'), key('k_post', 'r'), &
-              key('k_c', 'r'), key('d_c', 'r'), key('k_y', 'r'), key('k_u', 'r'), key('b0', 'r'), &
-              key('b1', 'r'), key('inner', 's')]
+      keys(:3) = [key('joint', 'i'), key('rule', 's'), key('inner', 's')]
+      do j = 1, number_count
+         keys(3 + j) = key(number_names(j), 'r')
+      end do
+      keys(size(keys)) = key('y', 'r')
+      iomsg = ''
       joint = 0
-      rule = spec%rule
-      inner = spec%inner
-      k = spec%k
-      d_y = spec%d_y
-      k_post = spec%k_post
-      k_c = spec%k_c
-      d_c = spec%d_c
-      k_y = spec%k_y
-      k_u = spec%k_u
-      b0 = spec%b0
-      b1 = spec%b1
+      if (present(y)) y = unset
+      numbers = spec%numbers()
       associate (group => r%scanned%group(place))
          do i = group%first, group%last
-            call entry_text(r%path, r%scanned, group, i, keys, text, messages)
+            call entry_text(r%path, r%scanned, group, i, keys(:merge(4, 3, present(y)) + number_count), &
+                            text, messages)
             if (.not. allocated(text)) cycle
-            ! One namelist serves all kinds of springs.
-            text = '&spring'//text(len(name) + 2:)
-            read (text, nml=spring, iostat=status, iomsg=iomsg)
+            status = 0
+            associate (entry => r%scanned%entry(i))
+               select case (entry%name)
+               case ('joint')
+                  read (entry%value(1)%text, *, iostat=status, iomsg=iomsg) joint
+               case ('rule')
+                  call take_word(r, name//': rule', entry%value(1)%text, spec%rule, messages)
+               case ('inner')
+                  call take_word(r, name//': inner', entry%value(1)%text, spec%inner, messages)
+               case ('y')
+                  read (entry%value(1)%text, *, iostat=status, iomsg=iomsg) y
+               case default
+                  j = findloc(number_names == entry%name, .true., dim=1)
+                  read (entry%value(1)%text, *, iostat=status, iomsg=iomsg) numbers(j)
+               end select
+            end associate
             call check_status(r, i, status, iomsg, messages)
          end do
       end associate
-      joint_read = joint
-      call take_text(r, name//': rule', rule, spec%rule, messages)
-      call take_text(r, name//': inner', inner, spec%inner, messages)
-      spec%k = k
-      spec%d_y = d_y
-      spec%k_post = k_post
-      spec%k_c = k_c
-      spec%d_c = d_c
-      spec%k_y = k_y
-      spec%k_u = k_u
-      spec%b0 = b0
-      spec%b1 = b1
+      call spec%set_numbers(numbers)
+      call spec%fill_defaults()
    end subroutine read_spring
+
+   !> A quoted text into its place.
+   subroutine take_word(r, name, quoted, word, messages)
+      type(reader), intent(in) :: r
+      character(len=*), intent(in) :: name, quoted
+      character(len=16), intent(out) :: word
+      type(message_list), intent(inout) :: messages
+      character(len=text_length) :: given
+
+      ! List-directed: it takes away the quotes, and the doubled ones within.
+      read (quoted, *) given
+      call take_text(r, name, given, word, messages)
+   end subroutine take_word
 
 end module rbs_io_namelist_springs

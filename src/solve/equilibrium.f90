@@ -226,9 +226,11 @@ contains
          correction = self%found(:, 2)
          force_rate = y(1)
          force_correction = y(2)
-      else if (minval(k) > 0.0_wp) then
-         regular = .true.
+      else if (minval(abs(k)) > 0.0_wp) then
+         ! Softening joints have a negative flexibility; with that of the others it may vanish.
          flexibility = sum(self%arm**2/k)
+         regular = abs(flexibility) > no_stiffness*sum(self%arm**2/abs(k))
+         if (.not. regular) return
          force_rate = 1.0_wp/flexibility
          rate = self%arm/k*force_rate
          correction = r/k
@@ -239,8 +241,8 @@ contains
          call follow_mechanism(self, k, rate)
          force_rate = 0.0_wp
          force_correction = 0.0_wp
-         where (k > 0.0_wp)
-            correction = r/max(k, tiny(1.0_wp))
+         where (abs(k) > 0.0_wp)
+            correction = r/sign(max(abs(k), tiny(1.0_wp)), k)
          else where
             correction = 0.0_wp
          end where
@@ -320,7 +322,7 @@ contains
       real(wp), intent(out) :: rate(:)
 
       rate = 0.0_wp
-      where (.not. k > 0.0_wp) rate = self%arm/self%initial_stiffness
+      where (.not. abs(k) > 0.0_wp) rate = self%arm/self%initial_stiffness
       rate = rate/sum(self%arm*rate)
    end subroutine follow_mechanism
 

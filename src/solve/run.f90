@@ -7,6 +7,7 @@ module rbs_solve_run
    use rbs_base_text, only: to_text
    use rbs_column_axial, only: check_stable
    use rbs_column_column, only: column_type, new_column, small, finite
+   use rbs_hysteresis_factory, only: carries_axial_load
    use rbs_loading_signal, only: signal_type
    use rbs_results_progress, only: progress_type
    use rbs_results_recorder, only: recorder_type
@@ -53,10 +54,19 @@ contains
       type(column_type), intent(out) :: column
       type(error_type), allocatable, intent(out) :: error
       type(message_list) :: messages
+      integer :: i
 
       call spec%validate(messages)
       call messages%raise(error)
-      if (.not. allocated(error)) call new_column(column, spec)
+      if (allocated(error)) return
+      do i = 1, size(spec%flexure)
+         if (carries_axial_load(spec%flexure(i))) cycle
+         call fatal_error(error, bad_input, 'flexure spring of joint '//to_text(i)//': its layers cannot '// &
+                          'carry axial_load = '//to_text(spec%flexure(i)%axial_load)//' N; lower it, or '// &
+                          'give stronger layers')
+         return
+      end do
+      call new_column(column, spec)
    end subroutine make_column
 
    !> Static path through displacements of the top or lateral forces.

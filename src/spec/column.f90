@@ -7,6 +7,7 @@ module rbs_spec_column
    use rbs_base_text, only: to_text
    use rbs_spec_check, only: check_positive, check_not_negative, check_finite, check_name
    use rbs_spec_spring, only: spring_spec
+   use rbs_spec_spring_table, only: is_capped
    implicit none
    private
 
@@ -221,13 +222,24 @@ contains
          end do
       end if
       if (.not. allocated(springs)) return
-      if (name == 'axial' .and. any(springs%rule == 'takeda')) then
-         call messages%add("column: an axial spring cannot be of the rule 'takeda'; it is 'elastic', "// &
-                           "'bilinear' or 'compression'")
-      else if (name /= 'axial' .and. any(springs%rule == 'compression')) then
-         call messages%add('column: the '//name//" spring cannot be of the rule 'compression', which is "// &
-                           'for axial springs')
+      if (name == 'axial' .and. any(is_lateral(springs%rule))) then
+         i = findloc(is_lateral(springs%rule), .true., dim=1)
+         call messages%add("column: an axial spring cannot be of the rule '"//trim(springs(i)%rule)// &
+                           "'; it is 'elastic', 'bilinear' or 'compression'")
+      else if (name /= 'axial' .and. any(springs%rule == 'compression' .or. springs%rule == 'concrete')) then
+         i = findloc(springs%rule == 'compression' .or. springs%rule == 'concrete', .true., dim=1)
+         call messages%add('column: the '//name//" spring cannot be of the rule '"//trim(springs(i)%rule)// &
+                           "', which is for axial springs and layers")
+      else if (name == 'shear' .and. any(springs%rule == 'layered')) then
+         call messages%add("column: a shear spring cannot be of the rule 'layered', which is for flexure")
       end if
    end subroutine check_springs
+
+   !> Whether a rule is for bending and shear only.
+   elemental logical function is_lateral(rule)
+      character(len=*), intent(in) :: rule
+
+      is_lateral = rule == 'takeda' .or. rule == 'layered' .or. is_capped(rule)
+   end function is_lateral
 
 end module rbs_spec_column

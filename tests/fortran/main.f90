@@ -4,6 +4,7 @@ program unit_tests
    use check, only: unit_test, run_suite
    use test_band, only: collect_band
    use test_bilinear, only: collect_bilinear
+   use test_capped, only: collect_capped
    use test_chain, only: collect_chain
    use test_column, only: collect_column
    use test_finite, only: collect_finite
@@ -14,7 +15,9 @@ program unit_tests
    use test_protocol, only: collect_protocol
    use test_results, only: collect_results
    use test_run, only: collect_run
+   use test_section, only: collect_section
    use test_segment, only: collect_segment
+   use test_shear, only: collect_shear
    use test_signal, only: collect_signal
    use test_spec, only: collect_spec
    use test_springs, only: collect_springs
@@ -40,13 +43,15 @@ program unit_tests
       procedure(collect_interface), pointer, nopass :: collect => null()
    end type suite_type
 
-   type(suite_type) :: suites(22)
+   type(suite_type) :: suites(25)
    character(len=80) :: wanted, pattern
    integer :: i, run, failed, found
 
-   suites = [suite_type('text', collect_text), suite_type('linalg', collect_linalg), &
+   suites = [suite_type('text', collect_text), suite_type('section', collect_section), &
+              suite_type('linalg', collect_linalg), &
              suite_type('spec', collect_spec), suite_type('segment', collect_segment), &
              suite_type('bilinear', collect_bilinear), suite_type('takeda', collect_takeda), &
+             suite_type('capped', collect_capped), &
              suite_type('springs', collect_springs), suite_type('column', collect_column), &
              suite_type('chain', collect_chain), &
              suite_type('band', collect_band), &
@@ -58,6 +63,7 @@ program unit_tests
              suite_type('history', collect_history), &
              suite_type('run', collect_run), &
              suite_type('steppers', collect_steppers), &
+             suite_type('shear', collect_shear), &
              suite_type('implicit', collect_implicit)]
 
    call get_command_argument(1, wanted)

@@ -10,12 +10,15 @@ A row that is meant to change is stored anew by `rbsdem run tests/regression/NN-
 
 from __future__ import annotations
 
+import importlib
 import os
 import subprocess
+import sys
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -616,6 +619,120 @@ def reason_static_finite(rows: Rows) -> None:
     np.testing.assert_allclose(rows["slip_1_m"], rows["force_N"] / 2e5, rtol=1e-12, atol=1e-14)
 
 
+# ---- 13: capped backbone with deterioration ------------------------------------------------------
+
+CAPPED = rbsdem.PeakOriented(
+    d_c=5e-4,
+    f_c=80e3,
+    d_y=4e-3,
+    f_y=230e3,
+    d_cap=15e-3,
+    f_cap=250e3,
+    d_pc=60e-3,
+    f_res=40e3,
+    d_y_neg=3e-3,
+    f_y_neg=180e3,
+    f_cap_neg=190e3,
+    b0=0.4,
+    lambda_s=60,
+    lambda_c=60,
+    lambda_k=120,
+    lambda_a=120,
+    c=1.2,
+)
+
+
+def second_method(spring: rbsdem.PeakOriented) -> Any:
+    """Return the spring once more, of another make (`tests/python/reference_capped`)."""
+    place = str(HERE.parent / "python")
+    if place not in sys.path:
+        sys.path.append(place)
+    reference = importlib.import_module("reference_capped")
+    return reference.Capped(**{k: v for k, v in asdict(spring).items() if v is not None})
+
+
+def run_static_capped() -> rbsdem.Result:
+    column = rbsdem.Column(
+        1.6, 614.4, rbsdem.Elastic(4e8), CAPPED, kinematics="pdelta", axial_load=400e3
+    )
+    drifts = np.array([0.0025, 0.005, 0.01, 0.02, 0.03, 0.045])
+    return rbsdem.cyclic(column, rbsdem.protocol(drifts * 1.6, cycles=2, points=4))
+
+
+def reason_static_capped(rows: Rows) -> None:
+    """Equilibrium with the load in the deformed place; the spring of another make."""
+    turn, slip, moment = rows["rotation_1_rad"], rows["slip_1_m"], rows["moment_1_Nm"]
+    size = np.max(np.abs(moment))
+    np.testing.assert_allclose(slip, rows["shear_1_N"] / 4e8, rtol=1e-9, atol=1e-15)
+    np.testing.assert_allclose(slip + 1.6 * turn, rows["displacement_m"], rtol=1e-12, atol=1e-15)
+    lever = 1.6 * (rows["force_N"] + 400e3 * turn)  # the joint has slipped with the body
+    np.testing.assert_allclose(moment, lever, atol=1e-10 * size)
+    # One body: it turns back where its top does, and there is a row.
+    np.testing.assert_allclose(moment, second_method(CAPPED).response(turn), atol=1e-9 * size)
+    peaks = [np.max(np.abs(moment[np.abs(turn) > drift])) for drift in (0.01, 0.028, 0.044)]
+    assert peaks[0] > 1.5 * peaks[1] > 2.0 * peaks[2]  # beyond the cap
+
+
+# ---- 14: pinching and deterioration in time ------------------------------------------------------
+
+PINCHED = rbsdem.Pinching(
+    d_c=5e-4,
+    f_c=30e3,
+    d_y=4e-3,
+    f_y=80e3,
+    d_cap=10e-3,
+    f_cap=85e3,
+    d_pc=40e-3,
+    f_res=15e3,
+    b0=0.3,
+    lambda_s=30,
+    lambda_c=30,
+    lambda_k=60,
+    lambda_a=60,
+    kappa_f=0.4,
+    kappa_d=0.3,
+)
+
+
+def run_rk4_pinching() -> rbsdem.Result:
+    column = rbsdem.Column(
+        1.0, 500.0, PINCHED, rbsdem.Elastic(5e7), top_mass=20e3, damping=rbsdem.Damping(mass=0.5)
+    )
+    ground = rbsdem.protocol(np.array([0.35, 0.6]) * G, points=3)
+    time = np.append(np.arange(25) * (0.6 / 24), 1.2)
+    return rbsdem.time_history(
+        column,
+        time,
+        ground_acceleration=np.append(ground, 0.0),
+        method="rk4",
+        events="located",
+        dt=1e-4,
+        every=200,
+    )
+
+
+def reason_rk4_pinching(rows: Rows) -> None:
+    """Central differences (Stoermer, Verlet) with the spring of another make."""
+    spring, step = second_method(PINCHED), 1e-5
+    mass = 500.0 * np.array([[1.0, 1 / 2], [1 / 2, 1 / 3]]) + 20e3 * np.ones((2, 2))
+    inverse, pushed = np.linalg.inv(mass), np.array([500.0 + 20e3, 250.0 + 20e3])
+    wave = np.append(G * rbsdem.protocol([0.35, 0.6], points=3), 0.0)
+    ground = np.interp(np.arange(120001) * step, np.append(np.arange(25) * (0.6 / 24), 1.2), wave)
+    near, now = np.zeros(2), np.zeros(2)
+    kept = [now]
+    for i in range(120000):
+        springs = np.array([spring.move(float(now[0])), 5e7 * now[1]])
+        change = inverse @ (-springs - pushed * ground[i]) - 0.5 * (now - near) / step
+        near, now = now, 2 * now - near + step**2 * change
+        kept.append(now)
+    times = np.rint(rows["time_s"] / step).astype(int)
+    slip = np.array(kept)[times, 0]
+    size = np.max(np.abs(slip))
+    assert size > 0.02  # beyond the cap
+    np.testing.assert_allclose(rows["slip_1_m"], slip, atol=2e-3 * size)
+    assert np.max(np.abs(rows["residual_J"])) < 1e-4 * rows["input_J"].max()
+
+
 # --------------------------------------------------------------------------------------------------
 
 CASES = {
@@ -631,6 +748,8 @@ CASES = {
     "10-rk45-finite": Case(run_rk45_finite, reason_rk45_finite),
     "11-contact": Case(run_contact, reason_contact),
     "12-static-finite": Case(run_static_finite, reason_static_finite),
+    "13-static-capped": Case(run_static_capped, reason_static_capped),
+    "14-rk4-pinching": Case(run_rk4_pinching, reason_rk4_pinching),
 }
 
 

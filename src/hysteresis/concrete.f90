@@ -1,0 +1,235 @@
+!> Concrete across a joint: a normal spring that crushes, opens and closes again.
+!>
+!> Opening is positive, so the spring works at negative deformations; inside, `c` = -d is the closing.
+!> Envelope: the curve of Popovics (1973), as chords, to the peak, a falling line, a residual. Plastic
+!> closing after unloading: Karsan and Jirsa (1969). Faces that were apart do not match: they touch
+!> before the plastic closing is reached (Stanton and McNiven 1979 call it focal point), which makes the
+!> closing of a crack gradual.
+module rbs_hysteresis_concrete
+   use rbs_base_kinds, only: wp
+   use rbs_base_constants, only: unbounded
+   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_segment, only: segment
+   implicit none
+   private
+
+   public :: concrete_rule
+
+   !> What the present line is
+   integer, parameter :: virgin = 0, envelope = 1, unloading = 2, contact = 3, opening = 4, closing = 5
+
+   !> Chords of the rising curve, as shares of the closing at the peak
+   real(wp), parameter :: chord_ends(4) = [0.25_wp, 0.5_wp, 0.75_wp, 1.0_wp]
+
+   type, extends(rule_type) :: concrete_rule
+      !> Stiffness at first [N/m]
+      real(wp) :: k = 0.0_wp
+      !> Largest force [N] and the closing there [m]
+      real(wp) :: f_peak = 0.0_wp, d_peak = 0.0_wp
+      !> How fast the force falls behind the peak [N/m] and what is left of it [N]
+      real(wp) :: k_fall = 0.0_wp, f_res = 0.0_wp
+      !> Factor of the plastic closing
+      real(wp) :: plastic = 1.0_wp
+      !> Share of the force at unloading at which a closing crack is fully closed
+      real(wp) :: contact = 0.0_wp
+      !> Share of the widest opening at which its faces touch
+      real(wp) :: misfit = 0.0_wp
+      !> Share of the strength lost by every closing and opening, at twice the closing at the peak or more
+      real(wp) :: wear = 0.0_wp
+      integer, private :: stage = virgin
+      !> Largest closing so far and the force there without wear; plastic closing [m, N]
+      real(wp), private :: c_u = 0.0_wp, f_u = 0.0_wp, c_p = 0.0_wp
+      !> Widest opening so far, closing at which the faces touch [m]; strength left
+      real(wp), private :: widest = 0.0_wp, c_touch = 0.0_wp, strength = 1.0_wp
+      !> Whether the crack was closed since it last opened
+      logical, private :: was_closed = .true.
+   contains
+      procedure :: start
+      procedure :: next
+   end type concrete_rule
+
+contains
+
+   subroutine start(self, line)
+      class(concrete_rule), intent(inout) :: self
+      type(segment), intent(out) :: line
+
+      self%stage = virgin
+      self%c_u = 0.0_wp
+      self%f_u = 0.0_wp
+      self%c_p = 0.0_wp
+      self%widest = 0.0_wp
+      self%c_touch = 0.0_wp
+      self%strength = 1.0_wp
+      self%was_closed = .true.
+      line = chord(0.0_wp, 0.0_wp, chord_ends(1)*self%d_peak, curve(self, chord_ends(1)*self%d_peak))
+   end subroutine start
+
+   subroutine next(self, line, direction)
+      class(concrete_rule), intent(inout) :: self
+      type(segment), intent(inout) :: line
+      integer, intent(in) :: direction
+      real(wp) :: c, f
+
+      c = -line%end_toward(direction)
+      f = -line%force(-c)
+      if (direction < 0) then
+         select case (self%stage)
+         case (virgin, envelope)
+            call follow_envelope(self, c, f, line)
+         case (unloading)
+            call follow_envelope(self, self%c_u, self%strength*self%f_u, line)
+         case (contact)
+            call unload(self, line)
+         case (opening)
+            ! The crack begins to close: its faces will touch earlier the wider it was.
+            self%widest = max(self%widest, self%c_p - c)
+            self%c_touch = self%c_p - self%misfit*self%widest
+            self%stage = closing
+            line = chord(c, 0.0_wp, self%c_touch, 0.0_wp)
+         case default
+            self%was_closed = .true.
+            call touch(self, line)
+         end select
+      else
+         select case (self%stage)
+         case (envelope)
+            self%c_u = c
+            self%f_u = f/self%strength
+            call find_plastic(self)
+            call unload(self, line)
+         case (unloading)
+            call touch(self, line)
+         case default
+            call open_up(self, c, line)
+         end select
+      end if
+   end subroutine next
+
+   !> On the envelope from (c, f) to its next corner.
+   subroutine follow_envelope(self, c, f, line)
+      type(concrete_rule), intent(inout) :: self
+      !> Where the spring is: closing [m], force [N]
+      real(wp), intent(in) :: c, f
+      type(segment), intent(out) :: line
+      real(wp) :: c_next, f_next, c_flat
+      integer :: i
+
+      self%stage = envelope
+      do i = 1, size(chord_ends)
+         c_next = chord_ends(i)*self%d_peak
+         if (c_next > c*(1.0_wp + 1.0e-9_wp)) then
+            f_next = self%strength*curve(self, c_next)
+            line = chord(c, f, c_next, f_next)
+            call set_one_way(line)
+            return
+         end if
+      end do
+      c_flat = self%d_peak + (self%f_peak - self%f_res)/self%k_fall
+      if (c_flat > c*(1.0_wp + 1.0e-9_wp)) then
+         line = chord(c, f, c_flat, self%strength*self%f_res)
+      else
+         line = segment(d0=-c, f0=-f, lo=-unbounded, hi=-c)
+      end if
+      call set_one_way(line)
+   end subroutine follow_envelope
+
+   !> Plastic closing after unloading from (c_u, f_u), Karsan and Jirsa (1969); straight on behind twice
+   !> the closing at the peak, and never so much that unloading is stiffer than `k`.
+   subroutine find_plastic(self)
+      type(concrete_rule), intent(inout) :: self
+      real(wp) :: x, share
+
+      x = self%c_u/self%d_peak
+      share = 0.145_wp*x**2 + 0.13_wp*x
+      if (x > 2.0_wp) share = 0.84_wp + 0.834_wp*(x - 2.0_wp)
+      self%c_p = min(self%plastic*share*self%d_peak, self%c_u - self%strength*self%f_u/self%k)
+      self%c_p = max(self%c_p, 0.0_wp)
+      self%c_touch = min(self%c_touch, self%c_p)
+   end subroutine find_plastic
+
+   !> On the line of unloading between full closing and the envelope.
+   subroutine unload(self, line)
+      type(concrete_rule), intent(inout) :: self
+      type(segment), intent(out) :: line
+      real(wp) :: c_closed, f_closed
+
+      self%stage = unloading
+      call full_closing(self, c_closed, f_closed)
+      line = chord(c_closed, f_closed, self%c_u, self%strength*self%f_u)
+   end subroutine unload
+
+   !> On the line between the first touch of the faces and full closing; without one the crack is open.
+   subroutine touch(self, line)
+      type(concrete_rule), intent(inout) :: self
+      type(segment), intent(inout) :: line
+      real(wp) :: c_closed, f_closed, c
+
+      call full_closing(self, c_closed, f_closed)
+      if (c_closed > self%c_touch) then
+         self%stage = contact
+         line = chord(self%c_touch, 0.0_wp, c_closed, f_closed)
+      else if (self%stage == closing) then
+         call unload(self, line)
+      else
+         c = self%c_touch
+         call open_up(self, c, line)
+      end if
+   end subroutine touch
+
+   !> Where a closing crack is fully closed.
+   pure subroutine full_closing(self, c, f)
+      type(concrete_rule), intent(in) :: self
+      !> Closing [m] and force [N]
+      real(wp), intent(out) :: c, f
+
+      c = self%c_p
+      f = 0.0_wp
+      if (self%c_touch >= self%c_p) return
+      c = self%c_p + self%contact*(self%c_u - self%c_p)
+      f = self%contact*self%strength*self%f_u
+   end subroutine full_closing
+
+   !> No force while the crack opens, from the closing c on.
+   subroutine open_up(self, c, line)
+      type(concrete_rule), intent(inout) :: self
+      real(wp), intent(in) :: c
+      type(segment), intent(out) :: line
+
+      if (self%was_closed .and. self%c_u > 0.0_wp) then
+         self%strength = self%strength*(1.0_wp - self%wear*min(1.0_wp, 0.5_wp*self%c_u/self%d_peak))
+         self%was_closed = .false.
+      end if
+      self%stage = opening
+      line = segment(d0=-c, lo=-c, hi=unbounded, lo_closed=.true., one_way=1)
+   end subroutine open_up
+
+   !> Rising curve of Popovics (1973) [N].
+   pure real(wp) function curve(self, c)
+      type(concrete_rule), intent(in) :: self
+      !> Closing, up to the one at the peak [m]
+      real(wp), intent(in) :: c
+      real(wp) :: x, r
+
+      x = c/self%d_peak
+      r = self%k/(self%k - self%f_peak/self%d_peak)
+      curve = self%f_peak*x*r/(r - 1.0_wp + x**r)
+   end function curve
+
+   !> The line through two points (closing, force), the second further closed; both ends open.
+   pure type(segment) function chord(c_1, f_1, c_2, f_2) result(line)
+      real(wp), intent(in) :: c_1, f_1, c_2, f_2
+
+      line = segment(d0=-c_1, f0=-f_1, lo=-c_2, hi=-c_1)
+      if (c_2 > c_1) line%k = (f_2 - f_1)/(c_2 - c_1)
+   end function chord
+
+   !> A line of the envelope is left when the motion turns back.
+   pure subroutine set_one_way(line)
+      type(segment), intent(inout) :: line
+
+      line%hi_closed = .true.
+      line%one_way = -1
+   end subroutine set_one_way
+
+end module rbs_hysteresis_concrete

@@ -1,0 +1,235 @@
+!> Steel that yields round: Menegotto and Pinto (1973) as straight lines.
+!>
+!> A branch begins where the motion turned back and bends from the elastic stiffness to the line of
+!> hardening,  f* = b x + (1 - b) x/(1 + x^R)^(1/R),  R = r0 (1 - r1 xi/(r2 + xi)),  xi = plastic
+!> excursion over the yield deformation. The curve is followed by chords whose ends are chosen for its
+!> roundness. A branch that meets the one of its direction that was left before goes on along that one:
+!> small cycles close and never overshoot. The strength of new branches
+!> grows with the reach of the strains (Filippou, Popov and Bertero 1983) and falls with the plastic work.
+module rbs_hysteresis_steel
+   use rbs_base_kinds, only: wp
+   use rbs_base_constants, only: unbounded
+   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_segment, only: segment
+   implicit none
+   private
+
+   public :: steel_rule
+
+   !> Ends of the chords: values of x^R
+   real(wp), parameter :: corners(8) = [0.03_wp, 0.15_wp, 0.4_wp, 0.8_wp, 1.5_wp, 3.0_wp, 8.0_wp, 30.0_wp]
+   !> Branches left behind that are remembered
+   integer, parameter :: most_branches = 16
+   !> Roundness has no meaning below
+   real(wp), parameter :: least_r = 0.8_wp
+
+   !> One curve from a point of reversal to the line of hardening.
+   type :: branch_type
+      integer :: direction = 0
+      !> Where it begins, and where its two asymptotes meet [m, N]
+      real(wp) :: d_0 = 0.0_wp, f_0 = 0.0_wp, d_a = 0.0_wp, f_a = 0.0_wp
+      !> Roundness
+      real(wp) :: r = 20.0_wp
+      !> Where it meets the branch of its direction that was left before
+      real(wp) :: d_meet = unbounded
+   end type branch_type
+
+   type, extends(rule_type) :: steel_rule
+      !> Elastic stiffness [N/m], yield force [N], stiffness of hardening [N/m]
+      real(wp) :: k = 0.0_wp, f_y = 0.0_wp, k_post = 0.0_wp
+      !> Roundness of the virgin branch and how it falls with the plastic excursion
+      real(wp) :: r0 = 20.0_wp, r1 = 0.925_wp, r2 = 0.15_wp
+      !> Share by which the strength has grown when the strains have reached from -d_y to d_y (Filippou,
+      !> Popov and Bertero 1983); it grows with the power 0.8 of that reach
+      real(wp) :: growth = 0.0_wp
+      !> Plastic work over f_y d_y at which the strength is half (0: it stays)
+      real(wp) :: endurance = 0.0_wp
+      type(branch_type), private :: branch(most_branches)
+      !> Branches in memory; 0: virgin
+      integer, private :: count = 0
+      !> Extremes of the deformation so far [m]
+      real(wp), private :: highest = 0.0_wp, lowest = 0.0_wp
+      !> Work up to the last corner [J], which was there [m, N]
+      real(wp), private :: work = 0.0_wp, d_last = 0.0_wp, f_last = 0.0_wp
+   contains
+      procedure :: start
+      procedure :: next
+   end type steel_rule
+
+contains
+
+   subroutine start(self, line)
+      class(steel_rule), intent(inout) :: self
+      type(segment), intent(out) :: line
+      real(wp) :: d, d_y
+      type(branch_type) :: first
+
+      self%count = 0
+      self%highest = 0.0_wp
+      self%lowest = 0.0_wp
+      self%work = 0.0_wp
+      self%d_last = 0.0_wp
+      self%f_last = 0.0_wp
+      d_y = self%f_y/self%k
+      first = branch_type(direction=1, d_a=d_y, f_a=self%f_y, r=self%r0)
+      d = corners(1)**(1.0_wp/self%r0)*d_y
+      line = segment(k=curve(self, first, d)/d, lo=-d, hi=d)
+   end subroutine start
+
+   subroutine next(self, line, direction)
+      class(steel_rule), intent(inout) :: self
+      type(segment), intent(inout) :: line
+      integer, intent(in) :: direction
+      real(wp) :: d, f
+
+      d = line%end_toward(direction)
+      f = line%force(d)
+      self%work = self%work + 0.5_wp*(f + self%f_last)*(d - self%d_last)
+      self%d_last = d
+      self%f_last = f
+      if (self%count == 0) then
+         self%count = 1
+         self%branch(1) = branch_type(direction=direction, d_a=direction*self%f_y/self%k, &
+                                      f_a=direction*self%f_y, r=self%r0, d_meet=direction*unbounded)
+      else if (self%branch(self%count)%direction /= direction) then
+         call turn_back(self, d, f)
+      else if (direction*(d - self%branch(self%count)%d_meet) >= 0.0_wp) then
+         ! Back on the branch that was left before: what lies between is forgotten.
+         self%count = self%count - 2
+      end if
+      call follow_branch(self, d, f, line)
+   end subroutine next
+
+   !> Begin a branch at (d, f) in the direction away from the present one.
+   subroutine turn_back(self, d, f)
+      class(steel_rule), intent(inout) :: self
+      real(wp), intent(in) :: d, f
+      type(branch_type) :: new
+      real(wp) :: d_y, plastic, strength, xi
+      integer :: s
+
+      d_y = self%f_y/self%k
+      s = -self%branch(self%count)%direction
+      ! A branch that began less far out than here is outgrown; the oldest ones give way.
+      do while (self%count >= 2)
+         if (s*(d - self%branch(self%count - 1)%d_0) > 0.0_wp) exit
+         call forget(self, self%count - 1)
+      end do
+      if (self%count == most_branches) call forget(self, 2)
+      self%highest = max(self%highest, d)
+      self%lowest = min(self%lowest, d)
+      strength = 1.0_wp
+      if (self%growth > 0.0_wp) then
+         strength = 1.0_wp + self%growth*(0.5_wp*(self%highest - self%lowest)/d_y)**0.8_wp
+      end if
+      if (self%endurance > 0.0_wp) then
+         plastic = max(0.0_wp, self%work - 0.5_wp*f**2/self%k)/(self%f_y*d_y)
+         strength = strength/(1.0_wp + (plastic/self%endurance)**2)
+      end if
+      new%direction = s
+      new%d_0 = d
+      new%f_0 = f
+      ! The elastic line through (d, f) meets  f = s strength f_y + k_post (d - s d_y).
+      new%d_a = (s*(strength*self%f_y - self%k_post*d_y) - f + self%k*d)/(self%k - self%k_post)
+      if (s*(new%d_a - d) < 1.0e-9_wp*d_y) new%d_a = d + s*1.0e-9_wp*d_y
+      new%f_a = f + self%k*(new%d_a - d)
+      xi = abs(merge(self%highest, self%lowest, s > 0) - new%d_a)/d_y
+      new%r = max(least_r, self%r0*(1.0_wp - self%r1*xi/(self%r2 + xi)))
+      new%d_meet = s*unbounded
+      if (self%count >= 2) call find_meeting(self, self%branch(self%count - 1), new)
+      self%count = self%count + 1
+      self%branch(self%count) = new
+   end subroutine turn_back
+
+   !> Forget a branch and the one before it, which the one behind it has passed or will not meet any more.
+   subroutine forget(self, place)
+      class(steel_rule), intent(inout) :: self
+      integer, intent(in) :: place
+      integer :: first
+
+      first = max(place - 1, 1)
+      self%branch(first:self%count - place + first - 1) = self%branch(place + 1:self%count)
+      self%count = self%count - place + first - 1
+      associate (next => self%branch(first))
+         next%d_meet = next%direction*unbounded
+      end associate
+   end subroutine forget
+
+   !> Where a new branch comes up to the one of its direction that was left before.
+   subroutine find_meeting(self, old, new)
+      class(steel_rule), intent(in) :: self
+      type(branch_type), intent(in) :: old
+      type(branch_type), intent(inout) :: new
+      real(wp) :: near, far, middle, reach
+      integer :: i, s
+
+      s = new%direction
+      reach = abs(new%d_a - new%d_0)
+      near = new%d_0
+      do i = 1, size(corners)
+         far = new%d_0 + s*reach*corners(i)**(1.0_wp/new%r)
+         if (s*(curve(self, new, far) - curve(self, old, far)) >= 0.0_wp) exit
+         near = far
+      end do
+      if (i > size(corners)) return
+      do i = 1, 60
+         middle = 0.5_wp*(near + far)
+         if (s*(curve(self, new, middle) - curve(self, old, middle)) >= 0.0_wp) then
+            far = middle
+         else
+            near = middle
+         end if
+         if (abs(far - near) <= 1.0e-10_wp*reach) exit
+      end do
+      new%d_meet = far
+   end subroutine find_meeting
+
+   !> From (d, f) along the present branch to the end of the chord.
+   subroutine follow_branch(self, d, f, line)
+      class(steel_rule), intent(in) :: self
+      real(wp), intent(in) :: d, f
+      type(segment), intent(out) :: line
+      real(wp) :: reach, far, f_far
+      integer :: i, s
+
+      associate (branch => self%branch(self%count))
+         s = branch%direction
+         reach = abs(branch%d_a - branch%d_0)
+         far = s*unbounded
+         do i = 1, size(corners)
+            far = branch%d_0 + s*reach*corners(i)**(1.0_wp/branch%r)
+            if (s*(far - d) > 1.0e-6_wp*reach) exit
+            far = s*unbounded
+         end do
+         if (s*(far - branch%d_meet) > 0.0_wp) far = branch%d_meet
+         line = segment(d0=d, f0=f, k=self%k_post)
+         if (abs(far) < unbounded) then
+            f_far = curve(self, branch, far)
+            if (s*(far - branch%d_meet) >= 0.0_wp) f_far = curve(self, self%branch(self%count - 2), far)
+            line%k = (f_far - f)/(far - d)
+         end if
+      end associate
+      line = line%outward(s, near=d, far=far, near_closed=.true., one_way=.true.)
+   end subroutine follow_branch
+
+   !> Force of a branch at a deformation [N]; before its begin, on the elastic line.
+   pure real(wp) function curve(self, branch, d) result(f)
+      class(steel_rule), intent(in) :: self
+      type(branch_type), intent(in) :: branch
+      !> Deformation [m]
+      real(wp), intent(in) :: d
+      real(wp) :: x, b
+
+      x = (d - branch%d_0)/(branch%d_a - branch%d_0)
+      if (x <= 0.0_wp) then
+         f = branch%f_0 + self%k*(d - branch%d_0)
+         return
+      end if
+      b = self%k_post/self%k
+      ! Far out the curve is its asymptote; the power would overflow.
+      f = b*x + 1.0_wp - b
+      if (x < 1.0e6_wp) f = b*x + (1.0_wp - b)*x/(1.0_wp + x**branch%r)**(1.0_wp/branch%r)
+      f = branch%f_0 + f*(branch%f_a - branch%f_0)
+   end function curve
+
+end module rbs_hysteresis_steel

@@ -1,0 +1,516 @@
+"""The rules with a capped backbone: by hand, by their properties, against an independent method.
+
+``docs/rules.md`` states the rules and holds the sequences by hand; ``reference_capped`` is a second
+implementation, which also supplies the corners of a path. Properties are numbered as in section 3
+of ``docs/takeda.md`` where they are the same.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import pytest
+import reference_capped
+from numpy.typing import ArrayLike, NDArray
+
+import rbsdem
+
+Array = NDArray[np.float64]
+Numbers = dict[str, float]
+
+CASES = 1000
+POINTS = 40
+KINDS = ("peak_oriented", "pinching")
+SWAPPED = tuple(f"{name}_neg" for name in reference_capped.SIDE)
+
+# The spring of the sequences by hand (docs/rules.md): elastic 100 up to (1, 100), cap at (3, 120),
+# softening with -10 down to the residual 20 at 13.
+HAND: Numbers = {
+    "d_y": 1.0,
+    "f_y": 100.0,
+    "d_cap": 3.0,
+    "f_cap": 120.0,
+    "d_pc": 12.0,
+    "f_res": 20.0,
+}
+
+
+def make(numbers: Numbers) -> rbsdem.PeakOriented:
+    return (rbsdem.Pinching if "kappa_f" in numbers else rbsdem.PeakOriented)(**numbers)
+
+
+def reference(numbers: Numbers) -> reference_capped.Capped:
+    return reference_capped.Capped(**numbers)
+
+
+def random_side(rng: np.random.Generator, cracks: bool, tears: bool) -> Numbers:
+    d_y, f_y = 10 ** rng.uniform(-0.3, 0.3, 2)
+    side = {"d_y": d_y, "f_y": f_y, "d_cap": d_y, "f_cap": f_y}
+    slope = f_y / d_y
+    if cracks:
+        side["d_c"] = d_y * rng.uniform(0.02, 0.6)
+        least = side["d_c"] * slope
+        side["f_c"] = least + (f_y - least) * rng.uniform(0.05, 0.9)
+        slope = (f_y - side["f_c"]) / (d_y - side["d_c"])
+    if rng.random() > 0.15:  # else there is no hardening: the cap is at yield
+        side["d_cap"] = d_y * rng.uniform(1.05, 8)
+        way = side["d_cap"] - d_y
+        side["f_cap"] = f_y + slope * way * rng.choice([0.0, rng.uniform(0, 0.5)])
+    side["d_pc"] = d_y * 10 ** rng.uniform(-0.5, 2)
+    side["f_res"] = f_y * rng.choice([0.0, rng.uniform(0, 0.9)])
+    if tears:
+        side["d_u"] = side["d_cap"] + d_y * rng.uniform(0, 10)
+    return side
+
+
+def random_numbers(rng: np.random.Generator, kind: str, deteriorates: bool = True) -> Numbers:
+    features = rng.random() < 0.5, rng.random() < 0.3
+    numbers = random_side(rng, *features)
+    if rng.random() < 0.5:
+        other = random_side(rng, *features)
+        numbers |= {f"{name}_neg": value for name, value in other.items()}
+    numbers["b0"] = rng.choice([0.0, rng.uniform(0, 1)])
+    numbers["c"] = rng.choice([1.0, rng.uniform(1, 2)])
+    for x in "scka":
+        if deteriorates and rng.random() < 0.5:
+            numbers[f"lambda_{x}"] = 10 ** rng.uniform(0.3, 3)
+    if kind == "pinching":
+        numbers |= {"kappa_f": rng.uniform(0.05, 1), "kappa_d": rng.uniform(0.01, 1)}
+    return {name: float(value) for name, value in numbers.items()}
+
+
+def random_path(rng: np.random.Generator, d_y: float, points: int = POINTS) -> Array:
+    path = d_y * rng.uniform(-1, 1, points) * 10 ** rng.uniform(-0.5, 1.2, points)
+    for i in range(3, points):  # exact returns to earlier points
+        if rng.random() < 0.15:
+            path[i] = path[rng.integers(0, i)]
+    return path
+
+
+def growing_cycles(rng: np.random.Generator, d_y: float) -> Array:
+    """Return full cycles, without turns between the peaks."""
+    return d_y * np.sort(10 ** rng.uniform(-0.5, 1.2, 8)) * np.array([1, -1] * 4)
+
+
+@lru_cache
+def cases(kind: str) -> list[tuple[Numbers, Array]]:
+    rng = np.random.default_rng(KINDS.index(kind))
+    found = []
+    for _ in range(CASES):
+        numbers = random_numbers(rng, kind)
+        found.append((numbers, random_path(rng, numbers["d_y"])))
+    return found
+
+
+def scale(numbers: Numbers) -> float:
+    return max(numbers["f_cap"], numbers.get("f_cap_neg", 0.0))
+
+
+def stiffest(numbers: Numbers) -> float:
+    return max(side.slope for side in reference(numbers).given.values())
+
+
+def refined(path: ArrayLike, n: int) -> Array:
+    """Put n - 1 points on the way to each point, which itself stays to the last bit."""
+    begin = 0.0
+    points = []
+    for end in np.asarray(path).tolist():
+        points += [begin + (end - begin) * i / n for i in range(1, n)] + [end]
+        begin = end
+    return np.array(points)
+
+
+def with_corners(numbers: Numbers, path: Array) -> tuple[Array, Array, reference_capped.Capped]:
+    """Path with all its corners, the forces there, and the spring that found them."""
+    spring = reference(numbers)
+    spring.response(path)
+    corners = np.array(spring.corners[1:])
+    return corners, make(numbers).response(corners), spring
+
+
+def work(path: Array, force: Array) -> Array:
+    d, f = np.concatenate(([0.0], path)), np.concatenate(([0.0], force))
+    return np.cumsum(0.5 * np.diff(d) * (f[1:] + f[:-1]))
+
+
+# ---- by hand (docs/rules.md) -----------------------------------------------------------------
+
+
+def test_backbone_by_hand():
+    path = [0.5, 1.0, 2.0, 3.0, 8.0, 13.0, 20.0]
+    force = rbsdem.PeakOriented(**HAND).response(path)
+    np.testing.assert_allclose(force, [50, 100, 110, 120, 70, 20, 20], rtol=1e-14)
+    np.testing.assert_array_equal(rbsdem.PeakOriented(**HAND).response(-np.array(path)), -force)
+    torn = rbsdem.PeakOriented(**HAND, d_u=15.0).response([*path, 15.0, 15.1, 15.2, 15.3, 0.0])
+    np.testing.assert_allclose(torn[6:], [0, 0, 0, 0, 0, 0])
+    torn = rbsdem.PeakOriented(**HAND, d_u=15.0).response([15.0, 15.1, 15.15, 15.1, 15.15])
+    np.testing.assert_allclose(torn, [20, 10, 5, 0, 5], atol=1e-12)
+
+
+def test_backbone_with_cracking_by_hand():
+    spring = rbsdem.PeakOriented(**HAND, d_c=0.2, f_c=40.0)
+    np.testing.assert_allclose(spring.response([0.1, 0.2, 0.6, 1.0]), [20, 40, 70, 100], rtol=1e-14)
+    # Unloading from (0.6, 70) aims at the cracking point of the other side, (70 + 40)/(0.6 + 0.2).
+    np.testing.assert_allclose(
+        spring.response([0.6, 0.4, -0.2, -0.6]), [70, 42.5, -40, -70], rtol=1e-12
+    )
+
+
+def test_peak_oriented_by_hand():
+    """Unloading with 100; reloading to yield, then to the peaks; softening on the way."""
+    path = [2.0, 1.5, 2.0, 0.9, 0.45, -1.0, -2.0, 0.0, 2.0, 8.0, 7.3, -2.0]
+    by_hand = [
+        110.0,
+        60.0,
+        110.0,
+        0.0,  # 2 - 110/100
+        -100 * 0.45 / 1.9,  # from 0.9 to the yield point at -1
+        -100.0,
+        -110.0,
+        110 * 0.9 / 2.9,  # from -0.9 to the peak at 2
+        110.0,
+        70.0,
+        0.0,
+        -110.0,
+    ]
+    np.testing.assert_allclose(
+        rbsdem.PeakOriented(**HAND).response(path), by_hand, rtol=1e-12, atol=1e-10
+    )
+
+
+def test_reloading_takes_the_steeper_way_over_the_last_turn():
+    """After an inner cycle: first to where reloading turned back, then to the peak."""
+    k = 110 / 2.9  # from -0.9 to the peak at 2
+    turn = k * 1.9  # at 1
+    zero = 1 - turn / 100
+    k_minus = 110 / (2 + zero)
+    back = -0.5, -k_minus * (0.5 + zero)
+    again = back[0] - back[1] / 100
+    path = [2, -2, 1, -0.5, 0.5, 1, 1.5, 2]
+    by_hand = [
+        110, -110, turn, back[1], turn * (0.5 - again) / (1 - again), turn,
+        turn + (110 - turn) * 0.5, 110,
+    ]  # fmt: skip
+    np.testing.assert_allclose(rbsdem.PeakOriented(**HAND).response(path), by_hand, rtol=1e-12)
+
+
+def test_pinching_by_hand():
+    """Peak (2, 110) on both sides: permanent 0.9, break at 0.45 with 0.4 of the straight line."""
+    spring = rbsdem.Pinching(**HAND, kappa_f=0.4, kappa_d=0.5)
+    straight = 110 / 2.9 * 1.35
+    path = [2, -2, 0.0, 0.45, 1.225, 2.0]
+    by_hand = [110, -110, 0.4 * straight * 0.9 / 1.35, 0.4 * straight]
+    by_hand += [(0.4 * straight + 110) / 2, 110]
+    np.testing.assert_allclose(spring.response(path), by_hand, rtol=1e-12)
+    # The side that was not loaded breaks at zero deformation.
+    first = spring.response([2, 0.0, -0.5, -1.0])
+    straight = 100 / 1.9 * 0.9
+    np.testing.assert_allclose(
+        first, [110, -0.4 * straight, -(0.4 * straight + 100) / 2, -100], rtol=1e-12
+    )
+
+
+ENERGY = 50.0 + 105.0 - 0.5 * 110**2 / 100  # of the excursion to 2: dissipated 94.5
+
+
+@pytest.mark.parametrize("c", [1.0, 1.5])
+def test_strength_deterioration_by_hand(c):
+    """lambda = 10: the other side has 1 - beta of its strength, hardening 10 (1 - beta)."""
+    spring = rbsdem.PeakOriented(**HAND, lambda_s=10.0, c=c)
+    left = 1 - (ENERGY / (1000 - ENERGY)) ** c
+    force = spring.response([2.0, -2.0, -2.5])
+    by_hand = [110, -left * (100 + 10 * (2 - left)), -left * (100 + 10 * (2.5 - left))]
+    np.testing.assert_allclose(force, by_hand, rtol=1e-12)
+
+
+def test_softening_deterioration_by_hand():
+    spring = rbsdem.PeakOriented(**HAND, lambda_c=10.0)
+    left = 1 - ENERGY / (1000 - ENERGY)
+    force = spring.response([2.0, -8.0])
+    np.testing.assert_allclose(force, [110, -(150 * left - 80)], rtol=1e-12)
+
+
+def test_unloading_deterioration_by_hand():
+    """Reckoned where the side turns back, from what is not given back."""
+    spring = rbsdem.PeakOriented(**HAND, lambda_k=10.0)
+    left = 1 - ENERGY / (1000 - ENERGY)
+    force = spring.response([2.0, 1.5, 1.0, 1.8, 2.0, 2.1])
+    by_hand = [110 + 100 * left * (d - 2) for d in (2, 1.5, 1.0, 1.8)]
+    np.testing.assert_allclose(force, [*by_hand, 110, 111], rtol=1e-12)
+
+
+def test_target_deterioration_by_hand():
+    """Target of the side that is entered: from 2 to 2 (1 + beta), on the backbone."""
+    spring = rbsdem.PeakOriented(**HAND, lambda_a=10.0)
+    first = ENERGY
+    # The second excursion, from 0.9 over (-1, -100) to (-2, -110), and back to zero.
+    second = 0.5 * 1.9 * 100 + 105 - 0.5 * 110**2 / 100
+    target = 2 * (1 + second / (1000 - first - second))
+    force = spring.response([2.0, -2.0, 1.0])
+    slope = (100 + 10 * (target - 1)) / (target + 0.9)
+    np.testing.assert_allclose(force[2], slope * 1.9, rtol=1e-12)
+
+
+def test_spring_whose_energy_is_used_up_is_dead():
+    """lambda = 1.8: the first excursion, 94.5 of 180, leaves less than it took."""
+    spring = rbsdem.PeakOriented(**HAND, lambda_s=1.8)
+    np.testing.assert_allclose(spring.response([2.0, 1.0, 0.5, -3.0, 9.0]), [110, 10, 0, 0, 0])
+
+
+# ---- the independent method ------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_reference_agrees(kind):
+    rng = np.random.default_rng(70 + KINDS.index(kind))
+    long = [random_numbers(rng, kind) for _ in range(20)]
+    more = [(numbers, random_path(rng, numbers["d_y"], 600)) for numbers in long]
+    for numbers, path in [*cases(kind), *more]:
+        expected = reference(numbers).response(path)
+        found = make(numbers).response(path)
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9 * scale(numbers))
+
+
+# ---- properties ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("n", [7, 1000])
+@pytest.mark.parametrize("kind", KINDS)
+def test_property_02_increments(kind, n):
+    for numbers, path in cases(kind)[: 40 if n > 100 else CASES]:
+        spring = make(numbers)
+        assert np.array_equal(spring.response(refined(path, n))[n - 1 :: n], spring.response(path))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_property_03_no_jump(kind):
+    """No chord is steeper than the stiffest virgin line, nor falls faster than the backbone."""
+    for numbers, path in cases(kind):
+        points = refined(path, 50)
+        force = make(numbers).response(points)
+        chords = np.abs(np.diff(force))
+        steepest = stiffest(numbers)
+        for side in reference(numbers).given.values():
+            steepest = max(steepest, side.f_cap / side.d_pc)
+        slack = 1e-9 * scale(numbers)
+        assert np.all(chords <= steepest * np.abs(np.diff(points)) + slack)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_property_03_rising_lines_are_no_steeper_than_virgin(kind):
+    for numbers, path in cases(kind):
+        points, force, _ = with_corners(numbers, path)
+        run, rise = np.diff(points), np.diff(force)
+        assert np.all(
+            rise * np.sign(run) <= stiffest(numbers) * np.abs(run) + 1e-9 * scale(numbers)
+        )
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_property_04_monotone_is_the_backbone(kind):
+    for numbers, _ in cases(kind):
+        for s, side in reference(numbers).given.items():
+            function, bends = side.function(1.0, 1.0)
+            bends = [d for d in bends if d > 0]
+            far = 1.5 * max(bends)
+            points = np.sort([*bends, *np.linspace(0.01, 1, 60) * far])
+            expected = [s * function(d) for d in points.tolist()]
+            found = make(numbers).response(s * points)
+            np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * scale(numbers))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_property_05_elastic_before_the_first_corner(kind):
+    rng = np.random.default_rng(5)
+    for numbers, _ in cases(kind)[:300]:
+        given = reference(numbers).given
+        first = {s: side.d_c or side.d_y for s, side in given.items()}
+        path = rng.uniform(-0.99, 0.99, 20)
+        path *= np.where(path > 0, first[1], first[-1])
+        slope = np.where(path > 0, given[1].slope, given[-1].slope)
+        assert np.array_equal(make(numbers).response(path), slope * path)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_property_06_mirror_with_swapped_sides(kind):
+    for numbers, path in cases(kind):
+        mirrored = {k: v for k, v in numbers.items() if k not in (*reference_capped.SIDE, *SWAPPED)}
+        for name in reference_capped.SIDE:
+            if name in numbers:
+                mirrored[f"{name}_neg"] = numbers[name]
+                mirrored[name] = numbers.get(f"{name}_neg", numbers[name])
+        assert np.array_equal(make(mirrored).response(-path), -make(numbers).response(path))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_property_09_work(kind):
+    """The work from the virgin state is never negative, nor that of an excursion."""
+    for numbers, path in cases(kind):
+        points, force, _ = with_corners(numbers, path)
+        total = work(points, force)
+        slack = 1e-12 * scale(numbers) * np.max(np.abs(path)) * len(points)
+        assert np.min(total) >= -slack
+        at_zero = total[np.abs(force) <= 1e-13 * scale(numbers)]
+        assert np.all(np.diff(np.concatenate(([0.0], at_zero))) >= -slack)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_property_10_cycles_repeat_without_deterioration(kind):
+    """lambda = 0: peaks stay on the backbone, cycles repeat from the third on."""
+    rng = np.random.default_rng(10)
+    n = 16
+    for _ in range(300):
+        numbers = random_numbers(rng, kind, deteriorates=False)
+        top = numbers["d_y"] * rng.uniform(0.3, 10)
+        cycles = make(numbers).response(refined([top, -top] * 5, n)).reshape(10, n)
+        for later in (6, 7, 8, 9):
+            np.testing.assert_allclose(
+                cycles[later], cycles[later - 2], rtol=0, atol=1e-11 * scale(numbers)
+            )
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_property_11_partial_unloading_leaves_no_trace(kind):
+    """Down toward zero force and up again, on one line: nothing deteriorates."""
+    rng = np.random.default_rng(11)
+    for numbers, path in cases(kind):
+        spring = make(numbers)
+        force = spring.response(path)
+        way = np.sign(np.diff(np.concatenate(([0.0], path))))
+        for i in rng.integers(0, POINTS, 2).tolist():
+            if way[i] * force[i] <= 1e-9 * scale(numbers):
+                continue
+            inside = path[i] - way[i] * 0.9 * abs(force[i]) / stiffest(numbers) * rng.random(5)
+            longer = np.concatenate((path[: i + 1], inside, path[i:]))
+            found = np.delete(spring.response(longer), slice(i + 1, i + 7))
+            np.testing.assert_allclose(found, force, rtol=0, atol=1e-9 * scale(numbers))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_property_13_continuation(kind):
+    rng = np.random.default_rng(13)
+    for numbers, path in cases(kind):
+        spring = make(numbers)
+        force = spring.response(path)
+        n = int(rng.integers(0, POINTS))
+        assert np.array_equal(spring.response(path[:n]), force[:n])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_property_14_scaling_by_powers_of_two(kind):
+    rng = np.random.default_rng(14)
+    for numbers, path in cases(kind):
+        a, b = 2.0 ** rng.integers(-20, 20, 2)
+        factor = {"d": a, "f": b}
+        scaled = {name: value * factor.get(name[0], 1.0) for name, value in numbers.items()}
+        assert np.array_equal(make(scaled).response(a * path), b * make(numbers).response(path))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_energy_is_bounded_by_its_capacity(kind):
+    """Excursions that are over have dissipated less than every E_t but the one that kills."""
+    died = 0
+    for numbers, path in cases(kind):
+        spring = reference(numbers)
+        spring.response(path)
+        found = work(*with_corners(numbers, path)[:2])[-1]
+        acting = [spring.capacity[x] for x in "sca" if spring.capacity[x]]
+        if not acting or not spring.spent_at:
+            continue
+        before = spring.spent_at[:-1] if spring.is_dead else spring.spent_at
+        assert all(spent <= min(acting) for spent in before)
+        if spring.is_dead:
+            died += 1
+            assert found == pytest.approx(spring.work, rel=1e-9)
+            far = make(numbers).response(np.concatenate((path, [99.0, -99.0])))
+            assert np.all(far[-2:] == 0.0)
+    assert died > 50
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_strong_springs_deteriorate_little(kind):
+    """Deterioration goes to none as 1/lambda."""
+    rng = np.random.default_rng(21)
+    for _ in range(100):
+        numbers = random_numbers(rng, kind, deteriorates=False) | {"c": 1.0, "b0": 0.0}
+        path = growing_cycles(rng, numbers["d_y"])
+        whole = make(numbers).response(path)
+
+        def change(size, numbers=numbers, path=path, whole=whole):
+            lasting = {f"lambda_{x}": size for x in "scka"}
+            return np.max(np.abs(make(numbers | lasting).response(path) - whole))
+
+        small, smaller = change(1e8), change(1e10)
+        assert smaller <= 0.02 * small + 1e-9 * scale(numbers)
+        assert small <= 1e-4 * scale(numbers) * max(1.0, np.max(np.abs(path)))
+
+
+def test_no_pinching_at_the_limit():
+    """kappa_f = 1 and hardly any shift: the break is on the straight line."""
+    rng = np.random.default_rng(22)
+    for _ in range(100):
+        numbers = random_numbers(rng, "peak_oriented")
+        path = growing_cycles(rng, numbers["d_y"])
+        numbers["lambda_a"] = 0.0  # every peak is reached
+        limit = numbers | {"kappa_f": 1.0, "kappa_d": 1e-3}
+        np.testing.assert_allclose(
+            make(limit).response(path), make(numbers).response(path), rtol=0,
+            atol=1e-9 * scale(numbers),
+        )  # fmt: skip
+
+
+# ---- refusals --------------------------------------------------------------------------------
+
+BAD: list[tuple[str, Any]] = [
+    *((name, value) for name in ("d_y", "f_y", "d_cap", "f_cap", "d_pc") for value in (0.0, -1.0)),
+    *((name, -1.0) for name in ("f_res", "d_c", "f_c", "b0", "lambda_s", "lambda_a")),
+    *((name, math.nan) for name in (*HAND, "d_u", "d_c", "b0", "c", "lambda_c", "d_y_neg")),
+    *((name, math.inf) for name in (*HAND, "d_u", "d_c", "b0", "c", "lambda_k", "f_res_neg")),
+    ("d_cap", 0.9), ("f_cap", 99.0), ("f_cap", 310.0), ("f_res", 100.0), ("d_u", 2.9),
+    ("d_c", 0.1), ("f_c", 10.0), ("c", 0.9), ("d_cap_neg", 0.5), ("f_y_neg", 130.0),
+    ("f_res_neg", 100.0), ("d_y", None), ("d_pc", "x"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "value"), BAD)
+def test_bad_numbers_are_refused_by_name(name, value):
+    with pytest.raises(rbsdem.InputError, match=rf"\b{name}\b"):
+        rbsdem.PeakOriented(**(HAND | {name: value}))
+
+
+@pytest.mark.parametrize("name", ["kappa_f", "kappa_d"])
+@pytest.mark.parametrize("value", [0.0, -0.1, 1.1, math.nan])
+def test_bad_shares_are_refused_by_name(name, value):
+    with pytest.raises(rbsdem.InputError, match=name):
+        rbsdem.Pinching(**(HAND | {"kappa_f": 0.5, "kappa_d": 0.5, name: value}))
+
+
+@pytest.mark.parametrize(
+    ("d_c", "f_c", "words"),
+    [
+        (1.0, 50.0, "before the yield point"),
+        (0.5, 100.0, "before"),
+        (0.5, 50.0, "cracking softens"),
+    ],
+)
+def test_cracking_point_must_be_on_the_stiff_side(d_c, f_c, words):
+    with pytest.raises(rbsdem.InputError, match=words):
+        rbsdem.PeakOriented(**HAND, d_c=d_c, f_c=f_c)
+
+
+def test_limits_of_the_numbers_are_allowed():
+    rbsdem.PeakOriented(1.0, 100.0, 1.0, 100.0, 1e-3)  # falls at once
+    rbsdem.PeakOriented(1.0, 100.0, 3.0, 300.0, 12.0, d_u=3.0)  # elastic up to rupture
+    rbsdem.Pinching(**HAND, kappa_f=1.0, kappa_d=1.0)
+
+
+def test_axial_springs_cannot_be_capped():
+    with pytest.raises(
+        rbsdem.InputError, match="axial spring cannot be of the rule 'peak_oriented'"
+    ):
+        rbsdem.Column(
+            2.0, 1e3, rbsdem.Elastic(1e8), rbsdem.Elastic(1e8), axial=rbsdem.PeakOriented(**HAND)
+        )
