@@ -16,8 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
-from rbsdem.compare import summarise
 from rbsdem.errors import RbsdemError
+from rbsdem.loops import summarise
 from rbsdem.paper import paper_sections
 from rbsdem.peer import HISTORY_FILES, find_history
 
@@ -118,7 +118,7 @@ def main() -> int:
     sections = paper_sections()
     summary = [
         "# What the full measured histories of the four tests amount to, in the definitions of",
-        "# rbsdem.compare: largest absolute force and the displacement at it, largest absolute",
+        "# rbsdem.loops: largest absolute force and the displacement at it, largest absolute",
         "# displacement, work of the force over the whole history, secant stiffness at half of the",
         "# largest force. Written by scripts/extract_reversals.py; sources in data/README.md.",
         "key,rows,peak_force_kN,displacement_at_peak_mm,peak_displacement_mm,energy_kJ,"

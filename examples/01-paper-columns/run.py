@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rbsdem
-from rbsdem import compare
+from rbsdem import loops
 from rbsdem.peer import FOLDER_VARIABLE, find_history, measured_loops, shipped_reversals
 
 try:
@@ -77,8 +77,8 @@ class Run:
     """One test and one model: what the table and a panel show."""
 
     drive: Drive
-    test: compare.Loop
-    model: compare.Loop
+    test: loops.Loop
+    model: loops.Loop
     nrmse: float
     curve: tuple[Vector, Vector]
     static_difference: float | None = None
@@ -127,11 +127,11 @@ def by_force(drive: Drive, column: rbsdem.Column, row_time: float) -> tuple[Run,
     model = np.interp(at, dynamic.time, dynamic.displacement)
     difference = np.max(np.abs(model - static.displacement)) / np.max(np.abs(static.displacement))
     if drive.full:
-        metrics = compare.displacement_metrics(drive.force, drive.displacement, model)
+        metrics = loops.displacement_metrics(drive.force, drive.displacement, model)
         test, loop, nrmse = metrics.test, metrics.model, metrics.nrmse
     else:
         test = measured_loops()[drive.key]
-        loop = compare.summarise(model, drive.force, reference_force=test.peak_force)
+        loop = loops.summarise(model, drive.force, reference_force=test.peak_force)
         nrmse = rms_over_peak(model, drive.displacement, drive.rows)
     return Run(drive, test, loop, nrmse, (model, drive.force), float(difference)), seconds
 
@@ -147,11 +147,11 @@ def by_displacement(drive: Drive, column: rbsdem.Column) -> tuple[Run, float]:
     seconds = time.perf_counter() - begin
 
     if drive.full:
-        metrics = compare.loop_metrics(drive.displacement, drive.force, static.force)
+        metrics = loops.loop_metrics(drive.displacement, drive.force, static.force)
         test, loop, nrmse = metrics.test, metrics.model, metrics.nrmse
     else:
         test = measured_loops()[drive.key]
-        loop = compare.summarise(drive.displacement, static.force, reference_force=test.peak_force)
+        loop = loops.summarise(drive.displacement, static.force, reference_force=test.peak_force)
         nrmse = rms_over_peak(static.force, drive.force, drive.rows)
     return Run(drive, test, loop, nrmse, (drive.displacement, static.force)), seconds
 

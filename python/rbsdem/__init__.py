@@ -3,18 +3,39 @@
 SI units throughout: N, m, kg, s, rad. Axial load is positive in compression.
 """
 
-from rbsdem import compare, peer, plot
+from rbsdem import loops, peer, plot
 from rbsdem._core import version as _version
 from rbsdem.analysis import Modes, cyclic, mass_matrix, modes, time_history
+from rbsdem.calibration import Calibration, Parameter, calibrate
 from rbsdem.case import Case, read_case
 from rbsdem.column import Column
+from rbsdem.comparison import Comparison, compare
 from rbsdem.damping import Damping
 from rbsdem.errors import AccuracyWarning, InputError, RbsdemError, SolveError
 from rbsdem.paper import paper_columns, paper_sections
-from rbsdem.peer_file import PeerTest, read_peer
+from rbsdem.peer import PeerTest, read_peer
 from rbsdem.protocol import protocol
 from rbsdem.results import Result
-from rbsdem.springs import Bilinear, Compression, Elastic, Takeda
+from rbsdem.section import (
+    CircularSection,
+    Concrete,
+    Layout,
+    RectangularSection,
+    Spiral,
+    Steel,
+    Ties,
+)
+from rbsdem.springs import (
+    Bilinear,
+    Compression,
+    ConcreteSpring,
+    Elastic,
+    Layered,
+    PeakOriented,
+    Pinching,
+    SteelSpring,
+    Takeda,
+)
 from rbsdem.trade import Trade, trade
 
 __version__ = _version()
@@ -22,21 +43,38 @@ __version__ = _version()
 __all__ = [
     "AccuracyWarning",
     "Bilinear",
+    "Calibration",
     "Case",
+    "CircularSection",
     "Column",
+    "Comparison",
     "Compression",
+    "Concrete",
+    "ConcreteSpring",
     "Damping",
     "Elastic",
     "InputError",
+    "Layered",
+    "Layout",
     "Modes",
+    "Parameter",
+    "PeakOriented",
     "PeerTest",
+    "Pinching",
     "RbsdemError",
+    "RectangularSection",
     "Result",
     "SolveError",
+    "Spiral",
+    "Steel",
+    "SteelSpring",
     "Takeda",
+    "Ties",
     "Trade",
+    "calibrate",
     "compare",
     "cyclic",
+    "loops",
     "mass_matrix",
     "modes",
     "paper_columns",

@@ -1,6 +1,6 @@
 """The command `rbsdem`: hands over to the executable that was built with the package.
 
-`rbsdem trade` is done here, by Python.
+`rbsdem trade` and `rbsdem peer` are done here, by Python.
 """
 
 from __future__ import annotations
@@ -28,11 +28,15 @@ def executable() -> str:
 
 
 def main() -> int:
-    """Run the executable with the arguments of the command line, or `trade`."""
+    """Run the executable with the arguments of the command line, or `trade` or `peer`."""
     if sys.argv[1:2] == ["trade"]:
         from rbsdem.trade.command import main as trade  # noqa: PLC0415
 
         return trade(sys.argv[2:])
+    if sys.argv[1:2] == ["peer"]:
+        from rbsdem.peer.command import main as peer  # noqa: PLC0415
+
+        return peer(sys.argv[2:])
     try:
         program = executable()
     except FileNotFoundError as error:

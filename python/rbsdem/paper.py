@@ -13,8 +13,20 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from numpy.typing import ArrayLike
+
+from rbsdem._core import Array
 from rbsdem.column import Column
 from rbsdem.errors import InputError
+from rbsdem.section import (
+    Concrete,
+    Diagram,
+    Layout,
+    RectangularSection,
+    SectionSprings,
+    Steel,
+    Ties,
+)
 from rbsdem.springs import Bilinear, Takeda
 
 __all__ = [
@@ -119,6 +131,108 @@ class PaperSection:
     def longitudinal_ratio(self) -> float:
         """Area of all longitudinal bars over the gross area."""
         return self.longitudinal_number * self.longitudinal_area / self.gross_area
+
+    @property
+    def section(self) -> RectangularSection:
+        """The section with its bars along the ties, as many on every face."""
+        return RectangularSection(
+            self.width,
+            self.depth,
+            Concrete(self.concrete_strength),
+            layout=Layout(
+                self.longitudinal_number,
+                self.longitudinal_diameter,
+                Steel(self.longitudinal_yield_stress, self.longitudinal_ultimate_stress),
+            ),
+            ties=Ties(
+                self.transverse_diameter,
+                self.transverse_spacing,
+                Steel(self.transverse_yield_stress, self.transverse_ultimate_stress),
+                legs=self.shear_legs,
+            ),
+            cover=self.cover,
+        )
+
+    def moment_curvature(
+        self,
+        axial_load: float | None,
+        curvature: ArrayLike,
+        tension: str = "ts",
+        confined: bool = False,
+    ) -> Array:
+        """Return the moments of its section; as `rbsdem.RectangularSection.moment_curvature`.
+
+        Parameters
+        ----------
+        axial_load : float or None
+            Compression positive [N]; None is the load of the column.
+        curvature, tension, confined
+            As there.
+
+        Returns
+        -------
+        ndarray, shape of `curvature`
+            Moments about mid-depth [N m].
+
+        Raises
+        ------
+        InputError, SolveError
+            As there.
+        """
+        load = self.axial_load if axial_load is None else axial_load
+        return self.section.moment_curvature(load, curvature, tension, confined)
+
+    def diagram(self, axial_load: float | None = None, **options: Any) -> Diagram:
+        """Return the diagram of its section; as `rbsdem.RectangularSection.diagram`.
+
+        Parameters
+        ----------
+        axial_load : float, optional
+            Compression positive [N]; by default that of the column.
+        **options
+            As there.
+
+        Returns
+        -------
+        Diagram
+            Curvatures, moments, events.
+
+        Raises
+        ------
+        InputError, SolveError
+            As there.
+        """
+        return self.section.diagram(
+            self.axial_load if axial_load is None else axial_load, **options
+        )
+
+    def springs(
+        self, length: float | None = None, axial_load: float | None = None, **options: Any
+    ) -> SectionSprings:
+        """Return the springs of the column; as `rbsdem.RectangularSection.springs`.
+
+        Parameters
+        ----------
+        length, axial_load : float, optional
+            Length [m] and axial load [N]; by default those of the column.
+        **options
+            As there.
+
+        Returns
+        -------
+        SectionSprings
+            Flexural and shear spring, events, report.
+
+        Raises
+        ------
+        InputError
+            As there.
+        """
+        return self.section.springs(
+            self.length if length is None else length,
+            self.axial_load if axial_load is None else axial_load,
+            **options,
+        )
 
 
 def paper_sections() -> dict[str, PaperSection]:

@@ -1,298 +1,319 @@
-"""Loop metrics against closed forms, and against the shared definitions where they are at hand."""
+"""`rbsdem.compare` against closed forms, and against the shared definitions where they are."""
 
 from __future__ import annotations
 
+import io
 import math
-import types
-from dataclasses import astuple
-from pathlib import Path
+import runpy
 
 import numpy as np
 import pytest
+from conftest import REPOSITORY
 
-from rbsdem import compare
-from rbsdem.errors import InputError, RbsdemError, SolveError
+import rbsdem
+from rbsdem import cycles
+from rbsdem.comparison import SCORES
+from rbsdem.errors import InputError
 
-SHARED = Path(__file__).resolve().parents[3] / "shared"
+DEFINITIONS = REPOSITORY.parent / "shared" / "loop_metrics.py"
 
-
-def rectangle(turns: int = 3) -> tuple[np.ndarray, np.ndarray]:
-    """Rigid-plastic loop of +-2 in displacement and +-5 in force, from the upper left corner."""
-    d = [-2.0, 2.0, 2.0, -2.0] * turns + [-2.0]
-    f = [5.0, 5.0, -5.0, -5.0] * turns + [5.0]
-    return np.array(d), np.array(f)
-
-
-def ellipse(rows: int = 4001) -> tuple[np.ndarray, np.ndarray]:
-    """Viscous loop of semi-axes 0.03 and 200: its area is pi times both."""
-    angle = np.linspace(0.0, 2.0 * math.pi, rows)
-    return 0.03 * np.sin(angle), 200.0 * np.cos(angle)
+SHEAR = rbsdem.Bilinear(7e8, 1.3e-4, 8e6)
+FLEXURE = rbsdem.Takeda(2.5e8, 3.2e-4, 6.3e7, 2.7e-3, 7.6e6, b1=0.3)
 
 
-def elastoplastic() -> tuple[np.ndarray, np.ndarray]:
-    """k = 10, yield at 1, one cycle of +-3 from rest and back to zero displacement."""
-    d = np.array([0.0, 1.0, 3.0, 1.0, -3.0, -1.0, 0.0])
-    f = np.array([0.0, 10.0, 10.0, -10.0, -10.0, 10.0, 10.0])
-    return d, f
+def wave(turns: float, amplitude: float, rows: int = 400) -> np.ndarray:
+    t = np.linspace(0.0, turns, rows)
+    return amplitude * np.sin(2 * math.pi * t) * (0.5 + t / turns)
 
 
-# ---- one curve -----------------------------------------------------------------------------------
+def elastoplastic(d: np.ndarray, k: float, f_y: float) -> np.ndarray:
+    force, f = np.empty(d.size), 0.0
+    for i, step in enumerate(np.diff(d, prepend=0.0)):
+        f = min(max(f + k * step, -f_y), f_y)
+        force[i] = f
+    return force
 
 
-def test_energy_of_a_rectangle_is_its_area():
-    d, f = rectangle(turns=3)
-    assert compare.energy(d, f) == 3 * 4.0 * 10.0
-    assert compare.energy(d[::-1], f[::-1]) == -3 * 4.0 * 10.0
+@pytest.fixture(scope="module")
+def curves() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Displacement [m], a test and another model [N]."""
+    d = wave(5.0, 0.02)
+    noise = np.random.default_rng(7).normal(0.0, 2e3, d.size)
+    return d, elastoplastic(d, 3e7, 2e5) + noise, elastoplastic(d, 4e7, 2.4e5)
 
 
-def test_energy_of_an_ellipse_is_pi_times_its_semi_axes():
-    d, f = ellipse()
-    assert compare.energy(d, f) == pytest.approx(math.pi * 0.03 * 200.0, rel=1e-6)
+# ---- scores --------------------------------------------------------------------------------------
 
 
-def test_summary_of_an_elastoplastic_cycle():
-    d, f = elastoplastic()
-    loop = compare.summarise(d, f)
-    assert loop.peak_force == 10.0
-    assert loop.displacement_at_peak == 1.0  # the first of equals
-    assert loop.peak_displacement == 3.0
-    assert loop.stiffness == 10.0
-    # 5 + 20 to the first turn, 0 down to -10, 40 along the lower line, 0 up to 10, 10 to the end.
-    assert loop.energy == 75.0
+def test_a_copy_of_the_test_has_no_error(curves):
+    d, f, _ = curves
+    c = rbsdem.compare((d, f), (d, f))
+    assert (c.nrmse, c.done, c.rms_best) == pytest.approx((0.0, 1.0, 0.0), abs=1e-14)
+    ratios = c.peak_ratio, c.energy_ratio, c.stiffness_ratio, c.end_ratio
+    assert ratios == pytest.approx((1.0, 1.0, 1.0, 1.0))
 
 
-def test_peak_force_is_unsigned_and_its_displacement_is_signed():
-    loop = compare.summarise([0.0, 1.0, 0.0, -2.0], [0.0, 3.0, 0.0, -4.0])
-    assert loop.peak_force == 4.0
-    assert loop.displacement_at_peak == -2.0
+def test_no_force_at_all_is_the_rms_of_the_test():
+    d = np.array([0.0, 1.0, 0.0, -1.0, 0.0])
+    f = np.array([3.0, 3.0, -3.0, -3.0, 3.0])
+    c = rbsdem.compare((d, 0 * f), (d, f))
+    # Both ways between +-3 the force is linear: its mean square is a third, half of the path.
+    assert c.nrmse == pytest.approx(math.sqrt(0.5 + 0.5 / 3), rel=1e-3)
+    assert c.peak_ratio == 0
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0])
+def test_a_factor_of_the_force_is_a_factor_of_every_force_ratio(curves, factor):
+    d, f, _ = curves
+    c = rbsdem.compare((d, factor * f), (d, f))
+    assert c.peak_ratio == pytest.approx(factor)
+    assert c.energy_ratio == pytest.approx(factor)
+    assert c.stiffness_ratio == pytest.approx(factor)
+    assert c.end_ratio == pytest.approx(factor)
+    assert c.rms_best == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.2, 0.49, 0.51, 0.8, 1.0])
+def test_what_was_not_reached_counts_as_the_largest_force(curves, share):
+    """nrmse^2 = done nrmse_done^2 + (1 - done)."""
+    d, f, m = curves
+    force = m.copy()
+    force[round(share * d.size) :] = np.nan
+    c = rbsdem.compare((d, force), (d, f))
+    assert c.rows == round(share * d.size)
+    inside = 0.0 if c.done == 0 else c.done * c.nrmse_done**2
+    assert c.nrmse == pytest.approx(math.sqrt(inside + 1 - c.done))
+    # Ratios of less than half of the path would say nothing.
+    assert math.isnan(c.peak_ratio) == math.isnan(c.energy_ratio) == (c.done < 0.5)
+    assert math.isnan(c.end_ratio) == (c.done < 1)
+    assert c.scores == {name: getattr(c, name) for name in SCORES} | c.scores
+
+
+@pytest.mark.skipif(not DEFINITIONS.is_file(), reason="the shared definitions are not at hand")
+@pytest.mark.parametrize("stop", [None, 0, 1, 2, 90, 200, 399])
+def test_scores_are_those_of_the_shared_definitions(curves, stop):
+    reference = runpy.run_path(str(DEFINITIONS))["score"]
+    d, f, m = curves
+    model = m.copy()
+    if stop is not None:
+        model[stop:] = np.nan
+    c = rbsdem.compare((d, model), (d, f))
+    expected = reference(1e3 * d, 1e-3 * f, 1e-3 * model)
+    for name in SCORES:
+        other = {"stiffness_ratio": "k70_ratio"}.get(name, name)
+        assert getattr(c, name) == pytest.approx(expected[other], rel=1e-11, nan_ok=True), name
+
+
+def test_stiffness_is_the_secant_at_70_per_cent_of_the_own_peak():
+    d = np.array([0.0, 1.0, 2.0, 0.0])
+    test, model = np.array([0.0, 70.0, 100.0, 0.0]), np.array([0.0, 10.0, 20.0, 0.0])
+    # 70 at 1; 14 at 1.4.
+    assert rbsdem.compare((d, model), (d, test)).stiffness_ratio == pytest.approx(10.0 / 70.0)
+
+
+# ---- what belongs together -----------------------------------------------------------------------
+
+
+def column(**more) -> rbsdem.Column:
+    return rbsdem.Column(1.6, 614.0, SHEAR, FLEXURE, **more)
+
+
+def test_a_result_is_compared_with_the_test_that_drove_it(curves):
+    d, f, _ = curves
+    result = rbsdem.cyclic(column(axial_load=7e5, kinematics="pdelta"), displacement=d)
+    c = rbsdem.compare(result, (d, f))
+    assert c.rows == d.size
+    assert np.array_equal(c.model_force, result.force)
+    assert c.height == pytest.approx(1.6, rel=1e-6)
+    assert rbsdem.compare(result, (d, f), height=3.2).height == 3.2
+
+
+def test_with_exact_rotations_too(curves):
+    d, f, _ = curves
+    result = rbsdem.cyclic(column(axial_load=7e5, kinematics="finite"), displacement=d)
+    assert rbsdem.compare(result, (d, f)).done == 1
+
+
+def test_an_analysis_that_broke_off(curves):
+    d, f, _ = curves
+    result = rbsdem.cyclic(column(), displacement=d, collapse_drift=0.012)
+    assert result.summary["status"] == "collapsed"
+    c = rbsdem.compare(result, (d, f))
+    assert 0 < c.rows <= result.displacement.size < d.size
+    assert np.isnan(c.model_force[c.rows :]).all()
+    assert c.nrmse > 0.5
 
 
 @pytest.mark.parametrize(
-    ("level", "slope"),
-    [(0.25, 8.0), (0.5, 8.0), (0.625, 10.0 / 2.0), (0.875, 14.0 / 4.5), (1.0, 16.0 / 6.0)],
-)
-def test_secant_stiffness_is_taken_at_the_interpolated_first_crossing(level, slope):
-    # Through (1, 8), (3, 12), (6, 16) and back.
-    d, f = [0.0, 1.0, 3.0, 6.0, 0.0], [0.0, 8.0, 12.0, 16.0, 0.0]
-    assert compare.secant_stiffness(d, f, level=level) == pytest.approx(slope, rel=1e-15)
-
-
-def test_secant_stiffness_on_a_negative_first_excursion():
-    assert compare.secant_stiffness([0.0, -2.0, 1.0], [0.0, -6.0, 1.0]) == 3.0
-
-
-def test_secant_stiffness_skips_noise_below_the_level():
-    # Force at no displacement, as Tanaka & Park No 5 and Zahn No 7 begin.
-    d, f = [0.0, 0.0, 1.0, 4.0], [0.0, 2.0, 5.0, 10.0]
-    assert compare.secant_stiffness(d, f) == 5.0
-
-
-def test_secant_stiffness_at_the_force_of_another_curve():
-    d, f = [0.0, 1.0, 11.0], [0.0, 10.0, 40.0]
-    assert compare.secant_stiffness(d, f, reference_force=20.0) == 10.0
-    assert compare.secant_stiffness(d, f) == pytest.approx(20.0 / (1.0 + 10.0 / 3.0))
-    assert math.isnan(compare.secant_stiffness(d, f, reference_force=81.0))
-
-
-@pytest.mark.parametrize(
-    ("d", "f"),
+    ("changed", "words"),
     [
-        ([0.0, 0.0, 1.0], [0.0, 5.0, 5.0]),  # at no displacement
-        ([0.0, -1.0, 1.0], [0.0, 5.0, 5.0]),  # at a displacement of the other sign
-        ([0.0, 1.0], [0.0, 0.0]),  # no force
+        (lambda d: d[::2], "every row kept"),
+        (lambda d: d + 1e-3, "first 0 displacements agree"),
+        (lambda d: np.concatenate((d, [0.0])), "401 rows, the test 400"),
+        (lambda d: d[:100], "first 100 displacements agree"),
     ],
 )
-def test_secant_stiffness_that_means_nothing_is_nan(d, f):
-    assert math.isnan(compare.secant_stiffness(d, f))
-
-
-# ---- resampling ----------------------------------------------------------------------------------
-
-
-def test_resampling_is_even_along_the_path():
-    d = np.array([0.0, 3.0, 3.0, -1.0])
-    path, again = compare.resample(d, d, n=8)
-    np.testing.assert_allclose(path, np.arange(8.0), atol=1e-14)
-    np.testing.assert_allclose(again, [0, 1, 2, 3, 2, 1, 0, -1], atol=1e-14)
-
-
-def test_of_rows_without_a_step_only_the_first_counts():
-    _, f = compare.resample([0.0, 1.0, 1.0, 2.0], [0.0, 1.0, 9.0, 2.0], n=5)
-    np.testing.assert_allclose(f, [0.0, 0.5, 1.0, 1.5, 2.0], atol=1e-14)
-
-
-# ---- two curves ----------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("make", [rectangle, ellipse, elastoplastic])
-def test_identical_loops_have_no_error(make):
-    d, f = make()
-    metrics = compare.loop_metrics(d, f, f)
-    assert metrics.nrmse == 0.0
-    assert metrics.rms_error == 0.0
-    assert metrics.rms_best == pytest.approx(0.0, abs=1e-15)
-    assert metrics.peak_ratio == metrics.end_ratio == 1.0
-    assert astuple(metrics.test) == pytest.approx(astuple(metrics.model), rel=0.0, nan_ok=True)
-    other = compare.displacement_metrics(f, d, d)
-    assert other.nrmse == other.rms_error == 0.0
-
-
-@pytest.mark.parametrize("factor", [0.5, 2.0, -1.0])
-def test_scaled_loop(factor):
-    d, f = ellipse()
-    metrics = compare.loop_metrics(d, f, factor * f)
-    assert metrics.peak_ratio == abs(factor)
-    assert metrics.energy_ratio == pytest.approx(factor, rel=1e-14)
-    assert metrics.end_ratio == pytest.approx(abs(factor), rel=1e-14)
-    assert metrics.rms_best == pytest.approx(0.0, abs=1e-15)
-    # f/200 is the square root of 1 - s^2, and s goes 0, 1, 0, -1, 0 along the path.
-    s = np.interp(np.linspace(0.0, 4.0, 2000), [0, 1, 2, 3, 4], [0, 1, 0, -1, 0])
-    mean_square = np.mean(1.0 - s * s)
-    assert metrics.nrmse == pytest.approx(abs(factor - 1.0) * math.sqrt(mean_square), rel=1e-5)
-    assert metrics.rms_error == pytest.approx(metrics.nrmse * 200.0, rel=1e-15)
-
-
-def test_error_of_a_constant_offset():
-    d, f = elastoplastic()
-    metrics = compare.loop_metrics(d, f, f + 1.0)
-    assert metrics.rms_error == pytest.approx(1.0, rel=1e-14)
-    assert metrics.nrmse == pytest.approx(0.1, rel=1e-14)
-
-
-def test_error_counts_by_path_not_by_rows():
-    # A hundred rows with an error of 1 in the first tenth of the path, two without in the rest.
-    d = np.append(np.linspace(0.0, 1.0, 101), [1.0 + 1e-9, 10.0])
-    test = np.ones_like(d)
-    model = test + np.append(np.ones(101), [0.0, 0.0])
-    metrics = compare.loop_metrics(d, test, model)
-    assert metrics.nrmse == pytest.approx(math.sqrt(0.1), rel=2e-3)
-
-
-def test_stiffness_is_compared_at_the_same_force():
-    # The model is the test up to its peak of 2 and then overshoots to 20 on a soft branch.
-    d = [0.0, 1.0, 2.0, 20.0]
-    metrics = compare.loop_metrics(d, [0.0, 2.0, 2.0, 2.0], [0.0, 2.0, 2.0, 20.0])
-    assert metrics.stiffness_ratio == 1.0
-    assert metrics.peak_ratio == 10.0
-
-
-def test_displacement_metrics_of_a_softer_model():
-    f = np.array([0.0, 4.0, -4.0, 2.0])
-    metrics = compare.displacement_metrics(f, f / 2.0, f / 1.0)
-    assert metrics.test.stiffness == 2.0
-    assert metrics.model.stiffness == 1.0
-    assert metrics.stiffness_ratio == 0.5
-    assert metrics.peak_ratio == 1.0
-    assert metrics.peak_displacement_ratio == metrics.displacement_at_peak_ratio == 2.0
-    # The error is f/2, and f goes 0, 4, -4, 2 along its path of 4 + 8 + 6.
-    at = np.interp(np.linspace(0.0, 18.0, 2000), [0, 4, 12, 18], f)
-    assert metrics.rms_error == pytest.approx(0.5 * math.sqrt(np.mean(at * at)), rel=1e-12)
-    assert metrics.nrmse == pytest.approx(metrics.rms_error / 2.0, rel=1e-15)
-
-
-def test_energy_ratio_needs_a_test_that_dissipates():
-    d, f = rectangle()
-    assert compare.loop_metrics(d, f, 2 * f).energy_ratio == 2.0
-    assert math.isnan(compare.loop_metrics(d[::-1], f[::-1], f).energy_ratio)
-
-
-def test_metrics_do_not_depend_on_units():
-    d, f = elastoplastic()
-    si = compare.loop_metrics(d, f, 1.3 * f + 2.0)
-    mm = compare.loop_metrics(1024.0 * d, f / 1024.0, (1.3 * f + 2.0) / 1024.0)
-    assert mm.nrmse == si.nrmse
-    assert mm.energy_ratio == si.energy_ratio
-    assert mm.stiffness_ratio == si.stiffness_ratio
-
-
-# ---- bad input -----------------------------------------------------------------------------------
-
-GOOD = [0.0, 1.0, 2.0]
-BAD = [
-    ([], "0 rows"),
-    ([1.0], "1 rows"),
-    ([0.0, 1.0], "2 rows"),
-    ([[0.0, 1.0, 2.0]], "shape"),
-    ([0.0, float("nan"), 2.0], "row 1"),
-    ([0.0, 1.0, float("inf")], "row 2"),
-    (["a", "b", "c"], "not an array of numbers"),
-    (None, "shape"),
-]
-
-
-@pytest.mark.parametrize(("bad", "message"), BAD)
-@pytest.mark.parametrize("place", [0, 1, 2])
-@pytest.mark.parametrize("function", [compare.loop_metrics, compare.displacement_metrics])
-def test_bad_rows_are_refused_by_name(function, place, bad, message):
-    values = [GOOD, GOOD, GOOD]
-    values[place] = bad
-    with pytest.raises(InputError) as caught:
-        function(*values)
-    assert message in str(caught.value) or "must be equal" in str(caught.value)
+def test_rows_that_do_not_belong_together_are_refused(curves, changed, words):
+    d, f, _ = curves
+    result = rbsdem.cyclic(column(), displacement=changed(d))
+    with pytest.raises(InputError, match=words):
+        rbsdem.compare(result, (d, f))
 
 
 @pytest.mark.parametrize(
-    ("call", "message"),
+    ("result", "test", "words"),
     [
-        (lambda: compare.loop_metrics([1.0, 1.0], GOOD[1:], GOOD[1:]), "displacement is 1"),
-        (lambda: compare.loop_metrics(GOOD, [0.0] * 3, GOOD), "test_force is 0"),
-        (lambda: compare.displacement_metrics(GOOD, [0.0] * 3, GOOD), "test_displacement is 0"),
-        (lambda: compare.secant_stiffness(GOOD, GOOD, level=0.0), "level"),
-        (lambda: compare.secant_stiffness(GOOD, GOOD, level=1.5), "level"),
-        (lambda: compare.summarise(GOOD, GOOD, reference_force=-1.0), "reference_force"),
-        (lambda: compare.summarise(GOOD, GOOD, reference_force=float("nan")), "reference_force"),
-        (lambda: compare.resample(GOOD, GOOD, n=1), "n = 1"),
+        (([0, 1], [0, 1]), ([0, 1], [0, 0]), "force is 0"),
+        (([0, 1], [0, 1]), ([0, math.nan], [0, 1]), "displacement: value 2"),
+        (([0, 1], [0, 1]), ([0, 1], [0, 1, 2]), "2 displacements and 3 forces"),
+        (([0, 1], [0]), ([0, 1], [0, 1]), "2 displacements and 1 forces"),
+        (([0, 0], [0, 1]), ([0, 0], [0, 1]), "displacement that changes"),
+        (([0, 1], [0, 1]), 3, "test is neither"),
+        (None, ([0, 1], [0, 1]), "result is neither"),
+        (([0], [0]), ([0], [1]), "at least 2"),
     ],
 )
-def test_what_cannot_be_compared_is_refused(call, message):
-    with pytest.raises(InputError, match=message):
-        call()
+def test_bad_input_is_named(result, test, words):
+    with pytest.raises(InputError, match=words):
+        rbsdem.compare(result, test)
 
 
-def test_errors_are_of_the_usual_kinds():
-    assert issubclass(InputError, RbsdemError)
-    assert issubclass(InputError, ValueError)
-    assert issubclass(SolveError, RbsdemError)
-    assert issubclass(SolveError, RuntimeError)
-    assert SolveError("stopped").result is None
-    assert SolveError("stopped", "so far").result == "so far"
-    assert str(SolveError("stopped", "so far")) == "stopped"
+@pytest.mark.parametrize("height", [0.0, -1.0, math.nan, "tall"])
+def test_a_height_is_positive(curves, height):
+    d, f, _ = curves
+    with pytest.raises(InputError, match="height"):
+        rbsdem.compare((d, f), (d, f), height=height)
 
 
-# ---- the shared definitions ----------------------------------------------------------------------
-
-FILES = (
-    "Soesianawati_et_al_1986_No1.csv",
-    "Tanaka_and_Park_1990_No1.csv",
-    "Tanaka_and_Park_1990_No5.csv",
-    "Zahn_et_al_1986_No7.csv",
-    "Gill_et_al_1979_No1.csv",
-    "Watson_and_Park_1989_No9.csv",
-    "Wehbe_et_al_1998_A1.csv",
-    "Saatcioglu_and_Ozcebe_1989_U3.csv",
-)
+# ---- half-cycles ---------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_agreement_with_the_shared_loop_metrics(name):
-    definitions, history = SHARED / "loop_metrics.py", SHARED / "peer" / name
-    if not (definitions.is_file() and history.is_file()):
-        pytest.skip("no ../shared beside the checkout with loop_metrics.py and this history")
-    shared = types.ModuleType("shared_loop_metrics")
-    exec(compile(definitions.read_text(encoding="utf-8"), definitions, "exec"), shared.__dict__)
-    d, f = np.loadtxt(history, delimiter=",", skiprows=1).T
-    model = 1.2 * f + 0.05 * np.max(np.abs(f)) * np.sin(np.arange(len(f)))
-    theirs, ours = shared.score(d, f, model), compare.loop_metrics(d, f, model)
-    k70 = [compare.secant_stiffness(d, force, level=0.7) for force in (f, model)]
-    pairs = {
-        "nrmse": ours.nrmse,
-        "peak_ratio": ours.peak_ratio,
-        "energy_ratio": ours.energy_ratio,
-        "end_ratio": ours.end_ratio,
-        "rms_best": ours.rms_best,
-        "f_test_max": ours.test.peak_force,
-        "f_model_max": ours.model.peak_force,
-        "k70_ratio": k70[1] / k70[0],
-    }
-    for metric, value in pairs.items():
-        assert value == pytest.approx(theirs[metric], rel=1e-12, nan_ok=True), metric
+def test_turning_points_of_a_zigzag():
+    d = [0.0, 1.0, -1.0, -1.0, 2.0, 1.99, 2.01, -2.0, 0.0]
+    assert cycles.turning_points(d).tolist() == [1, 2, 6, 7]
+    # Without a threshold every corner counts.
+    assert cycles.turning_points(d, share=0.0).tolist() == [1, 2, 4, 5, 6, 7]
+
+
+@pytest.mark.parametrize("d", [[], [1.0], [0.0, 1.0], [1.0, 1.0, 1.0], [0.0, 1.0, 2.0]])
+def test_a_history_without_turning_points(d):
+    assert cycles.turning_points(d).size == 0
+
+
+def test_half_cycles_of_an_elastoplastic_spring():
+    """Energy 2 F_y (2 a - 2 d_y) of a full cycle, damping 2/pi (1 - d_y/a) (Jacobsen)."""
+    k, d_y, a = 10.0, 1.0, 4.0
+    corners = np.array([0.0, a, -a, a, -a, 0.0])
+    d = np.interp(np.linspace(0, 5, 5001), np.arange(6), corners)
+    h = cycles.half_cycles(d, elastoplastic(d, k, k * d_y))
+    assert h.displacement.tolist() == pytest.approx([a, -a, a, -a])
+    assert h.peak_force.tolist() == pytest.approx([10.0, -10.0, 10.0, -10.0])
+    assert h.stiffness.tolist() == pytest.approx(4 * [k * d_y / a])
+    # The first half-cycle begins at rest: it has not the plastic way back.
+    assert h.energy.tolist() == pytest.approx([30.0, 60.0, 60.0, 60.0], rel=1e-3)
+    damping = 2 / math.pi * (1 - d_y / a)
+    assert h.damping[1:].tolist() == pytest.approx(3 * [damping], rel=1e-3)
+
+
+def test_an_elastic_spring_dissipates_nothing():
+    d = wave(4.0, 0.01, 4001)
+    h = cycles.half_cycles(d, 5e6 * d)
+    assert len(h) == 8
+    assert h.energy == pytest.approx(np.zeros(8), abs=1e-9)
+    assert h.stiffness == pytest.approx(np.full(8, 5e6))
+
+
+def test_energy_of_the_half_cycles_is_that_of_the_path():
+    d = wave(5.25, 0.02, 3001)
+    f = elastoplastic(d, 3e7, 2e5)
+    # It ends at a tip, and what is stored there is in the last one.
+    h = cycles.half_cycles(d, f)
+    assert h.row[-1] == d.size - 1
+    assert h.energy.sum() == pytest.approx(rbsdem.loops.energy(d, f), rel=1e-12)
+
+
+def test_test_and_model_share_their_tips(curves):
+    d, f, m = curves
+    c = rbsdem.compare((d, m), (d, f))
+    assert np.array_equal(c.test_cycles.row, c.model_cycles.row)
+    assert c.model_cycles.peak_force == pytest.approx(
+        np.sign(c.model_cycles.displacement) * 2.4e5, rel=1e-9
+    )
+    model = m.copy()
+    model[200:] = np.nan
+    half = rbsdem.compare((d, model), (d, f)).model_cycles
+    assert 0 < len(half) < len(c.test_cycles)
+    assert half.row.max() < 200
+
+
+# ---- strength loss -------------------------------------------------------------------------------
+
+
+def test_strength_loss_of_a_softening_push():
+    # 100 at 1, down to 0 at 5: 80 at 1.8.
+    d, f = [0.0, 1.0, 5.0], [0.0, 100.0, 0.0]
+    assert cycles.strength_loss(d, f) == pytest.approx(1.8)
+    assert cycles.strength_loss([-x for x in d], [-x for x in f]) == pytest.approx(1.8)
+    assert cycles.strength_loss(d, f, share=0.5) == pytest.approx(3.0)
+
+
+def test_strength_loss_at_a_repeated_cycle():
+    """The second cycle to 2 carries 70 of 100: 80 was passed at 2."""
+    d = [0.0, 2.0, 0.0, -2.0, 0.0, 2.0, 0.0]
+    f = [0.0, 100.0, 0.0, -100.0, 0.0, 70.0, 0.0]
+    assert cycles.strength_loss(d, f) == pytest.approx(2.0)
+    # Not if it only goes half as far.
+    d[5] = 1.0
+    assert math.isnan(cycles.strength_loss(d, f))
+
+
+def test_strength_loss_of_the_side_that_comes_first():
+    d = [0.0, 1.0, -1.0, 2.0, -3.0]
+    f = [0.0, 100.0, -100.0, 60.0, -50.0]
+    # Positive side: 80 at 1.5; the negative one loses more, but later.
+    assert cycles.strength_loss(d, f) == pytest.approx(1.5)
+
+
+@pytest.mark.parametrize("rows", [0, 1, 2])
+def test_few_rows_lose_nothing(rows):
+    d, f = np.arange(rows) * 1.0, np.arange(rows) * 1.0
+    assert math.isnan(cycles.strength_loss(d, f))
+    assert len(cycles.half_cycles(d, f)) == (1 if rows == 2 else 0)
+
+
+def test_drift_at_loss_of_test_and_model():
+    d, f = np.array([0.0, 0.01, 0.05]), np.array([0.0, 1e5, 0.0])
+    c = rbsdem.compare((d, 1e5 * np.array([0.0, 1.0, 1.0])), (d, f), height=2.0)
+    assert c.test_drift_at_loss == pytest.approx(0.009)
+    assert math.isnan(c.model_drift_at_loss)
+    assert "0.0090, none" in str(c)
+
+
+def test_nothing_reached_is_no_fault(curves):
+    d, f, _ = curves
+    c = rbsdem.compare((d, np.full(d.size, np.nan)), (d, f))
+    assert (c.nrmse, c.done, c.rows) == (1.0, 0.0, 0)
+    assert math.isnan(c.model_drift_at_loss)
+    assert len(c.model_cycles) == 0
+    assert "none" in str(c)
+
+
+# ---- figure and table ----------------------------------------------------------------------------
+
+
+def test_figure_and_table(curves):
+    mpl = pytest.importorskip("matplotlib")
+    mpl.use("Agg")
+    rich = pytest.importorskip("rich.console")
+    d, f, m = curves
+    c = rbsdem.compare((d, m), (d, f), height=1.6)
+    ax = c.plot()
+    try:
+        assert [line.get_label() for line in ax.get_lines()[:2]] == ["Test", "Model"]
+        assert ax.get_lines()[1].get_ydata()[:5] == pytest.approx(m[:5] / 1e3)
+        assert f"{c.nrmse:.3f}" in ax.texts[0].get_text()
+    finally:
+        mpl.pyplot.close(ax.figure)
+    out = rich.Console(width=120, record=True, file=io.StringIO())
+    out.print(c.table())
+    assert out.export_text().count("\n") >= len(c.test_cycles)

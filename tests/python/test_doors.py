@@ -21,6 +21,13 @@ BILINEAR = rbsdem.Bilinear(7.0387e8, 1.296e-4, 8.3185e6)
 TAKEDA = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
 
 ELASTIC = "rule = 'elastic', k = 2e8"
+CAPPED = "rule = 'peak_oriented', d_y = 4e-3, f_y = 2e5, d_cap = 2e-2, f_cap = 2.2e5, d_pc = 0.1"
+SOFT = (
+    ", f_res = 3e4, d_u = 0.15, d_c = 4e-4, f_c = 6e4, b0 = 0.4, lambda_s = 60, lambda_c = 70, "
+    "lambda_k = 80, lambda_a = 90, c = 1.5, d_y_neg = 3e-3, f_y_neg = 1.9e5, d_cap_neg = 1.8e-2, "
+    "f_cap_neg = 2e5, d_pc_neg = 0.2, f_res_neg = 2e4, d_u_neg = 0.16, d_c_neg = 3e-4, "
+    "f_c_neg = 5e4"
+)
 HEAVY = "height = 3.0, mass = 9e3, top_mass = 2e4"
 GROUND = "drive = 'ground', unit = 'g', amplitudes = 0.3, period = 0.4, points = 4"
 VERTICAL = "drive = 'vertical', unit = 'g', amplitudes = 0.2, period = 0.4, points = 4"
@@ -46,6 +53,46 @@ CASES = {
             "shear": [ELASTIC + ", joint = 2", "rule = 'elastic', k = 1e8"],
         },
         {"n": 2, "shear": (rbsdem.Elastic(1e8), rbsdem.Elastic(2e8)), "flexure": TAKEDA},
+        {},
+    ),
+    "capped springs": (
+        {
+            "column": "n = 2, height = 2, mass = 100",
+            "shear": CAPPED.replace("peak_oriented", "pinching") + ", kappa_f = 0.4, kappa_d = 0.5",
+            "flexure": [CAPPED + SOFT + ", joint = 1", ELASTIC],
+        },
+        {
+            "shear": rbsdem.Pinching(4e-3, 2e5, 2e-2, 2.2e5, 0.1, kappa_f=0.4, kappa_d=0.5),
+            "flexure": (
+                rbsdem.PeakOriented(
+                    4e-3,
+                    2e5,
+                    2e-2,
+                    2.2e5,
+                    0.1,
+                    3e4,
+                    0.15,
+                    4e-4,
+                    6e4,
+                    0.4,
+                    60,
+                    70,
+                    80,
+                    90,
+                    1.5,
+                    3e-3,
+                    1.9e5,
+                    1.8e-2,
+                    2e5,
+                    0.2,
+                    2e4,
+                    0.16,
+                    3e-4,
+                    5e4,
+                ),
+                rbsdem.Elastic(2e8),
+            ),
+        },
         {},
     ),
     "axial load": (

@@ -26,7 +26,8 @@ PROMISED = {
 }  # fmt: skip
 
 MODULES = [
-    "analysis", "case", "column", "compare", "damping", "errors", "paper", "peer", "plot", "springs"
+    "analysis", "case", "column", "comparison", "cycles", "damping", "errors", "loops", "paper",
+    "peer", "plot", "springs",
 ]  # fmt: skip
 
 ELASTIC = rbsdem.Elastic(1e6)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import compare, peer
+from rbsdem import loops, peer
 from rbsdem.errors import InputError
 from rbsdem.paper import CONCRETE_DENSITY, KEYS, data_text, paper_columns, paper_sections
 
@@ -230,7 +230,7 @@ def test_reversal_points_are_rows_of_the_full_history(key):
 @pytest.mark.parametrize("key", KEYS)
 def test_measured_loops_are_those_of_the_full_histories(key):
     test = rbsdem.read_peer(history(key))
-    loop, shipped = compare.summarise(test.displacement, test.force), peer.measured_loops()[key]
+    loop, shipped = loops.summarise(test.displacement, test.force), peer.measured_loops()[key]
     assert loop.peak_force == pytest.approx(shipped.peak_force, rel=5e-6)
     assert loop.displacement_at_peak == pytest.approx(shipped.displacement_at_peak, rel=5e-6)
     assert loop.energy == pytest.approx(shipped.energy, rel=5e-6)

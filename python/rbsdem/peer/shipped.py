@@ -14,10 +14,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from rbsdem.compare import Loop
 from rbsdem.errors import InputError
+from rbsdem.loops import Loop
 from rbsdem.paper import data_text
-from rbsdem.peer_file import read_peer
 
 __all__ = [
     "FOLDER_VARIABLE",
@@ -25,7 +24,6 @@ __all__ = [
     "Reversals",
     "find_history",
     "measured_loops",
-    "read_peer",
     "shipped_reversals",
 ]
 
@@ -143,9 +141,9 @@ def measured_loops() -> dict[str, Loop]:
 
     Returns
     -------
-    dict of str to rbsdem.compare.Loop
+    dict of str to rbsdem.loops.Loop
         Peak force, displacement at it, largest displacement, energy and initial stiffness of each
-        test, SI units, in the definitions of `rbsdem.compare`.
+        test, SI units, in the definitions of `rbsdem.loops`.
     """
     lines = data_text("measured_loops.csv").splitlines()
     rows = [line.split(",") for line in lines if not line.startswith("#")][1:]

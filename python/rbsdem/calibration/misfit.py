@@ -1,0 +1,280 @@
+"""How far a column is from a measured loop, as a vector to make small."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+
+from rbsdem import _core
+from rbsdem._core import Array
+from rbsdem.analysis import cyclic
+from rbsdem.calibration.parameter import Parameter
+from rbsdem.column import Column
+from rbsdem.errors import InputError, SolveError
+
+#: Points along the path of displacement at which the error is taken.
+POINTS = 2000
+
+#: Error of a column that is refused, in shares of the measured peak: worse than any that runs.
+REFUSED = 10.0
+
+#: What may be made least.
+LOSSES = ("nrmse", "balanced")
+
+#: In "balanced", an error of 1 in the ratio of peaks, or of energies, counts as this nrmse.
+RATIO_WEIGHT = 0.5
+
+
+class Target:
+    """A measured loop, ready to be compared with many computed ones.
+
+    The error is that of `rbsdem.compare`: model minus test at points spaced evenly along the path
+    of displacement, over the largest measured force. Its root mean square is the nrmse.
+
+    Attributes
+    ----------
+    name : str
+        Name of the test.
+    displacement : ndarray, shape (rows,)
+        Displacement of the top, row by row [m].
+    force : ndarray, shape (rows,)
+        Net horizontal force [N].
+    peak : float
+        Its largest absolute value [N].
+    half_cycle : ndarray of int, shape (POINTS,)
+        Number of the half cycle to which each point belongs.
+    """
+
+    def __init__(self, test: Any) -> None:
+        self.name = str(getattr(test, "name", "") or "the test")
+        self.displacement, self.force = _loop(test)
+        self.peak = float(np.max(np.abs(self.force)))
+        if not self.peak > 0:
+            raise InputError("calibrate: the force of the test is 0 in every row")
+        steps = np.abs(np.diff(self.displacement))
+        path = np.concatenate(([0.0], np.cumsum(steps)))
+        if not path[-1] > 0:
+            raise InputError(
+                f"calibrate: the displacement of the test is {self.displacement[0]:g} m in every "
+                "row; a loop needs one that changes"
+            )
+        # Of rows without a step only the first counts; the way between two rows is straight.
+        rows = np.flatnonzero(np.concatenate(([True], np.diff(path) > 0)))
+        at = np.linspace(0.0, path[-1], POINTS)
+        interval = np.clip(np.searchsorted(path[rows], at, side="right") - 1, 0, rows.size - 2)
+        self._before, self._after = rows[interval], rows[interval + 1]
+        width = path[self._after] - path[self._before]
+        self._share = (at - path[self._before]) / width
+        self._at, self._path = at, path
+        self._test = self._points(self.force)
+        self._energy = _work(self.displacement, self.force)
+        self.half_cycle = _half_cycles(self.displacement)[self._before]
+
+    def error(self, force: Array) -> Array:
+        """Return (model - test)/peak at the points; 1 beyond the rows that were reached.
+
+        Parameters
+        ----------
+        force : ndarray, shape (m,)
+            Force of the model at the first m rows [N].
+        """
+        reached = force.size
+        if reached < self.force.size:
+            force = np.concatenate((force, np.zeros(self.force.size - reached)))
+        error = (self._points(force) - self._test) / self.peak
+        if reached < self.force.size:
+            last = self._path[reached - 1] * (1 + 1e-12) if reached else -1.0
+            error[self._at > last] = 1.0
+        return error
+
+    def ratios(self, force: Array) -> tuple[float, float]:
+        """Return peak and energy of the model over those of the test, in the rows reached."""
+        if force.size < 2:
+            return 0.0, 0.0
+        d, test = self.displacement[: force.size], self.force[: force.size]
+        work = _work(d, test)
+        energy = _work(d, force) / work if work > 0 else 1.0
+        largest = float(np.max(np.abs(test)))
+        return (float(np.max(np.abs(force))) / largest if largest > 0 else 1.0), energy
+
+    def _points(self, force: Array) -> Array:
+        before, after = force[self._before], force[self._after]
+        return before + self._share * (after - before)
+
+
+class Misfit:
+    """The error of a column as a function of the places of its free numbers, each from 0 to 1.
+
+    Keeps count, and the best that was seen.
+
+    Parameters
+    ----------
+    build : callable
+        Makes the column of values by name, or raises `InputError`.
+    free : mapping of str to Parameter
+        The numbers that are free, in order.
+    target : Target
+        The test.
+    loss : str
+        One of `LOSSES`.
+    jobs : int
+        Analyses at a time; the Fortran part runs beside others.
+    told : callable
+        Is told the best loss so far after each analysis.
+    """
+
+    def __init__(
+        self,
+        build: Callable[[Mapping[str, float]], Column],
+        free: Mapping[str, Parameter],
+        target: Target,
+        loss: str,
+        jobs: int,
+        told: Callable[[int, float], None],
+    ) -> None:
+        self._build, self.free, self.target, self.loss = build, dict(free), target, loss
+        self._jobs, self._told = jobs, told
+        self.evaluations = self.refused = self.failed = 0
+        self.best, self.best_places = np.inf, self.start_places()
+        self._pool: ThreadPoolExecutor | None = None
+
+    def __enter__(self) -> Misfit:
+        if self._jobs > 1:
+            self._pool = ThreadPoolExecutor(min(self._jobs, 4 * (os.cpu_count() or 1)))
+        return self
+
+    def __exit__(self, *reason: object) -> None:
+        if self._pool is not None:
+            self._pool.shutdown(wait=True, cancel_futures=True)
+            self._pool = None
+
+    @property
+    def size(self) -> int:
+        """Length of the vector."""
+        return POINTS + (2 if self.loss == "balanced" else 0)
+
+    def start_places(self) -> Array:
+        """Return the places of the values that the column came with."""
+        return np.array([number.place(number.value) for number in self.free.values()])
+
+    def values(self, places: Array) -> dict[str, float]:
+        """Return the values by name."""
+        return {
+            name: number.at(float(place))
+            for (name, number), place in zip(self.free.items(), places, strict=True)
+        }
+
+    def column(self, places: Array) -> Column:
+        """Return the column, or raise `InputError` where it is refused."""
+        return self._build(self.values(places))
+
+    def vector(self, places: Array) -> Array:
+        """Return what is to be made small; its mean square counts."""
+        return self.vectors([places])[0]
+
+    def vectors(self, several: Sequence[Array]) -> list[Array]:
+        """Return the vectors of several places, in their order."""
+        run = self._pool.map if self._pool is not None and len(several) > 1 else map
+        found = []
+        for places, (vector, status) in zip(several, run(self._one, several), strict=True):
+            found.append(vector)
+            if status == "refused":
+                self.refused += 1
+                continue
+            self.evaluations += 1
+            self.failed += status == "failed"
+            size = rms(vector)
+            if size < self.best:
+                self.best, self.best_places = size, np.array(places, dtype=float)
+            self._told(self.evaluations, self.best)
+        return found
+
+    def _one(self, places: Array) -> tuple[Array, str]:
+        try:
+            force, failed = forces(self.column(places), self.target.displacement)
+        except InputError:
+            return np.full(self.size, REFUSED), "refused"
+        return self._vector(force), "failed" if failed else "completed"
+
+    def _vector(self, force: Array) -> Array:
+        error = self.target.error(force)
+        if self.loss == "nrmse":
+            return error
+        ratios = np.array(self.target.ratios(force))
+        # As many points as count like that share of the mean square.
+        return np.concatenate((error, RATIO_WEIGHT * np.sqrt(POINTS) * (ratios - 1.0)))
+
+
+def forces(column: Column, displacement: Array) -> tuple[Array, SolveError | None]:
+    """Return the lateral force at the rows that were reached [N], and what ended the path."""
+    try:
+        result, error = cyclic(column, displacement=displacement), None
+    except SolveError as stopped:
+        if stopped.result is None:
+            return np.empty(0), stopped
+        result, error = stopped.result, stopped
+    force = result.force
+    if error is not None:
+        # The last row of a broken path is the last good state, between two rows of the test.
+        force = force[:-1] if force.size else force
+    force = force[: displacement.size]
+    bad = np.flatnonzero(~np.isfinite(force))
+    return (force[: bad[0]] if bad.size else force), error
+
+
+def rms(vector: Array) -> float:
+    """Return the loss: the root of the sum of squares over the number of points."""
+    return float(np.sqrt(vector @ vector / POINTS))
+
+
+def _loop(test: Any) -> tuple[Array, Array]:
+    """Return displacement and net horizontal force of a test or of a pair of arrays."""
+    if hasattr(test, "displacement") and hasattr(test, "force"):
+        test = test.displacement, test.force
+    try:
+        displacement, force = test
+    except (TypeError, ValueError):
+        raise InputError(
+            f"calibrate: test: a {type(test).__name__} has no displacement and force; give a "
+            "measured test, or a pair of arrays [m, N]"
+        ) from None
+    d = _core.finite_vector(displacement, "calibrate: displacement of the test")
+    f = _core.finite_vector(force, "calibrate: force of the test")
+    if d.size != f.size:
+        raise InputError(
+            f"calibrate: the test has {d.size} displacements and {f.size} forces; they must be "
+            "equally many"
+        )
+    if d.size < 3:
+        raise InputError(f"calibrate: the test has {d.size} rows; a loop needs at least 3")
+    return d, f
+
+
+def _work(d: Array, f: Array) -> float:
+    return float(np.sum(0.5 * (f[1:] + f[:-1]) * np.diff(d)))
+
+
+def _half_cycles(d: Array, threshold: float = 0.02) -> Array:
+    """Return the number of the half cycle of each row.
+
+    A turn counts if the path comes back by more than a share of its largest displacement.
+    """
+    limit = threshold * float(np.max(np.abs(d)))
+    number = np.zeros(d.size, dtype=int)
+    turn, sign, count = d[0], 0, 0
+    at = 0
+    for i, value in enumerate(d):
+        if sign * (value - turn) >= 0 and (sign or abs(value - turn) > limit):
+            sign = sign or int(np.sign(value - turn))
+            turn, at = value, i
+        elif sign and abs(value - turn) > limit:
+            # It turned at the extreme: what came since belongs to the next half cycle.
+            count += 1
+            number[at:] = count
+            sign, turn, at = -sign, value, i
+        number[i] = count
+    return number

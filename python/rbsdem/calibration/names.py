@@ -1,0 +1,155 @@
+"""What may be free in a column, and the column of other values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from difflib import get_close_matches
+from typing import Any
+
+from rbsdem import _core
+from rbsdem.calibration import paths
+from rbsdem.calibration.parameter import Parameter, is_recipe
+from rbsdem.column import Column
+from rbsdem.errors import InputError
+
+#: Names that a message lists.
+_MANY = 30
+
+
+class Numbers:
+    """The numbers of one column: those its recipe offers, or else the paths in it."""
+
+    def __init__(self, column: Column) -> None:
+        self.recipe = is_recipe(column)
+        if not self.recipe and not isinstance(column, Column):
+            raise InputError(f"calibrate: column = {column!r} must be a Column")
+        self.column = column
+        self.ways = {} if self.recipe else paths.paths(column)
+
+    @property
+    def names(self) -> list[str]:
+        """Names of all numbers."""
+        return list(self.column.parameters) if self.recipe else list(self.ways)
+
+    def known(self) -> dict[str, Parameter | None]:
+        """Return all numbers; None where bounds have to be given."""
+        if self.recipe:
+            return dict(self.column.parameters)
+        return {name: paths.parameter(self.column, name, way) for name, way in self.ways.items()}
+
+    def start(self, name: str) -> float:
+        """Return the value of a number in the column."""
+        if self.recipe:
+            return self.column.parameters[name].value
+        return paths.value_at(self.column, self.ways[name])
+
+    def build(self, values: Mapping[str, float]) -> Column:
+        """Return the column of other values, or raise `InputError` if it is refused."""
+        if self.recipe:
+            return self.column.with_parameters(**values)
+        return paths.with_values(self.column, self.ways, values)
+
+    def accepts(self, values: Mapping[str, float]) -> bool:
+        """Return whether there is a column of these values."""
+        try:
+            self.build(values)
+        except InputError:
+            return False
+        return True
+
+
+def free_numbers(
+    numbers: Numbers, free: Sequence[str], bounds: Mapping[str, Sequence[float]] | None
+) -> dict[str, Parameter]:
+    """Return the numbers to fit, in the order of `free`, with their bounds.
+
+    Raises
+    ------
+    InputError
+        If names are not known, or come twice, or bounds are wrong.
+    """
+    names = _names(numbers, free)
+    given = {name: _pair(name, pair) for name, pair in _mapping(bounds).items()}
+    for name in given:
+        if name not in names:
+            raise InputError(f"calibrate: bounds: {name!r} is not in free ({', '.join(names)})")
+    known = numbers.known()
+    chosen = {}
+    for name in names:
+        number = known[name]
+        if name in given:
+            number = _within(numbers, name, number, given[name])
+        if number is None:
+            raise InputError(
+                f"calibrate: {name} = {numbers.start(name):g} tells no range to look in; give "
+                f"bounds={{{name!r}: (low, high)}}"
+            )
+        chosen[name] = number
+    return chosen if numbers.recipe else paths.settle(chosen, given, numbers.accepts)
+
+
+def _names(numbers: Numbers, free: Any) -> list[str]:
+    if isinstance(free, str) or not isinstance(free, Sequence | Mapping | set):
+        raise InputError(f"calibrate: free = {free!r} must be a list of names")
+    names = list(free)
+    if not names:
+        raise InputError(f"calibrate: free is empty; it names {_list(numbers.names)}")
+    for name in names:
+        if name not in numbers.names:
+            raise _unknown(name, numbers)
+        if names.count(name) > 1:
+            raise InputError(f"calibrate: free: {name!r} comes twice")
+    return names
+
+
+def _unknown(name: Any, numbers: Numbers) -> InputError:
+    near = get_close_matches(str(name), numbers.names, n=1, cutoff=0.0)
+    if not near:
+        return InputError(f"calibrate: free: {name!r}: this column has no numbers to fit")
+    return InputError(
+        f"calibrate: free: {name!r} is no number of this column; did you mean {near[0]!r}? It has "
+        f"{_list(numbers.names)}"
+    )
+
+
+def _list(names: Sequence[str]) -> str:
+    """Return the names, of very many the first."""
+    if len(names) <= _MANY:
+        return ", ".join(names)
+    first = ", ".join(names[:_MANY])
+    return f"{first} and {len(names) - _MANY} more (rbsdem.calibration.free_names lists them)"
+
+
+def _mapping(bounds: Any) -> Mapping[str, Sequence[float]]:
+    if bounds is None:
+        return {}
+    if not isinstance(bounds, Mapping):
+        raise InputError(f"calibrate: bounds = {bounds!r} must be a mapping of name to (low, high)")
+    return bounds
+
+
+def _pair(name: str, pair: Any) -> tuple[float, float]:
+    try:
+        low, high = pair
+    except (TypeError, ValueError):
+        raise InputError(f"calibrate: bounds of {name} = {pair!r} must be (low, high)") from None
+    about = f"calibrate: bounds of {name}"
+    return _core.number(low, about), _core.number(high, about)
+
+
+def _within(
+    numbers: Numbers, name: str, number: Parameter | None, ends: tuple[float, float]
+) -> Parameter:
+    start = numbers.start(name)
+    if ends[0] < ends[1] and not ends[0] <= start <= ends[1]:
+        raise InputError(
+            f"calibrate: bounds of {name}: {ends[0]:g} to {ends[1]:g} leave out the start "
+            f"{start:g}; move the bounds, or start from another column"
+        )
+    try:
+        if number is None:
+            return Parameter(start, *ends, paths.unit_of(numbers.ways[name]), name)
+        return replace(number, low=ends[0], high=ends[1])
+    except InputError as error:
+        raise InputError(f"calibrate: bounds of {name}: {error}") from None

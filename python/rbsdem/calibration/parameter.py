@@ -1,0 +1,104 @@
+"""A number that a calibration may change: its value, its bounds, what it is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol, runtime_checkable
+
+from rbsdem import _core
+from rbsdem.column import Column
+from rbsdem.errors import InputError
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A number with the range in which it has a meaning.
+
+    Where both bounds are positive, the number is searched on a logarithmic scale: half and twice
+    are then equally far away, as is fit for stiffnesses, strengths and lengths.
+
+    Parameters
+    ----------
+    value : float
+        Value to start from, within the bounds [unit].
+    low, high : float
+        Bounds [unit].
+    unit : str, optional
+        Unit, as in "N/m"; empty for a bare number.
+    what : str, optional
+        What it is, for reports.
+
+    Raises
+    ------
+    InputError
+        If a number is not finite, the bounds are reversed, or the value is outside them.
+    """
+
+    value: float
+    low: float
+    high: float
+    unit: str = ""
+    what: str = ""
+
+    def __post_init__(self) -> None:
+        about = f"parameter{f' {self.what}' if self.what else ''}"
+        for name in ("value", "low", "high"):
+            number = _core.number(getattr(self, name), f"{about}: {name}")
+            if not math.isfinite(number):
+                raise InputError(f"{about}: {name} = {number} must be a finite number")
+            object.__setattr__(self, name, number)
+        if not self.low < self.high:
+            raise InputError(
+                f"{about}: bounds {self.low:g} and {self.high:g} must be a lower and a higher one"
+            )
+        if not self.low <= self.value <= self.high:
+            raise InputError(
+                f"{about}: value = {self.value:g} is outside its bounds {self.low:g} to "
+                f"{self.high:g}; move the bounds or the value"
+            )
+
+    @property
+    def logarithmic(self) -> bool:
+        """Whether the number is searched on a logarithmic scale."""
+        return self.low > 0
+
+    def place(self, value: float) -> float:
+        """Return where a value is between the bounds, from 0 to 1."""
+        if self.logarithmic:
+            return math.log(value / self.low) / math.log(self.high / self.low)
+        return (value - self.low) / (self.high - self.low)
+
+    def at(self, place: float) -> float:
+        """Return the value at a place from 0 to 1 between the bounds."""
+        if place <= 0 or place >= 1:
+            return self.low if place <= 0 else self.high
+        if self.logarithmic:
+            value = self.low * (self.high / self.low) ** place
+        else:
+            value = self.low + place * (self.high - self.low)
+        return min(max(value, self.low), self.high)
+
+    def per_place(self, value: float) -> float:
+        """Return how fast the value grows with its place [unit]."""
+        if self.logarithmic:
+            return value * math.log(self.high / self.low)
+        return self.high - self.low
+
+
+@runtime_checkable
+class Recipe(Protocol):
+    """A column made from few numbers, such as material strengths, that a calibration may change."""
+
+    @property
+    def parameters(self) -> Mapping[str, Parameter]:
+        """The numbers, by name."""
+
+    def with_parameters(self, **values: float) -> Column:
+        """Return the column that other values of them make; the values not named stay."""
+
+
+def is_recipe(column: Any) -> bool:
+    """Return whether a column tells by itself what may be changed."""
+    return isinstance(column, Recipe) and isinstance(column.parameters, Mapping)

@@ -1,0 +1,222 @@
+"""Names of the numbers in a column, such as ``flexure.k_y`` or ``flexure[0].d_y``.
+
+A name is the path to a number through the frozen dataclasses of a column: only what a static path
+depends on. Where there are several springs, ``flexure[*].k_y`` is a factor on all of them, as
+``flexure.layers[*].f_y`` on all layers of a joint that have an ``f_y``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import fields, is_dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from rbsdem.calibration.parameter import Parameter
+from rbsdem.column import Column
+
+#: A spring is found within a factor of this, unless its rule says otherwise.
+REACH = 5.0
+
+#: Lengths and loads were measured: they may be off by this share.
+MEASURED = 0.2
+
+#: Names with a range of their own. Exponents of unloading stiffness are reported from 0 (none) to
+#: 0.5, the ratio B_1 from 0.1 to 1 (paper, table 3; Otani 1981), the exponent of deterioration from
+#: 1 to 2 (Ibarra, Medina, Krawinkler 2005).
+LIMITS = {
+    "b0": (0.0, 1.0),
+    "b1": (0.02, 1.0),
+    "c": (0.5, 2.0),
+    "kappa_f": (0.02, 1.0),
+    "kappa_d": (0.02, 1.0),
+}
+
+#: Stiffnesses after yield, which may vanish.
+AFTER_YIELD = ("k_u", "k_post")
+
+_PLAIN = {"height": "m", "axial_load": "N"}
+_UNITS = {
+    "shear": {"k": "N/m", "d": "m", "f": "N"},
+    "flexure": {"k": "N m/rad", "d": "rad", "f": "N m"},
+    "axial": {"k": "N/m", "d": "m", "f": "N"},
+}
+
+#: Way to a number: names of fields and places in tuples; ``None`` stands for all places.
+Way = tuple[str | int | None, ...]
+
+#: Values of the other numbers with which a bound is tried, and how often the way to it is halved.
+_TRIES, _HALVINGS = 16, 16
+
+
+def paths(column: Column) -> dict[str, Way]:
+    """Return the names of all numbers of a column that its static path may depend on."""
+    found: dict[str, Way] = {name: (name,) for name in _PLAIN}
+    for kind in _UNITS:
+        springs = getattr(column, kind)
+        if springs is not None:
+            found |= {f"{kind}{name}": (kind, *way) for name, way in _below(springs)}
+    return found
+
+
+def parameter(column: Column, name: str, way: Way) -> Parameter | None:
+    """Return the number at a path with bounds from physics; None if they have to be given."""
+    value = value_at(column, way)
+    bounds = default_bounds("" if None in way else str(way[-1]), value, len(way) == 1)
+    return None if bounds is None else Parameter(value, *bounds, unit_of(way), name)
+
+
+def unit_of(way: Way) -> str:
+    """Return the unit of the number at a path, told by the first letter of its name."""
+    if None in way or way[-1] in LIMITS:
+        return ""
+    name = str(way[-1])
+    if len(way) == 1:
+        return _PLAIN[name]
+    # Layers of a joint are normal springs.
+    kind = "axial" if "layers" in way else str(way[0])
+    return _UNITS[kind].get(name.partition("_")[0], "")
+
+
+def default_bounds(name: str, value: float, measured: bool) -> tuple[float, float] | None:
+    """Return the range in which a number is looked for; None if there is no saying."""
+    if name in LIMITS:
+        low, high = LIMITS[name]
+        return min(low, value), max(high, value)
+    if value == 0:
+        return None
+    if measured:
+        ends = value * (1 - MEASURED), value * (1 + MEASURED)
+    else:
+        ends = 0.0 if name in AFTER_YIELD else value / REACH, value * REACH
+    return min(ends), max(ends)
+
+
+def value_at(column: Column, way: Way) -> float:
+    """Return the number at a path; 1 for a factor on several."""
+    return 1.0 if None in way else _get(column, way)
+
+
+def with_values(column: Column, ways: Mapping[str, Way], values: Mapping[str, float]) -> Column:
+    """Return the column with other numbers at some paths.
+
+    Raises
+    ------
+    InputError
+        If the column refuses them.
+    """
+    # Springs check what belongs together: all numbers of one object change at a time.
+    return _changed(column, {ways[name]: value for name, value in values.items()})
+
+
+def settle(
+    free: Mapping[str, Parameter],
+    given: Mapping[str, tuple[float, float]],
+    accepts: Callable[[Mapping[str, float]], bool],
+) -> dict[str, Parameter]:
+    """Move bounds to where the column begins to refuse, as K_y at a K_c that is not free.
+
+    A bound at which the column is refused whatever the others that are free do is found by halving
+    between it and the start. A bound that only some of them forbid stays. Bounds that were given
+    stay.
+    """
+    start = {name: number.value for name, number in free.items()}
+    random = np.random.default_rng(0).random((_TRIES, len(free)))
+    tries = [start]
+    tries += [{n: number.at(end) for n, number in free.items()} for end in (0.0, 1.0)]
+    tries += [
+        {n: number.at(place) for (n, number), place in zip(free.items(), places, strict=True)}
+        for places in random
+    ]
+
+    def allowed(name: str, value: float) -> bool:
+        return any(accepts(others | {name: value}) for others in tries)
+
+    settled = {}
+    for name, number in free.items():
+        ends = [number.low, number.high]
+        if name not in given:
+            ends = [_edge(number, end, partial(allowed, name)) for end in ends]
+        settled[name] = replace(number, low=ends[0], high=ends[1]) if ends[0] < ends[1] else number
+    return settled
+
+
+def _edge(number: Parameter, end: float, allowed: Callable[[float], bool]) -> float:
+    """Return the end if it is allowed, else the last value on the way there that is."""
+    if allowed(end):
+        return end
+    inside, outside = number.place(number.value), number.place(end)
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (inside + outside)
+        if allowed(number.at(middle)):
+            inside = middle
+        else:
+            outside = middle
+    return number.at(inside)
+
+
+def _below(part: Any) -> Iterator[tuple[str, Way]]:
+    """Yield names and ways of all numbers in a spring, or in several, with what joins them before.
+
+    ``.k_y`` in one; ``[0].k_y`` in one of several, and ``[*].k_y`` in all of them that have it.
+    """
+    if isinstance(part, tuple):
+        several = [list(_below(_spring(item))) for item in part]
+        for place, numbers in enumerate(several):
+            yield from ((f"[{place}]{name}", (place, *way)) for name, way in numbers)
+        every = {name: way for numbers in several for name, way in numbers}
+        yield from ((f"[*]{name}", (None, *way)) for name, way in every.items())
+    elif is_dataclass(part):
+        for field in fields(part):
+            value = getattr(part, field.name) if field.init else None
+            if isinstance(value, float):
+                yield f".{field.name}", (field.name,)
+            elif is_dataclass(value) or isinstance(value, tuple):
+                yield from (
+                    (f".{field.name}{name}", (field.name, *way)) for name, way in _below(value)
+                )
+
+
+def _spring(item: Any) -> Any:
+    """Return one of several springs; that of a layer comes behind its distance."""
+    return item[-1] if isinstance(item, tuple) else item
+
+
+def _get(part: Any, way: Way) -> Any:
+    for step in way:
+        part = _spring(part[step]) if isinstance(step, int) else getattr(part, str(step), None)
+    return part
+
+
+def _changed(part: Any, changes: Mapping[Way, float]) -> Any:
+    """Return a copy of a spring, or of several, with the numbers at some ways replaced."""
+    if () in changes:
+        return changes[()]
+    if isinstance(part, tuple):
+        return tuple(_changed_item(item, place, changes) for place, item in enumerate(part))
+    steps: dict[str, dict[Way, float]] = {}
+    for way, value in changes.items():
+        steps.setdefault(str(way[0]), {})[way[1:]] = value
+    return replace(
+        part, **{step: _changed(getattr(part, step), rest) for step, rest in steps.items()}
+    )
+
+
+def _changed_item(item: Any, place: int, changes: Mapping[Way, float]) -> Any:
+    """Change one of several springs: by its own numbers, then by factors on all of them."""
+    spring = _spring(item)
+    own = {way[1:]: value for way, value in changes.items() if way[0] == place}
+    for way, factor in changes.items():
+        rest = way[1:]
+        if way[0] is None and None in rest:
+            own[rest] = own.get(rest, 1.0) * factor
+        elif way[0] is None:
+            value = own.get(rest, _get(spring, rest))
+            if value is not None:
+                own[rest] = value * factor
+    if not own:
+        return item
+    changed = _changed(spring, own)
+    return (*item[:-1], changed) if isinstance(item, tuple) else changed

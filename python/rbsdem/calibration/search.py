@@ -1,0 +1,201 @@
+"""The search for the numbers that fit best.
+
+The force of a chain of straight lines is continuous in its parameters nearly everywhere, with kinks
+where a spring takes another line, and the error has several minima. So: a Latin hypercube over the
+bounds; least squares (scipy, trust region) from its best points with coarse finite differences,
+which look over the kinks; then finer ones from the best of them, last by the dogleg method, which
+goes straight to bounds; then the same from places kicked off the best, until that no longer helps.
+docs/calibration.md has the measurements behind the choice.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import numpy as np
+
+from rbsdem._core import Array
+from rbsdem.calibration.misfit import REFUSED, Misfit, rms
+
+#: Points of the hypercube for each free number, and at least.
+SAMPLES_EACH, SAMPLES_LEAST = 10, 40
+
+#: Draws for each point that the rule of the springs allows.
+DRAWS = 20
+
+#: Descents from the best points.
+STARTS = 4
+
+#: Steps of finite differences in shares of the distance between the bounds.
+COARSE, MIDDLE, FINE = 0.02, 0.005, 0.0005
+
+#: Distance of a kick, and how many without a gain of this share end the search.
+KICK, KICKS, GAIN = 0.15, 3, 0.002
+
+#: Place nearer to a bound than this is on it.
+AT_BOUND = 1e-3
+
+#: A loss that cannot be told from none.
+NOTHING = 1e-6
+
+
+class Ended(Exception):  # noqa: N818 - not an error: the search may do no more
+    """The search has used what it may."""
+
+
+class Search:
+    """One search; what it has found is kept by the misfit.
+
+    Parameters
+    ----------
+    misfit : Misfit
+        What is made small.
+    seed : int
+        Of all random choices.
+    evaluations : int
+        Most analyses.
+    seconds : float or None
+        Most wall time [s].
+    """
+
+    def __init__(self, misfit: Misfit, seed: int, evaluations: int, seconds: float | None) -> None:
+        self.misfit, self._evaluations = misfit, evaluations
+        self._random = np.random.default_rng(seed)
+        self._until = np.inf if seconds is None else time.perf_counter() + seconds
+        self._memory: dict[bytes, Array] = {}
+
+    def run(self) -> str:
+        """Search; return what ended it."""
+        status = "converged"
+        try:
+            for places in self._sample():
+                self._descend(places, COARSE, "trf", 12)
+            self._sharpen()
+            left = KICKS
+            while left and self.misfit.best > NOTHING:
+                before = self.misfit.best
+                self._descend(self._kicked(), COARSE, "trf", 12)
+                if self.misfit.best < before:
+                    self._sharpen()
+                left = KICKS if self.misfit.best < (1 - GAIN) * before else left - 1
+            self._touch_bounds()
+        except Ended as ended:
+            status = str(ended)
+        except KeyboardInterrupt:
+            status = "interrupted"
+        return status
+
+    def _vectors(self, several: list[Array]) -> list[Array]:
+        memory = self._memory
+        if any(places.tobytes() not in memory for places in several):
+            if self.misfit.evaluations >= self._evaluations:
+                raise Ended("evaluations used up")
+            if time.perf_counter() > self._until:
+                raise Ended("time used up")
+            wanted = [places for places in several if places.tobytes() not in memory]
+            if len(memory) > 64:
+                wanted = several
+                memory.clear()
+            found = self.misfit.vectors(wanted)
+            memory |= {p.tobytes(): v for p, v in zip(wanted, found, strict=True)}
+        return [self._memory[places.tobytes()] for places in several]
+
+    def _sample(self) -> list[Array]:
+        """Return the best points of a Latin hypercube, the start among its points."""
+        from scipy.stats import qmc  # noqa: PLC0415
+
+        size = len(self.misfit.free)
+        wanted = max(SAMPLES_EACH * size, SAMPLES_LEAST)
+        wanted = min(wanted, max(self._evaluations // 4, 1))
+        hypercube = qmc.LatinHypercube(size, rng=self._random)
+        points = [self.misfit.start_places(), *hypercube.random(wanted)]
+        losses = [rms(vector) for vector in self._batches(points)]
+        # Those refused are drawn again: limits between free numbers are no box.
+        for _ in range(DRAWS):
+            missing = wanted + 1 - sum(loss < REFUSED for loss in losses)
+            if missing <= 0:
+                break
+            more = list(hypercube.random(missing))
+            points += more
+            losses += [rms(vector) for vector in self._batches(more)]
+        order = [i for i in np.argsort(losses, kind="stable") if losses[i] < REFUSED]
+        return [points[i] for i in order[:STARTS]]
+
+    def _batches(self, points: list[Array], size: int = 16) -> list[Array]:
+        found: list[Array] = []
+        for first in range(0, len(points), size):
+            found += self._vectors(points[first : first + size])
+        return found
+
+    def _descend(self, places: Array, step: float, method: str, most: int) -> None:
+        """Least squares from a point; the misfit remembers the best on the way."""
+        from scipy.optimize import least_squares  # noqa: PLC0415
+
+        least_squares(
+            lambda at: self._vectors([np.array(at)])[0],
+            np.clip(places, 1e-6, 1 - 1e-6),
+            jac=lambda at: self._jacobian(np.array(at), step),
+            bounds=(0.0, 1.0),
+            method=method,
+            max_nfev=most,
+            ftol=1e-6,
+            xtol=1e-5,
+            # As good as the decomposition of J, which many threads of BLAS slow down; its search in
+            # two dimensions needs two numbers.
+            tr_solver="lsmr" if places.size > 1 else "exact",
+        )
+
+    def _sharpen(self) -> None:
+        self._descend(self.misfit.best_places, MIDDLE, "trf", 12)
+        self._descend(self.misfit.best_places, FINE, "dogbox", 20)
+
+    def _touch_bounds(self) -> None:
+        """Put what stays just inside a bound on it: the trust region never touches them."""
+        misfit = self.misfit
+        for i, place in enumerate(misfit.best_places):
+            if 0 < place < AT_BOUND or 0 < 1 - place < AT_BOUND:
+                places = misfit.best_places.copy()
+                places[i] = round(place)
+                loss = rms(self._vectors([places])[0])
+                if loss <= misfit.best * (1 + GAIN * AT_BOUND):
+                    misfit.best, misfit.best_places = loss, places
+
+    def _kicked(self) -> Array:
+        best, size = self.misfit.best_places, len(self.misfit.free)
+        for _ in range(50):
+            places = np.clip(best + KICK * self._random.standard_normal(size), 0.0, 1.0)
+            if rms(self._vectors([places])[0]) < REFUSED:
+                return places
+        return best
+
+    def _jacobian(self, places: Array, step: float) -> Array:
+        """Return finite differences, away from bounds and from what is refused."""
+        size = places.size
+        steps = np.where(places + step <= 1.0, step, -step)
+        moved = [places + steps[i] * np.eye(size)[i] for i in range(size)]
+        base, *vectors = self._vectors([places, *moved])
+        jacobian = np.empty((base.size, size))
+        for i in range(size):
+            if refused(vectors[i]):
+                steps[i] *= -1.0
+                other = places + steps[i] * np.eye(size)[i]
+                vectors[i] = self._vectors([other])[0] if 0 <= other[i] <= 1 else base
+            jacobian[:, i] = 0.0 if refused(vectors[i]) else (vectors[i] - base) / steps[i]
+        return jacobian
+
+
+def refused(vector: Array) -> bool:
+    """Return whether a vector stands for a column that is refused."""
+    return bool(vector[0] == REFUSED and vector[-1] == REFUSED)
+
+
+def need_scipy() -> Any:
+    """Return scipy.optimize, or raise `ImportError` with the way to get it."""
+    try:
+        import scipy.optimize  # noqa: PLC0415
+    except ImportError as error:
+        raise ImportError(
+            "calibration needs scipy, which is not installed: pip install rbsdem[calibrate]"
+        ) from error
+    return scipy.optimize

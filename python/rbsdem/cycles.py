@@ -1,0 +1,286 @@
+"""Cycle by cycle: turning points, energy, stiffness, damping; and where strength is lost.
+
+A half-cycle belongs to a turning point of the displacement, its tip. It lasts from where the force
+changes its sign before the tip to where it does so after it: nothing is stored at zero force, so
+the work between is what was dissipated. Each curve has its own zeros of force; the tips are those
+of the displacement, which a test and a model driven through it share.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rbsdem import _core
+from rbsdem._core import Array
+from rbsdem.errors import InputError
+
+__all__ = [
+    "TURN",
+    "HalfCycles",
+    "envelope",
+    "half_cycles",
+    "strength_loss",
+    "turning_points",
+]
+
+TURN = 0.02
+"""Share of the largest absolute displacement by which it turns back at a turning point."""
+
+_NEARLY = 0.95
+"""Share of the largest displacement so far that a repeated cycle has to reach."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HalfCycles:
+    """The half-cycles of one curve, in their order.
+
+    Attributes
+    ----------
+    row : ndarray of int, shape (c,)
+        Row of the tip.
+    displacement : ndarray, shape (c,)
+        At the tip [m].
+    force : ndarray, shape (c,)
+        At the tip [N].
+    peak_force : ndarray, shape (c,)
+        The largest on the way to the tip, in its direction [N].
+    energy : ndarray, shape (c,)
+        Dissipated from zero force to zero force [J]; what is stored at the end of a history that
+        ends loaded is in the last one.
+    stiffness : ndarray, shape (c,)
+        Secant from the origin to the tip [N/m]; NaN where force and displacement of the tip have
+        not the same sign.
+    damping : ndarray, shape (c,)
+        Equivalent viscous damping ratio E/(pi F d), with the energy E of the half-cycle and force
+        and displacement of its tip; NaN as for the stiffness.
+    """
+
+    row: np.ndarray
+    displacement: Array
+    force: Array
+    peak_force: Array
+    energy: Array
+    stiffness: Array
+    damping: Array
+
+    def __len__(self) -> int:
+        return self.row.size
+
+
+def turning_points(displacement: ArrayLike, *, share: float = TURN) -> np.ndarray:
+    """Find the rows at which a displacement turns back.
+
+    Parameters
+    ----------
+    displacement : array_like, shape (m,)
+        In the order of the test [m].
+    share : float, optional
+        By what share of its largest absolute value it has to turn back, from 0 to 1.
+
+    Returns
+    -------
+    ndarray of int, shape (k,)
+        Rows of the extremes, neither the first nor the last row of the history.
+
+    Raises
+    ------
+    InputError
+        If a number is not finite, or if `share` is out of its range.
+    """
+    d = _core.finite_vector(displacement, "displacement")
+    if not 0 <= share <= 1:
+        raise InputError(f"share = {share} must be from 0 to 1")
+    if d.size < 3:
+        return np.empty(0, dtype=np.intp)
+    # Between local extremes nothing can turn: those only, of a plateau the first row.
+    step = np.diff(d)
+    moves = np.flatnonzero(step)
+    rows = [*(moves[np.flatnonzero(np.diff(np.sign(step[moves])))] + 1).tolist(), d.size - 1]
+    threshold = share * float(np.max(np.abs(d)))
+    turns: list[int] = []
+    direction, extreme = 0.0, 0
+    for row in rows:
+        away = d[row] - d[extreme]
+        if direction == 0:
+            # The first move; small ones at the begin set no direction.
+            if abs(away) > threshold:
+                direction, extreme = math.copysign(1.0, away), row
+        elif away * direction > 0:
+            extreme = row
+        elif -away * direction > threshold:
+            turns.append(extreme)
+            direction, extreme = -direction, row
+    return np.array(turns, dtype=np.intp)
+
+
+def half_cycles(
+    displacement: ArrayLike, force: ArrayLike, *, tips: ArrayLike | None = None
+) -> HalfCycles:
+    """Cut a curve into half-cycles.
+
+    Parameters
+    ----------
+    displacement, force : array_like, shape (m,)
+        The curve, row by row [m, N].
+    tips : array_like of int, shape (c,), optional
+        Rows of the tips, ascending; without it the turning points, and the last row if the curve is
+        still loaded outwards there.
+
+    Returns
+    -------
+    HalfCycles
+        A value for each tip.
+
+    Raises
+    ------
+    InputError
+        If the arrays differ in length or a number is not finite.
+    """
+    d, f = _curve(displacement, force)
+    rows = tip_rows(d, f) if tips is None else np.asarray(tips, dtype=np.intp)
+    work = np.concatenate(([0.0], np.cumsum(0.5 * (f[1:] + f[:-1]) * np.diff(d))))
+    before = np.concatenate(([0], rows[:-1])) if rows.size else rows
+    sides = np.sign(d[rows] - d[before])
+    # Work up to the zeros of force: at the begin, between two tips, at the end.
+    zeros = np.empty(rows.size + 1)
+    peaks = np.empty(rows.size)
+    zeros[0] = 0.0
+    for i, (first, last, side) in enumerate(zip(before, rows, sides, strict=True)):
+        peaks[i] = side * np.max(side * f[first : last + 1])
+        if i > 0:
+            zeros[i] = _work_to_zero(d, f, work, first, last, side)
+    if rows.size:
+        zeros[-1] = _work_to_zero(d, f, work, rows[-1], d.size - 1, -sides[-1])
+    product = f[rows] * d[rows]
+    carries = product > 0
+    safe = np.where(carries, product, 1.0)
+    energy = np.diff(zeros)
+    return HalfCycles(
+        row=rows,
+        displacement=d[rows],
+        force=f[rows],
+        peak_force=peaks,
+        energy=energy,
+        stiffness=np.where(carries, safe / np.where(carries, d[rows], 1.0) ** 2, np.nan),
+        damping=np.where(carries, energy / (np.pi * safe), np.nan),
+    )
+
+
+def tip_rows(d: Array, f: Array) -> np.ndarray:
+    """Return the turning points, and the last row if the curve is still loaded outwards there."""
+    turns = turning_points(d)
+    last = d.size - 1
+    if last < 1:
+        return turns
+    side = d[last] - d[turns[-1] if turns.size else 0]
+    if side * f[last] > 0 and side * d[last] > 0:
+        return np.append(turns, last)
+    return turns
+
+
+def _work_to_zero(d: Array, f: Array, work: Array, first: int, last: int, side: float) -> float:
+    """Return the work up to where the force takes the sign `side` between two rows."""
+    swing = side * f[first : last + 1]
+    if swing.size == 0:
+        return float(work[first])
+    at = int(np.argmax(swing >= 0))
+    if swing[at] < 0:
+        # It never does: up to where it comes nearest.
+        return float(work[first + int(np.argmax(swing))])
+    row = first + at
+    if at == 0:
+        return float(work[row])
+    share = swing[at - 1] / (swing[at - 1] - swing[at])
+    return float(work[row - 1] + 0.5 * f[row - 1] * share * (d[row] - d[row - 1]))
+
+
+def envelope(displacement: ArrayLike, force: ArrayLike, side: int) -> np.ndarray:
+    """Find the rows of the envelope of a cyclic curve to one side.
+
+    Parameters
+    ----------
+    displacement, force : array_like, shape (m,)
+        The curve, row by row [m, N].
+    side : {1, -1}
+        Which side.
+
+    Returns
+    -------
+    ndarray of int, shape (k,)
+        The rows beyond the largest displacement so far, and of each half-cycle that comes back to
+        it (within 5 %) without going beyond, the one of the largest force.
+
+    Raises
+    ------
+    InputError
+        If the arrays differ in length or a number is not finite, or if `side` is neither.
+    """
+    d, f = _curve(displacement, force)
+    if side not in (1, -1):
+        raise InputError(f"side = {side!r} must be 1 or -1")
+    x, y = side * d, side * f
+    so_far = np.maximum.accumulate(np.concatenate(([0.0], x)))
+    rows = np.flatnonzero(x > so_far[:-1]).tolist()
+    if d.size < 2:
+        return np.array(rows, dtype=np.intp)
+    turns = [0, *turning_points(d).tolist(), d.size - 1]
+    for first, last in pairwise(turns):
+        reach = so_far[first + 1]
+        if x[first] < x[last] <= reach and x[last] >= _NEARLY * reach:
+            near = first + 1 + np.flatnonzero(x[first + 1 : last + 1] >= _NEARLY * reach)
+            rows.append(int(near[np.argmax(y[near])]))
+    return np.unique(np.array(rows, dtype=np.intp))
+
+
+def strength_loss(displacement: ArrayLike, force: ArrayLike, *, share: float = 0.2) -> float:
+    """Displacement at which a share of the strength is lost.
+
+    Parameters
+    ----------
+    displacement, force : array_like, shape (m,)
+        The curve, row by row [m, N].
+    share : float, optional
+        Share of the largest force of a side that is lost, above 0 and below 1.
+
+    Returns
+    -------
+    float
+        On the envelope of a side, the first displacement past the largest force at which the force
+        is down to (1 - share) of it, linear between two points; of the sides the one at which this
+        happens first, unsigned [m]. A side counts whose largest force is half of that of the curve
+        or more. NaN if none loses so much.
+
+    Raises
+    ------
+    InputError
+        If the arrays differ in length or a number is not finite, or if `share` is out of its range.
+    """
+    if not 0 < share < 1:
+        raise InputError(f"share = {share} must be above 0 and below 1")
+    d, f = _curve(displacement, force)
+    found = (math.inf, math.nan)
+    for side in (1, -1):
+        rows = envelope(d, f, side)
+        x, y = side * d[rows], side * f[rows]
+        if not rows.size or 2 * np.max(y) < np.max(np.abs(f)) or not np.max(y) > 0:
+            continue
+        peak = int(np.argmax(y))
+        left = (1 - share) * y[peak]
+        lost = np.flatnonzero(y[peak:] <= left)
+        if lost.size and rows[at := peak + int(lost[0])] < found[0]:
+            part = (y[at - 1] - left) / (y[at - 1] - y[at])
+            found = float(rows[at]), float(x[at - 1] + part * (x[at] - x[at - 1]))
+    return found[1]
+
+
+def _curve(displacement: ArrayLike, force: ArrayLike) -> tuple[Array, Array]:
+    d = _core.finite_vector(displacement, "displacement")
+    f = _core.finite_vector(force, "force")
+    if d.shape != f.shape:
+        raise InputError(f"displacement has {d.size} rows, force {f.size}; they must be equal")
+    return d, f

@@ -1,0 +1,278 @@
+"""Blind prediction of tests: properties in, loop out, scores of all of them."""
+
+from __future__ import annotations
+
+import multiprocessing
+import pickle
+import signal
+import time
+import warnings
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import ExitStack
+from multiprocessing.synchronize import Event
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from rbsdem import _core
+from rbsdem.analysis import cyclic
+from rbsdem.column import Column
+from rbsdem.comparison import compare
+from rbsdem.errors import InputError, RbsdemError, SolveError
+from rbsdem.peer import blind
+from rbsdem.peer.measured import MeasuredTest
+from rbsdem.peer.predictions import Prediction, Predictions
+from rbsdem.peer.specimen import Specimen
+
+__all__ = ["predict", "predict_one"]
+
+Model: TypeAlias = str | Callable[[Specimen], Column]
+
+# Tests that a process gets at once: few enough that all are busy to the end and the bar moves.
+_CHUNK = 6
+
+# What a process of the pool was given at its begin.
+_shared: dict[str, Event] = {}
+
+
+def predict(
+    specimens: Iterable[Specimen],
+    model: Model = blind.DEFAULT,
+    *,
+    jobs: int = 1,
+    progress: bool = False,
+    **options: Any,
+) -> Predictions:
+    """Predict tests from their properties, and compare with what was measured.
+
+    Each column is driven through the measured displacements; its lateral force stands against the
+    net horizontal force of the test.
+
+    Parameters
+    ----------
+    specimens : iterable of Specimen
+        The tests, as of `rbsdem.peer.read_specimens`.
+    model : str or callable, optional
+        A name that `rbsdem.peer.column` knows, or a function that makes a `Column` of a `Specimen`;
+        with `jobs` above 1 it must be one that can be imported.
+    jobs : int, optional
+        Processes to use. Above 1 a script needs ``if __name__ == "__main__":``.
+    progress : bool, optional
+        Show a bar on stderr; needs rich.
+    **options
+        Handed over to `rbsdem.peer.column`, as ``n=4``.
+
+    Returns
+    -------
+    Predictions
+        A row for each test, in their order. What goes wrong with a test is a row with the text of
+        the error. Broken off by the keyboard, the rows are those that were done.
+
+    Raises
+    ------
+    InputError
+        If the model is not known or `jobs` is below 1.
+    ImportError
+        If progress is asked for without rich.
+    """
+    if _core.whole(jobs, "jobs") < 1:
+        raise InputError(f"jobs = {jobs} must be 1 or more")
+    if not callable(model) and model not in blind.MODELS:
+        raise InputError(f"model = {model!r} is not known; there are {', '.join(blind.MODELS)}")
+    if jobs > 1:
+        _check_sent(model, options)
+    tests = list(specimens)
+    begin = time.perf_counter()
+    rows: dict[int, Prediction] = {}
+    run = _in_processes if jobs > 1 and len(tests) > 1 else _here
+    interrupted = False
+    with ExitStack() as stack:
+        told = stack.enter_context(_bar(len(tests))) if progress else None
+        try:
+            for number, row in run(tests, model, options, jobs):
+                rows[number] = row
+                if told:
+                    told(row)
+        except KeyboardInterrupt:
+            interrupted = True
+    return Predictions(
+        (rows[number] for number in sorted(rows)),
+        model=_name(model),
+        seconds=time.perf_counter() - begin,
+        interrupted=interrupted,
+    )
+
+
+def predict_one(specimen: Specimen, model: Model = blind.DEFAULT, **options: Any) -> Prediction:
+    """Predict one test; what goes wrong is told in the row that is returned.
+
+    Parameters
+    ----------
+    specimen : Specimen
+        The test.
+    model : str or callable, optional
+        As for `predict`.
+    **options
+        As for `predict`.
+
+    Returns
+    -------
+    Prediction
+        Its status, its scores and its times.
+    """
+    name = _name(model)
+    try:
+        test = specimen.test()
+        # A test that says nothing, before the work.
+        compare((test.displacement, test.force), test)
+    except RbsdemError as error:
+        return Prediction(specimen, name, "no history", error=str(error))
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        status, error, result, seconds = _analyse(specimen, test, model, options)
+    comparison = compare(result, test)
+    if status == "completed" and comparison.done < 1:
+        status, error = "stopped", f"the forces end at row {comparison.rows}"
+    return Prediction(
+        specimen,
+        name,
+        status,
+        error=error,
+        note="; ".join(dict.fromkeys(str(warning.message) for warning in caught)),
+        seconds_model=seconds[0],
+        seconds_analysis=seconds[1],
+        comparison=comparison,
+    )
+
+
+def _analyse(
+    specimen: Specimen, test: MeasuredTest, model: Model, options: dict[str, Any]
+) -> tuple[str, str, Any, tuple[float, float]]:
+    """Return status, error, result and wall times; of no analysis the result is not a number."""
+    nothing = test.displacement, np.full(test.displacement.size, np.nan)
+    begin = built = time.perf_counter()
+    try:
+        if callable(model):
+            column = model(specimen, **options)
+        else:
+            column = blind.column(specimen, model, **options)
+        built = time.perf_counter()
+        result = cyclic(column, displacement=test.displacement)
+        status, error = "completed", ""
+    except SolveError as stop:
+        known = stop.result is not None
+        status, error, result = "stopped" if known else "failed", str(stop), stop.result or nothing
+    except RbsdemError as fault:
+        status, error, result = "failed", str(fault), nothing
+    except Exception as fault:
+        # A fault of one model is a row of the table, not the end of all others.
+        status, error, result = "failed", f"{type(fault).__name__}: {fault}", nothing
+    end = time.perf_counter()
+    built = max(built, begin)
+    return status, error, result, (built - begin, end - built)
+
+
+def _here(
+    tests: list[Specimen], model: Model, options: dict[str, Any], jobs: int
+) -> Iterator[tuple[int, Prediction]]:
+    del jobs
+    for number, specimen in enumerate(tests):
+        yield number, predict_one(specimen, model, **options)
+
+
+def _in_processes(
+    tests: list[Specimen], model: Model, options: dict[str, Any], jobs: int
+) -> Iterator[tuple[int, Prediction]]:
+    """Yield the rows as they come."""
+    chunks = [range(i, min(i + _CHUNK, len(tests))) for i in range(0, len(tests), _CHUNK)]
+    lost: list[int] = []
+    stop = _context().Event()
+    pool = _pool(min(jobs, len(chunks)), stop)
+    try:
+        futures: dict[Future[list[Prediction]], range] = {
+            pool.submit(_chunk, [tests[i] for i in chunk], model, options): chunk
+            for chunk in chunks
+        }
+        for future in as_completed(futures):
+            try:
+                rows = future.result()
+            except BrokenProcessPool:
+                lost += futures[future]
+            else:
+                yield from zip(futures[future], rows, strict=True)
+    finally:
+        stop.set()
+        pool.shutdown(wait=False, cancel_futures=True)
+    yield from _one_by_one(sorted(lost), tests, model, options)
+
+
+def _one_by_one(
+    numbers: list[int], tests: list[Specimen], model: Model, options: dict[str, Any]
+) -> Iterator[tuple[int, Prediction]]:
+    """Yield the rows of tests whose process died: it took others along, and the next ones too."""
+    pool = None
+    try:
+        for number in numbers:
+            pool = pool or _pool(1, _context().Event())
+            try:
+                (row,) = pool.submit(_chunk, [tests[number]], model, options).result()
+            except BrokenProcessPool:
+                pool.shutdown(wait=False)
+                pool = None
+                error = "the process died; run this test alone (jobs = 1) to see why"
+                row = Prediction(tests[number], _name(model), "failed", error=error)
+            yield number, row
+    finally:
+        if pool is not None:
+            pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _pool(jobs: int, stop: Event) -> ProcessPoolExecutor:
+    return ProcessPoolExecutor(jobs, mp_context=_context(), initializer=_begin, initargs=(stop,))
+
+
+def _begin(stop: Event) -> None:
+    """Prepare a process: the interrupt of the keyboard goes to all, and the first one decides."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _shared["stop"] = stop
+
+
+def _chunk(tests: list[Specimen], model: Model, options: dict[str, Any]) -> list[Prediction]:
+    rows = []
+    for specimen in tests:
+        if _shared["stop"].is_set():
+            break
+        rows.append(predict_one(specimen, model, **options))
+    return rows
+
+
+def _context() -> Any:
+    """Return how processes are started: not by fork, as libraries of this one may run threads."""
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["rbsdem.peer.batch"])
+    return context
+
+
+def _check_sent(model: Model, options: dict[str, Any]) -> None:
+    """Raise `InputError` for what cannot be handed to another process."""
+    try:
+        pickle.dumps((model, options))
+    except Exception as error:
+        raise InputError(
+            f"model = {model!r} cannot be handed to another process ({error}); take jobs = 1, or "
+            "put the function into a module of its own"
+        ) from error
+
+
+def _name(model: Model) -> str:
+    return getattr(model, "__name__", repr(model)) if callable(model) else model
+
+
+def _bar(total: int) -> Any:
+    from rbsdem.peer.tables import progress_bar  # noqa: PLC0415
+
+    return progress_bar(total)

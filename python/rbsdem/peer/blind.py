@@ -1,0 +1,154 @@
+"""Columns from the properties of a specimen alone: no number of the test at hand."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any
+
+from rbsdem.calibration.parameter import Parameter
+from rbsdem.column import Column
+from rbsdem.errors import InputError
+from rbsdem.peer.drawing import draw
+from rbsdem.peer.layers import Hinge, hinge_joint
+from rbsdem.peer.specimen import Specimen
+from rbsdem.springs import Elastic
+
+__all__ = ["DEFAULT", "MODELS", "column"]
+
+DEFAULT = "paper"
+"""The model that is taken if none is named."""
+
+
+def column(specimen: Specimen, model: str = DEFAULT, **options: Any) -> Column:
+    """Make the column of a specimen.
+
+    Parameters
+    ----------
+    specimen : Specimen
+        The test; only its properties are looked at.
+    model : {"paper", "best"}, optional
+        "paper": one component, trilinear Takeda flexure and bilinear shear by the section analysis,
+        as the paper has them. "best": a hinge of concrete and steel layers with bar slip at the
+        foot, elastic joints above it (`rbsdem.peer.layers`); rectangular sections only.
+    **options
+        ``n`` : number of bodies.
+
+    Returns
+    -------
+    Column
+        With second-order effects of the axial load.
+
+    Raises
+    ------
+    InputError
+        If the model is not known, or if the section cannot be analysed.
+    """
+    if model not in MODELS:
+        raise InputError(f"model = {model!r} is not known; there are {', '.join(MODELS)}")
+    return MODELS[model](specimen, **options)
+
+
+def _paper(specimen: Specimen, n: int = 1) -> Column:
+    section = draw(specimen).section()
+    # Columns of high axial load are controlled by compression: they yield there.
+    springs = section.springs(specimen.length, specimen.axial_load, yield_rule="first")
+    shear = springs.shear
+    if shear is None:
+        # Knee of the shear diagram in closed form: 0.48 of the uncracked stiffness.
+        stiffness = 0.48 * section.concrete_law["ec"] / 2 * section.gross_area
+        shear = Elastic(stiffness / specimen.length)
+    return Column(
+        specimen.length,
+        specimen.mass,
+        shear,
+        springs.flexure,
+        n=n,
+        axial_load=specimen.axial_load,
+        kinematics="pdelta",
+    )
+
+
+#: Numbers of the layered model that may be calibrated; bounds are factors of their values.
+_FREE = {
+    "steel_strength": (0.7, 1.5, "-", "yield and ultimate stress over the measured ones"),
+    "concrete_strength": (0.6, 1.7, "-", "strength in place over that of cylinders"),
+    "hinge_length": (0.2, 4.0, "-", "factor of the hinge length"),
+    "stiffness": (0.2, 4.0, "-", "flexural stiffness above the hinge over the gross one"),
+    "roundness": (0.3, 3.0, "-", "R0 of the steel"),
+    "fatigue": (0.05, 50.0, "-", "1 over the plastic work that halves the strength"),
+    "slip_length": (0.1, 5.0, "1/MPa", "length of yielding in the footing"),
+    "confinement": (0.1, 5.0, "-", "factor of the confining stress"),
+    "cover_fall": (0.2, 20.0, "-", "factor of the slope behind the peak of the cover"),
+    "core_fall": (0.1, 50.0, "-", "factor of the slope behind the peak of the core"),
+    "contact": (0.1, 2.0, "-", "share of the force at which a crack is closed"),
+    "wear": (0.05, 8.0, "-", "strength of the concrete lost by a cycle"),
+}
+
+
+@dataclass(frozen=True)
+class LayeredColumn(Column):
+    """A column on a layered hinge that remembers how it was made.
+
+    Attributes
+    ----------
+    specimen : Specimen
+        Its properties.
+    hinge : Hinge
+        Numbers of the model.
+    """
+
+    specimen: Specimen | None = None
+    hinge: Hinge = field(default_factory=Hinge)
+
+    @property
+    def parameters(self) -> dict[str, Parameter]:
+        """Numbers that `rbsdem.calibrate` may fit, the most telling first."""
+        found = {}
+        for name, (low, high, unit, what) in _FREE.items():
+            value = getattr(self.hinge, name)
+            found[name] = Parameter(value, low * value, high * value, unit, what)
+        return found
+
+    def with_parameters(self, **values: float) -> LayeredColumn:
+        """Return the column with other numbers of its model."""
+        return _best(self.specimen, n=self.n, hinge=self.hinge.with_numbers(**values))
+
+
+def _best(specimen: Specimen, n: int = 2, hinge: Hinge | None = None) -> LayeredColumn:
+    """Layered hinge at the foot, elastic joints at the middles of n - 1 equal parts above it."""
+    if n < 2:
+        raise InputError(
+            f"n = {n}: the layered model needs a joint above the hinge; give 2 or more"
+        )
+    drawing = draw(specimen)
+    if drawing.shape == "circular":
+        raise InputError(
+            f"{specimen.name}: the layered model is for rectangular sections; use model='paper'"
+        )
+    hinge = hinge or Hinge()
+    length = specimen.length
+    joint = hinge_joint(drawing, length, specimen.axial_load, hinge)
+    above = length - joint.length / 2
+    part = above / (n - 1)
+    # Lumped at the middles, the top would be 1 - 1/(4 m^2) as flexible as the continuous column.
+    stiffness = joint.flexural_stiffness / part * (1 - 0.25 / (n - 1) ** 2)
+    heights = [0.0] + [joint.length / 2 + (i + 0.5) * part for i in range(n - 1)] + [length]
+    rigid = 1e3 * joint.shear_stiffness / length
+    shear = Elastic((n - 1) * joint.shear_stiffness / length)
+    return LayeredColumn(
+        length,
+        specimen.mass,
+        [Elastic(rigid)] + [shear] * (n - 1),
+        [joint.spring] + [Elastic(stiffness)] * (n - 1),
+        n=n,
+        lengths=[high - low for low, high in pairwise(heights)],
+        axial_load=specimen.axial_load,
+        kinematics="pdelta",
+        specimen=specimen,
+        hinge=hinge,
+    )
+
+
+MODELS = {"paper": _paper, "best": _best}
+"""Models by name."""

@@ -1,0 +1,185 @@
+"""The command `rbsdem peer`."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from fnmatch import fnmatch
+from pathlib import Path
+
+from rbsdem.errors import InputError, RbsdemError
+from rbsdem.peer import blind
+from rbsdem.peer.batch import predict
+from rbsdem.peer.predictions import Predictions
+from rbsdem.peer.specimen import Specimen
+from rbsdem.peer.specimens import Specimens, read_specimens
+
+DESCRIPTION = """\
+Predict every test of a folder from its properties and compare with what was measured. The folder
+holds specimens.csv and the histories of the PEER Structural Performance Database.
+"""
+
+EPILOG = """\
+Files (--out): results.csv (a row for each test), summary.csv (medians and quartiles by failure
+mode), gallery.html (all loops, to sort and filter), loops.png (all loops; needs matplotlib).
+Exit codes: 0 every test was analysed to its end, 1 some were not, 2 the input is wrong,
+130 broken off by the keyboard (what was done is reported).
+"""
+
+INTERRUPTED = 130
+
+
+class _Parser(argparse.ArgumentParser):
+    """Errors begin with the program's name, as all others."""
+
+    def error(self, message: str) -> None:
+        sys.stderr.write(f"rbsdem: peer: {message}\n")
+        sys.exit(2)
+
+
+def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
+    parser = _Parser(
+        prog="rbsdem peer",
+        description=DESCRIPTION,
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("folder", type=Path, metavar="DIR", help="folder of the tests")
+    parser.add_argument(
+        "--model", default=blind.DEFAULT, choices=list(blind.MODELS), help="default %(default)s"
+    )
+    parser.add_argument(
+        "--section",
+        default="rectangular",
+        choices=["rectangular", "circular", "all"],
+        help="sections; circular with octagonal ones and spirals; default %(default)s",
+    )
+    parser.add_argument(
+        "--failure", nargs="+", metavar="MODE", help="failure modes: Flexure, Flexure-Shear, Shear"
+    )
+    parser.add_argument(
+        "--only", nargs="+", metavar="NAME", help="files, names or numbers of tests; * is any text"
+    )
+    parser.add_argument(
+        "--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="processes"
+    )
+    parser.add_argument(
+        "--by", default="failure_mode", metavar="WHAT", help="groups: failure_mode, section, series"
+    )
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write files into this folder")
+    parser.add_argument(
+        "--loops", action="store_true", help="with --out, write the loops of every test as csv"
+    )
+    parser.add_argument("--quiet", action="store_true", help="print the summary only")
+    return parser.parse_args(arguments)
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Run the command; return its exit code."""
+    given = _arguments(arguments)
+    try:
+        return _run(given)
+    except InputError as error:
+        code, text = 2, str(error)
+    except (RbsdemError, ImportError, OSError) as error:
+        code, text = 1, str(error)
+    except KeyboardInterrupt:
+        code, text = INTERRUPTED, "broken off"
+    for line in text.splitlines():
+        sys.stderr.write(f"rbsdem: peer: {line}\n")
+    return code
+
+
+def _run(given: argparse.Namespace) -> int:
+    # What may be missing or wrong, before the work.
+    from rbsdem.trade.table import need_rich  # noqa: PLC0415
+
+    need_rich()
+    tests = chosen(read_specimens(given.folder), given.section, given.failure, given.only)
+    if not hasattr(tests[0], given.by):
+        raise InputError(f"--by {given.by} is no property, as failure_mode, section, series")
+    if given.loops and given.out is None:
+        raise InputError("--loops writes files; say where with --out DIR")
+    if given.out is not None:
+        given.out.mkdir(parents=True, exist_ok=True)
+    found = predict(
+        tests, given.model, jobs=given.jobs, progress=not given.quiet and sys.stderr.isatty()
+    )
+    _report(found, given.by, given.quiet)
+    if given.out is not None:
+        for path in written(found, given.out, given.by, given.loops):
+            print(f"wrote {path}")
+    if found.interrupted:
+        sys.stderr.write(f"rbsdem: peer: broken off after {len(found)} of {len(tests)} tests\n")
+        return INTERRUPTED
+    return 0 if found.all_completed else 1
+
+
+def chosen(
+    table: Specimens, section: str, failure: Sequence[str] | None, only: Sequence[str] | None
+) -> Specimens:
+    """Return the tests that are asked for.
+
+    By name, those of any section and failure mode, also without a history; else those that have
+    one.
+    """
+    if only:
+        found: dict[str, Specimen] = {}
+        for name in only:
+            several = [row for row in table if _is_meant(row, name)]
+            # Not one is an error that names the nearest.
+            found |= {row.name: row for row in several or [table[name]]}
+        return Specimens(row for row in table if row.name in found)
+    tests = table.with_history()
+    if not tests:
+        raise InputError("the folder has no history of any test of its table; put csv or txt there")
+    if section == "rectangular":
+        tests = tests.where(section="rectangular")
+    elif section == "circular":
+        tests = tests.where(section=lambda shape: shape != "rectangular")
+    if failure:
+        known = {(row.failure_mode or "").lower() for row in table}
+        wrong = [mode for mode in failure if mode.lower() not in known]
+        if wrong:
+            modes = ", ".join(sorted({row.failure_mode or "" for row in table} - {""}))
+            raise InputError(f"--failure {wrong[0]} is not in the table; there are {modes}")
+        wanted = [mode.lower() for mode in failure]
+        tests = tests.where(failure_mode=lambda mode: (mode or "").lower() in wanted)
+    if not tests:
+        raise InputError("no test is left of those with a history; choose other sections or modes")
+    return tests
+
+
+def _is_meant(row: Specimen, name: str) -> bool:
+    return row.is_called(name) or fnmatch(row.name, name) or fnmatch(row.file or "", name)
+
+
+def _report(found: Predictions, by: str, quiet: bool) -> None:
+    from rich.console import Console  # noqa: PLC0415
+
+    out = Console(highlight=False)
+    if not out.is_terminal:
+        out = Console(highlight=False, width=168)
+    if not quiet:
+        out.print(found.table())
+        out.print()
+    out.print(found.summary_table(by))
+    print(f"\nModel {found.model}: {len(found)} tests in {found.seconds:.1f} s")
+
+
+def written(found: Predictions, folder: Path, by: str, loops: bool) -> list[Path]:
+    """Write the files; return which."""
+    files = [folder / "results.csv", folder / "summary.csv", folder / "gallery.html"]
+    found.to_csv(files[0])
+    found.summary_to_csv(files[1], by)
+    found.gallery(files[2])
+    try:
+        files.append(found.contact_sheet(folder / "loops.png"))
+    except ImportError as error:
+        print(f"no loops.png: {error}")
+    if loops:
+        found.loops_to_csv(folder / "loops")
+        files.append(folder / "loops")
+    return files

@@ -1,0 +1,325 @@
+"""From a row of the table to the section as it would be drawn.
+
+What the table leaves open is filled in by rules, each named in `Drawing.assumed`:
+
+- bars of a face stand at equal distances between the corner bars; if the faces do not add up to the
+  number of bars, the areas of the intermediate bars make up for it (bundled bars);
+- bars of a round section stand at equal angles, one on the axis of loading; an odd number stands
+  half as drawn and half mirrored, so that both directions of loading are equal;
+- an octagon is taken as the circle of its depth (5 % less concrete, the same core);
+- ultimate stress not reported: 1.5 times the yield stress; of a spiral the table gives none;
+- yield stress not reported: 420 MPa (Grade 60) of longitudinal bars, theirs for transverse bars;
+- cover not reported: 0.05 times the depth; across the loading: that along it;
+- transverse bars without diameter or spacing: there are none.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+from rbsdem.errors import InputError
+from rbsdem.peer.specimen import Specimen
+from rbsdem.section import (
+    CircularSection,
+    Concrete,
+    RectangularSection,
+    Section,
+    Spiral,
+    Steel,
+    Ties,
+)
+
+__all__ = ["DEFAULT_YIELD_STRESS", "ULTIMATE_OVER_YIELD", "Drawing", "DrawnBar", "draw"]
+
+ULTIMATE_OVER_YIELD = 1.5
+"""Ultimate over yield stress where it is not reported."""
+
+DEFAULT_YIELD_STRESS = 420e6
+"""Yield stress of longitudinal bars where it is not reported [Pa]."""
+
+_COVER_SHARE = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnBar:
+    """A longitudinal bar, or several at the same depth.
+
+    Attributes
+    ----------
+    y : float
+        From mid-depth, in the direction of loading [m].
+    area : float
+        [m2].
+    yield_stress, ultimate_stress : float
+        [Pa].
+    """
+
+    y: float
+    area: float
+    yield_stress: float
+    ultimate_stress: float
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """A section with all that an analysis needs, SI units.
+
+    Attributes
+    ----------
+    shape : str
+        "rectangular", "circular", or "square with spiral".
+    width, depth : float
+        Depth in the direction of loading; both the diameter of a circle [m].
+    concrete_strength : float
+        Cylinder strength [Pa].
+    bars : tuple of DrawnBar
+        Longitudinal bars.
+    bar_diameter : float
+        Of the bars that count for bond and buckling: the corner bars [m].
+    cover, side_cover : float
+        Clear, to the outer edge of the transverse bars, along and across the direction of loading
+        [m].
+    tie_diameter, tie_spacing : float
+        Of the transverse bars [m]; 0 if there are none.
+    tie_yield_stress, tie_ultimate_stress : float
+        Of the transverse bars [Pa].
+    legs, side_legs : float
+        Transverse bars that cross the section along and across the direction of loading; the latter
+        as along it, as the table has no more.
+    restrained : int
+        Longitudinal bars that are held in a corner or by a tie, of those around the perimeter.
+    assumed : tuple of str
+        What the table left open.
+    """
+
+    shape: str
+    width: float
+    depth: float
+    concrete_strength: float
+    bars: tuple[DrawnBar, ...]
+    bar_diameter: float
+    cover: float
+    side_cover: float
+    tie_diameter: float
+    tie_spacing: float
+    tie_yield_stress: float
+    tie_ultimate_stress: float
+    legs: float
+    side_legs: float
+    restrained: int
+    assumed: tuple[str, ...] = ()
+
+    def section(self, **changes: Any) -> Section:
+        """Return the section for analysis.
+
+        Parameters
+        ----------
+        **changes
+            Other arguments of `rbsdem.RectangularSection` or `rbsdem.CircularSection`, as
+            ``concrete=...`` or ``strips=...``.
+
+        Returns
+        -------
+        rbsdem.section.Section
+            Laws by the strengths; of a square section with a spiral, the spiral as hoops of two
+            legs.
+
+        Raises
+        ------
+        InputError
+            If the section is refused.
+        """
+        steels = {
+            (bar.yield_stress, bar.ultimate_stress): _steel(bar.yield_stress, bar.ultimate_stress)
+            for bar in self.bars
+        }
+        given: dict[str, Any] = {
+            "concrete": Concrete(self.concrete_strength),
+            "bars": [
+                (bar.y, bar.area, steels[bar.yield_stress, bar.ultimate_stress])
+                for bar in self.bars
+            ],
+            "cover": self.cover,
+            "bar_diameter": self.bar_diameter,
+        }
+        tie = self.tie_diameter, self.tie_spacing
+        tie_steel = _steel(self.tie_yield_stress, self.tie_ultimate_stress)
+        if self.shape == "circular":
+            given["spiral"] = Spiral(*tie, tie_steel) if tie[0] else None
+            return CircularSection(self.depth, **{**given, **changes})
+        legs = {"legs": self.legs, "legs_across": self.side_legs}
+        given["ties"] = Ties(*tie, tie_steel, **legs) if tie[0] else None
+        given["side_cover"] = self.side_cover
+        return RectangularSection(self.width, self.depth, **{**given, **changes})
+
+    @property
+    def steel_area(self) -> float:
+        """Area of all longitudinal bars [m2]."""
+        return sum(bar.area for bar in self.bars)
+
+
+@dataclass
+class _Sheet:
+    """What is known while a section is drawn."""
+
+    specimen: Specimen
+    assumed: list[str] = field(default_factory=list)
+
+    def known(self, name: str, otherwise: float, said: str) -> float:
+        """Return a property, or what is assumed for it."""
+        value = getattr(self.specimen, name)
+        if value is not None:
+            return float(value)
+        self.assumed.append(f"{name}: {said}")
+        return otherwise
+
+
+def draw(specimen: Specimen) -> Drawing:
+    """Draw the section of a specimen.
+
+    Parameters
+    ----------
+    specimen : Specimen
+        The test.
+
+    Returns
+    -------
+    Drawing
+        Bars, ties and cover; what was assumed.
+
+    Raises
+    ------
+    InputError
+        If the shape is not known, if the bars have no diameter, or if they do not fit.
+    """
+    sheet = _Sheet(specimen)
+    shape = {
+        "rectangular": "rectangular",
+        "circular": "circular",
+        "octagonal": "circular",
+        "square(spiral table)": "square with spiral",
+    }.get(specimen.section)
+    if shape is None:
+        raise InputError(
+            f"{specimen.name}: section = {specimen.section!r} is not known; there are rectangular, "
+            "circular, octagonal and square(spiral table)"
+        )
+    tie = specimen.transverse_diameter if specimen.transverse_spacing else None
+    if tie is None:
+        sheet.assumed.append("no transverse bars: no diameter or spacing")
+    cover = sheet.known("cover", _COVER_SHARE * specimen.depth, "0.05 of the depth")
+    side_cover = specimen.cover_perpendicular or cover
+    if shape != "rectangular":
+        # The table goes to the centre of a spiral.
+        cover = side_cover = max(cover - (tie or 0.0) / 2, 0.0)
+    diameter = specimen.corner_diameter or specimen.intermediate_diameter
+    if diameter is None:
+        raise InputError(f"{specimen.name}: no diameter of the longitudinal bars; it is needed")
+    corner, intermediate = _steels(sheet)
+    if shape == "rectangular":
+        bars = _rectangle(sheet, cover + (tie or 0.0), diameter, corner, intermediate)
+    else:
+        bars = _round(specimen, cover + (tie or 0.0), diameter, corner)
+    tie_yield = sheet.known("transverse_yield_stress", corner[0], "that of longitudinal bars")
+    legs = specimen.shear_legs if specimen.shear_legs and tie else 2.0 if tie else 0.0
+    return Drawing(
+        shape=shape,
+        width=specimen.width,
+        depth=specimen.depth,
+        concrete_strength=specimen.concrete_strength,
+        bars=tuple(bars),
+        bar_diameter=diameter,
+        cover=cover,
+        side_cover=side_cover,
+        tie_diameter=tie or 0.0,
+        tie_spacing=(specimen.transverse_spacing or 0.0) if tie else 0.0,
+        tie_yield_stress=tie_yield,
+        tie_ultimate_stress=specimen.transverse_ultimate_stress or ULTIMATE_OVER_YIELD * tie_yield,
+        legs=legs,
+        side_legs=legs,
+        restrained=_restrained(specimen),
+        assumed=tuple(sheet.assumed),
+    )
+
+
+def _steel(yield_stress: float, ultimate_stress: float) -> Steel:
+    """Return a steel; one so strong that its plateau would end before it begins has none."""
+    plain = Steel.__dataclass_fields__
+    es, hardening = plain["es"].default, plain["eps_sh"].default
+    return Steel(yield_stress, ultimate_stress, eps_sh=max(hardening, 1.001 * yield_stress / es))
+
+
+def _steels(sheet: _Sheet) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return yield and ultimate stress of corner and intermediate bars."""
+    specimen = sheet.specimen
+    corner = sheet.known("corner_yield_stress", DEFAULT_YIELD_STRESS, "Grade 60, 420 MPa")
+    intermediate = specimen.intermediate_yield_stress or corner
+    ultimate = specimen.longitudinal_ultimate_stress
+    if ultimate is None or ultimate <= corner:
+        sheet.assumed.append("longitudinal_ultimate_stress: 1.5 times the yield stress")
+        ultimate = ULTIMATE_OVER_YIELD * corner
+    # The table has one ultimate stress, that of the corner bars.
+    return (corner, ultimate), (intermediate, max(ultimate * intermediate / corner, intermediate))
+
+
+def _rectangle(
+    sheet: _Sheet,
+    to_bars: float,
+    diameter: float,
+    corner: tuple[float, float],
+    intermediate: tuple[float, float],
+) -> list[DrawnBar]:
+    specimen = sheet.specimen
+    across, along = specimen.intermediate_perpendicular, specimen.intermediate_parallel
+    if across is None or along is None:
+        sheet.assumed.append("bars of the faces: as many on each as go")
+        along = max(specimen.longitudinal_number - 4, 0) // 4
+        across = max(specimen.longitudinal_number - 4 - 2 * along, 0) // 2
+    inner = specimen.intermediate_diameter or diameter
+    between = 2 * (across + along)
+    share = (specimen.longitudinal_number - 4) / between if between else 0.0
+    if between and specimen.longitudinal_number != 4 + between:
+        sheet.assumed.append(f"areas of the {between} bars between the corners: times {share:.4g}")
+    area = max(share, 0.0) * math.pi / 4 * inner**2
+    edge = specimen.depth / 2 - to_bars
+    y_corner, y_inner = edge - diameter / 2, edge - inner / 2
+    if min(y_corner, y_inner) <= 0:
+        raise InputError(
+            f"{specimen.name}: bars of {diameter * 1e3:g} mm behind a cover of "
+            f"{to_bars * 1e3:g} mm do not fit into a depth of {specimen.depth * 1e3:g} mm"
+        )
+    corner_area = math.pi / 4 * diameter**2
+    bars = [DrawnBar(y, 2 * corner_area, *corner) for y in (-y_corner, y_corner)]
+    if across:
+        bars += [DrawnBar(y, across * area, *intermediate) for y in (-y_inner, y_inner)]
+    step = 2 * y_corner / (along + 1)
+    bars += [DrawnBar(-y_corner + (i + 1) * step, 2 * area, *intermediate) for i in range(along)]
+    return sorted(bars, key=lambda bar: bar.y)
+
+
+def _round(
+    specimen: Specimen, to_bars: float, diameter: float, steel: tuple[float, float]
+) -> list[DrawnBar]:
+    radius = specimen.depth / 2 - to_bars - diameter / 2
+    if radius <= 0:
+        raise InputError(
+            f"{specimen.name}: bars of {diameter * 1e3:g} mm behind a cover of "
+            f"{to_bars * 1e3:g} mm do not fit into a depth of {specimen.depth * 1e3:g} mm"
+        )
+    n = specimen.longitudinal_number
+    area = math.pi / 4 * diameter**2
+    ys = [radius * math.cos(2 * math.pi * i / n) for i in range(n)]
+    if n % 2:
+        ys, area = [*ys, *(-y for y in ys)], area / 2
+    return sorted((DrawnBar(y, area, *steel) for y in ys), key=lambda bar: bar.y)
+
+
+def _restrained(specimen: Specimen) -> int:
+    """Return how many bars are held: all of a spiral; corners, and those of more legs than two."""
+    n = specimen.longitudinal_number
+    if specimen.section != "rectangular" or not specimen.shear_legs:
+        return n if specimen.section != "rectangular" else min(4, n)
+    # Each leg beyond two holds a bar on both faces, along and across.
+    return min(n, 4 + 4 * round(specimen.shear_legs - 2))

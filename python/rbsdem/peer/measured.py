@@ -1,0 +1,141 @@
+"""A test as a model is held against it: displacement, and the net horizontal force."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rbsdem import _core
+from rbsdem._core import Array
+from rbsdem.errors import InputError
+
+__all__ = ["PDELTA_CODES", "MeasuredTest", "net_force"]
+
+PDELTA_CODES = {
+    1: "Feff provided (base moment over length)",
+    2: "shear provided",
+    3: "rotation of the axial ram decreases the shear",
+    4: "rotation of the axial ram increases the shear",
+}
+"""What the force column of a test is, by the P-Delta code of the database (manual, 3.3)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MeasuredTest:
+    """A measured history with what its force means worked out.
+
+    Attributes
+    ----------
+    name : str
+        Name of the test.
+    displacement : ndarray, shape (m,)
+        Displacement of the top of the equivalent cantilever [m].
+    force : ndarray, shape (m,)
+        Net horizontal force F_H [N]: what the lateral force of a model with P-Delta stands for.
+    measured_force : ndarray, shape (m,)
+        Force column of the file [N].
+    length : float
+        Length of the equivalent cantilever [m].
+    axial_load : float
+        Axial load, compression positive [N].
+    pdelta_code : int or None
+        Code by which `force` was found; None, as the report does not tell, is taken as 2.
+    """
+
+    name: str
+    displacement: Array
+    force: Array
+    measured_force: Array
+    length: float
+    axial_load: float
+    pdelta_code: int | None
+
+    @property
+    def height(self) -> float:
+        """The length, by the name that `rbsdem.Column` has for it [m]."""
+        return self.length
+
+    @property
+    def drift(self) -> Array:
+        """Displacement over length, shape (m,)."""
+        return self.displacement / self.length
+
+    @property
+    def base_moment(self) -> Array:
+        """Moment at the base, with that of the axial load in the displaced position [N m].
+
+        F_H L + P d: exact where the axial load stays vertical and the top is where the displacement
+        was measured.
+        """
+        return self.force * self.length + self.axial_load * self.displacement
+
+
+def net_force(
+    displacement: ArrayLike,
+    force: ArrayLike,
+    *,
+    code: int | None,
+    axial_load: float,
+    length: float,
+    measured_length: float | None = None,
+    top_length: float | None = None,
+    bottom_length: float | None = None,
+) -> Array:
+    """Turn the force column of a test into the net horizontal force.
+
+    Parameters
+    ----------
+    displacement, force : array_like, shape (m,)
+        The history as in its file [m, N].
+    code : {1, 2, 3, 4} or None
+        P-Delta code of the test; None, as the report does not tell, is taken as 2.
+    axial_load : float
+        Compression positive [N].
+    length : float
+        Of the equivalent cantilever [m].
+    measured_length : float, optional
+        Height at which the displacement was measured [m]; the length without it.
+    top_length, bottom_length : float, optional
+        From the column's ends to the hinges of the axial ram [m]; 0 without them.
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        Net horizontal force F_H [N].
+
+    Raises
+    ------
+    InputError
+        If there is no such code, or if code 4 comes without `top_length`.
+
+    Notes
+    -----
+    Berry, Parrish and Eberhard (2004), PEER Structural Performance Database User's Manual, 3.3.
+    With F the force column, d the displacement, P the axial load: F_H = F - P d/L_meas (code 1), F
+    (code 2), F - P sin(atan(d (L + L_top)/L_meas/(L + L_top + L_bottom))) (code 3), F + P d/L_top
+    (code 4).
+    """
+    d = _core.finite_vector(displacement, "displacement")
+    f = _core.finite_vector(force, "force")
+    if d.shape != f.shape:
+        raise InputError(f"displacement has {d.size} rows, force {f.size}; they must be equal")
+    measured = measured_length or length
+    top, bottom = top_length or 0.0, bottom_length or 0.0
+    if code in (None, 2):
+        return f.copy()
+    if code == 1:
+        return f - axial_load * d / measured
+    if code == 3:
+        whole = length + top + bottom
+        return f - axial_load * np.sin(np.arctan(d * (length + top) / measured / whole))
+    if code == 4:
+        if not top > 0:
+            raise InputError(
+                f"top_length = {top_length}: P-Delta code 4 needs the length from the top of the "
+                "column to the hinge of the axial ram"
+            )
+        return f + axial_load * d / top
+    known = ", ".join(f"{key} ({text})" for key, text in PDELTA_CODES.items())
+    raise InputError(f"P-Delta code {code!r} is not known; there are {known}, and None")

@@ -1,0 +1,404 @@
+"""Predicted tests: a row for each, medians and quartiles of groups, files."""
+
+from __future__ import annotations
+
+import csv
+import math
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
+
+from rbsdem.comparison import SCORES, Comparison
+from rbsdem.errors import InputError
+from rbsdem.peer.specimen import Specimen
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+__all__ = ["SUMMARY_SCORES", "Group", "Prediction", "Predictions", "Quartiles"]
+
+SUMMARY_SCORES = ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio", "end_ratio", "rms_best")
+"""Scores of which groups have quartiles."""
+
+_NOT_RUN = ("failed", "no history")
+
+
+@dataclass(frozen=True, slots=True)
+class Prediction:
+    """One test and what the model made of it.
+
+    Attributes
+    ----------
+    specimen : Specimen
+        The test.
+    model : str
+        Name of the model.
+    status : str
+        "completed", "stopped" (the analysis came to an end before the test did), "failed" (there is
+        no analysis), or "no history" (there is nothing to compare with; not counted).
+    error : str
+        What went wrong, in the words of the exception.
+    note : str
+        Warnings.
+    seconds_model : float
+        Wall time for building the column [s].
+    seconds_analysis : float
+        Wall time of the analysis [s].
+    comparison : Comparison or None
+        Scores; None without a history, and where the process died. A test that failed has an nrmse
+        of 1.
+    """
+
+    specimen: Specimen
+    model: str
+    status: str
+    error: str = ""
+    note: str = ""
+    seconds_model: float = 0.0
+    seconds_analysis: float = 0.0
+    comparison: Comparison | None = None
+
+    @property
+    def seconds(self) -> float:
+        """Wall time for the column and its analysis [s]."""
+        return self.seconds_model + self.seconds_analysis
+
+    @property
+    def nrmse(self) -> float:
+        """The error, as in `Comparison`; NaN without a history."""
+        return self.score("nrmse")
+
+    def score(self, name: str) -> float:
+        """Return a score of `Comparison` by name; NaN without a history.
+
+        Parameters
+        ----------
+        name : str
+            One of `rbsdem.comparison.SCORES`, "test_drift_at_loss" or "model_drift_at_loss".
+        """
+        if self.comparison is not None:
+            return float(getattr(self.comparison, name))
+        return 1.0 if name == "nrmse" and self.status == "failed" else math.nan
+
+
+@dataclass(frozen=True, slots=True)
+class Quartiles:
+    """Median and quartiles of a score over tests.
+
+    Attributes
+    ----------
+    lower, median, upper : float
+        25, 50 and 75 % of the tests are below; NaN if no test has the score.
+    """
+
+    lower: float
+    median: float
+    upper: float
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Tests that have something in common, in numbers.
+
+    Attributes
+    ----------
+    name : str
+        What they have in common; "all" for all.
+    tests : int
+        Tests with a history.
+    stopped, failed : int
+        How many of them came to an early end, and how many could not be analysed.
+    quartiles : dict of str to Quartiles
+        For each of `SUMMARY_SCORES`.
+    seconds : Quartiles
+        Wall time for the column and its analysis [s].
+    """
+
+    name: str
+    tests: int
+    stopped: int
+    failed: int
+    quartiles: dict[str, Quartiles]
+    seconds: Quartiles
+
+
+class Predictions(Sequence[Prediction]):
+    """Predictions in the order of the tests.
+
+    A sequence of `Prediction`: ``predictions[0]``, ``for row in predictions``; a text finds one as
+    in `Specimens`.
+
+    Parameters
+    ----------
+    rows : iterable of Prediction
+        One for each test.
+    model : str, optional
+        Name of the model.
+    seconds : float, optional
+        Wall time of everything [s].
+    interrupted : bool, optional
+        Whether the user broke it off: the rows are those that were done.
+    """
+
+    def __init__(
+        self,
+        rows: Iterable[Prediction],
+        *,
+        model: str = "",
+        seconds: float = math.nan,
+        interrupted: bool = False,
+    ) -> None:
+        self._rows = tuple(rows)
+        self.model = model
+        self.seconds = seconds
+        self.interrupted = interrupted
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def __iter__(self) -> Iterator[Prediction]:
+        return iter(self._rows)
+
+    @overload
+    def __getitem__(self, key: int | str) -> Prediction: ...
+    @overload
+    def __getitem__(self, key: slice) -> Predictions: ...
+    def __getitem__(self, key: int | str | slice) -> Prediction | Predictions:
+        if isinstance(key, slice):
+            return self._some(self._rows[key])
+        if isinstance(key, str):
+            for row in self._rows:
+                if row.specimen.is_called(key):
+                    return row
+            raise InputError(f"no prediction of {key!r}; it was not among the tests")
+        return self._rows[key]
+
+    def __repr__(self) -> str:
+        return f"<Predictions: {len(self)} tests by the model {self.model!r}>"
+
+    @property
+    def all_completed(self) -> bool:
+        """Whether every test was analysed to its end."""
+        return not self.interrupted and all(row.status == "completed" for row in self._rows)
+
+    def worst(self, n: int = 10) -> Predictions:
+        """Return the n tests of the largest error, the worst first.
+
+        Parameters
+        ----------
+        n : int, optional
+            How many.
+        """
+        counted = [row for row in self._rows if row.status != "no history"]
+        return self._some(sorted(counted, key=lambda row: -row.nrmse)[:n])
+
+    def summary(self, by: str = "failure_mode") -> list[Group]:
+        """Return medians and quartiles of groups, the last one that of all tests.
+
+        Parameters
+        ----------
+        by : str, optional
+            Attribute of `Specimen` whose values make the groups, as "section" or "series".
+
+        Raises
+        ------
+        InputError
+            If specimens have no such attribute.
+        """
+        parts: dict[str, list[Prediction]] = {}
+        for row in self._rows:
+            try:
+                value = getattr(row.specimen, by)
+            except AttributeError:
+                raise InputError(
+                    f"by = {by!r} is no attribute of a specimen, as failure_mode, section, series"
+                ) from None
+            parts.setdefault("not known" if value is None else str(value), []).append(row)
+        groups = [_group(name, rows) for name, rows in parts.items()]
+        return [*sorted(groups, key=lambda group: -group.tests), _group("all", self._rows)]
+
+    def table(self) -> Table:
+        """Return a table of rich, a row for each test."""
+        from rbsdem.peer.tables import tests_table  # noqa: PLC0415
+
+        return tests_table(self)
+
+    def summary_table(self, by: str = "failure_mode") -> Table:
+        """Return `summary` as a table of rich.
+
+        Parameters
+        ----------
+        by : str, optional
+            As for `summary`.
+        """
+        from rbsdem.peer.tables import summary_table  # noqa: PLC0415
+
+        return summary_table(self.summary(by))
+
+    def records(self) -> list[dict[str, Any]]:
+        """Return a dict for each test: properties that group tests, scores, times."""
+        return [_record(row) for row in self._rows]
+
+    def to_pandas(self) -> Any:
+        """Return `records` as a DataFrame; needs pandas."""
+        import pandas as pd  # noqa: PLC0415
+
+        return pd.DataFrame(self.records())
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write `records` as csv.
+
+        Parameters
+        ----------
+        path : path
+            File to write.
+        """
+        _write(path, self.records())
+
+    def summary_to_csv(self, path: str | os.PathLike[str], by: str = "failure_mode") -> None:
+        """Write `summary` as csv.
+
+        Parameters
+        ----------
+        path : path
+            File to write.
+        by : str, optional
+            As for `summary`.
+        """
+        rows = []
+        for group in self.summary(by):
+            row: dict[str, Any] = {
+                by: group.name,
+                "tests": group.tests,
+                "stopped": group.stopped,
+                "failed": group.failed,
+            }
+            for name, q in {**group.quartiles, "seconds": group.seconds}.items():
+                row |= {
+                    f"{name}_lower": q.lower,
+                    f"{name}_median": q.median,
+                    f"{name}_upper": q.upper,
+                }
+            rows.append(row)
+        _write(path, rows)
+
+    def loops_to_csv(self, folder: str | os.PathLike[str]) -> None:
+        """Write the loops, a file for each test with displacement and both forces in SI.
+
+        Parameters
+        ----------
+        folder : path
+            Where to; it is made. The measured forces are in the files too: mind whose they are.
+        """
+        where = Path(folder)
+        where.mkdir(parents=True, exist_ok=True)
+        header = "displacement_m,test_force_N,model_force_N"
+        for i, row in enumerate(self._rows):
+            if row.comparison is not None:
+                c = row.comparison
+                name = Path(row.specimen.file or f"test_{i + 1}").stem
+                rows = np.column_stack((c.displacement, c.test_force, c.model_force))
+                np.savetxt(
+                    where / f"{name}.csv", rows, "%.7g", delimiter=",", header=header, comments=""
+                )
+
+    def gallery(self, path: str | os.PathLike[str]) -> Path:
+        """Write one page of html with all loops, to sort and to filter; it needs nothing else.
+
+        Parameters
+        ----------
+        path : path
+            File to write.
+
+        Returns
+        -------
+        Path
+            The file.
+        """
+        from rbsdem.peer.gallery import write_gallery  # noqa: PLC0415
+
+        return write_gallery(self, Path(path))
+
+    def contact_sheet(self, path: str | os.PathLike[str]) -> Path:
+        """Write one picture with all loops; needs matplotlib.
+
+        Parameters
+        ----------
+        path : path
+            File to write, by its ending as PNG, PDF or SVG.
+
+        Returns
+        -------
+        Path
+            The file.
+        """
+        from rbsdem.peer.contact_sheet import write_contact_sheet  # noqa: PLC0415
+
+        return write_contact_sheet(self, Path(path))
+
+    def _some(self, rows: Iterable[Prediction]) -> Predictions:
+        return Predictions(
+            rows, model=self.model, seconds=self.seconds, interrupted=self.interrupted
+        )
+
+
+def _group(name: str, rows: Iterable[Prediction]) -> Group:
+    counted = [row for row in rows if row.status != "no history"]
+    return Group(
+        name=name,
+        tests=len(counted),
+        stopped=sum(row.status == "stopped" for row in counted),
+        failed=sum(row.status == "failed" for row in counted),
+        quartiles={
+            score: _quartiles([row.score(score) for row in counted]) for score in SUMMARY_SCORES
+        },
+        seconds=_quartiles([row.seconds for row in counted if row.status not in _NOT_RUN]),
+    )
+
+
+def _quartiles(values: Sequence[float]) -> Quartiles:
+    known = np.array([value for value in values if math.isfinite(value)])
+    if not known.size:
+        return Quartiles(math.nan, math.nan, math.nan)
+    return Quartiles(*np.percentile(known, (25, 50, 75)).tolist())
+
+
+def _record(row: Prediction) -> dict[str, Any]:
+    s = row.specimen
+    return {
+        "name": s.name,
+        "file": s.file or "",
+        "peer_id": s.peer_id,
+        "series": s.series,
+        "section": s.section,
+        "failure_mode": s.failure_mode,
+        "axial_load_ratio": s.axial_load_ratio,
+        "span_depth_ratio": s.span_depth_ratio,
+        "model": row.model,
+        "status": row.status,
+        **{name: row.score(name) for name in SCORES},
+        "test_drift_at_loss": row.score("test_drift_at_loss"),
+        "model_drift_at_loss": row.score("model_drift_at_loss"),
+        "seconds_model": row.seconds_model,
+        "seconds_analysis": row.seconds_analysis,
+        "error": row.error,
+        "note": row.note,
+    }
+
+
+def _write(path: str | os.PathLike[str], rows: list[dict[str, Any]]) -> None:
+    with Path(path).open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        if rows:
+            writer.writerow(rows[0])
+        writer.writerows([_cell(value) for value in row.values()] for row in rows)
+
+
+def _cell(value: Any) -> str:
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return ""
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

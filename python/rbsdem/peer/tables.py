@@ -1,0 +1,97 @@
+"""Predictions on the terminal: tables of rich, and a bar."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from rbsdem.trade.table import escaped, need_rich
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from rbsdem.peer.predictions import Group, Prediction, Predictions, Quartiles
+
+_RATIOS = ("peak_ratio", "energy_ratio", "stiffness_ratio", "end_ratio")
+_MARKS = {"stopped": "yellow", "failed": "red", "no history": "dim"}
+
+
+@contextmanager
+def progress_bar(total: int) -> Iterator[Callable[[Prediction], None]]:
+    """Show on stderr how many tests are done, and the last one."""
+    rich = need_rich()
+    from rich.console import Console  # noqa: PLC0415
+
+    bar = rich.progress.Progress(
+        rich.progress.BarColumn(bar_width=24),
+        rich.progress.MofNCompleteColumn(),
+        rich.progress.TimeElapsedColumn(),
+        rich.progress.TextColumn("{task.description}"),
+        console=Console(stderr=True),
+        transient=True,
+    )
+    with bar:
+        task = bar.add_task("", total=total)
+
+        def told(row: Prediction) -> None:
+            bar.update(task, advance=1, description=escaped(row.specimen.name))
+
+        yield told
+
+
+def tests_table(predictions: Predictions) -> Table:
+    """Return a row for each test."""
+    rich = need_rich()
+    table = rich.table.Table(box=rich.box.SIMPLE_HEAD, padding=(0, 1), show_edge=False)
+    table.add_column("Test", no_wrap=True)
+    table.add_column("Failure", no_wrap=True)
+    names = ("NRMSE", "Peak", "Energy", "K", "End", "Loss %\ntest", "\nmodel", "Time\nms")
+    for name in names:
+        table.add_column(name, justify="right", no_wrap=True)
+    # As wide as the text, it would squeeze all others.
+    table.add_column("", no_wrap=True, overflow="ellipsis", max_width=60)
+    for row in predictions:
+        drifts = (row.score("test_drift_at_loss"), row.score("model_drift_at_loss"))
+        cells = [_number(row.nrmse, 3), *(_number(row.score(name), 2) for name in _RATIOS)]
+        cells += [_number(100 * drift, 1) for drift in drifts]
+        remark = "" if row.status == "completed" else f"{row.status}: {row.error}"
+        table.add_row(
+            escaped(row.specimen.name),
+            row.specimen.failure_mode or "",
+            *cells,
+            _number(1e3 * row.seconds, 1),
+            escaped(remark.splitlines()[0] if remark else ""),
+            style=_MARKS.get(row.status),
+        )
+    return table
+
+
+def summary_table(groups: Sequence[Group]) -> Table:
+    """Return a row for each group: median, and in gray the quartiles."""
+    rich = need_rich()
+    table = rich.table.Table(box=rich.box.SIMPLE_HEAD, padding=(0, 1), show_edge=False)
+    table.add_column("Median and quartiles", no_wrap=True)
+    for name in ("Tests", "Early end", "Failed", "NRMSE", "Peak", "Energy", "K", "End", "Time ms"):
+        table.add_column(name, justify="right", no_wrap=True)
+    for group in groups:
+        q = group.quartiles
+        cells = [_three(q["nrmse"], 3), *(_three(q[name], 2) for name in _RATIOS)]
+        table.add_row(
+            escaped(group.name),
+            *(str(count) if count else "-" for count in (group.tests, group.stopped, group.failed)),
+            *cells,
+            _three(group.seconds, 1, 1e3),
+            style="bold" if group.name == "all" else None,
+        )
+    return table
+
+
+def _three(q: Quartiles, digits: int, unit: float = 1.0) -> str:
+    median, lower, upper = (_number(unit * value, digits) for value in (q.median, q.lower, q.upper))
+    return f"{median} [dim]{lower} {upper}[/dim]" if median != "-" else "-"
+
+
+def _number(value: float, digits: int) -> str:
+    return f"{value:.{digits}f}" if math.isfinite(value) else "-"

@@ -1,0 +1,647 @@
+"""Calibration: known numbers come back, what a test cannot tell is said, wrong input is refused."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+
+import rbsdem
+from rbsdem import AccuracyWarning, Bilinear, Column, Elastic, InputError, SolveError, Takeda
+from rbsdem.calibration import Parameter, free_names, misfit, paths, undetermined
+from rbsdem.calibration.determined import determine
+from rbsdem.calibration.misfit import POINTS, Misfit, Target
+from rbsdem.calibration.search import COARSE, Search
+from rbsdem.peer import find_history, read_peer
+from rbsdem.springs import ConcreteSpring, Layered, SteelSpring
+
+mpl.use("Agg")
+
+PEER = os.environ.get("RBSDEM_PEER_DIR") or Path(__file__).resolve().parents[3] / "shared" / "peer"
+COLUMNS = rbsdem.paper_columns("pdelta")
+KEYS = list(COLUMNS)
+TAKEDA = ("k_c", "k_y", "d_y", "k_u", "b0")
+FREE = [f"flexure.{name}" for name in TAKEDA]
+DRIFTS = [0.002, 0.005, 0.01, 0.015, 0.02]
+
+ELASTIC = Column(height=2.0, mass=1.0, shear=Elastic(k=3e7), flexure=Elastic(k=8e7))
+
+
+def path(column: Column, drifts=DRIFTS, points: int = 6) -> np.ndarray:
+    return rbsdem.protocol([drift * column.height for drift in drifts], cycles=2, points=points)
+
+
+def response(column: Column, displacement: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return displacement, rbsdem.cyclic(column, displacement=displacement).force
+
+
+def noisy(column: Column, displacement: np.ndarray, share: float, seed: int = 1):
+    d, f = response(column, displacement)
+    noise = np.random.default_rng(seed).standard_normal(f.size)
+    return d, f + share * np.max(np.abs(f)) * noise
+
+
+def quiet(*args, **options) -> rbsdem.Calibration:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        return rbsdem.calibrate(*args, **options)
+
+
+# ---- the error is that of the comparison ---------------------------------------------------------
+
+
+@pytest.mark.parametrize("reached", [1.0, 0.6, 0.02])
+def test_error_is_the_nrmse_of_compare(reached):
+    random = np.random.default_rng(3)
+    d = np.cumsum(random.standard_normal(300))
+    d[40:44] = d[40]  # rows without a step
+    f, model = random.standard_normal((2, 300))
+    rows = int(reached * 300)
+    model[rows:] = np.nan
+    error = Target((d, f)).error(model[:rows])
+    assert error.shape == (POINTS,)
+    expected = rbsdem.compare((d, model), (d, f)).nrmse
+    assert np.sqrt(np.mean(error**2)) == pytest.approx(expected, rel=1e-12)
+
+
+def test_half_cycles_of_a_protocol():
+    d = rbsdem.protocol([0.01, 0.02], cycles=2, points=8)
+    halves = misfit._half_cycles(d)
+    # To the first peak, then peak to peak: 4 cycles have 8 peaks, and the way back to zero.
+    assert halves[0] == 0
+    assert halves[-1] == 8
+    turns = d[np.flatnonzero(np.diff(halves)) + 1]
+    assert turns == pytest.approx([0.01, -0.01, 0.01, -0.01, 0.02, -0.02, 0.02, -0.02])
+    # Small turns do not count.
+    assert np.all(misfit._half_cycles(np.array([0, 1, 0.99, 2, 1.97, 3.0])) == 0)
+
+
+# ---- known numbers come back ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize("key", KEYS)
+def test_numbers_of_a_synthetic_test_come_back(key, seed):
+    start = COLUMNS[key]
+    random = np.random.default_rng((seed, KEYS.index(key)))
+    factors = dict(zip(TAKEDA, 2.0 ** random.uniform(-1, 1, 5), strict=True))
+    factors["k_y"] = min(factors["k_y"], 2 * factors["k_c"])
+    factors["d_y"] = max(factors["d_y"], 0.7)
+    flexure = start.flexure
+    truth = {name: getattr(flexure, name) * factor for name, factor in factors.items()}
+    test = response(replace(start, flexure=replace(flexure, **truth)), path(start))
+    fit = quiet(start, test, FREE, seed=seed)
+    assert fit.after.nrmse < 1e-6 < fit.before.nrmse
+    for name, value in truth.items():
+        assert fit.values[f"flexure.{name}"] == pytest.approx(value, rel=1e-4), name
+        assert getattr(fit.column.flexure, name) == fit.values[f"flexure.{name}"]
+    assert fit.column.flexure.d_c == flexure.d_c
+    assert fit.start is start
+
+
+def test_one_number_is_as_good_as_a_dense_grid():
+    start = COLUMNS["tanaka_park_1"]
+    other = replace(start, flexure=replace(start.flexure, k_c=9e7, k_u=1e6))
+    test = noisy(other, path(start), 0.05)
+    fit = quiet(start, test, ["flexure.d_y"])
+    low, high = fit.parameters[0].low, fit.parameters[0].high
+    target = Target(test)
+    grid = []
+    for d_y in np.geomspace(low, high, 1500):
+        column = replace(start, flexure=replace(start.flexure, d_y=d_y))
+        grid.append(np.sqrt(np.mean(target.error(response(column, test[0])[1]) ** 2)))
+    assert fit.nrmse <= min(grid) * (1 + 1e-5)
+
+
+def test_nearby_columns_are_no_better():
+    start = COLUMNS["zahn_7"]
+    test = noisy(replace(start, flexure=replace(start.flexure, b0=0.2, d_y=4e-3)), path(start), 0.1)
+    fit = quiet(start, test, FREE)
+    random = np.random.default_rng(0)
+    for _ in range(100):
+        near = {
+            name: getattr(fit.column.flexure, name) * (1 + 0.01 * random.standard_normal())
+            for name in TAKEDA
+        }
+        column = replace(start, flexure=replace(fit.column.flexure, **near))
+        assert rbsdem.compare(response(column, test[0]), test).nrmse > fit.nrmse - 1e-5
+
+
+def test_same_seed_same_fit_whatever_the_jobs():
+    start = COLUMNS["soesianawati_1"]
+    test = noisy(replace(start, flexure=replace(start.flexure, k_y=4e7)), path(start), 0.05)
+    first, second, threads = (
+        quiet(start, test, FREE[:3], seed=7, evaluations=150, jobs=jobs) for jobs in (1, 1, 2)
+    )
+    assert first.values == second.values == threads.values
+    assert first.evaluations == second.evaluations == threads.evaluations
+
+
+def test_balanced_loss_gives_better_ratios():
+    start = COLUMNS["zahn_7"]
+    test = noisy(replace(start, flexure=replace(start.flexure, b0=0.0, k_u=0.0)), path(start), 0.1)
+    only = ["flexure.k_y"]
+    plain, balanced = (quiet(start, test, only, loss=loss) for loss in ("nrmse", "balanced"))
+
+    def off(scores):
+        return (scores.peak_ratio - 1) ** 2 + (scores.energy_ratio - 1) ** 2
+
+    assert off(balanced.after) < off(plain.after)
+    assert balanced.nrmse > plain.nrmse
+
+
+# ---- closed forms: two elastic springs in series -------------------------------------------------
+
+
+def lateral(shear: float, flexure: float, height: float) -> float:
+    return 1 / (1 / shear + height**2 / flexure)
+
+
+def test_elastic_column_closed_form_of_value_and_standard_error():
+    d = rbsdem.protocol([0.01, 0.02, 0.03], cycles=2, points=10)
+    f = lateral(5e7, 8e7, 2.0) * d
+    f += 0.05 * np.max(f) * np.sin(40 * np.arange(d.size))
+    fit = quiet(ELASTIC, (d, f), ["shear.k"])
+
+    target = Target((d, f))
+    points, groups = target._points(d), target.half_cycle
+    force = target._points(f)
+    stiffness = points @ force / (points @ points)
+    shear = 1 / (1 / stiffness - 2.0**2 / 8e7)
+    assert fit.values["shear.k"] == pytest.approx(shear, rel=1e-5)
+
+    # Clustered by half cycles, and dK/dk_s = (K/k_s)^2.
+    left = stiffness * points - force
+    number = groups[-1] + 1
+    scores = np.bincount(groups, points * left, number)
+    variance = scores @ scores * number / (number - 1) / (points @ points) ** 2
+    error = np.sqrt(variance) * (shear / stiffness) ** 2
+    assert fit.parameters[0].standard_error == pytest.approx(error, rel=1e-3)
+
+    # 10 % more or less of k_s, the larger change of the two.
+    change = abs(lateral(0.9 * shear, 8e7, 2.0) - stiffness)
+    effect = change * np.sqrt(np.mean(points**2)) / np.max(np.abs(f))
+    assert fit.parameters[0].effect == pytest.approx(effect, rel=1e-4)
+    # At the best fit the errors are square to the response: what is added adds in squares.
+    assert fit.parameters[0].rise == pytest.approx(np.hypot(fit.nrmse, effect) - fit.nrmse, 1e-3)
+
+
+def test_springs_in_series_are_not_told_apart():
+    test = response(replace(ELASTIC, shear=Elastic(k=4e7)), path(ELASTIC))
+    with pytest.warns(AccuracyWarning, match=r"shear\.k and flexure\.k: correlation -1\.000"):
+        fit = rbsdem.calibrate(ELASTIC, test, ["shear.k", "flexure.k"])
+    assert fit.correlation[0, 1] == pytest.approx(-1, abs=1e-6)
+    assert fit.nrmse < 1e-5
+
+
+def test_too_few_half_cycles_for_standard_errors():
+    d = np.linspace(0, 0.02, 30)
+    test = noisy(ELASTIC, d, 0.01)
+    fit = quiet(ELASTIC, test, ["shear.k"])
+    assert np.isnan(fit.parameters[0].standard_error)
+    assert "nan" not in fit.report
+
+
+def test_standard_error_covers_the_truth():
+    """Half cycles scaled at random: the value is within two standard errors about 95 % of times."""
+    d = rbsdem.protocol([0.01, 0.015, 0.02], cycles=5, points=8)
+    halves = misfit._half_cycles(d)
+    random = np.random.default_rng(5)
+    inside = 0
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        for _ in range(200):
+            f = lateral(3e7, 8e7, 2.0) * d * (1 + 0.05 * random.standard_normal(31)[halves])
+            free = {"shear.k": Parameter(3e7, 1e7, 1e8)}
+            one = Misfit(
+                lambda values: replace(ELASTIC, shear=Elastic(k=values["shear.k"])),
+                free, Target((d, f)), "nrmse", 1, lambda done, best: None,
+            )  # fmt: skip
+            best = _elastic_best(one, free["shear.k"])
+            error = determine(one, np.array([free["shear.k"].place(best)])).standard_error[0]
+            inside += abs(best - 3e7) < 2 * error
+    assert 175 <= inside <= 199
+
+
+def _elastic_best(one: Misfit, number: Parameter) -> float:
+    points, force = (
+        one.target._points(one.target.displacement),
+        one.target._points(one.target.force),
+    )
+    stiffness = points @ force / (points @ points)
+    return min(max(1 / (1 / stiffness - 2.0**2 / 8e7), number.low), number.high)
+
+
+# ---- what a test cannot tell ---------------------------------------------------------------------
+
+
+def test_number_beyond_the_test_is_refused():
+    start = COLUMNS["zahn_7"]
+    small = path(start, [2e-4, 4e-4])
+    with pytest.raises(InputError, match=r"cannot determine flexure\.k_u from 0 to .*0\.00064 m"):
+        rbsdem.calibrate(start, response(start, small), ["flexure.k_c", "flexure.k_u"])
+    named = ["flexure.k_u", "flexure.k_c", "flexure.b1"]
+    assert undetermined(start, response(start, small), named) == ["flexure.k_u", "flexure.b1"]
+    # Full cycles make no inner loops, in which B_1 would count.
+    assert undetermined(start, response(start, path(start)), named) == ["flexure.b1"]
+
+
+def test_number_without_effect_at_the_fit_is_warned_of():
+    start = COLUMNS["zahn_7"]
+    never = replace(start, flexure=replace(start.flexure, d_y=1.0))
+    test = response(never, path(start, [5e-4, 1e-3]))
+    bounds = {"flexure.d_y": (6e-4, 1.0)}
+    with pytest.warns(AccuracyWarning, match=r"flexure\.d_y: no force of the test changes"):
+        fit = rbsdem.calibrate(start, test, ["flexure.d_y", "flexure.k_y"], bounds)
+    assert fit.parameters[0].standard_error == np.inf
+    assert np.isnan(fit.correlation[0, 1])
+    assert fit.parameters[1].standard_error < np.inf
+
+
+def test_bound_is_told():
+    test = response(replace(ELASTIC, shear=Elastic(k=9e7)), path(ELASTIC))
+    with pytest.warns(AccuracyWarning, match=r"shear\.k: ended at its high bound"):
+        fit = rbsdem.calibrate(ELASTIC, test, ["shear.k"], {"shear.k": (2e7, 5e7)})
+    assert fit.parameters[0].at_bound == "high"
+    assert fit.values["shear.k"] == pytest.approx(5e7, rel=1e-3)
+
+
+# ---- names and bounds ----------------------------------------------------------------------------
+
+
+def joints(*d_y: float) -> Column:
+    springs = [Takeda(k_c=2e8, d_c=3e-4, k_y=6e7, d_y=y, k_u=5e6) for y in d_y]
+    return Column(
+        height=1.5, mass=600.0, shear=Bilinear(7e8, 1e-4, 7e6), flexure=springs, n=len(d_y)
+    )
+
+
+def test_paths_reach_one_or_all():
+    column = joints(0.002, 0.003, 0.004)
+    ways = paths.paths(column)
+    one = paths.with_values(column, ways, {"flexure[1].d_y": 0.01, "shear.k": 6e8, "height": 1.6})
+    assert [spring.d_y for spring in one.flexure] == [0.002, 0.01, 0.004]
+    assert (one.shear.k, one.height, one.shear.d_y) == (6e8, 1.6, 1e-4)
+    every = paths.with_values(column, ways, {"flexure[*].d_y": 2.0, "flexure[0].k_y": 5e7})
+    assert [spring.d_y for spring in every.flexure] == [0.004, 0.006, 0.008]
+    assert [spring.k_y for spring in every.flexure] == [5e7, 6e7, 6e7]
+    # What belongs together changes at a time: neither order would do one after the other.
+    stiff = paths.with_values(column, ways, {"flexure[2].k_y": 4e8, "flexure[2].k_c": 5e8})
+    assert stiff.flexure[2].k_y == 4e8
+    assert "flexure.d_y" not in ways
+
+
+def test_paths_reach_layers():
+    steel, concrete = SteelSpring(k=2e8, f_y=5e5, k_post=1e6), ConcreteSpring(6e9, 4e6, 2e-3, 1e8)
+    layers = [(-0.2, concrete), (-0.15, steel), (0.15, steel), (0.2, concrete)]
+    column = replace(joints(0.002), flexure=Layered(axial_load=1e5, layers=layers))
+    known = free_names(column)
+    ways = paths.paths(column)
+    assert known["flexure.layers[1].f_y"].unit == "N"
+    assert known["flexure.layers[*].f_y"].unit == ""
+    assert "flexure.layers[0].f_y" not in known
+    some = {"flexure.layers[*].f_y": 1.1, "flexure.layers[2].f_y": 6e5, "flexure.axial_load": 2e5}
+    spring = paths.with_values(column, ways, some).flexure
+    assert [getattr(layer, "f_y", None) for _, layer in spring.layers] == pytest.approx(
+        [None, 5.5e5, 6.6e5, None]
+    )
+    assert [y for y, _ in spring.layers] == [-0.2, -0.15, 0.15, 0.2]
+    assert spring.axial_load == 2e5
+    two = replace(column, n=2, flexure=[column.flexure] * 2)
+    factor = {"flexure[*].layers[*].k": 0.5}
+    softer = paths.with_values(two, paths.paths(two), factor).flexure
+    assert [layer.k for spring in softer for _, layer in spring.layers] == [3e9, 1e8, 1e8, 3e9] * 2
+    with pytest.raises(InputError, match=r"did you mean 'flexure.layers\[2\].k'.* more \(rbsdem"):
+        quiet(column, (D, F), ["flexure.layer[2].k"])
+
+
+def test_common_factor_comes_back():
+    start, truth = joints(0.002, 0.003), joints(0.003, 0.0045)
+    fit = quiet(start, response(truth, path(start)), ["flexure[*].d_y"])
+    assert fit.values["flexure[*].d_y"] == pytest.approx(1.5, rel=1e-3)
+    assert fit.parameters[0].unit == ""
+
+
+def test_units_and_default_bounds():
+    known = free_names(COLUMNS["zahn_7"])
+    flexure = COLUMNS["zahn_7"].flexure
+    assert known["flexure.k_c"] == Parameter(
+        flexure.k_c, flexure.k_c / 5, flexure.k_c * 5, "N m/rad", "flexure.k_c"
+    )
+    assert (known["flexure.d_y"].unit, known["shear.d_y"].unit) == ("rad", "m")
+    assert (known["flexure.b0"].low, known["flexure.b0"].high, known["flexure.b0"].unit) == (
+        0,
+        1,
+        "",
+    )
+    assert (known["flexure.k_u"].low, known["flexure.k_u"].logarithmic) == (0.0, False)
+    assert known["height"].high == pytest.approx(1.2 * 1.6)
+    assert "mass" not in known
+
+
+def test_bounds_end_where_the_rule_does():
+    start = COLUMNS["zahn_7"]
+    test = response(start, path(start))
+    alone = quiet(start, test, ["flexure.k_c"], evaluations=40).parameters[0]
+    assert alone.low == pytest.approx(start.flexure.k_y, rel=1e-3)
+    assert alone.low >= start.flexure.k_y
+    both = quiet(start, test, ["flexure.k_c", "flexure.k_y", "flexure.k_u"], evaluations=60)
+    assert both.parameters[0].low == pytest.approx(start.flexure.k_c / 5)
+    given = quiet(start, test, ["flexure.k_c"], {"flexure.k_c": (1e7, 1e9)}, evaluations=60)
+    assert (given.parameters[0].low, given.parameters[0].high) == (1e7, 1e9)
+    assert given.refused > 0
+
+
+def test_parameter_places():
+    for number in (Parameter(3.0, 1.0, 10.0), Parameter(0.0, -2.0, 5.0), Parameter(0.5, 0.0, 1.0)):
+        for place in (0.0, 0.2, 0.7, 1.0):
+            assert number.place(number.at(place)) == pytest.approx(place, abs=1e-12)
+        assert number.at(number.place(number.value)) == pytest.approx(number.value, abs=1e-12)
+        step = 1e-6
+        slope = (number.at(0.5 + step) - number.at(0.5 - step)) / (2 * step)
+        assert number.per_place(number.at(0.5)) == pytest.approx(slope, rel=1e-6)
+        assert (number.at(-0.1), number.at(1.1)) == (number.low, number.high)
+
+
+# ---- columns from a recipe -----------------------------------------------------------------------
+
+
+class Made(Column):
+    """A column of two numbers: strength, and length of the hinge."""
+
+    calls = 0
+    stop_at = None
+
+    @classmethod
+    def of(cls, strength: float = 4e8, hinge: float = 0.3) -> Made:
+        cls.calls += 1
+        if cls.stop_at and cls.calls > cls.stop_at:
+            raise KeyboardInterrupt
+        if hinge > 0.9:
+            raise InputError("hinge longer than the column")
+        made = cls(
+            height=1.6,
+            mass=600.0,
+            shear=Elastic(k=1e9),
+            flexure=Bilinear(k=2e7 / hinge, d_y=strength * 1e-11 * hinge / 0.3, k_post=1e6),
+        )
+        object.__setattr__(made, "numbers", {"strength": strength, "hinge": hinge})
+        return made
+
+    @property
+    def parameters(self) -> Mapping[str, Parameter]:
+        return {
+            "strength": Parameter(self.numbers["strength"], 2e8, 8e8, "Pa", "yield stress"),
+            "hinge": Parameter(self.numbers["hinge"], 0.05, 2.0, "m", "length of the hinge"),
+        }
+
+    def with_parameters(self, **values: float) -> Made:
+        return Made.of(**(self.numbers | values))
+
+
+@pytest.fixture
+def made(monkeypatch):
+    monkeypatch.setattr(Made, "calls", 0)
+    return Made
+
+
+def test_recipe(made):
+    truth = made.of(5e8, 0.45)
+    fit = quiet(made.of(), response(truth, path(truth)), ["strength", "hinge"])
+    assert fit.nrmse < 1e-4
+    assert fit.values == pytest.approx({"strength": 5e8, "hinge": 0.45}, rel=1e-3)
+    assert isinstance(fit.column, Made)
+    assert fit.column.numbers == fit.values
+    assert fit.refused > 0
+    assert [number.what for number in fit.parameters] == ["yield stress", "length of the hinge"]
+    one = quiet(made.of(), response(truth, path(truth)), ["hinge"])
+    assert one.column.numbers["strength"] == 4e8
+
+
+def test_recipe_has_its_own_names_only(made):
+    with pytest.raises(
+        InputError, match=r"'hing' is no number .* did you mean 'hinge'\? It has str"
+    ):
+        quiet(made.of(), response(made.of(), path(made.of())), ["hing"])
+
+
+def test_interrupt_keeps_the_best(made, monkeypatch):
+    truth = made.of(5e8, 0.45)
+    test = response(truth, path(truth))
+    start = made.of()
+
+    def interrupted(places, *rest):
+        monkeypatch.setattr(Made, "stop_at", None)
+        return found(places, *rest)
+
+    found = rbsdem.calibration.determine
+    monkeypatch.setattr(rbsdem.calibration, "determine", interrupted)
+    monkeypatch.setattr(Made, "calls", 0)
+    monkeypatch.setattr(Made, "stop_at", 60)
+    fit = quiet(start, test, ["strength", "hinge"])
+    assert fit.status == "interrupted"
+    assert fit.nrmse < fit.before.nrmse
+
+
+def test_paths_that_break_off_count_as_errors_of_the_peak(monkeypatch):
+    whole = misfit.cyclic
+
+    def broken(column, displacement):
+        result = whole(column, displacement=displacement)
+        if column.shear.k > 4e7:
+            half = displacement.size // 2
+            # The last row is a state on the way to the next one.
+            part = replace(result, force=result.force[: half + 1])
+            raise SolveError("broken off", part)
+        return result
+
+    test = response(replace(ELASTIC, shear=Elastic(k=5e7)), path(ELASTIC))
+    monkeypatch.setattr(misfit, "cyclic", broken)
+    fit = quiet(ELASTIC, test, ["shear.k"])
+    assert fit.failed > 0
+    assert 3.9e7 < fit.values["shear.k"] < 4e7
+    force, error = misfit.forces(replace(ELASTIC, shear=Elastic(k=5e7)), test[0])
+    assert (force.size, str(error)) == (test[0].size // 2, "broken off")
+    assert force == pytest.approx(test[1][: force.size])
+
+
+# ---- limits of the search ------------------------------------------------------------------------
+
+
+def test_differences_look_the_other_way_where_a_column_is_refused():
+    def build(values):
+        if values["shear.k"] > 3.01e7:
+            raise InputError("too stiff")
+        return replace(ELASTIC, shear=Elastic(k=values["shear.k"]))
+
+    number = Parameter(3e7, 1e7, 9e7)
+    test = Target(response(ELASTIC, path(ELASTIC)))
+    one = Misfit(build, {"shear.k": number}, test, "nrmse", 1, lambda done, best: None)
+    places = np.array([number.place(3e7)])
+    found = Search(one, 0, 100, None)._jacobian(places, COARSE)[:, 0]
+    below = one.vector(places - COARSE)
+    assert np.max(np.abs(found)) > 0.01
+    assert found == pytest.approx((one.vector(places) - below) / COARSE, abs=1e-9)
+    assert one.refused == 1
+
+
+def test_limits_of_the_search():
+    start = COLUMNS["zahn_7"]
+    test = noisy(start, path(start), 0.1)
+    few = quiet(start, test, FREE, evaluations=50)
+    assert few.status == "evaluations used up"
+    assert few.evaluations < 50 + 16 + 60
+    late = quiet(start, test, FREE, seconds=1e-9)
+    assert late.status == "time used up"
+    assert late.nrmse <= late.before.nrmse * (1 + 1e-12)
+    assert quiet(start, test, ["flexure.b0"]).status == "converged"
+
+
+def test_warnings_of_columns_on_the_way_are_not_shown(recwarn):
+    far = path(ELASTIC, [0.12])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        test = noisy(replace(ELASTIC, shear=Elastic(k=4e7)), far, 0.01)
+    rbsdem.calibrate(ELASTIC, test, ["shear.k"])
+    assert not recwarn.list
+
+
+# ---- wrong input ---------------------------------------------------------------------------------
+
+D, F = response(COLUMNS["zahn_7"], path(COLUMNS["zahn_7"]))
+ZERO = replace(COLUMNS["zahn_7"], flexure=replace(COLUMNS["zahn_7"].flexure, k_u=0.0))
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        ({"free": []}, "free is empty; it names height"),
+        ({"free": "flexure.k_y"}, "must be a list of names"),
+        ({"free": 3}, "must be a list of names"),
+        ({"free": ["flexure.ky"]}, r"'flexure.ky' .* did you mean 'flexure.k_y'\?"),
+        ({"free": ["flexure[0].k_y"]}, r"did you mean 'flexure.k_y'\?"),
+        ({"free": [None]}, "None is no number"),
+        ({"free": ["shear.k", "shear.k"]}, "'shear.k' comes twice"),
+        ({"bounds": {"shear.k": (1e8, 1e9)}}, r"'shear.k' is not in free \(flexure.k_y\)"),
+        ({"bounds": {"flexure.k_y": (2e8, 1e8)}}, "must be a lower and a higher one"),
+        ({"bounds": {"flexure.k_y": (1e8, 2e8)}}, "leave out the start 6.2188e"),
+        ({"bounds": {"flexure.k_y": (np.nan, 2e8)}}, "low = nan must be a finite number"),
+        ({"bounds": {"flexure.k_y": (0, np.inf)}}, "high = inf must be a finite number"),
+        ({"bounds": {"flexure.k_y": 3.0}}, r"must be \(low, high\)"),
+        ({"bounds": {"flexure.k_y": ("a", 2)}}, "must be a number"),
+        ({"bounds": [1, 2]}, "must be a mapping"),
+        ({"column": 3}, "column = 3 must be a Column"),
+        ({"column": ZERO, "free": ["flexure.k_u"]}, "k_u = 0 tells no range"),
+        ({"test": 3}, "a int has no displacement and force"),
+        ({"test": (D, F, F)}, "has no displacement and force"),
+        ({"test": (D, F[:-1])}, "displacements and .* forces"),
+        ({"test": (D, F * np.nan)}, "force of the test: value 1 .* nan"),
+        ({"test": (0 * D, F)}, "displacement of the test is 0 m in every row"),
+        ({"test": (D, 0 * F)}, "force of the test is 0 in every row"),
+        ({"test": (D[:2], F[:2])}, "2 rows; a loop needs at least 3"),
+        ({"loss": "rms"}, "loss = 'rms' is not known; it is nrmse or balanced"),
+        ({"seed": -1}, "seed = -1 must be 0 or more"),
+        ({"seed": 1.5}, "seed = 1.5 must be a whole number"),
+        ({"jobs": 0}, "jobs = 0 must be 1 or more"),
+        ({"evaluations": 0}, "evaluations = 0 must be 1 or more"),
+        ({"seconds": 0}, "seconds = 0 must be a positive number"),
+        ({"progress": "yes"}, "progress = 'yes' must be True or False"),
+    ],
+)
+def test_wrong_input(change, text):
+    given = {"column": COLUMNS["zahn_7"], "test": (D, F), "free": ["flexure.k_y"]}
+    with pytest.raises(InputError, match=text):
+        rbsdem.calibrate(**(given | change))
+
+
+@pytest.mark.parametrize("numbers", [(1, 2, 3), (2, 3, 1), (2, 1, 1), (np.nan, 0, 1), ("a", 0, 1)])
+def test_wrong_parameter(numbers):
+    with pytest.raises(InputError, match="parameter length"):
+        Parameter(*numbers, what="length")
+
+
+def test_zero_start_with_bounds():
+    test = response(COLUMNS["zahn_7"], D)
+    fit = quiet(ZERO, test, ["flexure.k_u"], {"flexure.k_u": (0, 5e7)})
+    assert fit.values["flexure.k_u"] == pytest.approx(COLUMNS["zahn_7"].flexure.k_u, rel=1e-3)
+    assert fit.parameters[0].unit == "N m/rad"
+
+
+def test_without_scipy(monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "scipy.optimize", None)
+    with pytest.raises(ImportError, match=r"pip install rbsdem\[calibrate\]"):
+        rbsdem.calibrate(COLUMNS["zahn_7"], (D, F), ["flexure.k_y"])
+
+
+# ---- report, table, figure -----------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def fit() -> rbsdem.Calibration:
+    start = COLUMNS["zahn_7"]
+    other = replace(start, flexure=replace(start.flexure, k_y=4e7, d_y=4e-3))
+    return quiet(start, noisy(other, path(start), 0.05), ["flexure.k_y", "flexure.d_y"])
+
+
+def test_report(fit):
+    text = fit.report
+    for part in ("nrmse", "before", "after", "flexure.k_y", "N m/rad", "Std. error", "Correlation"):
+        assert part in text
+    assert f"{fit.nrmse:.4f} after" in text
+    assert f"{fit.evaluations} analyses" in text
+    assert f"{fit.values['flexure.k_y']:.4g}" in text
+    assert max(map(len, text.splitlines())) <= 110
+
+
+def test_table_fits_a_terminal(fit, capsys):
+    from rich.console import Console  # noqa: PLC0415
+
+    Console(width=80).print(fit.table())
+    printed = capsys.readouterr().out
+    assert "…" not in printed
+    assert "flexure.d_y" in printed
+
+
+def test_plot(fit):
+    high = (fit.before.displacement, 3 * fit.before.test_force)
+    test = (fit.before.displacement, fit.before.test_force)
+    fit = replace(fit, before=rbsdem.compare(high, test))
+    axes = fit.plot()
+    assert len(axes) == 2
+    assert axes[0].get_ylim()[1] > 3e-3 * np.max(test[1])
+    assert axes[0].get_ylim() == axes[1].get_ylim()
+    texts = [text.get_text() for ax in axes for text in ax.texts]
+    assert f"(b) after: NRMSE {fit.nrmse:.3f}" in texts
+    again = fit.plot(axes)
+    assert again is axes
+    with pytest.raises(InputError, match="1 axes; give two"):
+        fit.plot(axes[:1])
+    mpl.pyplot.close("all")
+
+
+def test_progress_on_stderr(capsys, monkeypatch):
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    quiet(COLUMNS["zahn_7"], (D, F), ["flexure.k_y"], progress=True, evaluations=30)
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert "analyses" in printed.err
+
+
+# ---- measured tests ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_measured_columns_of_the_paper(key):
+    found = find_history(key, PEER) if Path(PEER).is_dir() else None
+    if found is None:
+        pytest.skip("the measured histories are not here")
+    fit = quiet(COLUMNS[key], read_peer(found), [*FREE, "flexure.b1"])
+    assert fit.nrmse < 0.12 < fit.before.nrmse
+    assert fit.seconds < 10
+    assert fit.after.energy_ratio == pytest.approx(1, abs=0.1)

@@ -1,0 +1,181 @@
+"""From properties to the section as drawn: bars, covers, and what the table leaves open."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+import rbsdem
+from rbsdem import peer
+from rbsdem.errors import InputError
+
+SQUARE = peer.Specimen(
+    name="Square",
+    section="rectangular",
+    length=1.6,
+    width=0.4,
+    depth=0.5,
+    concrete_strength=40e6,
+    axial_load=1e6,
+    longitudinal_number=12,
+    cover=0.02,
+    cover_perpendicular=0.03,
+    corner_diameter=0.02,
+    intermediate_diameter=0.016,
+    intermediate_perpendicular=1,
+    intermediate_parallel=3,
+    corner_yield_stress=450e6,
+    intermediate_yield_stress=400e6,
+    longitudinal_ultimate_stress=600e6,
+    transverse_yield_stress=350e6,
+    transverse_ultimate_stress=500e6,
+    transverse_diameter=0.01,
+    transverse_spacing=0.1,
+    shear_legs=3.0,
+)
+ROUND = replace(
+    SQUARE, name="Round", section="circular", width=0.5, cover=0.03, longitudinal_number=8
+)
+
+
+def area(diameter: float) -> float:
+    return math.pi / 4 * diameter**2
+
+
+def test_bars_of_a_rectangle():
+    d = peer.draw(SQUARE)
+    # Cover 20, hoop 10, half a bar 10: 210 from mid-depth; thinner bars touch the hoop too.
+    found = sorted((round(bar.y, 9), bar.area) for bar in d.bars)
+    corner, inner = 2 * area(0.02), area(0.016)
+    expected = [
+        (-0.212, inner), (-0.21, corner), (-0.105, 2 * inner), (0.0, 2 * inner),
+        (0.105, 2 * inner), (0.21, corner), (0.212, inner),
+    ]  # fmt: skip
+    for (y, a), (y_expected, a_expected) in zip(found, expected, strict=True):
+        assert (y, a) == (pytest.approx(y_expected, abs=1e-12), pytest.approx(a_expected))
+    assert d.steel_area == pytest.approx(4 * area(0.02) + 8 * area(0.016))
+    assert {bar.yield_stress for bar in d.bars} == {450e6, 400e6}
+    assert (d.cover, d.side_cover, d.legs, d.bar_diameter) == (0.02, 0.03, 3.0, 0.02)
+    assert not d.assumed
+
+
+def test_covers_of_a_spiral_go_to_its_centre():
+    d = peer.draw(ROUND)
+    assert d.shape == "circular"
+    assert d.cover == pytest.approx(0.025)
+    # 250 - 25 - 10 - 10
+    assert max(bar.y for bar in d.bars) == pytest.approx(0.205)
+    assert d.steel_area == pytest.approx(8 * area(0.02))
+
+
+@pytest.mark.parametrize("n", [6, 7, 8, 25])
+def test_a_round_section_is_the_same_in_both_directions(n):
+    d = peer.draw(replace(ROUND, longitudinal_number=n))
+    assert d.steel_area == pytest.approx(n * area(0.02))
+    places = [bar.y for bar in d.bars]
+    assert places == pytest.approx([-y for y in reversed(places)], abs=1e-12)
+    # Of a ring: half its polar moment about either axis.
+    inertia = sum(bar.area * bar.y**2 for bar in d.bars)
+    assert inertia == pytest.approx(n * area(0.02) * 0.205**2 / 2)
+
+
+def test_an_octagon_is_a_circle_and_a_square_spiral_is_square():
+    assert peer.draw(replace(ROUND, section="octagonal")).shape == "circular"
+    d = peer.draw(replace(ROUND, section="square(spiral table)"))
+    assert d.shape == "square with spiral"
+    assert isinstance(d.section(), rbsdem.RectangularSection)
+
+
+@pytest.mark.parametrize(
+    ("change", "name", "value", "said"),
+    [
+        ({"corner_yield_stress": None, "intermediate_yield_stress": None}, "bars", 420e6, "420"),
+        ({"transverse_yield_stress": None}, "tie_yield_stress", 450e6, "transverse_yield"),
+        ({"cover": None}, "cover", 0.025, "cover"),
+        ({"cover": None, "cover_perpendicular": None}, "side_cover", 0.025, "cover"),
+        ({"transverse_spacing": None}, "tie_diameter", 0.0, "no transverse"),
+        ({"transverse_diameter": None}, "legs", 0.0, "no transverse"),
+        ({"shear_legs": None}, "legs", 2.0, ""),
+        ({"longitudinal_ultimate_stress": None}, "bars", 450e6, "1.5 times"),
+        ({"intermediate_perpendicular": None}, "bars", 450e6, "as many on each"),
+    ],
+)
+def test_what_the_table_leaves_open(change, name, value, said):
+    d = peer.draw(replace(SQUARE, **change))
+    found = getattr(d, name)
+    if name == "bars":
+        found = max(bar.yield_stress for bar in found)
+    assert found == pytest.approx(value)
+    assert any(said in text for text in d.assumed) if said else not d.assumed
+
+
+def test_ultimate_stress_by_default():
+    d = peer.draw(
+        replace(SQUARE, longitudinal_ultimate_stress=None, transverse_ultimate_stress=None)
+    )
+    corner = next(bar for bar in d.bars if bar.yield_stress == 450e6)
+    assert corner.ultimate_stress == pytest.approx(675e6)
+    assert d.tie_ultimate_stress == pytest.approx(525e6)
+
+
+def test_faces_that_do_not_add_up_keep_the_number_of_bars():
+    """24 bars, of which the faces tell 12: the others are bundled with them."""
+    d = peer.draw(replace(SQUARE, longitudinal_number=24))
+    assert d.steel_area == pytest.approx(4 * area(0.02) + 20 * area(0.016))
+    assert "times 2.5" in d.assumed[0]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"section": "hexagonal"}, "hexagonal"),
+        ({"corner_diameter": None, "intermediate_diameter": None}, "no diameter"),
+        ({"cover": 0.3}, "do not fit"),
+        ({"cover": 0.3, "section": "circular"}, "do not fit"),
+    ],
+)
+def test_what_cannot_be_drawn(change, words):
+    with pytest.raises(InputError, match=words):
+        peer.draw(replace(SQUARE, **change))
+
+
+@pytest.mark.parametrize("specimen", [SQUARE, ROUND], ids=["square", "round"])
+def test_the_section_has_what_was_drawn(specimen):
+    d = peer.draw(specimen)
+    section = d.section()
+    assert section.steel_area == pytest.approx(d.steel_area)
+    assert section.depth == d.depth
+    assert section.cover == d.cover
+    assert section.gross_area == pytest.approx(specimen.gross_area)
+    assert section.confinement is not None
+    moments = section.moment_curvature(1e6, [-0.01, 0.01])
+    assert moments[0] == pytest.approx(-moments[1], rel=1e-6)
+
+
+def test_wires_stronger_than_the_plateau_is_long():
+    strong = replace(SQUARE, transverse_yield_stress=1424e6, transverse_ultimate_stress=1500e6)
+    assert peer.draw(strong).section().confinement is not None
+
+
+def test_the_papers_columns_are_drawn_as_table_2_has_them(peer_folder):
+    table = peer.read_specimens(peer_folder)
+    names = {"soesianawati_1": "7", "tanaka_park_1": "18", "tanaka_park_5": "22", "zahn_7": "11"}
+    for key, printed in rbsdem.paper_sections().items():
+        d = peer.draw(table[names[key]])
+        assert (d.width, d.depth, d.cover) == (printed.width, printed.depth, printed.cover)
+        assert d.concrete_strength == printed.concrete_strength
+        assert d.steel_area == pytest.approx(
+            printed.longitudinal_number * area(printed.longitudinal_diameter)
+        )
+        assert d.legs == printed.shear_legs
+        assert not d.assumed
+
+
+def test_every_specimen_of_the_database_is_drawn(peer_folder):
+    for i, specimen in enumerate(peer.read_specimens(peer_folder)):
+        d = peer.draw(specimen)
+        assert 0.004 < d.steel_area / specimen.gross_area < 0.09, specimen.name
+        if i % 8 == 0:
+            assert d.section().steel_area == pytest.approx(d.steel_area), specimen.name
