@@ -110,10 +110,15 @@ contains
 
       d_y = self%f_y/self%k
       s = -self%branch(self%count)%direction
-      ! A branch that began less far out than here is outgrown; the oldest ones give way.
+      ! A branch that began less far out than here is outgrown. The present one gives way to the one it would
+      ! have met, which it only comes up to; where it never would, it takes that one's place.
       do while (self%count >= 2)
          if (s*(d - self%branch(self%count - 1)%d_0) > 0.0_wp) exit
-         call forget(self, self%count - 1)
+         if (self%count >= 3 .and. abs(self%branch(self%count)%d_meet) < unbounded) then
+            self%count = self%count - 2
+         else
+            call forget(self, self%count - 1)
+         end if
       end do
       if (self%count == most_branches) call forget(self, 2)
       self%highest = max(self%highest, d)
@@ -139,6 +144,8 @@ contains
       if (self%count >= 2) call find_meeting(self, self%branch(self%count - 1), new)
       self%count = self%count + 1
       self%branch(self%count) = new
+      ! Turned back at once, without having moved: still on the branch from before.
+      if (abs(new%d_meet - d) <= 1.0e-9_wp*abs(new%d_a - d)) self%count = self%count - 2
    end subroutine turn_back
 
    !> Forget a branch and the one before it, which the one behind it has passed or will not meet any more.

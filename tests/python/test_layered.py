@@ -114,6 +114,15 @@ def test_small_cycles_of_steel_do_not_overshoot() -> None:
     assert steel().response(path)[-1] == pytest.approx(straight, rel=2e-3)
 
 
+def test_steel_that_turns_back_at_once_stays_where_it_is() -> None:
+    d_y = FY / K
+    path = [5 * d_y, -3 * d_y, 2 * d_y]
+    there = np.nextafter(path[-1], 0)
+    force = steel().response([*path, there, path[-1], there, path[-1], 4 * d_y])
+    np.testing.assert_allclose(force[3:7], force[2])
+    assert force[7] == pytest.approx(steel().response([*path, 4 * d_y])[-1])
+
+
 def test_concrete_has_peak_residual_and_no_tension() -> None:
     closing = np.array([4e-4, 8e-4, 5e-3, 2e-2])
     force = concrete().response(-closing)
