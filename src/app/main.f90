@@ -65,7 +65,7 @@ contains
 
    subroutine print_help(error)
       type(error_type), allocatable, intent(inout) :: error
-      character(len=*), parameter :: text(25) = [character(len=84) :: &
+      character(len=*), parameter :: text(26) = [character(len=84) :: &
          'rbsdem '//version//': reinforced-concrete columns as rigid bodies and springs', &
          '', &
          'usage:', &
@@ -74,7 +74,8 @@ contains
          '  rbsdem modes CASE.nml                           natural frequencies, stable step', &
          '  rbsdem --help | --version', &
          '', &
-         'rbsdem trade CASE.nml needs the command that comes with the Python package.', &
+         'rbsdem trade CASE.nml needs the command that comes with the Python package,', &
+         'and so does rbsdem peer DIR.', &
          '', &
          'options:', &
          '  -o, --output FILE   where the rows go (default: what &output says, or the', &

@@ -157,6 +157,7 @@ contains
       self%stage = unloading
       call full_closing(self, c_closed, f_closed)
       line = chord(c_closed, f_closed, self%c_u, self%strength*self%f_u)
+      line%hi_closed = .not. c_closed > self%c_touch
    end subroutine unload
 
    !> On the line between the first touch of the faces and full closing; without one the crack is open.
@@ -168,7 +169,10 @@ contains
       call full_closing(self, c_closed, f_closed)
       if (c_closed > self%c_touch) then
          self%stage = contact
+         ! Between lines that lead both ways its corners are its own: a spring stands on them.
          line = chord(self%c_touch, 0.0_wp, c_closed, f_closed)
+         line%lo_closed = .true.
+         line%hi_closed = .true.
       else if (self%stage == closing) then
          call unload(self, line)
       else

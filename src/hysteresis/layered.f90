@@ -47,8 +47,8 @@ module rbs_hysteresis_layered
       real(wp), allocatable, private :: d(:)
       !> State at the anchor of the present line: rotation, opening, and how it goes on
       real(wp), private :: rotation = 0.0_wp, opening = 0.0_wp, slope = 0.0_wp
-      !> Axial stiffness at first [N/m]
-      real(wp), private :: stiffness = 0.0_wp
+      !> Axial stiffness at first [N/m], distance of the outermost layer [m]
+      real(wp), private :: stiffness = 0.0_wp, reach = 0.0_wp
       !> Rotation under the axial load alone, from which the rotation of the joint is counted
       real(wp), private :: rest = 0.0_wp
    contains
@@ -76,6 +76,7 @@ contains
       self%slope = 0.0_wp
       self%rest = 0.0_wp
       self%stiffness = sum(self%line%k)
+      self%reach = maxval(abs(self%y))
       call put_axial_load(self)
       call settle(self, 1, line)
       if (self%carries) call find_rest(self, line)
@@ -206,11 +207,11 @@ contains
          rate = direction*(self%y(i) + self%slope)
          if (.not. (settled(i) .and. abs(rate) > 0.0_wp)) cycle
          s = merge(1, -1, rate > 0.0_wp)
-         ahead = min(ahead, way_to(self, i, s)/abs(rate))
+         ahead = min(ahead, turn_to(self, i, s, abs(rate)))
          if (self%line(i)%one_way /= 0) then
             line%one_way = direction
          else
-            behind = min(behind, way_to(self, i, -s)/abs(rate))
+            behind = min(behind, turn_to(self, i, -s, abs(rate)))
          end if
       end do
       if (line%one_way /= 0) behind = 0.0_wp
@@ -222,16 +223,21 @@ contains
                           one_way=line%one_way /= 0)
    end subroutine make_line
 
-   !> How far a layer can go on its line in a direction [m].
-   pure real(wp) function way_to(self, i, s)
+   !> How far the joint can turn until a layer comes to the end of its line in a direction [rad].
+   pure real(wp) function turn_to(self, i, s, rate)
       class(layered_rule), intent(in) :: self
       integer, intent(in) :: i, s
+      !> How fast the layer opens or closes [m/rad]
+      real(wp), intent(in) :: rate
+      real(wp) :: way
 
-      way_to = s*(self%line(i)%end_toward(s) - self%d(i))
-      way_to = max(way_to, 0.0_wp)
-   end function way_to
+      way = max(s*(self%line(i)%end_toward(s) - self%d(i)), 0.0_wp)
+      turn_to = unbounded
+      ! Ends that are none, or as good as that, would overflow.
+      if (way < 1.0e100_wp*rate) turn_to = way/rate
+   end function turn_to
 
-   !> Whether a layer stands at the end of its line in a direction, but for round-off.
+   !> Whether a layer stands at the end of its line in a direction, but for the round-off of the rotation.
    pure logical function at_end(self, i, s)
       class(layered_rule), intent(in) :: self
       integer, intent(in) :: i, s
@@ -239,7 +245,7 @@ contains
 
       far = self%line(i)%end_toward(s)
       at_end = s*(far - self%d(i)) <= 1.0e-13_wp*(abs(far) + abs(self%opening) + &
-                                                  abs(self%y(i)*self%rotation))
+                                                  self%reach*(abs(self%rotation) + abs(self%rest)))
    end function at_end
 
    !> The rear ends of one-way lines travel with the layers.

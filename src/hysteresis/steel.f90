@@ -93,9 +93,11 @@ contains
                                       f_a=direction*self%f_y, r=self%r0, d_meet=direction*unbounded)
       else if (self%branch(self%count)%direction /= direction) then
          call turn_back(self, d, f)
-      else if (direction*(d - self%branch(self%count)%d_meet) >= 0.0_wp) then
+      else
          ! Back on the branch that was left before: what lies between is forgotten.
-         self%count = self%count - 2
+         do while (direction*(d - self%branch(self%count)%d_meet) >= 0.0_wp)
+            self%count = self%count - 2
+         end do
       end if
       call follow_branch(self, d, f, line)
    end subroutine next
@@ -148,18 +150,18 @@ contains
       if (abs(new%d_meet - d) <= 1.0e-9_wp*abs(new%d_a - d)) self%count = self%count - 2
    end subroutine turn_back
 
-   !> Forget a branch and the one before it, which the one behind it has passed or will not meet any more.
+   !> Forget a branch and the one before it, which those behind it have passed or will not meet any more.
    subroutine forget(self, place)
       class(steel_rule), intent(inout) :: self
       integer, intent(in) :: place
-      integer :: first
+      integer :: first, i
 
       first = max(place - 1, 1)
       self%branch(first:self%count - place + first - 1) = self%branch(place + 1:self%count)
       self%count = self%count - place + first - 1
-      associate (next => self%branch(first))
-         next%d_meet = next%direction*unbounded
-      end associate
+      do i = first, min(first + 1, self%count)
+         self%branch(i)%d_meet = self%branch(i)%direction*unbounded
+      end do
    end subroutine forget
 
    !> Where a new branch comes up to the one of its direction that was left before.
@@ -173,6 +175,8 @@ contains
       s = new%direction
       reach = abs(new%d_a - new%d_0)
       near = new%d_0
+      ! One that begins above the old one, which low roundness allows, has passed it already.
+      if (s*(new%f_0 - curve(self, old, near)) > 1.0e-9_wp*self%f_y) return
       do i = 1, size(corners)
          far = new%d_0 + s*reach*corners(i)**(1.0_wp/new%r)
          if (s*(curve(self, new, far) - curve(self, old, far)) >= 0.0_wp) exit

@@ -62,7 +62,7 @@ contains
       call read_axial(r, case%column, messages)
       call read_springs(r, 'shear', 1, case%column%n, case%column%shear, messages)
       call read_springs(r, 'flexure', 1, case%column%n, case%column%flexure, messages)
-      if (allocated(case%column%flexure)) call read_layers(r, case%column%flexure, messages)
+      if (allocated(case%column%flexure)) call read_layers(r, case%column%n, case%column%flexure, messages)
       call read_springs(r, 'opening', 0, case%column%n, case%column%axial, messages)
       call read_loadings(r, case, messages)
       call read_analysis(r, case%analysis, messages)

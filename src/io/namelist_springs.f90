@@ -7,9 +7,10 @@ module rbs_io_namelist_springs
    use rbs_io_namelist_entry, only: key_type, key, entry_text, location, text_length
    use rbs_io_namelist_group, only: reader, find_groups, check_status, take_text
    use rbs_io_namelist_scan, only: most_messages
+   use rbs_spec_check, only: check_name
    use rbs_spec_column, only: most_bodies
    use rbs_spec_spring, only: spring_spec
-   use rbs_spec_spring_table, only: number_names, number_count, rule_names
+   use rbs_spec_spring_table, only: number_names, number_count, layer_rules, rule_names
    implicit none
    private
 
@@ -71,26 +72,38 @@ contains
    end subroutine read_springs
 
    !> Give the layers of a case to its layered springs: a group with joint = 0 is for all of them.
-   subroutine read_layers(r, springs, messages)
+   subroutine read_layers(r, n, springs, messages)
       type(reader), intent(in) :: r
-      !> Springs of the joints, or one for all
-      type(spring_spec), intent(inout) :: springs(:)
+      !> Number of joints
+      integer, intent(in) :: n
+      !> Springs of the joints, or one for all; one for each where layers differ
+      type(spring_spec), allocatable, intent(inout) :: springs(:)
       type(message_list), intent(inout) :: messages
       type(spring_spec) :: layer
       integer, allocatable :: found(:)
       real(wp) :: column(2 + number_count)
-      integer :: g, i, joint
+      integer :: g, i, joint, place
       logical :: taken
 
       call find_groups(r, 'layer', 0, huge(1), found, messages)
       do g = 1, size(found)
          if (messages%count > most_messages) return
          call read_spring(r, 'layer', found(g), joint, layer, messages, column(1))
+         call check_name(layer%rule, layer_rules, location(r%path, r%scanned%group(found(g))%line)// &
+                         ': &layer: rule', messages, place)
+         if (n < 1 .or. n > most_bodies) cycle
+         if (joint < 0 .or. joint > n) then
+            call messages%add(location(r%path, r%scanned%group(found(g))%line)//': &layer has joint = '// &
+                              to_text(joint)//'; it is 0 for every joint, or 1 to n = '//to_text(n))
+            cycle
+         end if
+         if (place == 0) cycle
          column(2) = findloc(rule_names == layer%rule, .true., dim=1)
          column(3:) = layer%numbers()
+         if (joint > 0 .and. size(springs) < n) call repeat_spring(springs, n)
          taken = .false.
          do i = 1, size(springs)
-            if (springs(i)%rule /= 'layered' .or. (joint /= 0 .and. joint /= i .and. size(springs) > 1)) cycle
+            if (springs(i)%rule /= 'layered' .or. (joint /= 0 .and. joint /= i)) cycle
             if (.not. allocated(springs(i)%layers)) allocate (springs(i)%layers(size(column), 0))
             springs(i)%layers = reshape([springs(i)%layers, column], &
                                         [size(column), size(springs(i)%layers, 2) + 1])
@@ -103,6 +116,21 @@ contains
          end if
       end do
    end subroutine read_layers
+
+   !> One spring of its own for each joint, from one for all.
+   subroutine repeat_spring(springs, n)
+      type(spring_spec), allocatable, intent(inout) :: springs(:)
+      integer, intent(in) :: n
+      type(spring_spec) :: one
+      integer :: i
+
+      one = springs(1)
+      deallocate (springs)
+      allocate (springs(n))
+      do i = 1, n
+         springs(i) = one
+      end do
+   end subroutine repeat_spring
 
    !> One spring. The names of its numbers are those of the table, so a Fortran namelist is not of use.
    subroutine read_spring(r, name, place, joint, spec, messages, y)

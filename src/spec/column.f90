@@ -225,7 +225,7 @@ contains
       if (name == 'axial' .and. any(is_lateral(springs%rule))) then
          i = findloc(is_lateral(springs%rule), .true., dim=1)
          call messages%add("column: an axial spring cannot be of the rule '"//trim(springs(i)%rule)// &
-                           "'; it is 'elastic', 'bilinear' or 'compression'")
+                           "'; it is elastic, bilinear, compression, concrete or steel")
       else if (name /= 'axial' .and. any(springs%rule == 'compression' .or. springs%rule == 'concrete')) then
          i = findloc(springs%rule == 'compression' .or. springs%rule == 'concrete', .true., dim=1)
          call messages%add('column: the '//name//" spring cannot be of the rule '"//trim(springs(i)%rule)// &

@@ -10,8 +10,8 @@ module rbs_spec_spring
    use rbs_base_text, only: to_text
    use rbs_spec_backbone, only: backbone_spec
    use rbs_spec_check, only: is_given, check_positive, check_not_negative, check_finite, check_name
-   use rbs_spec_spring_table, only: rule_names, inner_names, number_names, number_count, name_length, &
-                                    side_suffix, takes, is_capped
+   use rbs_spec_spring_table, only: rule_names, layer_rules, inner_names, number_names, number_count, &
+                                    name_length, side_suffix, takes, is_capped
    implicit none
    private
 
@@ -391,8 +391,6 @@ contains
       type(spring_spec), intent(in) :: self
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
-      character(len=16), parameter :: normal(5) = [character(len=16) :: &
-         'concrete', 'steel', 'elastic', 'bilinear', 'compression']
       type(spring_spec) :: layer
       logical :: ok
       integer :: i
@@ -408,7 +406,7 @@ contains
       do i = 1, size(self%layers, 2)
          call check_finite(self%layers(1, i), name//': y of layer '//to_text(i), 'm', messages, ok)
          layer = self%layer(i)
-         if (.not. any(normal == layer%rule)) then
+         if (.not. any(layer_rules == layer%rule)) then
             call messages%add(name//': layer '//to_text(i)//" has the rule '"//trim(layer%rule)// &
                               "'; it is one of concrete, steel, elastic, bilinear, compression")
          else

@@ -6,7 +6,7 @@ module rbs_spec_spring_table
    implicit none
    private
 
-   public :: rule_names, inner_names, number_names, takes, is_capped, side_suffix
+   public :: rule_names, layer_rules, inner_names, number_names, takes, is_capped, side_suffix
 
    character(len=13), parameter :: rule_names(9) = [character(len=13) :: &
       'elastic', &
@@ -18,6 +18,14 @@ module rbs_spec_spring_table
       'concrete', &
       'steel', &
       'layered']
+
+   !> Those that a layer of a joint may have
+   character(len=13), parameter :: layer_rules(5) = [character(len=13) :: &
+      'concrete', &
+      'steel', &
+      'elastic', &
+      'bilinear', &
+      'compression']
 
    !> What `b1` of the Takeda rule multiplies.
    character(len=3), parameter :: inner_names(3) = ['kc ', 'kr ', 'one']

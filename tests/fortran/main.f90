@@ -7,9 +7,11 @@ program unit_tests
    use test_capped, only: collect_capped
    use test_chain, only: collect_chain
    use test_column, only: collect_column
+   use test_concrete, only: collect_concrete
    use test_finite, only: collect_finite
    use test_history, only: collect_history
    use test_implicit, only: collect_implicit
+   use test_layered, only: collect_layered
    use test_linalg, only: collect_linalg
    use test_modal, only: collect_modal
    use test_protocol, only: collect_protocol
@@ -23,6 +25,7 @@ program unit_tests
    use test_springs, only: collect_springs
    use test_static, only: collect_static
    use test_static_finite, only: collect_static_finite
+   use test_steel, only: collect_steel
    use test_steppers, only: collect_steppers
    use test_takeda, only: collect_takeda
    use test_text, only: collect_text
@@ -43,7 +46,7 @@ program unit_tests
       procedure(collect_interface), pointer, nopass :: collect => null()
    end type suite_type
 
-   type(suite_type) :: suites(25)
+   type(suite_type) :: suites(28)
    character(len=80) :: wanted, pattern
    integer :: i, run, failed, found
 
@@ -51,7 +54,8 @@ program unit_tests
               suite_type('linalg', collect_linalg), &
              suite_type('spec', collect_spec), suite_type('segment', collect_segment), &
              suite_type('bilinear', collect_bilinear), suite_type('takeda', collect_takeda), &
-             suite_type('capped', collect_capped), &
+             suite_type('capped', collect_capped), suite_type('concrete', collect_concrete), &
+             suite_type('steel', collect_steel), suite_type('layered', collect_layered), &
              suite_type('springs', collect_springs), suite_type('column', collect_column), &
              suite_type('chain', collect_chain), &
              suite_type('band', collect_band), &

@@ -11,7 +11,7 @@ module samples
    private
 
    public :: elastic, bilinear, compression, takeda, bilinear_1, takeda_1, column_1, chain, rich_column, made
-   public :: random_type
+   public :: concrete_1, steel_1, random_type
 
    !> Soesianawati & Park No 1, table 3 of the paper: flexure [N m, rad] ...
    real(wp), parameter, public :: k_c = 2.5428e8_wp, d_c = 3.1891e-4_wp
@@ -105,6 +105,33 @@ contains
 
       spec = takeda(k_c, d_c, k_y, d_y, k_u, b0, b1, inner)
    end function takeda_1
+
+   !> A strip of a joint of concrete, 0.4 m by 0.4 m and 0.3 m long, of 30 MPa.
+   pure type(spring_spec) function concrete_1(share) result(spec)
+      !> Of the area
+      real(wp), intent(in) :: share
+
+      spec%rule = 'concrete'
+      spec%k = 1.6e10_wp*share
+      spec%f_peak = 4.8e6_wp*share
+      spec%d_peak = 6.0e-4_wp
+      spec%k_fall = 2.4e9_wp*share
+      spec%f_res = 1.0e6_wp*share
+      spec%plastic = 1.2_wp
+      spec%contact = 0.35_wp
+      spec%misfit = 0.4_wp
+      spec%wear = 0.03_wp
+   end function concrete_1
+
+   !> A row of its bars, 1600 mm2 of 450 MPa over 0.4 m.
+   pure type(spring_spec) function steel_1() result(spec)
+      spec%rule = 'steel'
+      spec%k = 8.0e8_wp
+      spec%f_y = 7.2e5_wp
+      spec%k_post = 8.0e6_wp
+      spec%growth = 0.01_wp
+      spec%endurance = 2000.0_wp
+   end function steel_1
 
    !> Column 1 in one component.
    type(column_spec) function column_1(kinematics) result(spec)

@@ -642,13 +642,18 @@ CAPPED = rbsdem.PeakOriented(
 )
 
 
-def second_method(spring: rbsdem.PeakOriented) -> Any:
-    """Return the spring once more, of another make (`tests/python/reference_capped`)."""
+def other_make(name: str) -> Any:
+    """Return a module of `tests/python` with springs of another make."""
     place = str(HERE.parent / "python")
     if place not in sys.path:
         sys.path.append(place)
-    reference = importlib.import_module("reference_capped")
-    return reference.Capped(**{k: v for k, v in asdict(spring).items() if v is not None})
+    return importlib.import_module(name)
+
+
+def second_method(spring: rbsdem.PeakOriented) -> Any:
+    """Return the spring once more, of another make (`tests/python/reference_capped`)."""
+    numbers = {k: v for k, v in asdict(spring).items() if v is not None}
+    return other_make("reference_capped").Capped(**numbers)
 
 
 def run_static_capped() -> rbsdem.Result:
@@ -733,6 +738,49 @@ def reason_rk4_pinching(rows: Rows) -> None:
     assert np.max(np.abs(rows["residual_J"])) < 1e-4 * rows["input_J"].max()
 
 
+# ---- 15: layers of concrete and steel ------------------------------------------------------------
+
+STRIP = rbsdem.ConcreteSpring(
+    k=2e9,
+    f_peak=0.6e6,
+    d_peak=6e-4,
+    k_fall=4e7,
+    f_res=0.2e6,
+    plastic=1.2,
+    contact=0.35,
+    misfit=0.4,
+    wear=0.03,
+)
+SIDE = rbsdem.SteelSpring(6e8, 5.4e5, 6e6, r0=8, r1=0.83, r2=0.42, growth=0.005, endurance=800)
+MIDDLE = rbsdem.SteelSpring(4e8, 3.6e5, 4e6, r0=8, r1=0.83, r2=0.42, growth=0.005, endurance=800)
+STRIPS = [(y, STRIP) for y in (-0.175, -0.125, -0.075, -0.025, 0.025, 0.075, 0.125, 0.175)]
+LAYERED = rbsdem.Layered(700e3, (*STRIPS, (-0.16, SIDE), (0.0, MIDDLE), (0.16, SIDE)))
+
+
+def run_static_layered() -> rbsdem.Result:
+    column = rbsdem.Column(
+        1.6, 614.4, rbsdem.Elastic(4e8), LAYERED, kinematics="pdelta", axial_load=700e3
+    )
+    drifts = np.array([0.0025, 0.005, 0.01, 0.02, 0.03])
+    return rbsdem.cyclic(column, rbsdem.protocol(drifts * 1.6, cycles=2, points=4))
+
+
+def reason_static_layered(rows: Rows) -> None:
+    """Equilibrium with the load in the deformed place; the joint of another make, in steps."""
+    turn, moment = rows["rotation_1_rad"], rows["moment_1_Nm"]
+    size = np.max(np.abs(moment))
+    lever = 1.6 * (rows["force_N"] + 700e3 * turn)  # the joint has slipped with the body
+    np.testing.assert_allclose(moment, lever, atol=1e-10 * size)
+    reference = other_make("reference_layered")
+    layers = []
+    for y, spring in LAYERED.layers:
+        kind = reference.Concrete if spring is STRIP else reference.Steel
+        layers.append((y, kind(**asdict(spring))))
+    expected = reference.response(700e3, layers, turn, 10)
+    np.testing.assert_allclose(moment, expected, atol=0.02 * size)  # what the chords cut off
+    assert moment[-1] == pytest.approx(expected[-1], abs=0.01 * size)
+
+
 # --------------------------------------------------------------------------------------------------
 
 CASES = {
@@ -750,6 +798,7 @@ CASES = {
     "12-static-finite": Case(run_static_finite, reason_static_finite),
     "13-static-capped": Case(run_static_capped, reason_static_capped),
     "14-rk4-pinching": Case(run_rk4_pinching, reason_rk4_pinching),
+    "15-static-layered": Case(run_static_layered, reason_static_layered),
 }
 
 

@@ -1,0 +1,345 @@
+!> Concrete across a joint (docs/rules.md section 9): envelope, unloading, cracks that close gradually.
+module test_concrete
+   use check, only: unit_test, check_close, check_same, check_true
+   use rbs_base_error, only: error_type
+   use rbs_base_kinds, only: wp
+   use rbs_hysteresis_factory, only: new_rule
+   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_segment, only: segment
+   use rbs_hysteresis_springs, only: follow_path, spring_array
+   use rbs_spec_spring, only: spring_spec, initial_stiffness
+   use samples, only: concrete_1, random_type
+   implicit none
+   private
+
+   public :: collect_concrete
+
+contains
+
+   subroutine collect_concrete(tests)
+      type(unit_test), allocatable, intent(out) :: tests(:)
+
+      tests = [unit_test('Popovics 1973 at the ends of the chords', rising), &
+               unit_test('falling line, residual, no tension', falling), &
+               unit_test('Karsan and Jirsa 1969: plastic closing', plastic_closing), &
+               unit_test('unloading is never stiffer than at first', stiffest), &
+               unit_test('before the first chord ends: elastic', elastic_begin), &
+               unit_test('faces that were apart touch early and close fully later', contact), &
+               unit_test('no misfit, no contact: back to the plastic closing', plain), &
+               unit_test('wear: once for every closing and opening', wear), &
+               unit_test('partial unloading is one line both ways', partial), &
+               unit_test('forces are continuous where lines meet', continuous), &
+               unit_test('property 2: 1, 7, 1000 increments, to the last bit', increments), &
+               unit_test('copies and trial moves leave no trace', copies), &
+               unit_test('start forgets everything', forgets), &
+               unit_test('property 9: work is not negative, contact aside', work_positive), &
+               unit_test('envelope is never left outward', envelope)]
+   end subroutine collect_concrete
+
+   !> A spring of simple numbers: 100 at a closing of 2, then -10 down to 20 at 10.
+   type(spring_spec) function hand() result(spec)
+      spec%rule = 'concrete'
+      spec%k = 100.0_wp
+      spec%f_peak = 100.0_wp
+      spec%d_peak = 2.0_wp
+      spec%k_fall = 10.0_wp
+      spec%f_res = 20.0_wp
+      call spec%fill_defaults()
+   end function hand
+
+   !> r = 100/(100 - 50) = 2: the curve is f_peak 2 x/(1 + x^2).
+   subroutine rising(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp), parameter :: x(5) = [0.125_wp, 0.25_wp, 0.5_wp, 0.75_wp, 1.0_wp]
+      real(wp) :: f(5), expected(5)
+
+      call follow_path(hand(), -2.0_wp*x, f)
+      expected = -200.0_wp*x/(1.0_wp + x**2)
+      expected(1) = 0.5_wp*expected(2)
+      call check_close(error, f, expected, 1.0e-14_wp, 0.0_wp, 'force')
+   end subroutine rising
+
+   subroutine falling(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: f(6)
+
+      call follow_path(hand(), [-2.0_wp, -5.0_wp, -10.0_wp, -12.0_wp, 0.0_wp, 5.0_wp], f)
+      call check_close(error, f, -[100.0_wp, 70.0_wp, 20.0_wp, 20.0_wp, 0.0_wp, 0.0_wp], 1.0e-14_wp, 0.0_wp, &
+                       'force')
+   end subroutine falling
+
+   !> Where unloading reaches zero force: 0.145 x^2 + 0.13 x, beyond x = 2 the line 0.84 + 0.834 (x - 2).
+   subroutine plastic_closing(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp), parameter :: x(5) = [0.8_wp, 1.0_wp, 1.5_wp, 2.0_wp, 4.0_wp]
+      real(wp), parameter :: share(5) = [0.1968_wp, 0.275_wp, 0.52125_wp, 0.84_wp, 2.508_wp]
+      real(wp) :: f(4), middle
+      integer :: i
+
+      do i = 1, size(x)
+         middle = x(i) + share(i)
+         call follow_path(hand(), [-2.0_wp*x(i), -middle, -2.0_wp*share(i), -1.9_wp*share(i)], f)
+         call check_close(error, f(2), 0.5_wp*f(1), 1.0e-13_wp, 0.0_wp, 'half of the way')
+         call check_close(error, f(3:), [0.0_wp, 0.0_wp], 0.0_wp, 1.0e-12_wp, 'end of the way')
+      end do
+   end subroutine plastic_closing
+
+   !> A plastic closing that is too large gives way: from (4, 80) the line of slope 100 ends at 3.2.
+   subroutine stiffest(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_spec) :: spec
+      real(wp) :: f(3)
+
+      spec = hand()
+      spec%plastic = 5.0_wp
+      call follow_path(spec, [-4.0_wp, -3.6_wp, -3.2_wp], f)
+      call check_close(error, f, [-80.0_wp, -40.0_wp, 0.0_wp], 1.0e-12_wp, 1.0e-11_wp, 'force')
+   end subroutine stiffest
+
+   subroutine elastic_begin(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: f(5), k
+
+      k = 200.0_wp*0.25_wp/(1.0_wp + 0.25_wp**2)/0.5_wp
+      call follow_path(hand(), [-0.4_wp, -0.1_wp, -0.45_wp, -0.2_wp, 0.0_wp], f)
+      call check_close(error, f, -k*[0.4_wp, 0.1_wp, 0.45_wp, 0.2_wp, 0.0_wp], 1.0e-14_wp, 0.0_wp, 'force')
+      call check_true(error, k <= initial_stiffness(hand()), 'chord below the tangent')
+   end subroutine elastic_begin
+
+   !> By hand: from (4, 80) the plastic closing is 1.68. Opened to -1.32 (widest 3), faces touch at
+   !> 1.68 - 0.5 3 = 0.18; fully closed at 1.68 + 0.25 (4 - 1.68) = 2.26 with 20.
+   subroutine contact(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_spec) :: spec
+      real(wp) :: f(6)
+
+      spec = hand()
+      spec%contact = 0.25_wp
+      spec%misfit = 0.5_wp
+      call follow_path(spec, [-4.0_wp, 1.32_wp, -0.18_wp, -1.22_wp, -2.26_wp, -3.13_wp], f)
+      call check_close(error, f, -[80.0_wp, 0.0_wp, 0.0_wp, 10.0_wp, 20.0_wp, 50.0_wp], 1.0e-12_wp, &
+                       1.0e-11_wp, 'force')
+      ! A narrower opening leaves the touch where it is: the widest counts.
+      call follow_path(spec, [-4.0_wp, 1.32_wp, -3.0_wp, 0.5_wp, -1.22_wp, -4.0_wp], f)
+      call check_close(error, f(5:), -[10.0_wp, 80.0_wp], 1.0e-12_wp, 0.0_wp, 'widest opening')
+   end subroutine contact
+
+   subroutine plain(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: f(5)
+
+      call follow_path(hand(), [-4.0_wp, 3.0_wp, -1.68_wp, -2.84_wp, -4.0_wp], f)
+      call check_close(error, f, -[80.0_wp, 0.0_wp, 0.0_wp, 40.0_wp, 80.0_wp], 1.0e-12_wp, 1.0e-11_wp, &
+                       'force')
+   end subroutine plain
+
+   !> 10 % at twice the closing at the peak and beyond; half of that at the peak.
+   subroutine wear(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_spec) :: spec
+      real(wp) :: f(7)
+
+      spec = hand()
+      spec%wear = 0.1_wp
+      call follow_path(spec, [-4.0_wp, 1.0_wp, -4.0_wp, 1.0_wp, 2.0_wp, 1.0_wp, -5.0_wp], f)
+      call check_close(error, f(3), -72.0_wp, 1.0e-12_wp, 0.0_wp, 'after one opening')
+      call check_close(error, f(7), -0.81_wp*70.0_wp, 1.0e-12_wp, 0.0_wp, 'envelope, after two')
+      call follow_path(spec, [-2.0_wp, 1.0_wp, -2.0_wp], f(:3))
+      call check_close(error, f(3), -95.0_wp, 1.0e-12_wp, 0.0_wp, 'at the peak')
+   end subroutine wear
+
+   subroutine partial(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_spec) :: spec
+      real(wp) :: f(7), straight(1)
+
+      spec = concrete_1(1.0_wp)
+      call follow_path(spec, [-1.0e-3_wp, -9.0e-4_wp, -9.8e-4_wp, -7.0e-4_wp, -9.0e-4_wp, -1.0e-3_wp, &
+                              -1.5e-3_wp], f)
+      call follow_path(spec, [-1.5e-3_wp], straight)
+      call check_same(error, f(5), f(2), 'same line')
+      call check_close(error, f([6, 7]), [f(1), straight(1)], 1.0e-13_wp, 0.0_wp, 'no trace')
+   end subroutine partial
+
+   !> A random spring of its kind, and a path in closings at the peak.
+   subroutine random_spring(random, spec, d)
+      type(random_type), intent(inout) :: random
+      type(spring_spec), intent(out) :: spec
+      real(wp), intent(out) :: d(:)
+      real(wp) :: exponent
+      integer :: j
+
+      spec = hand()
+      spec%k = random%uniform(51.0_wp, 300.0_wp)
+      spec%k_fall = 10.0_wp**random%uniform(-1.0_wp, 3.0_wp)
+      spec%f_res = random%uniform(0.0_wp, 100.0_wp)
+      spec%plastic = random%uniform(0.0_wp, 2.0_wp)
+      spec%contact = max(0.0_wp, random%uniform(-0.3_wp, 0.95_wp))
+      spec%misfit = max(0.0_wp, random%uniform(-0.3_wp, 0.95_wp))
+      spec%wear = max(0.0_wp, random%uniform(-0.2_wp, 0.2_wp))
+      do j = 1, size(d)
+         exponent = random%uniform(-1.0_wp, 1.2_wp)
+         d(j) = random%uniform(-1.0_wp, 0.5_wp)*10.0_wp**exponent
+         ! Exact returns to an earlier point.
+         if (random%uniform(0.0_wp, 1.0_wp) > 0.85_wp) d(j) = d(max(j - 3, 1))
+      end do
+   end subroutine random_spring
+
+   !> Across every event the force stays; every line has its ends in order.
+   subroutine continuous(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      class(rule_type), allocatable :: rule
+      type(segment) :: line
+      real(wp) :: to(30), d, before
+      integer :: path, j, direction, lines
+
+      do path = 1, 300
+         call random_spring(random, spec, to)
+         call new_rule(rule, spec)
+         call rule%start(line)
+         d = 0.0_wp
+         do j = 1, size(to)
+            direction = merge(1, -1, to(j) > d)
+            do lines = 1, 100
+               if (line%one_way == -direction) then
+                  if (direction > 0) line%hi = d
+                  if (direction < 0) line%lo = d
+               end if
+               if (direction*(to(j) - line%end_toward(direction)) < 0.0_wp) exit
+               d = line%end_toward(direction)
+               before = line%force(d)
+               call rule%next(line, direction)
+               call check_close(error, line%force(d), before, 0.0_wp, 1.0e-10_wp, 'force at an event')
+               call check_true(error, line%lo <= line%hi, 'ends in order')
+               call check_true(error, line%lo <= d .and. d <= line%hi, 'on the new line')
+               call check_true(error, line%k <= (1.0_wp + 1.0e-9_wp)*spec%k, 'not stiffer than at first')
+            end do
+            call check_true(error, lines < 50, 'few lines in one move')
+            d = to(j)
+         end do
+      end do
+   end subroutine continuous
+
+   subroutine increments(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: parts(2) = [7, 1000]
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      type(spring_array) :: spring
+      real(wp) :: d(20), f(20), begin
+      integer :: path, j, p, i
+
+      do path = 1, 200
+         call random_spring(random, spec, d)
+         call follow_path(spec, d, f)
+         do p = 1, 2
+            if (parts(p) > 100 .and. path > 20) cycle
+            call spring%create([spec])
+            begin = 0.0_wp
+            do j = 1, size(d)
+               do i = 1, parts(p) - 1
+                  call spring%move(1, begin + (d(j) - begin)*i/parts(p))
+               end do
+               call spring%move(1, d(j))
+               call check_same(error, spring%force(1), f(j), 'force')
+               begin = d(j)
+            end do
+         end do
+      end do
+   end subroutine increments
+
+   subroutine copies(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      type(spring_array) :: spring, copy
+      real(wp) :: d(40), f(40)
+      integer :: path, j
+
+      do path = 1, 100
+         call random_spring(random, spec, d)
+         call follow_path(spec, d, f)
+         call spring%create([spec])
+         do j = 1, size(d)
+            copy = spring
+            call copy%move(1, random%uniform(-12.0_wp, 12.0_wp))
+            call spring%mark()
+            call spring%move(1, random%uniform(-12.0_wp, 12.0_wp))
+            call spring%restore()
+            call spring%forget_mark()
+            call spring%move(1, d(j))
+            call check_same(error, spring%force(1), f(j), 'force')
+         end do
+      end do
+   end subroutine copies
+
+   subroutine forgets(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      class(rule_type), allocatable :: rule
+      type(segment) :: first, line
+      real(wp) :: d(1)
+      integer :: i
+
+      call random_spring(random, spec, d)
+      call new_rule(rule, spec)
+      call rule%start(first)
+      line = first
+      do i = 1, 100
+         ! Down three lines, up three lines: not to an end that is none.
+         call rule%next(line, merge(1, -1, mod(i, 6) > 2))
+      end do
+      call rule%start(line)
+      call check_same(error, [line%d0, line%f0, line%k, line%lo, line%hi], &
+                      [first%d0, first%f0, first%k, first%lo, first%hi], 'first line')
+   end subroutine forgets
+
+   !> Without contact nothing comes back that did not go in. With it a crack may give back more when it opens
+   !> for the first time than it took when it closed: at most the triangle below the contact line.
+   subroutine work_positive(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      type(spring_array) :: spring
+      real(wp) :: d(60), least
+      integer :: path, j
+
+      do path = 1, 300
+         call random_spring(random, spec, d)
+         if (mod(path, 2) == 0) spec%contact = 0.0_wp
+         call spring%create([spec])
+         do j = 1, size(d)
+            call spring%move(1, d(j))
+            least = -0.5_wp*spec%contact*spec%f_peak*(maxval(abs(d(:j))) + spec%d_peak)
+            call check_true(error, spring%work(1) >= least - 1.0e-9_wp, 'work')
+         end do
+      end do
+   end subroutine work_positive
+
+   !> Never tension; where faces match, never more than loading in one direction.
+   subroutine envelope(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      real(wp) :: d(60), f(60), straight(1)
+      integer :: path, j
+
+      do path = 1, 300
+         call random_spring(random, spec, d)
+         if (mod(path, 2) == 0) spec%misfit = 0.0_wp
+         call follow_path(spec, d, f)
+         do j = 1, size(d)
+            call check_true(error, f(j) <= 0.0_wp, 'no tension')
+            call check_true(error, f(j) >= -spec%f_peak*(1.0_wp + 1.0e-12_wp), 'not above the strength')
+            if (spec%misfit > 0.0_wp) cycle
+            if (d(j) > 0.0_wp) cycle
+            call follow_path(spec, d(j:j), straight)
+            call check_true(error, f(j) >= straight(1) - 1.0e-9_wp, 'within the envelope')
+         end do
+      end do
+   end subroutine envelope
+
+end module test_concrete

@@ -1,0 +1,497 @@
+!> Joints of layers (docs/rules.md section 11): equilibrium of the axial load, closed forms, refusals.
+module test_layered
+   use check, only: unit_test, check_close, check_failed, check_same, check_true
+   use rbs_base_error, only: bad_input, error_type, message_list
+   use rbs_base_kinds, only: wp
+   use rbs_column_column, only: column_type
+   use rbs_hysteresis_factory, only: carries_axial_load, new_rule
+   use rbs_hysteresis_layered, only: layered_rule
+   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_segment, only: segment
+   use rbs_hysteresis_springs, only: follow_path, spring_array
+   use rbs_solve_run, only: make_column
+   use rbs_spec_column, only: column_spec
+   use rbs_spec_spring, only: spring_spec, initial_stiffness
+   use rbs_spec_spring_table, only: rule_names
+   use samples, only: bilinear, compression, concrete_1, elastic, steel_1, takeda_1, random_type
+   implicit none
+   private
+
+   public :: collect_layered
+
+   !> A section 0.4 m deep: bars at +-0.17 m, strips of concrete between.
+   real(wp), parameter :: arm = 0.17_wp, depth = 0.4_wp
+
+   !> A joint, and its layers once more as springs on their own.
+   type :: double_joint
+      class(rule_type), allocatable :: rule
+      type(segment) :: line
+      type(spring_array) :: layers
+      real(wp), allocatable :: y(:)
+      !> Present rotation [rad], axial load [N], axial stiffness at first [N/m]
+      real(wp) :: rotation = 0.0_wp, axial_load = 0.0_wp, stiffness = 0.0_wp
+      !> Largest faults so far, over the largest force of a layer and that times the depth
+      real(wp) :: axial_fault = 0.0_wp, moment_fault = 0.0_wp, largest = 1.0_wp
+      integer :: events = 0
+   contains
+      procedure :: begin
+      procedure :: turn_to
+      procedure :: compare
+   end type double_joint
+
+contains
+
+   subroutine collect_layered(tests)
+      type(unit_test), allocatable, intent(out) :: tests(:)
+
+      tests = [unit_test('elastic layers: transformed section about its centroid', elastic_section), &
+               unit_test('perfectly plastic layers: moment capacity under axial load', capacity), &
+               unit_test('joint without tension: axial load times its arm', rocking), &
+               unit_test('axial load: carried by the layers at every event', equilibrium), &
+               unit_test('axial load: round bars, but for their chords', round_bars), &
+               unit_test('virgin joint of an unsymmetric section has no moment', unsymmetric), &
+               unit_test('order of the layers does not matter', order), &
+               unit_test('a layer cut in two is the same layer', cut_layer), &
+               unit_test('property 2: 1, 7, 100 increments, to the last bit', increments), &
+               unit_test('copies and trial moves leave no trace', copies), &
+               unit_test('start forgets everything', forgets), &
+               unit_test('initial stiffness is the slope of the first line', first_slope), &
+               unit_test('axial load beyond the capacity is refused', refused), &
+               unit_test('validation names layer, value and remedy', validation)]
+   end subroutine collect_layered
+
+   !> A joint from distances and springs.
+   function joint(axial_load, y, layer) result(spec)
+      real(wp), intent(in) :: axial_load, y(:)
+      type(spring_spec), intent(in) :: layer(:)
+      type(spring_spec) :: spec
+      integer :: i
+
+      spec%rule = 'layered'
+      spec%axial_load = axial_load
+      allocate (spec%layers(2 + size(layer(1)%numbers()), size(y)))
+      do i = 1, size(y)
+         spec%layers(1, i) = y(i)
+         spec%layers(2, i) = findloc(rule_names == layer(i)%rule, .true., dim=1)
+         spec%layers(3:, i) = layer(i)%numbers()
+      end do
+   end function joint
+
+   !> Reinforced concrete: `strips` of concrete_1 over the depth, two rows of bars.
+   function section(axial_load, strips) result(spec)
+      real(wp), intent(in) :: axial_load
+      integer, intent(in) :: strips
+      type(spring_spec) :: spec
+      type(spring_spec) :: layer(strips + 2)
+      real(wp) :: y(strips + 2)
+      integer :: i
+
+      do i = 1, strips
+         y(i) = depth*((i - 0.5_wp)/strips - 0.5_wp)
+         layer(i) = concrete_1(1.0_wp/strips)
+      end do
+      y(strips + 1:) = [-arm, arm]
+      layer(strips + 1) = steel_1()
+      layer(strips + 2) = steel_1()
+      spec = joint(axial_load, y, layer)
+   end function section
+
+   subroutine begin(self, spec)
+      class(double_joint), intent(inout) :: self
+      type(spring_spec), intent(in) :: spec
+      type(spring_spec) :: layer(size(spec%layers, 2))
+      integer :: i
+
+      call new_rule(self%rule, spec)
+      call self%rule%start(self%line)
+      do i = 1, size(layer)
+         layer(i) = spec%layer(i)
+      end do
+      call self%layers%create(layer)
+      self%y = spec%layers(1, :)
+      self%axial_load = spec%axial_load
+      self%rotation = 0.0_wp
+      self%axial_fault = 0.0_wp
+      self%moment_fault = 0.0_wp
+      self%largest = abs(spec%axial_load)
+      self%events = 0
+      call self%compare()
+   end subroutine begin
+
+   !> Rotate in a straight way and compare at every event.
+   subroutine turn_to(self, rotation)
+      class(double_joint), intent(inout) :: self
+      real(wp), intent(in) :: rotation
+      integer :: direction
+
+      if (.not. abs(rotation - self%rotation) > 0.0_wp) return
+      direction = merge(1, -1, rotation > self%rotation)
+      do
+         if (self%line%one_way == -direction) then
+            if (direction > 0) self%line%hi = self%rotation
+            if (direction < 0) self%line%lo = self%rotation
+         else if (direction*(rotation - self%line%end_toward(direction)) < 0.0_wp) then
+            exit
+         end if
+         self%rotation = self%line%end_toward(direction)
+         call self%compare()
+         call self%rule%next(self%line, direction)
+         self%events = self%events + 1
+         call self%compare()
+      end do
+      self%rotation = rotation
+      call self%compare()
+   end subroutine turn_to
+
+   !> Forces of the layers on their own against what the joint says.
+   subroutine compare(self)
+      class(double_joint), intent(inout) :: self
+      real(wp) :: force(size(self%y)), d(size(self%y))
+      integer :: i
+
+      select type (rule => self%rule)
+      type is (layered_rule)
+         d = rule%opening_at(self%rotation) + self%y*self%rotation
+      end select
+      call self%layers%move_all(d)
+      do i = 1, size(d)
+         force(i) = self%layers%force(i)
+      end do
+      self%largest = max(self%largest, maxval(abs(force)))
+      self%axial_fault = max(self%axial_fault, abs(sum(force) + self%axial_load)/self%largest)
+      self%moment_fault = max(self%moment_fault, abs(dot_product(self%y, force) - &
+                                                     self%line%force(self%rotation))/(self%largest*depth))
+   end subroutine compare
+
+   !> Layers of a transformed section: EI about the centroid, over the length of the joint.
+   subroutine elastic_section(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: n = 100
+      real(wp), parameter :: ea = 1.2e9_wp, ea_bar = 2.0e8_wp
+      type(spring_spec) :: layer(n + 1)
+      real(wp) :: y(n + 1), f(2), centroid, ei
+      integer :: i
+
+      do i = 1, n
+         y(i) = depth*((i - 0.5_wp)/n - 0.5_wp)
+         layer(i) = elastic(ea/n)
+      end do
+      y(n + 1) = arm
+      layer(n + 1) = elastic(ea_bar)
+      call follow_path(joint(3.0e5_wp, y, layer), [1.0e-3_wp, -2.0e-3_wp], f)
+      ! A strip lacks h^2/12 of its own: 1/n^2 of the whole.
+      centroid = ea_bar*arm/(ea + ea_bar)
+      ei = ea*(depth**2/12.0_wp*(1.0_wp - 1.0_wp/n**2) + centroid**2) + ea_bar*(arm - centroid)**2
+      call check_close(error, f, ei*[1.0e-3_wp, -2.0e-3_wp], 1.0e-11_wp, 0.0_wp, 'moment')
+   end subroutine elastic_section
+
+   !> All layers yield: those beyond the plastic neutral axis in tension. It lies at a layer that carries
+   !> what is left.
+   subroutine capacity(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: n = 21
+      real(wp), parameter :: f_y = 1.0e5_wp
+      type(spring_spec) :: layer(n)
+      real(wp) :: y(n), f(2), axial_load, expected, rest
+      integer :: i, load, tension
+
+      do i = 1, n
+         y(i) = depth*((i - 0.5_wp)/n - 0.5_wp)
+         layer(i) = bilinear(1.0e9_wp, f_y/1.0e9_wp, 0.0_wp)
+      end do
+      do load = -15, 15, 5
+         axial_load = (load + 0.5_wp)*f_y
+         tension = (n - 1 - load)/2
+         rest = -axial_load - f_y*(tension - (n - 1 - tension))
+         expected = f_y*(sum(y(n - tension + 1:)) - sum(y(:n - tension - 1))) + rest*y(n - tension)
+         call follow_path(joint(axial_load, y, layer), [1.0_wp, -1.0_wp], f)
+         call check_close(error, f, expected*[1.0_wp, -1.0_wp], 1.0e-10_wp, 0.0_wp, 'moment')
+      end do
+   end subroutine capacity
+
+   !> Blocks that only push: the joint opens until it stands on the last one.
+   subroutine rocking(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_spec) :: layer(20)
+      real(wp) :: y(20), f(3), k, edge
+      integer :: i
+
+      do i = 1, 20
+         y(i) = depth*((i - 0.5_wp)/20 - 0.5_wp)
+         layer(i) = compression(1.0e9_wp/20)
+      end do
+      call follow_path(joint(2.0e5_wp, y, layer), [1.0e-4_wp, 1.0_wp, 0.0_wp], f)
+      k = sum(1.0e9_wp/20*y**2)
+      edge = maxval(y)
+      call check_close(error, f(1), k*1.0e-4_wp, 1.0e-12_wp, 0.0_wp, 'all closed')
+      call check_close(error, f(2), 2.0e5_wp*edge, 1.0e-12_wp, 0.0_wp, 'on the edge')
+      call check_close(error, f(3), 0.0_wp, 0.0_wp, 1.0e-8_wp, 'and back')
+   end subroutine rocking
+
+   !> Bars that yield with corners: the layers on their own follow the same lines.
+   subroutine equilibrium(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(double_joint) :: both
+      type(random_type) :: random
+      type(spring_spec) :: spec, bar
+      integer :: path, j, events
+
+      events = 0
+      bar = bilinear(8.0e8_wp, 9.0e-4_wp, 8.0e6_wp)
+      do path = 1, 40
+         spec = section(random%uniform(-2.0e5_wp, 1.5e6_wp), 12)
+         do j = 13, 14
+            spec%layers(2, j) = findloc(rule_names == bar%rule, .true., dim=1)
+            spec%layers(3:, j) = bar%numbers()
+         end do
+         call both%begin(spec)
+         do j = 1, 30
+            call both%turn_to(random%uniform(-1.0e-2_wp, 1.0e-2_wp))
+         end do
+         events = events + both%events
+         call check_close(error, both%axial_fault, 0.0_wp, 0.0_wp, 1.0e-9_wp, 'axial force')
+         call check_close(error, both%moment_fault, 0.0_wp, 0.0_wp, 1.0e-9_wp, 'moment')
+      end do
+      call check_true(error, events > 5000, 'many events')
+   end subroutine equilibrium
+
+   !> Round bars: chords begin elsewhere where the joint stops on the way, which the layers do not know.
+   subroutine round_bars(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(double_joint) :: both
+      type(random_type) :: random
+      integer :: path, j
+
+      do path = 1, 40
+         call both%begin(section(random%uniform(-2.0e5_wp, 1.5e6_wp), 12))
+         do j = 1, 30
+            call both%turn_to(random%uniform(-1.0e-2_wp, 1.0e-2_wp))
+         end do
+         call check_close(error, both%axial_fault, 0.0_wp, 0.0_wp, 2.0e-2_wp, 'axial force')
+         call check_close(error, both%moment_fault, 0.0_wp, 0.0_wp, 2.0e-2_wp, 'moment')
+      end do
+   end subroutine round_bars
+
+   !> Bars on one side only: under the axial load alone the joint turns, and counts from there.
+   subroutine unsymmetric(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_spec) :: layer(9)
+      real(wp) :: y(9), f(4)
+      integer :: i
+
+      do i = 1, 8
+         y(i) = depth*((i - 0.5_wp)/8 - 0.5_wp)
+         layer(i) = concrete_1(1.0_wp/8)
+      end do
+      y(9) = arm
+      layer(9) = steel_1()
+      call follow_path(joint(1.0e6_wp, y, layer), [0.0_wp, 1.0e-2_wp, -1.0e-2_wp, 0.0_wp], f)
+      call check_close(error, f(1), 0.0_wp, 0.0_wp, 1.0e-6_wp, 'at rest')
+      call check_true(error, abs(f(2) + f(3)) > 0.1_wp*f(2), 'the bars pull on one side')
+   end subroutine unsymmetric
+
+   !> A random path of rotations.
+   subroutine wander(random, d)
+      type(random_type), intent(inout) :: random
+      real(wp), intent(out) :: d(:)
+      integer :: j
+
+      do j = 1, size(d)
+         d(j) = random%uniform(-2.0e-2_wp, 2.0e-2_wp)*j/size(d)
+      end do
+   end subroutine wander
+
+   subroutine order(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: spec, other
+      real(wp) :: d(30), f(30), g(30)
+      integer :: path
+
+      spec = section(1.0e6_wp, 10)
+      other = spec
+      other%layers = spec%layers(:, size(spec%layers, 2):1:-1)
+      do path = 1, 20
+         call wander(random, d)
+         call follow_path(spec, d, f)
+         call follow_path(other, d, g)
+         call check_close(error, g, f, 0.0_wp, 1.0e-9_wp*maxval(abs(f)), 'moment')
+      end do
+   end subroutine order
+
+   subroutine cut_layer(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: whole, cut
+      type(spring_spec) :: layer(6)
+      real(wp) :: d(30), f(30), g(30), y(6)
+      integer :: path, i
+
+      do i = 1, 3
+         y(2*i - 1:2*i) = 0.1_wp*(i - 2)
+         layer(2*i - 1) = concrete_1(0.125_wp*i)
+         layer(2*i) = layer(2*i - 1)
+      end do
+      cut = joint(2.0e5_wp, y, layer)
+      do i = 1, 3
+         layer(i) = concrete_1(0.25_wp*i)
+      end do
+      whole = joint(2.0e5_wp, y([1, 3, 5]), layer(:3))
+      do path = 1, 20
+         call wander(random, d)
+         call follow_path(whole, d, f)
+         call follow_path(cut, d, g)
+         call check_close(error, g, f, 0.0_wp, 1.0e-9_wp*maxval(abs(f)), 'moment')
+      end do
+   end subroutine cut_layer
+
+   subroutine increments(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: parts(2) = [7, 100]
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      type(spring_array) :: spring
+      real(wp) :: d(20), f(20), begin
+      integer :: path, j, p, i
+
+      do path = 1, 30
+         spec = section(random%uniform(-2.0e5_wp, 3.0e6_wp), 10)
+         call wander(random, d)
+         call follow_path(spec, d, f)
+         do p = 1, 2
+            call spring%create([spec])
+            begin = 0.0_wp
+            do j = 1, size(d)
+               do i = 1, parts(p) - 1
+                  call spring%move(1, begin + (d(j) - begin)*i/parts(p))
+               end do
+               call spring%move(1, d(j))
+               call check_same(error, spring%force(1), f(j), 'moment')
+               begin = d(j)
+            end do
+         end do
+      end do
+   end subroutine increments
+
+   subroutine copies(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      type(spring_array) :: spring, copy
+      real(wp) :: d(20), f(20)
+      integer :: path, j
+
+      do path = 1, 20
+         spec = section(random%uniform(-2.0e5_wp, 3.0e6_wp), 10)
+         call wander(random, d)
+         call follow_path(spec, d, f)
+         call spring%create([spec])
+         do j = 1, size(d)
+            copy = spring
+            call copy%move(1, random%uniform(-2.0e-2_wp, 2.0e-2_wp))
+            call spring%mark()
+            call spring%move(1, random%uniform(-2.0e-2_wp, 2.0e-2_wp))
+            call spring%restore()
+            call spring%forget_mark()
+            call spring%move(1, d(j))
+            call check_same(error, spring%force(1), f(j), 'moment')
+         end do
+      end do
+   end subroutine copies
+
+   subroutine forgets(error)
+      type(error_type), allocatable, intent(inout) :: error
+      class(rule_type), allocatable :: rule
+      type(segment) :: first, line
+      integer :: i
+
+      call new_rule(rule, section(8.0e5_wp, 10))
+      call rule%start(first)
+      line = first
+      do i = 1, 300
+         call rule%next(line, merge(1, -1, mod(i, 60) < 30))
+      end do
+      call rule%start(line)
+      call check_same(error, [line%d0, line%f0, line%k, line%lo, line%hi], &
+                      [first%d0, first%f0, first%k, first%lo, first%hi], 'first line')
+   end subroutine forgets
+
+   subroutine first_slope(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_spec) :: spec
+      real(wp) :: f(1)
+
+      spec = section(0.0_wp, 10)
+      call follow_path(spec, [1.0e-9_wp], f)
+      call check_true(error, f(1)/1.0e-9_wp < initial_stiffness(spec), 'concrete without load opens')
+      spec = joint(0.0_wp, [-arm, arm, 0.0_wp], [elastic(1.0_wp), elastic(2.0_wp), elastic(3.0_wp)])
+      call follow_path(spec, [1.0_wp], f)
+      call check_close(error, initial_stiffness(spec), f(1), 1.0e-14_wp, 0.0_wp, 'slope')
+   end subroutine first_slope
+
+   subroutine refused(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_spec) :: spec
+      type(column_type) :: column
+      type(spring_spec) :: strip(4)
+      real(wp), parameter :: y(4) = [-0.15_wp, -0.05_wp, 0.05_wp, 0.15_wp]
+      integer :: i
+
+      do i = 1, 4
+         strip(i) = concrete_1(0.25_wp)
+      end do
+      ! Concrete alone carries 4.8 MN, and no tension.
+      call check_true(error, carries_axial_load(joint(4.79e6_wp, y, strip)), 'below its strength')
+      call check_true(error, .not. carries_axial_load(joint(4.81e6_wp, y, strip)), 'above its strength')
+      call check_true(error, .not. carries_axial_load(joint(-1.0_wp, y, strip)), 'tension')
+      call check_true(error, carries_axial_load(section(-1.3e6_wp, 10)), 'tension on bars')
+      call check_true(error, carries_axial_load(takeda_1('kc')), 'another rule')
+      spec%height = 1.6_wp
+      spec%mass = 600.0_wp
+      spec%shear = [elastic(1.0e9_wp)]
+      allocate (spec%flexure(1))
+      spec%flexure(1) = joint(4.81e6_wp, y, strip)
+      call make_column(spec, column, outcome)
+      call check_failed(error, outcome, bad_input, 'cannot carry axial_load = 4.81e+06 N')
+   end subroutine refused
+
+   subroutine validation(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_spec) :: spec, wrong
+
+      call expect(error, section(1.0e6_wp, 10), '')
+      spec%rule = 'layered'
+      spec%axial_load = 0.0_wp
+      call expect(error, spec, 'the layers are missing; give at least two')
+      call expect(error, joint(0.0_wp, [0.1_wp], [elastic(1.0_wp)]), 'give at least two')
+      spec = joint(0.0_wp, [0.1_wp, 0.2_wp], [elastic(1.0_wp), takeda_1('kc')])
+      call expect(error, spec, "layer 2 has the rule 'takeda'; it is one of concrete, steel, elastic")
+      wrong = steel_1()
+      wrong%k_post = wrong%k
+      call expect(error, joint(0.0_wp, [0.1_wp, 0.2_wp], [steel_1(), wrong]), &
+                  'layer 2: k_post = 8e+08 must be below k = 8e+08')
+      wrong = concrete_1(1.0_wp)
+      wrong%f_peak = 1.0e7_wp
+      call expect(error, joint(0.0_wp, [0.1_wp, 0.2_wp], [wrong, steel_1()]), &
+                  'layer 1: f_peak = 1e+07 must be below k d_peak = 9.6e+06')
+   end subroutine validation
+
+   !> What validation says of a spring, empty for nothing.
+   subroutine expect(error, spec, part)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_spec), intent(in) :: spec
+      character(len=*), intent(in) :: part
+      type(error_type), allocatable :: outcome
+      type(message_list) :: messages
+
+      call spec%validate('joint', messages)
+      call messages%raise(outcome)
+      if (part == '') then
+         call check_true(error, .not. allocated(outcome), 'valid')
+      else
+         call check_failed(error, outcome, bad_input, part)
+      end if
+   end subroutine expect
+
+end module test_layered

@@ -1,0 +1,403 @@
+!> Steel that yields round (docs/rules.md section 10): Menegotto and Pinto 1973 in chords.
+module test_steel
+   use check, only: unit_test, check_close, check_same, check_true
+   use rbs_base_error, only: error_type
+   use rbs_base_kinds, only: wp
+   use rbs_hysteresis_factory, only: new_rule
+   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_segment, only: segment
+   use rbs_hysteresis_springs, only: follow_path, spring_array
+   use rbs_spec_spring, only: spring_spec
+   use samples, only: random_type, steel_1
+   implicit none
+   private
+
+   public :: collect_steel
+
+   !> Yields at (1, 1).
+   real(wp), parameter :: hardening = 0.01_wp
+
+contains
+
+   subroutine collect_steel(tests)
+      type(unit_test), allocatable, intent(out) :: tests(:)
+
+      tests = [unit_test('Menegotto and Pinto 1973: virgin branch at the ends of the chords', virgin), &
+               unit_test('Menegotto and Pinto 1973: branch after a reversal', reversed), &
+               unit_test('Filippou, Popov and Bertero 1983: strength grows with the reach', growth), &
+               unit_test('endurance: half of the strength', endurance), &
+               unit_test('elastic range: no trace', elastic_range), &
+               unit_test('small cycles close and never overshoot', small_cycles), &
+               unit_test('a small cycle leaves no trace', closed), &
+               unit_test('more cycles within cycles than are remembered', many_nested), &
+               unit_test('mirrored path, mirrored bits', mirror), &
+               unit_test('forces are continuous where lines meet', continuous), &
+               unit_test('property 2: 1, 7, 1000 increments, to the last bit', increments), &
+               unit_test('copies and trial moves leave no trace', copies), &
+               unit_test('start forgets everything', forgets), &
+               unit_test('property 9: work of closed cycles, but for the chords', cycles), &
+               unit_test('stays between its lines of hardening', bounded)]
+   end subroutine collect_steel
+
+   !> Yields at (1, 1).
+   type(spring_spec) function unit_steel() result(spec)
+      spec%rule = 'steel'
+      spec%k = 1.0_wp
+      spec%f_y = 1.0_wp
+      spec%k_post = hardening
+      call spec%fill_defaults()
+   end function unit_steel
+
+   !> f* = b x + (1 - b) x/(1 + x^R)^(1/R).
+   elemental real(wp) function star(x, r)
+      real(wp), intent(in) :: x, r
+
+      star = hardening*x + (1.0_wp - hardening)*x/(1.0_wp + x**r)**(1.0_wp/r)
+   end function star
+
+   !> The ends are where x^R is 0.03, 0.15, 0.4, 0.8, 1.5, 3, 8, 30.
+   subroutine virgin(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp), parameter :: power(8) = [0.03_wp, 0.15_wp, 0.4_wp, 0.8_wp, 1.5_wp, 3.0_wp, 8.0_wp, 30.0_wp]
+      real(wp) :: x(8), f(8), far(1)
+      integer :: r0
+
+      do r0 = 2, 20, 6
+         x = power**(1.0_wp/r0)
+         call follow_path(with_roundness(real(r0, wp)), x, f)
+         call check_close(error, f, star(x, real(r0, wp)), 1.0e-13_wp, 0.0_wp, 'chords')
+      end do
+      ! Behind the last chord with the slope of hardening.
+      call follow_path(with_roundness(20.0_wp), [50.0_wp], far)
+      call check_close(error, far(1), f(8) + hardening*(50.0_wp - x(8)), 1.0e-13_wp, 0.0_wp, 'far out')
+      call check_close(error, far(1), star(50.0_wp, 20.0_wp), 2.0e-3_wp, 0.0_wp, 'asymptote')
+   end subroutine virgin
+
+   type(spring_spec) function with_roundness(r0) result(spec)
+      real(wp), intent(in) :: r0
+
+      spec = unit_steel()
+      spec%r0 = r0
+   end function with_roundness
+
+   !> From (5, f): asymptotes meet where the elastic line meets -1 + b (d + 1); the plastic excursion is
+   !> reckoned from the lowest deformation so far, here 0.
+   subroutine reversed(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: f(2), f_turn(1), d_a, f_a, r, xi, x
+      type(spring_spec) :: spec
+
+      spec = unit_steel()
+      call follow_path(spec, [5.0_wp], f_turn)
+      d_a = (-1.0_wp + hardening - f_turn(1) + 5.0_wp)/(1.0_wp - hardening)
+      f_a = f_turn(1) + d_a - 5.0_wp
+      xi = abs(0.0_wp - d_a)
+      r = spec%r0*(1.0_wp - spec%r1*xi/(spec%r2 + xi))
+      x = 1.5_wp**(1.0_wp/r)
+      call follow_path(spec, [5.0_wp, 5.0_wp + x*(d_a - 5.0_wp)], f)
+      call check_close(error, f(2), f_turn(1) + star(x, r)*(f_a - f_turn(1)), 1.0e-12_wp, 0.0_wp, 'force')
+   end subroutine reversed
+
+   !> Reach from 0 to 8: half of it is 4 d_y, the strength grows by growth 4^0.8.
+   subroutine growth(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_spec) :: spec
+      real(wp) :: f(2), g(2)
+
+      spec = unit_steel()
+      spec%r1 = 0.0_wp
+      call follow_path(spec, [8.0_wp, -200.0_wp], f)
+      spec%growth = 0.1_wp
+      call follow_path(spec, [8.0_wp, -200.0_wp], g)
+      call check_same(error, g(1), f(1), 'virgin branch')
+      call check_close(error, f(2) - g(2), 0.1_wp*4.0_wp**0.8_wp, 3.0e-3_wp, 0.0_wp, 'new branch')
+   end subroutine growth
+
+   !> Plastic work of the way to `far` is that under the curve less the elastic part.
+   subroutine endurance(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_spec) :: spec
+      type(spring_array) :: spring
+      real(wp) :: f(2), g(2), plastic
+
+      spec = unit_steel()
+      spec%r1 = 0.0_wp
+      call spring%create([spec])
+      call spring%move(1, 20.0_wp)
+      plastic = spring%work(1) - 0.5_wp*spring%force(1)**2
+      call follow_path(spec, [20.0_wp, -400.0_wp], f)
+      spec%endurance = plastic
+      call follow_path(spec, [20.0_wp, -400.0_wp], g)
+      call check_close(error, g(2) - f(2), 0.5_wp, 3.0e-3_wp, 0.0_wp, 'half')
+   end subroutine endurance
+
+   subroutine elastic_range(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: f(7), straight(1)
+
+      call follow_path(unit_steel(), [0.8_wp, -0.8_wp, 0.5_wp, 0.0_wp, -0.3_wp, 0.0_wp, 3.0_wp], f)
+      call check_close(error, f(:6), [0.8_wp, -0.8_wp, 0.5_wp, 0.0_wp, -0.3_wp, 0.0_wp], 3.0e-3_wp, &
+                       1.0e-15_wp, 'elastic')
+      call follow_path(unit_steel(), [3.0_wp], straight)
+      call check_same(error, f(7), straight(1), 'no trace')
+   end subroutine elastic_range
+
+   !> Cycles back onto the virgin branch: behind them the force is on it, between curve and chord.
+   subroutine small_cycles(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      real(wp) :: top, d(8), f(8), x
+      integer :: i, j
+
+      do i = 1, 200
+         spec = with_roundness(random%uniform(3.0_wp, 20.0_wp))
+         top = random%uniform(1.5_wp, 8.0_wp)
+         d(1) = top
+         do j = 2, 7
+            d(j) = top - random%uniform(0.0_wp, 0.6_wp)
+         end do
+         x = top + random%uniform(0.5_wp, 3.0_wp)
+         d(8) = x
+         call follow_path(spec, d, f)
+         call check_true(error, f(8) <= star(x, spec%r0) + 1.0e-9_wp, 'no overshoot')
+         call check_close(error, f(8), star(x, spec%r0), 2.0e-2_wp, 0.0_wp, 'behind the small cycles')
+      end do
+   end subroutine small_cycles
+
+   !> After a return to where a cycle began the rest of the path is as if there had been none.
+   subroutine closed(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      real(wp) :: d(6), f(6), g(3), small
+      integer :: i
+
+      do i = 1, 200
+         spec = with_roundness(random%uniform(10.0_wp, 20.0_wp))
+         small = random%uniform(0.05_wp, 0.5_wp)
+         d = [-4.0_wp, 3.0_wp, 3.0_wp - small, 3.0_wp, 5.0_wp, -6.0_wp]
+         call follow_path(spec, d, f)
+         call follow_path(spec, d([1, 5, 6]), g)
+         call check_close(error, f([5, 6]), g(2:3), 2.0e-2_wp, 0.0_wp, 'as if there had been none')
+      end do
+   end subroutine closed
+
+   !> More cycles within cycles than are remembered, and out of all of them: elastic ones that come back to
+   !> where they left, and plastic ones.
+   subroutine many_nested(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: most = 60
+      real(wp), parameter :: widths(4) = [0.4_wp, 0.8_wp, 1.5_wp, 6.0_wp]
+      type(spring_spec) :: spec
+      real(wp) :: d(most + 1), f(most + 1), g(2)
+      integer :: i, w, side
+
+      spec = unit_steel()
+      spec%r1 = 0.0_wp
+      do w = 1, size(widths)
+         do i = 1, most
+            d(i) = 6.0_wp - widths(w)*(1.0_wp - (1.0_wp - 0.012_wp*i)*(-1.0_wp)**(i + 1))
+         end do
+         do side = -1, 1, 2
+            d(most + 1) = side*30.0_wp
+            call follow_path(spec, d, f)
+            call follow_path(spec, d([1, most + 1]), g)
+            call check_close(error, f(most + 1), g(2), 2.0e-2_wp, 0.0_wp, 'out of all')
+            call check_true(error, maxval(abs(f)) <= 1.01_wp*abs(g(2)), 'on the way')
+         end do
+      end do
+   end subroutine many_nested
+
+   !> A random steel and a path in yield deformations.
+   subroutine random_steel(random, spec, d)
+      type(random_type), intent(inout) :: random
+      type(spring_spec), intent(out) :: spec
+      real(wp), intent(out) :: d(:)
+      real(wp) :: exponent
+      integer :: j
+
+      spec = unit_steel()
+      spec%k_post = max(0.0_wp, random%uniform(-0.02_wp, 0.1_wp))
+      spec%r0 = random%uniform(1.0_wp, 25.0_wp)
+      spec%r1 = random%uniform(0.0_wp, 0.95_wp)
+      spec%r2 = random%uniform(0.05_wp, 0.5_wp)
+      do j = 1, size(d)
+         exponent = random%uniform(-1.0_wp, 1.2_wp)
+         d(j) = random%uniform(-1.0_wp, 1.0_wp)*10.0_wp**exponent
+         ! Exact returns to an earlier point.
+         if (random%uniform(0.0_wp, 1.0_wp) > 0.85_wp) d(j) = d(max(j - 3, 1))
+      end do
+   end subroutine random_steel
+
+   subroutine mirror(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      real(wp) :: d(40), f(40), mirrored(40)
+      integer :: path
+
+      do path = 1, 200
+         call random_steel(random, spec, d)
+         spec%growth = 0.02_wp
+         spec%endurance = 500.0_wp
+         call follow_path(spec, d, f)
+         call follow_path(spec, -d, mirrored)
+         call check_same(error, mirrored, 0.0_wp - f, 'mirror')
+      end do
+   end subroutine mirror
+
+   !> Across every event the force stays; every line has its ends in order.
+   subroutine continuous(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      class(rule_type), allocatable :: rule
+      type(segment) :: line
+      real(wp) :: to(40), d, before
+      integer :: path, j, direction, lines
+
+      do path = 1, 300
+         call random_steel(random, spec, to)
+         spec%growth = 0.02_wp
+         spec%endurance = 500.0_wp
+         call new_rule(rule, spec)
+         call rule%start(line)
+         d = 0.0_wp
+         do j = 1, size(to)
+            direction = merge(1, -1, to(j) > d)
+            do lines = 1, 200
+               if (line%one_way == -direction) then
+                  if (direction > 0) line%hi = d
+                  if (direction < 0) line%lo = d
+               end if
+               if (direction*(to(j) - line%end_toward(direction)) < 0.0_wp) exit
+               d = line%end_toward(direction)
+               before = line%force(d)
+               call rule%next(line, direction)
+               call check_close(error, line%force(d), before, 0.0_wp, 1.0e-9_wp, 'force at an event')
+               call check_true(error, line%lo <= d .and. d <= line%hi, 'on the new line')
+               call check_true(error, line%k <= 1.0_wp + 1.0e-6_wp, 'not stiffer than elastic')
+               call check_true(error, line%k >= 0.0_wp, 'does not fall')
+            end do
+            call check_true(error, lines < 150, 'few lines in one move')
+            d = to(j)
+         end do
+      end do
+   end subroutine continuous
+
+   subroutine increments(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: parts(2) = [7, 1000]
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      type(spring_array) :: spring
+      real(wp) :: d(20), f(20), begin
+      integer :: path, j, p, i
+
+      do path = 1, 200
+         call random_steel(random, spec, d)
+         call follow_path(spec, d, f)
+         do p = 1, 2
+            if (parts(p) > 100 .and. path > 20) cycle
+            call spring%create([spec])
+            begin = 0.0_wp
+            do j = 1, size(d)
+               do i = 1, parts(p) - 1
+                  call spring%move(1, begin + (d(j) - begin)*i/parts(p))
+               end do
+               call spring%move(1, d(j))
+               call check_same(error, spring%force(1), f(j), 'force')
+               begin = d(j)
+            end do
+         end do
+      end do
+   end subroutine increments
+
+   subroutine copies(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      type(spring_array) :: spring, copy
+      real(wp) :: d(40), f(40)
+      integer :: path, j
+
+      do path = 1, 100
+         call random_steel(random, spec, d)
+         call follow_path(spec, d, f)
+         call spring%create([spec])
+         do j = 1, size(d)
+            copy = spring
+            call copy%move(1, random%uniform(-12.0_wp, 12.0_wp))
+            call spring%mark()
+            call spring%move(1, random%uniform(-12.0_wp, 12.0_wp))
+            call spring%restore()
+            call spring%forget_mark()
+            call spring%move(1, d(j))
+            call check_same(error, spring%force(1), f(j), 'force')
+         end do
+      end do
+   end subroutine copies
+
+   subroutine forgets(error)
+      type(error_type), allocatable, intent(inout) :: error
+      class(rule_type), allocatable :: rule
+      type(segment) :: first, line
+      integer :: i
+
+      call new_rule(rule, steel_1())
+      call rule%start(first)
+      line = first
+      do i = 1, 100
+         ! Up four lines, down four lines: never to the end of a branch, which has none.
+         call rule%next(line, merge(1, -1, mod(i, 8) < 4))
+      end do
+      call rule%start(line)
+      call check_same(error, [line%d0, line%f0, line%k, line%lo, line%hi], &
+                      [first%d0, first%f0, first%k, first%lo, first%hi], 'first line')
+   end subroutine forgets
+
+   !> From a state, away and back again, twice, so that the second cycle is a closed one.
+   subroutine cycles(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      type(spring_array) :: spring
+      real(wp) :: d(12), begin, ends(2)
+      integer :: path, j, i
+
+      do path = 1, 300
+         call random_steel(random, spec, d)
+         call spring%create([spec])
+         do j = 1, size(d)
+            call spring%move(1, d(j))
+            call check_true(error, spring%work(1) >= -1.0e-9_wp, 'work from the virgin state')
+         end do
+         ends(1) = random%uniform(-5.0_wp, 5.0_wp)
+         ends(2) = random%uniform(-5.0_wp, 5.0_wp)
+         do i = 1, 6
+            begin = spring%work(1)
+            call spring%move(1, ends(1))
+            call spring%move(1, ends(2))
+         end do
+         ! Two chords of a small cycle may lie beyond the curves they replace.
+         call check_true(error, spring%work(1) - begin >= -5.0e-3_wp, 'work of a closed cycle')
+      end do
+   end subroutine cycles
+
+   !> |f - k_post d| <= f_y - k_post d_y.
+   subroutine bounded(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_spec) :: spec
+      real(wp) :: d(60), f(60)
+      integer :: path
+
+      do path = 1, 300
+         call random_steel(random, spec, d)
+         call follow_path(spec, d, f)
+         call check_true(error, all(abs(f - spec%k_post*d) <= 1.0_wp - spec%k_post + 1.0e-6_wp), 'bounds')
+      end do
+   end subroutine bounded
+
+end module test_steel
