@@ -269,8 +269,14 @@ def test_net_force_by_code(tmp_path, code):
     assert test.force.tolist() == pytest.approx([0.0, expected, -expected])
     assert test.measured_force.tolist() == pytest.approx([0.0, 5e3, -5e3])
     assert test.height == test.length == 2.0
-    assert test.drift[1] == pytest.approx(0.05)
-    assert test.base_moment[1] == pytest.approx(expected * 2 + 1000 * 0.1)
+    # Driven is the top, at 2 m, while 0.1 m was measured at 1.5 m; the axial load is at 2.5 m.
+    top = 0.1 * 2 / 1.5
+    assert test.measured_displacement.tolist() == pytest.approx([0.0, 0.1, -0.1])
+    assert test.displacement.tolist() == pytest.approx([0.0, top, -top])
+    assert test.drift[1] == pytest.approx(0.1 / 1.5)
+    height = 2.0 if code == "4" else 2.5
+    assert test.axial_height == height
+    assert test.base_moment[1] == pytest.approx(expected * 2 + 1000 * top * height / 2)
 
 
 def test_codes_that_cannot_be():

@@ -11,6 +11,7 @@ from rbsdem.column import Column
 from rbsdem.errors import InputError
 from rbsdem.peer.drawing import draw
 from rbsdem.peer.layers import Hinge, hinge_joint
+from rbsdem.peer.shear import ShearNumbers, shear_spring
 from rbsdem.peer.specimen import Specimen
 from rbsdem.springs import Elastic
 
@@ -30,7 +31,8 @@ def column(specimen: Specimen, model: str = DEFAULT, **options: Any) -> Column:
     model : {"paper", "best"}, optional
         "paper": one component, trilinear Takeda flexure and bilinear shear by the section analysis,
         as the paper has them. "best": a hinge of concrete and steel layers with bar slip at the
-        foot, elastic joints above it (`rbsdem.peer.layers`); rectangular sections only.
+        foot, elastic joints above it (`rbsdem.peer.layers`); in series a shear spring that cracks,
+        fails and pinches (`rbsdem.peer.shear`).
     **options
         ``n`` : number of bodies.
 
@@ -64,12 +66,15 @@ def _paper(specimen: Specimen, n: int = 1) -> Column:
         shear,
         springs.flexure,
         n=n,
-        axial_load=specimen.axial_load,
+        axial_load=specimen.second_order_load,
         kinematics="pdelta",
     )
 
 
-#: Numbers of the layered model that may be calibrated; bounds are factors of their values.
+#: What names of numbers of the shear spring begin with.
+_SHEAR = "shear_"
+
+#: Numbers of the layered hinge that may be calibrated; bounds are factors of their values.
 _FREE = {
     "steel_strength": (0.7, 1.5, "-", "yield and ultimate stress over the measured ones"),
     "concrete_strength": (0.6, 1.7, "-", "strength in place over that of cylinders"),
@@ -85,6 +90,13 @@ _FREE = {
     "wear": (0.05, 8.0, "-", "strength of the concrete lost by a cycle"),
 }
 
+#: The same of its shear spring.
+_FREE_SHEAR = {
+    "strength": (0.5, 2.0, "-", "shear force at yield of the ties over the shear strength"),
+    "endurance": (0.02, 50.0, "-", "energy that the shear strength lasts for"),
+    "pinch_force": (0.1, 6.0, "-", "force at the break of pinched reloading"),
+}
+
 
 @dataclass(frozen=True)
 class LayeredColumn(Column):
@@ -95,58 +107,78 @@ class LayeredColumn(Column):
     specimen : Specimen
         Its properties.
     hinge : Hinge
-        Numbers of the model.
+        Numbers of the hinge.
+    shear_numbers : ShearNumbers
+        Numbers of the shear spring.
     """
 
     specimen: Specimen | None = None
     hinge: Hinge = field(default_factory=Hinge)
+    shear_numbers: ShearNumbers = field(default_factory=ShearNumbers)
 
     @property
     def parameters(self) -> dict[str, Parameter]:
-        """Numbers that `rbsdem.calibrate` may fit, the most telling first."""
+        """Numbers that `rbsdem.calibrate` may fit, the most telling first; `shear_...` last."""
         found = {}
-        for name, (low, high, unit, what) in _FREE.items():
-            value = getattr(self.hinge, name)
-            found[name] = Parameter(value, low * value, high * value, unit, what)
+        for numbers, names, prefix in (
+            (self.hinge, _FREE, ""),
+            (self.shear_numbers, _FREE_SHEAR, _SHEAR),
+        ):
+            for name, (low, high, unit, what) in names.items():
+                value = getattr(numbers, name)
+                found[prefix + name] = Parameter(value, low * value, high * value, unit, what)
         return found
 
     def with_parameters(self, **values: float) -> LayeredColumn:
         """Return the column with other numbers of its model."""
-        return _best(self.specimen, n=self.n, hinge=self.hinge.with_numbers(**values))
+        shear = {name: values.pop(_SHEAR + name) for name in _FREE_SHEAR if _SHEAR + name in values}
+        return _best(
+            self.specimen,
+            n=self.n,
+            hinge=self.hinge.with_numbers(**values),
+            shear_numbers=self.shear_numbers.with_numbers(**shear),
+        )
 
 
-def _best(specimen: Specimen, n: int = 2, hinge: Hinge | None = None) -> LayeredColumn:
-    """Layered hinge at the foot, elastic joints at the middles of n - 1 equal parts above it."""
+def _best(
+    specimen: Specimen,
+    n: int = 2,
+    hinge: Hinge | None = None,
+    shear_numbers: ShearNumbers | None = None,
+) -> LayeredColumn:
+    """Layered hinge at the foot, elastic joints at the middles of n - 1 equal parts above it.
+
+    All slip is at the foot: where it fails in shear is where it bends most.
+    """
     if n < 2:
         raise InputError(
             f"n = {n}: the layered model needs a joint above the hinge; give 2 or more"
         )
     drawing = draw(specimen)
-    if drawing.shape == "circular":
-        raise InputError(
-            f"{specimen.name}: the layered model is for rectangular sections; use model='paper'"
-        )
-    hinge = hinge or Hinge()
+    hinge, shear_numbers = hinge or Hinge(), shear_numbers or ShearNumbers()
     length = specimen.length
     joint = hinge_joint(drawing, length, specimen.axial_load, hinge)
-    above = length - joint.length / 2
+    above = length - joint.length
     part = above / (n - 1)
     # Lumped at the middles, the top would be 1 - 1/(4 m^2) as flexible as the continuous column.
     stiffness = joint.flexural_stiffness / part * (1 - 0.25 / (n - 1) ** 2)
-    heights = [0.0] + [joint.length / 2 + (i + 0.5) * part for i in range(n - 1)] + [length]
-    rigid = 1e3 * joint.shear_stiffness / length
-    shear = Elastic((n - 1) * joint.shear_stiffness / length)
+    heights = [0.0] + [joint.length + (i + 0.5) * part for i in range(n - 1)] + [length]
+    foot = shear_spring(
+        drawing.section(), length, specimen.axial_load, joint.shear_stiffness, shear_numbers
+    )
+    rigid = Elastic(1e3 * joint.shear_stiffness / length)
     return LayeredColumn(
         length,
         specimen.mass,
-        [Elastic(rigid)] + [shear] * (n - 1),
+        [foot] + [rigid] * (n - 1),
         [joint.spring] + [Elastic(stiffness)] * (n - 1),
         n=n,
         lengths=[high - low for low, high in pairwise(heights)],
-        axial_load=specimen.axial_load,
+        axial_load=specimen.second_order_load,
         kinematics="pdelta",
         specimen=specimen,
         hinge=hinge,
+        shear_numbers=shear_numbers,
     )
 
 

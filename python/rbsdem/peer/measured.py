@@ -31,26 +31,31 @@ class MeasuredTest:
     name : str
         Name of the test.
     displacement : ndarray, shape (m,)
-        Displacement of the top of the equivalent cantilever [m].
+        Displacement of the top of the equivalent cantilever, where the lateral force acts [m]: what
+        drives a column. Where it was measured at another height, in proportion to the height.
     force : ndarray, shape (m,)
         Net horizontal force F_H [N]: what the lateral force of a model with P-Delta stands for.
-    measured_force : ndarray, shape (m,)
-        Force column of the file [N].
+    measured_displacement, measured_force : ndarray, shape (m,)
+        Columns of the file [m, N].
     length : float
         Length of the equivalent cantilever [m].
     axial_load : float
         Axial load, compression positive [N].
     pdelta_code : int or None
         Code by which `force` was found; None, as the report does not tell, is taken as 2.
+    axial_height : float
+        Height at which the axial load acts, at the hinge of its ram [m].
     """
 
     name: str
     displacement: Array
     force: Array
+    measured_displacement: Array
     measured_force: Array
     length: float
     axial_load: float
     pdelta_code: int | None
+    axial_height: float
 
     @property
     def height(self) -> float:
@@ -66,10 +71,34 @@ class MeasuredTest:
     def base_moment(self) -> Array:
         """Moment at the base, with that of the axial load in the displaced position [N m].
 
-        F_H L + P d: exact where the axial load stays vertical and the top is where the displacement
-        was measured.
+        F_H L + P d (L + L_top)/L, d at the top: exact where the axial load stays vertical.
         """
-        return self.force * self.length + self.axial_load * self.displacement
+        lever = self.axial_height / self.length
+        return self.force * self.length + self.axial_load * lever * self.displacement
+
+
+def top_displacement(
+    displacement: ArrayLike, *, length: float, measured_length: float | None = None
+) -> Array:
+    """Turn the displacement where it was measured into that of the top.
+
+    Parameters
+    ----------
+    displacement : array_like, shape (m,)
+        As in the file [m].
+    length : float
+        Of the equivalent cantilever [m].
+    measured_length : float, optional
+        Height at which the displacement was measured [m]; the length without it.
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        d L/L_meas [m], as the manual's rules for P-Delta have it: the column stays straight above
+        its hinge.
+    """
+    d = _core.finite_vector(displacement, "displacement")
+    return d * (length / (measured_length or length))
 
 
 def net_force(
@@ -88,7 +117,7 @@ def net_force(
     Parameters
     ----------
     displacement, force : array_like, shape (m,)
-        The history as in its file [m, N].
+        The history as in its file [m, N], the displacement where it was measured.
     code : {1, 2, 3, 4} or None
         P-Delta code of the test; None, as the report does not tell, is taken as 2.
     axial_load : float
@@ -96,7 +125,7 @@ def net_force(
     length : float
         Of the equivalent cantilever [m].
     measured_length : float, optional
-        Height at which the displacement was measured [m]; the length without it.
+        Height at which `displacement` was measured [m]; the length without it.
     top_length, bottom_length : float, optional
         From the column's ends to the hinges of the axial ram [m]; 0 without them.
 

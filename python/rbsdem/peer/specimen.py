@@ -10,7 +10,7 @@ from pathlib import Path
 from rbsdem.errors import InputError
 from rbsdem.paper import CONCRETE_DENSITY
 from rbsdem.peer.file import PeerTest, read_peer
-from rbsdem.peer.measured import MeasuredTest, net_force
+from rbsdem.peer.measured import MeasuredTest, net_force, top_displacement
 
 __all__ = ["Observed", "Specimen"]
 
@@ -191,6 +191,24 @@ class Specimen:
         return self.axial_load / (self.gross_area * self.concrete_strength)
 
     @property
+    def axial_height(self) -> float:
+        """Height at which the axial load acts [m].
+
+        The length and `top_length`; the length alone with P-Delta code 4, whose net force has the
+        horizontal part of the load in it (Berry, Parrish and Eberhard 2004, 3.3).
+        """
+        return self.length + (0.0 if self.pdelta_code == 4 else self.top_length or 0.0)
+
+    @property
+    def second_order_load(self) -> float:
+        """Axial load at the top that has the second-order moment of the one at its height [N].
+
+        P (L + L_top)/L: what a `rbsdem.Column` of this length takes for `axial_load`; its sections
+        carry P.
+        """
+        return self.axial_load * (self.axial_height / self.length)
+
+    @property
     def span_depth_ratio(self) -> float:
         """Length over depth."""
         return self.length / self.depth
@@ -261,7 +279,7 @@ class Specimen:
         Returns
         -------
         MeasuredTest
-            Displacement [m], net horizontal force [N], and the force column as it stands.
+            Displacement of the top [m], net horizontal force [N], and the columns of the file.
 
         Raises
         ------
@@ -285,10 +303,14 @@ class Specimen:
             raise InputError(f"{self.name}: {error}") from error
         return MeasuredTest(
             name=self.name,
-            displacement=history.displacement,
+            displacement=top_displacement(
+                history.displacement, length=self.length, measured_length=self.measured_length
+            ),
             force=force,
+            measured_displacement=history.displacement,
             measured_force=history.force,
             length=self.length,
             axial_load=self.axial_load,
             pdelta_code=self.pdelta_code,
+            axial_height=self.axial_height,
         )

@@ -1,0 +1,156 @@
+"""The shear spring at the foot of a column: cracks, yields its ties, fails, and pinches.
+
+The lines up to the largest force are published relations; what comes behind them, and the pinching,
+are general numbers fitted to tests (`ShearNumbers`). The spring needs no decision whether a column
+is critical in shear: one that yields in flexure first never leaves the lines before yield.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from rbsdem.section.strength import (
+    shear_sizes,
+    shear_strength_mcft,
+    shear_strength_sezen,
+)
+from rbsdem.springs import Pinching
+
+if TYPE_CHECKING:
+    from rbsdem.section import Section
+
+__all__ = ["ShearNumbers", "cracked_shear_stiffness", "shear_spring"]
+
+_ES = 200e9
+
+# Cracked stiffness without ties, and cracking force under tension: shares of the uncracked
+# stiffness and of the yield force that keep the lines of the spring apart.
+_LEAST = 0.01
+
+
+@dataclass(frozen=True)
+class ShearNumbers:
+    """Numbers of the shear spring that are the same for all columns.
+
+    The defaults are fitted to the tests of the PEER Structural Performance Database that failed in
+    shear, or in shear after flexure (``docs/fit_shear.py``).
+
+    Attributes
+    ----------
+    strength : float
+        Force at which the ties yield over the shear strength of the simplified modified compression
+        field theory (Bentz, Vecchio, Collins 2006).
+    hardening : float
+        Largest force over that at yield, 1 or more.
+    cap : float
+        Slip from there to the largest force, over the length of the column.
+    fall : float
+        Slip from the largest force to where the softening line has none left, over the length.
+    residual : float
+        Residual over largest force.
+    endurance : float
+        Energy that the strength lasts for, over yield force times yield slip; 0: for ever.
+    pinch_force, pinch_slip : float
+        `kappa_f` and `kappa_d` of `rbsdem.Pinching`.
+    """
+
+    strength: float = 0.95
+    hardening: float = 1.15
+    cap: float = 0.025
+    fall: float = 0.060
+    residual: float = 0.05
+    endurance: float = 200.0
+    pinch_force: float = 0.27
+    pinch_slip: float = 0.71
+
+    def with_numbers(self, **numbers: float) -> ShearNumbers:
+        """Return them with others in place of some."""
+        return replace(self, **numbers)
+
+
+def cracked_shear_stiffness(section: Section) -> float:
+    """Return the shear stiffness of the truss of ties and concrete struts at 45 degrees.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+
+    Returns
+    -------
+    float
+        rho_v/(1 + 4 n rho_v) E_s b d, shear force over shear strain [N].
+
+    Notes
+    -----
+    Park and Paulay (1975), Reinforced Concrete Structures, 7.5.
+    """
+    sizes = shear_sizes(section)
+    ratio = sizes.tie_ratio
+    modular = _ES / section.concrete_law["ec"]
+    return ratio / (1 + 4 * modular * ratio) * _ES * sizes.width * sizes.d
+
+
+def shear_spring(
+    section: Section,
+    length: float,
+    axial_load: float,
+    stiffness: float,
+    numbers: ShearNumbers | None = None,
+) -> Pinching:
+    """Make the shear spring of a column.
+
+    Parameters
+    ----------
+    section : Section
+        The section at the foot.
+    length : float
+        From the foot to the lateral load [m].
+    axial_load : float
+        Compression positive [N].
+    stiffness : float
+        Shear stiffness before cracking, force over strain [N].
+    numbers : ShearNumbers, optional
+        Those of all columns without it.
+
+    Returns
+    -------
+    Pinching
+        Of the slip of the whole length: cracks at the share V_c of the concrete by Sezen and Moehle
+        (2004), which is that of a principal tension; goes on with `cracked_shear_stiffness`; yields
+        near `rbsdem.section.strength.shear_strength_mcft`.
+
+    Raises
+    ------
+    InputError
+        If the length is not positive.
+    """
+    given = numbers or ShearNumbers()
+    sizes = shear_sizes(section)
+    # A section without bars in tension, which has no strength, still needs a spring with one.
+    f_y = given.strength * shear_strength_mcft(section, length, axial_load)
+    f_y = max(f_y, 1e-4 * sizes.fc * sizes.gross_area)
+    f_cap = max(given.hardening, 1.0) * f_y
+    by_ties = sizes.tie_area * sizes.tie_yield * sizes.d / sizes.spacing
+    by_concrete = shear_strength_sezen(section, length, axial_load) - by_ties
+    f_c = min(max(by_concrete, _LEAST * f_y), 0.9 * f_y)
+    whole = stiffness / length
+    cracked = min(max(cracked_shear_stiffness(section) / length, _LEAST * whole), 0.9 * whole)
+    d_c = f_c / whole
+    d_y = d_c + (f_y - f_c) / cracked
+    # Behind yield it may not go up steeper than before.
+    rise = max(given.cap * length, 1.01 * (f_cap - f_y) / cracked)
+    return Pinching(
+        d_c=d_c,
+        f_c=f_c,
+        d_y=d_y,
+        f_y=f_y,
+        d_cap=d_y + rise,
+        f_cap=f_cap,
+        d_pc=given.fall * length,
+        f_res=min(given.residual * f_cap, 0.9 * f_y),
+        lambda_s=given.endurance,
+        kappa_f=given.pinch_force,
+        kappa_d=given.pinch_slip,
+    )

@@ -1,0 +1,133 @@
+"""Sections cut into strips: areas and moments of the shapes, confinement by hand."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import rbsdem
+from rbsdem import peer
+from rbsdem.peer.strips import Strip, cut
+
+SQUARE = peer.Specimen(
+    name="Square",
+    section="rectangular",
+    length=1.6,
+    width=0.4,
+    depth=0.5,
+    concrete_strength=40e6,
+    axial_load=1e6,
+    longitudinal_number=8,
+    cover=0.02,
+    cover_perpendicular=0.03,
+    corner_diameter=0.02,
+    intermediate_diameter=0.02,
+    intermediate_perpendicular=1,
+    intermediate_parallel=1,
+    corner_yield_stress=450e6,
+    transverse_yield_stress=350e6,
+    transverse_diameter=0.01,
+    transverse_spacing=0.08,
+    shear_legs=3.0,
+)
+# Cover to the centre of the spiral: a core of 0.5 - 2 x 0.03.
+ROUND = replace(SQUARE, name="Round", section="circular", width=0.5, cover=0.03)
+CASED = replace(ROUND, name="Cased", section="square(spiral table)")
+ALL = pytest.mark.parametrize("specimen", [SQUARE, ROUND, CASED], ids=lambda s: s.name)
+
+DISC = math.pi / 4 * 0.44**2
+
+
+def total(strips: tuple[Strip, ...], power: int = 0) -> float:
+    return sum(strip.area * strip.y**power for strip in strips)
+
+
+@ALL
+@pytest.mark.parametrize("number", [1, 7, 14])
+def test_strips_add_up_to_the_shape(specimen, number):
+    s = cut(peer.draw(specimen), number)
+    gross = math.pi / 4 * 0.25 if specimen is ROUND else specimen.width * 0.5
+    core = (0.4 - 0.07) * (0.5 - 0.05) if specimen is SQUARE else DISC
+    assert s.area == pytest.approx(gross, rel=1e-14)
+    assert total(s.core) == pytest.approx(core, rel=1e-12)
+    assert total(s.cover) == pytest.approx(gross - core, rel=1e-12)
+    for strips in (s.core, s.cover):
+        assert [strip.y for strip in strips] == pytest.approx(
+            [-strip.y for strip in reversed(strips)], abs=1e-15
+        )
+
+
+@ALL
+def test_second_moments_converge_with_order_two(specimen):
+    """Of areas in their centroids: what is missing is that of the strips about themselves.
+
+    The core of hoops ends at an edge of strips.
+    """
+    exact = math.pi / 64 * 0.5**4 if specimen is ROUND else specimen.width * 0.5**3 / 12
+    missing = []
+    for number in (20, 40, 80):
+        s = cut(peer.draw(specimen), number)
+        assert s.inertia == pytest.approx(exact, rel=1e-14)
+        missing.append(exact - total(s.core, 2) - total(s.cover, 2))
+    assert missing[0] > 0
+    assert missing[0] / missing[1] == pytest.approx(4, rel=0.05)
+    assert missing[1] / missing[2] == pytest.approx(4, rel=0.05)
+
+
+def test_half_a_disc_has_its_centroid():
+    """4 r/(3 pi)."""
+    low, high = cut(peer.draw(ROUND), 2).core
+    assert (low.y, high.y) == (pytest.approx(-4 * 0.22 / 3 / math.pi), pytest.approx(-low.y))
+
+
+def test_a_ring_is_cover_in_every_strip_and_a_core_of_hoops_ends():
+    assert len(cut(peer.draw(ROUND), 20).cover) == 20
+    s = cut(peer.draw(SQUARE), 20)
+    # Strips of 25 mm; the core ends 25 mm from the faces.
+    assert (len(s.core), len(s.cover)) == (18, 20)
+
+
+@pytest.mark.parametrize("specimen", [ROUND, CASED], ids=lambda s: s.name)
+def test_confinement_by_a_spiral_by_hand(specimen):
+    s = cut(peer.draw(specimen), 10)
+    ratio = 4 * (math.pi / 4 * 0.01**2) / (0.44 * 0.08)
+    bars = 8 * math.pi / 4 * 0.02**2 / DISC
+    effective = (1 - 0.07 / (2 * 0.44)) / (1 - bars)
+    assert s.tie_ratio == pytest.approx(ratio)
+    assert s.confining_stress == pytest.approx(0.5 * effective * ratio * 350e6)
+
+
+def test_confinement_by_hoops_by_hand():
+    """Eight held bars around a core of 330 x 450 mm; three legs."""
+    s = cut(peer.draw(SQUARE), 10)
+    ratio = 3 * math.pi / 4 * 0.01**2 / (0.08 * 0.33)
+    clear = 2 * (0.33 + 0.45) / 8 - 0.02
+    bars = 8 * math.pi / 4 * 0.02**2 / (0.33 * 0.45)
+    effective = (1 - 8 * clear**2 / 6 / (0.33 * 0.45)) / (1 - bars)
+    effective *= (1 - 0.07 / 0.66) * (1 - 0.07 / 0.9)
+    assert s.tie_ratio == pytest.approx(2 * ratio)
+    assert s.confining_stress == pytest.approx(effective * ratio * 350e6)
+
+
+@ALL
+def test_without_ties_nothing_confines(specimen):
+    s = cut(peer.draw(replace(specimen, transverse_spacing=None)), 10)
+    assert (s.confining_stress, s.tie_ratio) == (0.0, 0.0)
+    assert s.core
+
+
+@pytest.mark.parametrize("specimen", [ROUND, CASED], ids=lambda s: s.name)
+def test_a_column_with_a_spiral(specimen):
+    """Equal in both directions; as strong as the section by strips and plane sections."""
+    column = peer.column(specimen, "best")
+    d = 0.03 * np.sin(np.linspace(0, 4 * np.pi, 161))
+    force = rbsdem.cyclic(column, displacement=d).force
+    assert rbsdem.cyclic(column, displacement=-d).force == pytest.approx(-force, abs=1.0)
+    section = peer.draw(specimen).section()
+    curvature = np.linspace(0, 0.1, 60)[1:]
+    moment = section.moment_curvature(specimen.axial_load, curvature, tension="zero")
+    rotation = curvature * 0.2
+    assert np.max(column.flexure[0].response(rotation)) == pytest.approx(np.max(moment), rel=0.2)
