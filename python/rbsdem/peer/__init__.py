@@ -6,11 +6,13 @@ points come with rbsdem.
 """
 
 from rbsdem.peer.batch import predict, predict_one
-from rbsdem.peer.blind import MODELS, column
+from rbsdem.peer.blind import MODELS, LayeredColumn, column
 from rbsdem.peer.drawing import Drawing, DrawnBar, draw
 from rbsdem.peer.file import PeerTest, read_peer
+from rbsdem.peer.layers import Hinge
 from rbsdem.peer.measured import PDELTA_CODES, MeasuredTest, net_force
 from rbsdem.peer.predictions import Group, Prediction, Predictions, Quartiles
+from rbsdem.peer.shear import ShearNumbers
 from rbsdem.peer.shipped import (
     FOLDER_VARIABLE,
     HISTORY_FILES,
@@ -30,6 +32,8 @@ __all__ = [
     "Drawing",
     "DrawnBar",
     "Group",
+    "Hinge",
+    "LayeredColumn",
     "MeasuredTest",
     "Observed",
     "PeerTest",
@@ -37,6 +41,7 @@ __all__ = [
     "Predictions",
     "Quartiles",
     "Reversals",
+    "ShearNumbers",
     "Specimen",
     "Specimens",
     "column",

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any
 
+from rbsdem import _core
 from rbsdem.calibration.parameter import Parameter
 from rbsdem.column import Column
 from rbsdem.errors import InputError
@@ -13,11 +14,11 @@ from rbsdem.peer.drawing import draw
 from rbsdem.peer.layers import Hinge, hinge_joint
 from rbsdem.peer.shear import ShearNumbers, shear_spring
 from rbsdem.peer.specimen import Specimen
-from rbsdem.springs import Elastic
+from rbsdem.springs import Bilinear, Elastic
 
-__all__ = ["DEFAULT", "MODELS", "column"]
+__all__ = ["DEFAULT", "MODELS", "LayeredColumn", "column"]
 
-DEFAULT = "paper"
+DEFAULT = "best"
 """The model that is taken if none is named."""
 
 
@@ -30,11 +31,12 @@ def column(specimen: Specimen, model: str = DEFAULT, **options: Any) -> Column:
         The test; only its properties are looked at.
     model : {"paper", "best"}, optional
         "paper": one component, trilinear Takeda flexure and bilinear shear by the section analysis,
-        as the paper has them. "best": a hinge of concrete and steel layers with bar slip at the
+        as the paper has them; with n above 1, joints with the section's springs of their tributary
+        lengths above that hinge. "best": a hinge of concrete and steel layers with bar slip at the
         foot, elastic joints above it (`rbsdem.peer.layers`); in series a shear spring that cracks,
         fails and pinches (`rbsdem.peer.shear`).
     **options
-        ``n`` : number of bodies.
+        ``n`` : number of bodies, 1 by default in "paper", 2 in "best", which needs as many.
 
     Returns
     -------
@@ -52,23 +54,69 @@ def column(specimen: Specimen, model: str = DEFAULT, **options: Any) -> Column:
 
 
 def _paper(specimen: Specimen, n: int = 1) -> Column:
+    n = _count(n, least=1)
     section = draw(specimen).section()
+    length, load = specimen.length, specimen.axial_load
     # Columns of high axial load are controlled by compression: they yield there.
-    springs = section.springs(specimen.length, specimen.axial_load, yield_rule="first")
+    springs = section.springs(length, load, yield_rule="first")
     shear = springs.shear
     if shear is None:
         # Knee of the shear diagram in closed form: 0.48 of the uncracked stiffness.
         stiffness = 0.48 * section.concrete_law["ec"] / 2 * section.gross_area
-        shear = Elastic(stiffness / specimen.length)
+        shear = Elastic(stiffness / length)
+    flexure = [springs.flexure]
+    lengths = None
+    if n > 1:
+        # Each joint has its share of the slip, and the curvature of its part.
+        shear = _share(shear, n)
+        lengths, part = _parts(length, springs.hinge_length, n)
+        above = section.springs(
+            length, load, yield_rule="first", hinge_length=part / _lumping(n), shear="none"
+        )
+        flexure += [above.flexure] * (n - 1)
     return Column(
-        specimen.length,
+        length,
         specimen.mass,
         shear,
-        springs.flexure,
+        flexure,
         n=n,
+        lengths=lengths,
         axial_load=specimen.second_order_load,
         kinematics="pdelta",
     )
+
+
+def _count(n: int, least: int) -> int:
+    n = _core.whole(n, "n")
+    if n < least:
+        more = ": the layered model needs a joint above the hinge" if least == 2 else ""
+        raise InputError(f"n = {n}{more}; give {least} or more")
+    return n
+
+
+def _parts(length: float, hinge_length: float, n: int) -> tuple[list[float], float]:
+    """Return the lengths of the bodies, and of the parts that the joints above the hinge are for.
+
+    The joints are in the middles of n - 1 equal parts of the column above the hinge.
+    """
+    part = (length - hinge_length) / (n - 1)
+    heights = [0.0, *(hinge_length + (i + 0.5) * part for i in range(n - 1)), length]
+    return [high - low for low, high in pairwise(heights)], part
+
+
+def _lumping(n: int) -> float:
+    """Return the deflection of the top by n - 1 joints over that of the continuous column.
+
+    1 - 1/(4 m^2) with m joints in the middles of m parts and the moment of a force at the top.
+    """
+    return 1 - 0.25 / (n - 1) ** 2
+
+
+def _share(spring: Bilinear | Elastic, n: int) -> Bilinear | Elastic:
+    """Return the spring of which n in a row are the given one."""
+    if isinstance(spring, Elastic):
+        return Elastic(n * spring.k)
+    return replace(spring, k=n * spring.k, d_y=spring.d_y / n, k_post=n * spring.k_post)
 
 
 #: What names of numbers of the shear spring begin with.
@@ -150,19 +198,14 @@ def _best(
 
     All slip is at the foot: where it fails in shear is where it bends most.
     """
-    if n < 2:
-        raise InputError(
-            f"n = {n}: the layered model needs a joint above the hinge; give 2 or more"
-        )
+    n = _count(n, least=2)
     drawing = draw(specimen)
     hinge, shear_numbers = hinge or Hinge(), shear_numbers or ShearNumbers()
     length = specimen.length
     joint = hinge_joint(drawing, length, specimen.axial_load, hinge)
-    above = length - joint.length
-    part = above / (n - 1)
-    # Lumped at the middles, the top would be 1 - 1/(4 m^2) as flexible as the continuous column.
-    stiffness = joint.flexural_stiffness / part * (1 - 0.25 / (n - 1) ** 2)
-    heights = [0.0] + [joint.length + (i + 0.5) * part for i in range(n - 1)] + [length]
+    lengths, part = _parts(length, joint.length, n)
+    # Flexible as the continuous column, whatever n is.
+    stiffness = joint.flexural_stiffness / part * _lumping(n)
     foot = shear_spring(
         drawing.section(), length, specimen.axial_load, joint.shear_stiffness, shear_numbers
     )
@@ -173,7 +216,7 @@ def _best(
         [foot] + [rigid] * (n - 1),
         [joint.spring] + [Elastic(stiffness)] * (n - 1),
         n=n,
-        lengths=[high - low for low, high in pairwise(heights)],
+        lengths=lengths,
         axial_load=specimen.second_order_load,
         kinematics="pdelta",
         specimen=specimen,

@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from rbsdem.errors import InputError
 from rbsdem.peer.strips import cut
 from rbsdem.springs import ConcreteSpring, Layered, SteelSpring
 
@@ -150,7 +151,7 @@ def hinge_joint(drawing: Drawing, length: float, axial_load: float, hinge: Hinge
     Raises
     ------
     InputError
-        If the layers cannot carry the axial load.
+        If concrete at its strength and bars at yield cannot carry the axial load.
     """
     depth, cylinder = drawing.depth, drawing.concrete_strength
     strips = cut(drawing, _STRIPS)
@@ -215,6 +216,7 @@ def hinge_joint(drawing: Drawing, length: float, axial_load: float, hinge: Hinge
             endurance=1 / fatigue if fatigue > 0 else 0.0,
         )
         layers.append((bar.y, steel))
+    _check(axial_load, layers)
     uncracked = modulus * strips.inertia + _ES * sum(bar.area * bar.y**2 for bar in drawing.bars)
     return HingeJoint(
         Layered(axial_load, tuple(layers)),
@@ -222,3 +224,14 @@ def hinge_joint(drawing: Drawing, length: float, axial_load: float, hinge: Hinge
         min(1.0, by_axial(hinge.stiffness, hinge.stiffness_axial)) * uncracked,
         hinge.shear_stiffness * modulus / 2.4 * strips.shear_area,
     )
+
+
+def _check(axial_load: float, layers: list[tuple[float, ConcreteSpring | SteelSpring]]) -> None:
+    """Refuse what only hardening bars would carry."""
+    bars = sum(spring.f_y for _, spring in layers if isinstance(spring, SteelSpring))
+    whole = bars + sum(spring.f_peak for _, spring in layers if isinstance(spring, ConcreteSpring))
+    if not -bars < axial_load < whole:
+        raise InputError(
+            f"axial load = {axial_load / 1e3:g} kN is not between {-bars / 1e3:.0f} and "
+            f"{whole / 1e3:.0f} kN, which bars and concrete of the section carry"
+        )
