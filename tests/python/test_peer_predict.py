@@ -220,7 +220,7 @@ def test_the_papers_model_by_name(table):
     assert found[0].seconds_model > 0
     with pytest.raises(InputError, match="not known"):
         peer.column(table[0], "nonsense")
-    column = peer.column(table[0])
+    column = peer.column(table[0], "paper")
     assert (column.height, column.axial_load, column.kinematics) == (1.6, 744e3, "pdelta")
     assert column.n == 1
 
@@ -345,7 +345,8 @@ def test_command(folder, tmp_path, capsys):
     assert run(folder, "--jobs", "1", "--out", out, "--loops", "--failure", "flexure") == 0
     text = capsys.readouterr().out
     assert "Me 1991 No. 1" in text
-    assert "Model paper: 3 tests in" in text
+    assert "Model best: 3 tests in" in text
+    assert "rectangular, Flexure" in text
     names = {path.name for path in out.iterdir()}
     assert names == {"results.csv", "summary.csv", "gallery.html", "loops.png", "loops"}
 

@@ -22,8 +22,8 @@ holds specimens.csv and the histories of the PEER Structural Performance Databas
 """
 
 EPILOG = """\
-Files (--out): results.csv (a row for each test), summary.csv (medians and quartiles by failure
-mode), gallery.html (all loops, to sort and filter), loops.png (all loops; needs matplotlib).
+Files (--out): results.csv (a row for each test), summary.csv (medians and quartiles of
+groups), gallery.html (all loops, to sort and filter), loops.png (all loops; needs matplotlib).
 Exit codes: 0 every test was analysed to its end, 1 some were not, 2 the input is wrong,
 130 broken off by the keyboard (what was done is reported).
 """
@@ -52,7 +52,7 @@ def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
     )
     parser.add_argument(
         "--section",
-        default="rectangular",
+        default="all",
         choices=["rectangular", "circular", "all"],
         help="sections; circular with octagonal ones and spirals; default %(default)s",
     )
@@ -66,7 +66,10 @@ def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
         "--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="processes"
     )
     parser.add_argument(
-        "--by", default="failure_mode", metavar="WHAT", help="groups: failure_mode, section, series"
+        "--by",
+        default="kind",
+        metavar="WHAT",
+        help="groups: kind (form and failure mode), failure_mode, section, series",
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help="write files into this folder")
     parser.add_argument(

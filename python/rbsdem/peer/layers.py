@@ -21,6 +21,9 @@ __all__ = ["Hinge", "HingeJoint", "hinge_joint"]
 
 _ES = 200e9
 _STRIPS = 14
+# The hinge is lumped at the foot, where it turns the whole length, not that above its middle: the
+# column above makes up for it.
+_STIFFEST = 2.0
 
 
 @dataclass(frozen=True)
@@ -64,7 +67,8 @@ class Hinge:
     slip_length, slip_axial : float
         Length of yielding in the footing over f_y d_b [1/MPa].
     stiffness, stiffness_axial : float
-        Flexural stiffness of the column above over that of the uncracked section, up to 1.
+        Flexural stiffness of the column above over that of the uncracked section, up to 2: above 1
+        it makes up for the hinge, which is lumped at the foot.
     shear_stiffness : float
         Shear stiffness of the column over the uncracked one.
     plastic, misfit, contact, contact_axial, wear : float
@@ -221,7 +225,7 @@ def hinge_joint(drawing: Drawing, length: float, axial_load: float, hinge: Hinge
     return HingeJoint(
         Layered(axial_load, tuple(layers)),
         concrete_length,
-        min(1.0, by_axial(hinge.stiffness, hinge.stiffness_axial)) * uncracked,
+        min(_STIFFEST, by_axial(hinge.stiffness, hinge.stiffness_axial)) * uncracked,
         hinge.shear_stiffness * modulus / 2.4 * strips.shear_area,
     )
 

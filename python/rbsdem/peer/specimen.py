@@ -230,6 +230,15 @@ class Specimen:
         # A name in place of the author tells the year itself.
         return f"{first} {self.year}" if self.year and self.year not in first else first
 
+    @property
+    def kind(self) -> str:
+        """Form of the section and failure mode, as "rectangular, Flexure".
+
+        Octagons and spirals in a square count as round.
+        """
+        form = "rectangular" if self.section == "rectangular" else "round"
+        return f"{form}, {self.failure_mode or 'not known'}"
+
     def is_called(self, key: str) -> bool:
         """Whether a text is its file (with or without ending), name or number in the database.
 
