@@ -117,9 +117,10 @@ def test_wrong_choices_are_refused(model, options, text):
         peer.column(SPECIMEN, model, **options)
 
 
-def test_an_axial_load_over_the_capacity_is_refused():
-    crushed = replace(SPECIMEN, axial_load=9e6)
-    with pytest.raises(InputError, match="axial load"):
+@pytest.mark.parametrize("load", [9e6, -1.5e6])
+def test_an_axial_load_over_the_capacity_is_refused(load):
+    crushed = replace(SPECIMEN, axial_load=load)
+    with pytest.raises(InputError, match=f"axial load = {load / 1e3:g} kN is not between"):
         peer.column(crushed, "best")
 
 
@@ -130,3 +131,20 @@ def test_numbers_to_fit_stand_between_their_bounds_and_come_back():
         other = column.with_parameters(**{name: math.sqrt(number.low * number.high)})
         assert other.parameters[name].value == pytest.approx(math.sqrt(number.low * number.high))
         assert other.n == column.n
+
+
+@pytest.mark.parametrize(
+    ("changed", "text"),
+    [
+        ({"concrete_strength": 40.0}, "concrete_strength = 40 Pa .* 40 MPa is 40e6"),
+        ({"length": 1600.0}, "length = 1600 m .* 1600 mm is 1.6"),
+        ({"width": 0.0}, "width = 0 m must be"),
+        ({"axial_load": math.nan}, "axial_load = nan N must be"),
+        ({"longitudinal_number": 0}, "longitudinal_number = 0"),
+        ({"length": -1.0, "depth": 400.0}, "length = -1 m(.|\n)*depth = 400 m"),
+    ],
+)
+@pytest.mark.parametrize("model", ["paper", "best"])
+def test_numbers_that_no_column_has_are_refused(model, changed, text):
+    with pytest.raises(InputError, match=text):
+        peer.column(replace(SPECIMEN, **changed), model)

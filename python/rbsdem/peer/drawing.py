@@ -192,8 +192,10 @@ def draw(specimen: Specimen) -> Drawing:
     Raises
     ------
     InputError
-        If the shape is not known, if the bars have no diameter, or if they do not fit.
+        If the shape is not known, if a number cannot be one of a column in SI units, if the bars
+        have no diameter, or if they do not fit.
     """
+    _check(specimen)
     sheet = _Sheet(specimen)
     shape = {
         "rectangular": "rectangular",
@@ -242,6 +244,37 @@ def draw(specimen: Specimen) -> Drawing:
         restrained=_restrained(specimen),
         assumed=tuple(sheet.assumed),
     )
+
+
+# What a column can have, in SI units, and how a number in other units would look.
+_RANGES = {
+    "length": (0.05, 100.0, "m", "1600 mm is 1.6"),
+    "width": (0.02, 20.0, "m", "400 mm is 0.4"),
+    "depth": (0.02, 20.0, "m", "400 mm is 0.4"),
+    "concrete_strength": (2e6, 300e6, "Pa", "40 MPa is 40e6"),
+    "axial_load": (-1e9, 1e9, "N", "700 kN is 700e3"),
+    "corner_yield_stress": (50e6, 3e9, "Pa", "450 MPa is 450e6"),
+    "intermediate_yield_stress": (50e6, 3e9, "Pa", "450 MPa is 450e6"),
+    "transverse_yield_stress": (50e6, 3e9, "Pa", "450 MPa is 450e6"),
+    "longitudinal_ultimate_stress": (50e6, 4e9, "Pa", "600 MPa is 600e6"),
+    "transverse_diameter": (1e-3, 0.1, "m", "10 mm is 0.010"),
+    "transverse_spacing": (2e-3, 10.0, "m", "80 mm is 0.080"),
+    "longitudinal_number": (1, 10000, "bars", "count all of them"),
+}
+
+
+def _check(specimen: Specimen) -> None:
+    """Refuse what is no number of a column, all of it at once."""
+    faults = []
+    for name, (low, high, unit, remedy) in _RANGES.items():
+        value = getattr(specimen, name)
+        if value is not None and not low <= value <= high:
+            faults.append(
+                f"{specimen.name}: {name} = {value:g} {unit} must be between {low:g} and {high:g}; "
+                f"{remedy}"
+            )
+    if faults:
+        raise InputError("\n".join(faults))
 
 
 def _steel(yield_stress: float, ultimate_stress: float) -> Steel:
