@@ -127,15 +127,16 @@ _FREE = {
     "steel_strength": (0.7, 1.5, "-", "yield and ultimate stress over the measured ones"),
     "concrete_strength": (0.6, 1.7, "-", "strength in place over that of cylinders"),
     "hinge_length": (0.2, 4.0, "-", "factor of the hinge length"),
-    "stiffness": (0.2, 4.0, "-", "flexural stiffness above the hinge over the gross one"),
+    "compression_length": (0.3, 3.0, "-", "hinge length of the concrete over that of the steel"),
+    "wear": (0.05, 8.0, "-", "strength of the concrete lost by a cycle"),
     "roundness": (0.3, 3.0, "-", "R0 of the steel"),
+    "stiffness": (0.2, 4.0, "-", "flexural stiffness above the hinge over the gross one"),
     "fatigue": (0.05, 50.0, "-", "1 over the plastic work that halves the strength"),
     "slip_length": (0.1, 5.0, "1/MPa", "length of yielding in the footing"),
     "confinement": (0.1, 5.0, "-", "factor of the confining stress"),
     "cover_fall": (0.2, 20.0, "-", "factor of the slope behind the peak of the cover"),
     "core_fall": (0.1, 50.0, "-", "factor of the slope behind the peak of the core"),
     "contact": (0.1, 2.0, "-", "share of the force at which a crack is closed"),
-    "wear": (0.05, 8.0, "-", "strength of the concrete lost by a cycle"),
 }
 
 #: The same of its shear spring.

@@ -1,0 +1,232 @@
+"""Fit the numbers of the layered hinge of the blind model, and score them on series left out.
+
+    python docs/fit_hinge.py FOLDER [--folds 5] [--evaluations 10] [--jobs 2]
+
+FOLDER holds the histories and the table of the tests (docs/peer.md). Fitted are all flexural tests
+of rectangular columns with one set of numbers, from values as in the literature, on which a weak
+prior keeps them. A test counts by n^2/(n^2 + s^2), n its nrmse: those that no number of the model
+mends do not pull. Series, not tests, are left out: the columns of a series are much alike.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import warnings
+from concurrent.futures import ProcessPoolExecutor
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import least_squares
+
+import rbsdem
+from rbsdem import peer
+from rbsdem.calibration.misfit import Target, forces
+from rbsdem.peer.layers import Hinge
+
+
+class Number(NamedTuple):
+    """A number that is fitted; `spread` is relative for positive ones, absolute for exponents."""
+
+    start: float
+    spread: float
+    low: float
+    high: float
+
+
+NUMBERS = {
+    "steel_strength": Number(1.05, 0.1, 0.9, 1.2),
+    "hardening": Number(1.0, 0.5, 0.3, 2.0),
+    "roundness": Number(10.0, 0.5, 3.0, 25.0),
+    "roundness_axial": Number(0.0, 2.0, -4.0, 4.0),
+    "roundness_loss": Number(0.85, 0.1, 0.5, 0.97),
+    "roundness_reach": Number(0.4, 0.5, 0.05, 1.5),
+    "growth": Number(0.05, 1.0, 0.005, 0.3),
+    "fatigue": Number(0.003, 1.0, 2e-4, 0.05),
+    "concrete_strength": Number(0.9, 0.15, 0.6, 1.2),
+    "concrete_size": Number(0.0, 0.1, -0.3, 0.4),
+    "peak_strain": Number(1.1, 0.3, 0.7, 2.0),
+    "confinement": Number(1.0, 0.3, 0.3, 2.0),
+    "core_fall": Number(1.0, 1.0, 0.05, 10.0),
+    "cover_fall": Number(1.0, 0.7, 0.1, 10.0),
+    "residual": Number(0.3, 0.5, 0.05, 0.8),
+    "hinge_length": Number(0.8, 0.4, 0.2, 2.0),
+    "hinge_axial": Number(0.0, 1.5, -4.0, 3.0),
+    "hinge_depth": Number(0.1, 1.0, 0.01, 0.6),
+    "compression_length": Number(1.5, 0.4, 0.5, 3.0),
+    "slip_length": Number(0.015, 0.5, 0.003, 0.05),
+    "slip_axial": Number(0.0, 1.5, -4.0, 3.0),
+    "stiffness": Number(0.9, 0.3, 0.3, 2.0),
+    "stiffness_axial": Number(1.0, 1.0, 0.0, 4.0),
+    "shear_stiffness": Number(0.7, 0.4, 0.2, 1.0),
+    "plastic": Number(1.5, 0.4, 0.5, 3.0),
+    "misfit": Number(0.3, 0.5, 0.05, 0.8),
+    "contact": Number(0.3, 0.5, 0.05, 0.8),
+    "contact_axial": Number(0.0, 1.5, -4.0, 4.0),
+    "wear": Number(0.05, 0.7, 0.005, 0.3),
+}
+
+# nrmse of a test that counts half.
+HALF = 0.13
+# What an error of 1 in the ratio of peaks, or of energies, counts as nrmse.
+PEAK, ENERGY = 0.3, 0.08
+# Weight of the prior: of one spread, against the mean over the tests.
+PRIOR = 1e-3
+# Every so many of the points along the path.
+EVERY = 5
+
+
+def value(number: Number, place: float) -> float:
+    """Return the number at a place, which counts spreads from the start."""
+    if number.low > 0:
+        return number.start * math.exp(number.spread * place)
+    return number.start + number.spread * place
+
+
+def bounds() -> tuple[list[float], list[float]]:
+    """Return the bounds of the places."""
+    sides = ([], [])
+    for number in NUMBERS.values():
+        for side, end in zip(sides, (number.low, number.high), strict=True):
+            way = math.log(end / number.start) if number.low > 0 else end - number.start
+            side.append(way / number.spread)
+    return sides
+
+
+def hinge(places: np.ndarray) -> Hinge:
+    """Return the hinge of places."""
+    items = zip(NUMBERS.items(), places.tolist(), strict=True)
+    return Hinge(**{name: value(number, place) for (name, number), place in items})
+
+
+class Case:
+    """A test and what of its column does not change.
+
+    Parameters
+    ----------
+    specimen : rbsdem.peer.Specimen
+        The test.
+    """
+
+    def __init__(self, specimen: peer.Specimen) -> None:
+        self.specimen, self.target = specimen, Target(specimen.test())
+
+    def error(self, numbers: Hinge) -> np.ndarray:
+        """Return the errors along the path and, last, those of the two ratios."""
+        column = peer.column(self.specimen, "best", hinge=numbers)
+        force = forces(column, self.target.displacement)[0]
+        error = self.target.error(force)[::EVERY]
+        peak, energy = self.target.ratios(force)
+        ratios = np.clip([PEAK * (peak - 1), ENERGY * (energy - 1)], -HALF, HALF)
+        return np.append(error / math.sqrt(len(error)), ratios)
+
+    def residual(self, numbers: Hinge) -> np.ndarray:
+        """Return the errors so that their square sum is the bounded loss."""
+        error = self.error(numbers)
+        return error / math.sqrt(error @ error + HALF**2)
+
+
+_cases: list[Case] = []
+
+
+def _begin(folder: str) -> None:
+    warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
+    _cases[:] = load(folder)
+
+
+def _one(task: tuple[int, np.ndarray]) -> np.ndarray:
+    number, places = task
+    return _cases[number].residual(hinge(places))
+
+
+def _slopes(task: tuple[int, np.ndarray]) -> np.ndarray:
+    """Return the change of the residual of a test by each number, by differences."""
+    number, places = task
+    _, high = bounds()
+    here, columns = _one(task), []
+    for i in range(len(places)):
+        step = 0.15 if places[i] + 0.15 <= high[i] else -0.15
+        moved = places.copy()
+        moved[i] += step
+        columns.append((_one((number, moved)) - here) / step)
+    return np.column_stack(columns)
+
+
+def load(folder: str) -> list[Case]:
+    """Return the flexural tests of rectangular columns."""
+    tests = peer.read_specimens(folder).where(section="rectangular", failure_mode="Flexure")
+    return [Case(specimen) for specimen in tests.with_history()]
+
+
+def fit(pool: ProcessPoolExecutor, numbers: list[int], evaluations: int) -> np.ndarray:
+    """Return the places that suit some of the tests best."""
+    weight, prior = 1 / math.sqrt(len(numbers)), math.sqrt(PRIOR)
+
+    def residual(places: np.ndarray) -> np.ndarray:
+        rows = pool.map(_one, [(i, places) for i in numbers], chunksize=6)
+        return np.concatenate([*(weight * row for row in rows), prior * places])
+
+    def slopes(places: np.ndarray) -> np.ndarray:
+        rows = pool.map(_slopes, [(i, places) for i in numbers], chunksize=2)
+        return np.vstack([*(weight * row for row in rows), prior * np.eye(len(places))])
+
+    start = np.zeros(len(NUMBERS))
+    found = least_squares(residual, start, slopes, bounds(), ftol=1e-3, max_nfev=evaluations)
+    return found.x
+
+
+def scores(cases: list[Case], numbers: Hinge) -> dict[str, list[float]]:
+    """Return scores of tests by their names."""
+    found = {}
+    for case in cases:
+        test = case.specimen.test()
+        column = peer.column(case.specimen, "best", hinge=numbers)
+        row = rbsdem.compare(rbsdem.cyclic(column, displacement=test.displacement), test)
+        found[case.specimen.name] = [row.nrmse, row.peak_ratio, row.energy_ratio]
+    return found
+
+
+def show(what: str, found: dict[str, list[float]]) -> None:
+    """Print medians."""
+    rows = np.array(list(found.values()))
+    quarter, median, three = np.percentile(rows[:, 0], [25, 50, 75])
+    print(
+        f"{what}: nrmse {median:.4f} (quartiles {quarter:.3f}, {three:.3f}), "
+        f"peak ratio {np.nanmedian(rows[:, 1]):.3f}, energy ratio {np.nanmedian(rows[:, 2]):.3f}, "
+        f"{len(rows)} tests",
+        flush=True,
+    )
+
+
+def main() -> None:
+    """Fit, leave out, print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder")
+    parser.add_argument("--folds", type=int, default=5)
+    parser.add_argument("--evaluations", type=int, default=10)
+    parser.add_argument("--jobs", type=int, default=2)
+    given = parser.parse_args()
+
+    _begin(given.folder)
+    show("numbers as they stand", scores(_cases, Hinge()))
+    names = sorted({case.specimen.series for case in _cases})
+    # The order of the alphabet has nothing to do with the tests.
+    folds = [names[i :: given.folds] for i in range(given.folds)]
+    with ProcessPoolExecutor(given.jobs, initializer=_begin, initargs=(given.folder,)) as pool:
+        places = fit(pool, list(range(len(_cases))), given.evaluations)
+        show("all series, fitted to them", scores(_cases, hinge(places)))
+        for name, number, place in zip(NUMBERS, NUMBERS.values(), places, strict=True):
+            print(f"    {name}: float = {value(number, place):.3g}", flush=True)
+        left_out: dict[str, list[float]] = {}
+        for fold in folds:
+            inside = [i for i, c in enumerate(_cases) if c.specimen.series not in fold]
+            outside = [c for c in _cases if c.specimen.series in fold]
+            places = fit(pool, inside, given.evaluations)
+            found = scores(outside, hinge(places))
+            show(f"without {', '.join(fold)}", found)
+            left_out |= found
+    show("every series left out once", left_out)
+
+
+if __name__ == "__main__":
+    main()
