@@ -226,6 +226,11 @@ def main() -> None:
             show(f"without {', '.join(fold)}", found)
             left_out |= found
     show("every series left out once", left_out)
+    print("of these the columns of the paper:")
+    for case in _cases:
+        path = case.specimen.path
+        if path and any(path.name in names for names in peer.HISTORY_FILES.values()):
+            print(f"    {case.specimen.name}: nrmse {left_out[case.specimen.name][0]:.3f}")
 
 
 if __name__ == "__main__":

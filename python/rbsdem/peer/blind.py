@@ -37,6 +37,7 @@ def column(specimen: Specimen, model: str = DEFAULT, **options: Any) -> Column:
         fails and pinches (`rbsdem.peer.shear`).
     **options
         ``n`` : number of bodies, 1 by default in "paper", 2 in "best", which needs as many.
+        ``hinge``, ``shear_numbers`` : `Hinge` and `ShearNumbers` of "best", else the fitted ones.
 
     Returns
     -------
@@ -143,7 +144,7 @@ _FREE = {
 _FREE_SHEAR = {
     "strength": (0.5, 2.0, "-", "shear force at yield of the ties over the shear strength"),
     "endurance": (0.02, 50.0, "-", "energy that the shear strength lasts for"),
-    "pinch_force": (0.1, 6.0, "-", "force at the break of pinched reloading"),
+    "pinch_force": (0.1, 3.0, "-", "force at the break of pinched reloading"),
 }
 
 

@@ -55,14 +55,14 @@ class ShearNumbers:
         `kappa_f` and `kappa_d` of `rbsdem.Pinching`.
     """
 
-    strength: float = 0.95
-    hardening: float = 1.15
-    cap: float = 0.025
-    fall: float = 0.060
+    strength: float = 0.965
+    hardening: float = 1.11
+    cap: float = 0.0234
+    fall: float = 0.0941
     residual: float = 0.05
-    endurance: float = 200.0
-    pinch_force: float = 0.27
-    pinch_slip: float = 0.71
+    endurance: float = 217.0
+    pinch_force: float = 0.288
+    pinch_slip: float = 0.741
 
     def with_numbers(self, **numbers: float) -> ShearNumbers:
         """Return them with others in place of some."""
