@@ -1,7 +1,8 @@
 """How well a model can follow measured columns: every test of a folder calibrated.
 
     python docs/calibration_table.py DIR [--model NAME] [--free NAME...] [--only NAME...]
-        [--section KIND] [--failure MODE] [--loss LOSS] [--evaluations N] [--jobs N] [--out FILE]
+        [--section KIND] [--failure MODE] [--loss LOSS] [--evaluations N] [--seconds S]
+        [--jobs N] [--out FILE]
 
 DIR has the histories and the table `specimens.csv`. Model "lumped" is one Takeda spring that starts
 from the gross section; all others are those of `rbsdem.peer.column`, whose numbers start from the
@@ -49,6 +50,7 @@ def main() -> int:
         free=options.free,
         loss=options.loss,
         evaluations=options.evaluations,
+        seconds=options.seconds,
     )
     begin = time.perf_counter()
     rows: list[dict[str, Any]] = []
@@ -68,7 +70,13 @@ def main() -> int:
 
 
 def one(
-    specimen: Specimen, *, model: str, free: list[str] | None, loss: str, evaluations: int
+    specimen: Specimen,
+    *,
+    model: str,
+    free: list[str] | None,
+    loss: str,
+    evaluations: int,
+    seconds: float,
 ) -> dict[str, Any]:
     """Calibrate one test; what goes wrong is told in the row."""
     row: dict[str, Any] = {"name": specimen.name, "failure_mode": specimen.failure_mode}
@@ -85,7 +93,9 @@ def one(
             names = free or offered
             left_out = undetermined(column, test, names)
             names = [name for name in names if name not in left_out]
-            fit = rbsdem.calibrate(column, test, names, loss=loss, evaluations=evaluations)
+            fit = rbsdem.calibrate(
+                column, test, names, loss=loss, evaluations=evaluations, seconds=seconds
+            )
         except RbsdemError as error:
             return row | {"error": str(error)}
     for name in SCORES:
@@ -132,6 +142,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--failure", default="Flexure", help="'' for all")
     parser.add_argument("--loss", default="nrmse")
     parser.add_argument("--evaluations", type=int, default=800)
+    parser.add_argument("--seconds", type=float, default=10.0, help="the most for a test")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--out", metavar="FILE", help="csv of all rows")
     return parser.parse_args()
