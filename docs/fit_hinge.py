@@ -1,6 +1,6 @@
 """Fit the numbers of the layered hinge of the blind model, and score them on series left out.
 
-    python docs/fit_hinge.py FOLDER [--folds 5] [--evaluations 10] [--jobs 2]
+    python docs/fit_hinge.py FOLDER [--folds 5] [--evaluations 10] [--jobs 2] [--out FILE]
 
 FOLDER holds the histories and the table of the tests (docs/peer.md). Fitted are all flexural tests
 of rectangular columns with one set of numbers, from values as in the literature, on which a weak
@@ -11,9 +11,12 @@ mends do not pull. Series, not tests, are left out: the columns of a series are 
 from __future__ import annotations
 
 import argparse
+import csv
 import math
 import warnings
 from concurrent.futures import ProcessPoolExecutor
+from itertools import pairwise
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -72,6 +75,8 @@ HALF = 0.13
 PEAK, ENERGY = 0.3, 0.08
 # Weight of the prior: of one spread, against the mean over the tests.
 PRIOR = 1e-3
+# Classes of the printed scores.
+AXIAL_LOAD_RATIOS = (-1.0, 0.05, 0.15, 0.3, 0.45, 1.0)
 # Every so many of the points along the path.
 EVERY = 5
 
@@ -205,6 +210,7 @@ def main() -> None:
     parser.add_argument("--folds", type=int, default=5)
     parser.add_argument("--evaluations", type=int, default=10)
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--out", type=Path, metavar="FILE", help="csv of the scores left out")
     given = parser.parse_args()
 
     _begin(given.folder)
@@ -226,11 +232,20 @@ def main() -> None:
             show(f"without {', '.join(fold)}", found)
             left_out |= found
     show("every series left out once", left_out)
+    for low, high in pairwise(AXIAL_LOAD_RATIOS):
+        members = [c.specimen for c in _cases if low <= c.specimen.axial_load_ratio < high]
+        what = f"of these axial load ratio {low:g} to {high:g}"
+        show(what, {member.name: left_out[member.name] for member in members})
     print("of these the columns of the paper:")
     for case in _cases:
         path = case.specimen.path
         if path and any(path.name in names for names in peer.HISTORY_FILES.values()):
             print(f"    {case.specimen.name}: nrmse {left_out[case.specimen.name][0]:.3f}")
+    if given.out:
+        with given.out.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(["name", "nrmse", "peak_ratio", "energy_ratio"])
+            writer.writerows([name, *row] for name, row in left_out.items())
 
 
 if __name__ == "__main__":

@@ -76,36 +76,36 @@ class Hinge:
         Of the concrete layers, see `rbsdem.ConcreteSpring`.
     """
 
-    steel_strength: float = 1.1
-    hardening: float = 1.11
-    roundness: float = 12.5
-    roundness_axial: float = 1.12
-    roundness_loss: float = 0.904
-    roundness_reach: float = 0.31
-    growth: float = 0.0803
-    fatigue: float = 0.0042
+    steel_strength: float = 1.11
+    hardening: float = 1.01
+    roundness: float = 11.8
+    roundness_axial: float = 1.01
+    roundness_loss: float = 0.902
+    roundness_reach: float = 0.326
+    growth: float = 0.0839
+    fatigue: float = 0.00426
     fatigue_axial: float = 0.0
-    concrete_strength: float = 0.939
-    concrete_size: float = 0.113
-    peak_strain: float = 1.11
-    confinement: float = 0.842
-    core_fall: float = 1.11
-    cover_fall: float = 1.26
-    residual: float = 0.313
-    hinge_length: float = 0.959
-    hinge_axial: float = -0.382
-    hinge_depth: float = 0.0831
-    compression_length: float = 1.79
-    slip_length: float = 0.0131
-    slip_axial: float = -1.71
-    stiffness: float = 0.921
-    stiffness_axial: float = 1.57
-    shear_stiffness: float = 0.724
+    concrete_strength: float = 0.947
+    concrete_size: float = 0.0984
+    peak_strain: float = 1.05
+    confinement: float = 0.81
+    core_fall: float = 1.03
+    cover_fall: float = 1.28
+    residual: float = 0.297
+    hinge_length: float = 0.976
+    hinge_axial: float = -0.535
+    hinge_depth: float = 0.078
+    compression_length: float = 1.77
+    slip_length: float = 0.0133
+    slip_axial: float = -1.35
+    stiffness: float = 0.981
+    stiffness_axial: float = 1.37
+    shear_stiffness: float = 0.698
     plastic: float = 1.83
-    misfit: float = 0.313
-    contact: float = 0.283
-    contact_axial: float = -0.529
-    wear: float = 0.0521
+    misfit: float = 0.31
+    contact: float = 0.287
+    contact_axial: float = -0.573
+    wear: float = 0.0476
 
     def with_numbers(self, **numbers: float) -> Hinge:
         """Return the hinge with other numbers."""
