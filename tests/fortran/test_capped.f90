@@ -1,6 +1,7 @@
 !> Springs with a capped backbone: corners, deterioration, and the properties of the rules to the last bit.
 module test_capped
    use check, only: unit_test, check_close, check_contains, check_equal, check_same, check_true
+   use paths, only: check_copies, check_increments
    use rbs_base_error, only: error_type, message_list
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_backbone, only: backbone_side
@@ -273,30 +274,16 @@ contains
 
    subroutine increments(error)
       type(error_type), allocatable, intent(inout) :: error
-      integer, parameter :: parts(2) = [7, 1000]
       type(random_type) :: random
       type(spring_spec) :: spec
-      type(spring_array) :: spring
-      real(wp) :: d(20), f(20), begin
-      integer :: path, j, p, i
+      real(wp) :: d(20)
+      integer :: path
 
       do path = 1, 200
          call random_spring(random, spec, d)
          call expect(error, spec, '')
-         call follow_path(spec, d, f)
-         do p = 1, 2
-            if (parts(p) > 100 .and. path > 20) cycle
-            call spring%create([spec])
-            begin = 0.0_wp
-            do j = 1, size(d)
-               do i = 1, parts(p) - 1
-                  call spring%move(1, begin + (d(j) - begin)*i/parts(p))
-               end do
-               call spring%move(1, d(j))
-               call check_same(error, spring%force(1), f(j), 'force')
-               begin = d(j)
-            end do
-         end do
+         call check_increments(error, spec, d, 7)
+         if (path <= 20) call check_increments(error, spec, d, 1000)
       end do
    end subroutine increments
 
@@ -346,30 +333,16 @@ contains
       end do
    end subroutine work_positive
 
-   !> Trial moves with mark and restore, and copies, change nothing.
    subroutine copies(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
       type(spring_spec) :: spec
-      type(spring_array) :: spring, copy
-      real(wp) :: d(40), f(40)
-      integer :: path, j
+      real(wp) :: d(40)
+      integer :: path
 
       do path = 1, 200
          call random_spring(random, spec, d)
-         call follow_path(spec, d, f)
-         call spring%create([spec])
-         do j = 1, size(d)
-            copy = spring
-            call copy%move(1, random%uniform(-12.0_wp, 12.0_wp))
-            call spring%mark()
-            call spring%move(1, random%uniform(-12.0_wp, 12.0_wp))
-            call spring%move(1, random%uniform(-12.0_wp, 12.0_wp))
-            call spring%restore()
-            if (mod(j, 2) == 0) call spring%forget_mark()
-            call spring%move(1, d(j))
-            call check_same(error, spring%force(1), f(j), 'force')
-         end do
+         call check_copies(error, spec, d, random, 12.0_wp)
       end do
    end subroutine copies
 

@@ -1,6 +1,7 @@
 !> Concrete across a joint (docs/rules.md section 9): envelope, unloading, cracks that close gradually.
 module test_concrete
    use check, only: unit_test, check_close, check_same, check_true
+   use paths, only: check_copies, check_increments
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_factory, only: new_rule
@@ -224,29 +225,15 @@ contains
 
    subroutine increments(error)
       type(error_type), allocatable, intent(inout) :: error
-      integer, parameter :: parts(2) = [7, 1000]
       type(random_type) :: random
       type(spring_spec) :: spec
-      type(spring_array) :: spring
-      real(wp) :: d(20), f(20), begin
-      integer :: path, j, p, i
+      real(wp) :: d(20)
+      integer :: path
 
       do path = 1, 200
          call random_spring(random, spec, d)
-         call follow_path(spec, d, f)
-         do p = 1, 2
-            if (parts(p) > 100 .and. path > 20) cycle
-            call spring%create([spec])
-            begin = 0.0_wp
-            do j = 1, size(d)
-               do i = 1, parts(p) - 1
-                  call spring%move(1, begin + (d(j) - begin)*i/parts(p))
-               end do
-               call spring%move(1, d(j))
-               call check_same(error, spring%force(1), f(j), 'force')
-               begin = d(j)
-            end do
-         end do
+         call check_increments(error, spec, d, 7)
+         if (path <= 20) call check_increments(error, spec, d, 1000)
       end do
    end subroutine increments
 
@@ -254,24 +241,12 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
       type(spring_spec) :: spec
-      type(spring_array) :: spring, copy
-      real(wp) :: d(40), f(40)
-      integer :: path, j
+      real(wp) :: d(40)
+      integer :: path
 
       do path = 1, 100
          call random_spring(random, spec, d)
-         call follow_path(spec, d, f)
-         call spring%create([spec])
-         do j = 1, size(d)
-            copy = spring
-            call copy%move(1, random%uniform(-12.0_wp, 12.0_wp))
-            call spring%mark()
-            call spring%move(1, random%uniform(-12.0_wp, 12.0_wp))
-            call spring%restore()
-            call spring%forget_mark()
-            call spring%move(1, d(j))
-            call check_same(error, spring%force(1), f(j), 'force')
-         end do
+         call check_copies(error, spec, d, random, 12.0_wp)
       end do
    end subroutine copies
 

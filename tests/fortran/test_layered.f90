@@ -1,6 +1,7 @@
 !> Joints of layers (docs/rules.md section 11): equilibrium of the axial load, closed forms, refusals.
 module test_layered
    use check, only: unit_test, check_close, check_failed, check_same, check_true
+   use paths, only: check_copies, check_increments
    use rbs_base_error, only: bad_input, error_type, message_list
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
@@ -347,29 +348,16 @@ contains
 
    subroutine increments(error)
       type(error_type), allocatable, intent(inout) :: error
-      integer, parameter :: parts(2) = [7, 100]
       type(random_type) :: random
       type(spring_spec) :: spec
-      type(spring_array) :: spring
-      real(wp) :: d(20), f(20), begin
-      integer :: path, j, p, i
+      real(wp) :: d(20)
+      integer :: path
 
       do path = 1, 30
          spec = section(random%uniform(-2.0e5_wp, 3.0e6_wp), 10)
          call wander(random, d)
-         call follow_path(spec, d, f)
-         do p = 1, 2
-            call spring%create([spec])
-            begin = 0.0_wp
-            do j = 1, size(d)
-               do i = 1, parts(p) - 1
-                  call spring%move(1, begin + (d(j) - begin)*i/parts(p))
-               end do
-               call spring%move(1, d(j))
-               call check_same(error, spring%force(1), f(j), 'moment')
-               begin = d(j)
-            end do
-         end do
+         call check_increments(error, spec, d, 7)
+         call check_increments(error, spec, d, 100)
       end do
    end subroutine increments
 
@@ -377,25 +365,13 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
       type(spring_spec) :: spec
-      type(spring_array) :: spring, copy
-      real(wp) :: d(20), f(20)
-      integer :: path, j
+      real(wp) :: d(20)
+      integer :: path
 
       do path = 1, 20
          spec = section(random%uniform(-2.0e5_wp, 3.0e6_wp), 10)
          call wander(random, d)
-         call follow_path(spec, d, f)
-         call spring%create([spec])
-         do j = 1, size(d)
-            copy = spring
-            call copy%move(1, random%uniform(-2.0e-2_wp, 2.0e-2_wp))
-            call spring%mark()
-            call spring%move(1, random%uniform(-2.0e-2_wp, 2.0e-2_wp))
-            call spring%restore()
-            call spring%forget_mark()
-            call spring%move(1, d(j))
-            call check_same(error, spring%force(1), f(j), 'moment')
-         end do
+         call check_copies(error, spec, d, random, 2.0e-2_wp)
       end do
    end subroutine copies
 

@@ -1,6 +1,7 @@
 !> The trilinear Takeda spring: sequences S1 to S4 of takeda.md by hand, rules and properties.
 module test_takeda
    use check, only: unit_test, check_close, check_same, check_true
+   use paths, only: check_increments
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_springs, only: follow_path, spring_array
@@ -410,31 +411,16 @@ contains
 
    subroutine increments(error)
       type(error_type), allocatable, intent(inout) :: error
-      integer, parameter :: cuts(2) = [7, 1000]
       type(random_type) :: random
       type(spring_spec) :: spec
-      type(spring_array) :: spring
-      real(wp) :: d(40), f(40), f_cut(40), from
-      integer :: path, cut, j, i
+      real(wp) :: d(40)
+      integer :: path
 
       do path = 1, 200
          call random_spring(random, spec)
          call random_path(random, spec%d_y, d)
-         call follow_path(spec, d, f)
-         do cut = 1, 2
-            if (cuts(cut) == 1000 .and. mod(path, 10) /= 0) cycle
-            call spring%create([spec])
-            from = 0.0_wp
-            do j = 1, size(d)
-               do i = 1, cuts(cut) - 1
-                  call spring%move(1, from + (d(j) - from)*i/cuts(cut))
-               end do
-               call spring%move(1, d(j))
-               f_cut(j) = spring%force(1)
-               from = d(j)
-            end do
-            call check_same(error, f_cut, f, 'force')
-         end do
+         call check_increments(error, spec, d, 7)
+         if (mod(path, 10) == 0) call check_increments(error, spec, d, 1000)
       end do
    end subroutine increments
 
