@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from fnmatch import fnmatch
 from pathlib import Path
 
+from rbsdem._parser import CommandParser
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.peer import blind
 from rbsdem.peer.batch import predict
@@ -31,21 +32,8 @@ Exit codes: 0 every test was analysed to its end, 1 some were not, 2 the input i
 INTERRUPTED = 130
 
 
-class _Parser(argparse.ArgumentParser):
-    """Errors begin with the program's name, as all others."""
-
-    def error(self, message: str) -> None:
-        sys.stderr.write(f"rbsdem: peer: {message}\n")
-        sys.exit(2)
-
-
 def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
-    parser = _Parser(
-        prog="rbsdem peer",
-        description=DESCRIPTION,
-        epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = CommandParser("peer", DESCRIPTION, EPILOG)
     parser.add_argument("folder", type=Path, metavar="DIR", help="folder of the tests")
     parser.add_argument(
         "--model", default=blind.DEFAULT, choices=list(blind.MODELS), help="default %(default)s"

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from rbsdem._parser import CommandParser
 from rbsdem.case import Case, read_case
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.trade import figure, table, trade
@@ -24,21 +25,8 @@ needs matplotlib). Exit codes: 0 all went well, 1 the analysis failed, 2 the inp
 """
 
 
-class _Parser(argparse.ArgumentParser):
-    """Errors begin with the program's name, as all others."""
-
-    def error(self, message: str) -> None:
-        sys.stderr.write(f"rbsdem: trade: {message}\n")
-        sys.exit(2)
-
-
 def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
-    parser = _Parser(
-        prog="rbsdem trade",
-        description=DESCRIPTION,
-        epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = CommandParser("trade", DESCRIPTION, EPILOG)
     parser.add_argument("case", type=Path, metavar="CASE.nml", help="case of the executable")
     parser.add_argument(
         "--tolerance",
