@@ -182,13 +182,12 @@ def fit(pool: ProcessPoolExecutor, numbers: list[int], evaluations: int) -> np.n
 
 def scores(cases: list[Case], numbers: Hinge) -> dict[str, list[float]]:
     """Return scores of tests by their names."""
-    found = {}
-    for case in cases:
-        test = case.specimen.test()
-        column = peer.column(case.specimen, "best", hinge=numbers)
-        row = rbsdem.compare(rbsdem.cyclic(column, displacement=test.displacement), test)
-        found[case.specimen.name] = [row.nrmse, row.peak_ratio, row.energy_ratio]
-    return found
+    tests = [case.specimen for case in cases]
+    names = ("nrmse", "peak_ratio", "energy_ratio")
+    return {
+        row.specimen.name: [row.score(name) for name in names]
+        for row in peer.predict(tests, "best", hinge=numbers)
+    }
 
 
 def show(what: str, found: dict[str, list[float]]) -> None:

@@ -62,7 +62,8 @@ def test_elastic_stiffness_of_the_layered_model_in_closed_form(n):
     """1/k = (L - l)^3/3EI + (L/k_hinge) L + 1/k_shear, without axial load."""
     bare = replace(SPECIMEN, axial_load=0.0)
     column = peer.column(bare, "best", n=n)
-    joint = hinge_joint(peer.draw(bare), bare.length, 0.0, peer.Hinge())
+    drawing = peer.draw(bare)
+    joint = hinge_joint(drawing, drawing.section(), bare.length, 0.0, peer.Hinge())
     d = 1e-7
     foot = joint.spring.response([d])[0] / d
     length, above = bare.length, bare.length - joint.length

@@ -202,15 +202,14 @@ def _best(
     """
     n = _count(n, least=2)
     drawing = draw(specimen)
+    section = drawing.section()
     hinge, shear_numbers = hinge or Hinge(), shear_numbers or ShearNumbers()
     length = specimen.length
-    joint = hinge_joint(drawing, length, specimen.axial_load, hinge)
+    joint = hinge_joint(drawing, section, length, specimen.axial_load, hinge)
     lengths, part = _parts(length, joint.length, n)
     # Flexible as the continuous column, whatever n is.
     stiffness = joint.flexural_stiffness / part * _lumping(n)
-    foot = shear_spring(
-        drawing.section(), length, specimen.axial_load, joint.shear_stiffness, shear_numbers
-    )
+    foot = shear_spring(section, length, specimen.axial_load, joint.shear_stiffness, shear_numbers)
     rigid = Elastic(1e3 * joint.shear_stiffness / length)
     return LayeredColumn(
         length,

@@ -17,6 +17,7 @@ from rbsdem.springs import ConcreteSpring, Layered, SteelSpring
 
 if TYPE_CHECKING:
     from rbsdem.peer.drawing import Drawing
+    from rbsdem.section import Section
 
 __all__ = ["Hinge", "HingeJoint", "hinge_joint"]
 
@@ -48,7 +49,7 @@ class Hinge:
     growth : float
         Share by which the strength of a bar has grown when its strains reached both yield strains
         (Filippou, Popov and Bertero 1983).
-    fatigue, fatigue_axial : float
+    fatigue : float
         1 over the plastic work, over f_y d_y, that halves the strength of a bar.
     concrete_strength, concrete_size : float
         In-place over cylinder strength at 40 MPa; exponent of its fall with the strength.
@@ -84,7 +85,6 @@ class Hinge:
     roundness_reach: float = 0.326
     growth: float = 0.0839
     fatigue: float = 0.00426
-    fatigue_axial: float = 0.0
     concrete_strength: float = 0.947
     concrete_size: float = 0.0984
     peak_strain: float = 1.05
@@ -134,13 +134,17 @@ class HingeJoint:
     shear_stiffness: float
 
 
-def hinge_joint(drawing: Drawing, length: float, axial_load: float, hinge: Hinge) -> HingeJoint:
+def hinge_joint(
+    drawing: Drawing, section: Section, length: float, axial_load: float, hinge: Hinge
+) -> HingeJoint:
     """Make the layered hinge of a section.
 
     Parameters
     ----------
     drawing : Drawing
-        The section.
+        The section as drawn.
+    section : rbsdem.section.Section
+        That of the drawing, for analysis.
     length : float
         From the foot to the lateral load [m].
     axial_load : float
@@ -165,7 +169,7 @@ def hinge_joint(drawing: Drawing, length: float, axial_load: float, hinge: Hinge
     def by_axial(value: float, exponent: float) -> float:
         return value * math.exp(exponent * (ratio - 0.2))
 
-    modulus = (3320 * math.sqrt(cylinder / 1e6) + 6900) * 1e6
+    modulus = section.concrete_law["ec"]
     strength = hinge.concrete_strength * cylinder * (cylinder / 40e6) ** -hinge.concrete_size
     peak = 0.002 * hinge.peak_strain
     relative = hinge.confinement * strips.confining_stress / cylinder
@@ -206,7 +210,6 @@ def hinge_joint(drawing: Drawing, length: float, axial_load: float, hinge: Hinge
     fall = hinge.cover_fall * 0.8 * strength / 0.004
     for strip in strips.cover:
         layers.append((strip.y, concrete(round(strip.area, 12), strength, peak, fall, 0.0)))
-    fatigue = by_axial(hinge.fatigue, hinge.fatigue_axial)
     slip = by_axial(hinge.slip_length, hinge.slip_axial) * bond
 
     @cache
@@ -222,7 +225,7 @@ def hinge_joint(drawing: Drawing, length: float, axial_load: float, hinge: Hinge
             r1=hinge.roundness_loss,
             r2=hinge.roundness_reach,
             growth=hinge.growth,
-            endurance=1 / fatigue if fatigue > 0 else 0.0,
+            endurance=1 / hinge.fatigue if hinge.fatigue > 0 else 0.0,
         )
 
     for bar in drawing.bars:
