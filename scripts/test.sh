@@ -25,7 +25,7 @@ bash scripts/memory.sh build/fortran
 say "Python tests, fuzzing, regression; examples of the documentation"
 export MPLBACKEND=Agg
 python -m pytest -q -n 2
-python docs/check.py
+python scripts/check_docs.py
 
 say "all of it once more with bounds checks and floating-point traps"
 python -m pip install -q --disable-pip-version-check --no-build-isolation --no-deps --upgrade \

@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 import rbsdem
-from rbsdem.trade import trade
+from rbsdem.accuracy import trade
 
 case = rbsdem.read_case(Path(__file__).with_name("case.nml"))
 found = trade(

@@ -3,8 +3,11 @@
 SI units throughout: N, m, kg, s, rad. Axial load is positive in compression.
 """
 
-from rbsdem import loops, peer, plot
+from typing import TYPE_CHECKING
+
+from rbsdem import _moved, loops, peer, plot
 from rbsdem._core import version as _version
+from rbsdem.accuracy import Trade, trade
 from rbsdem.analysis import Modes, cyclic, mass_matrix, modes, time_history
 from rbsdem.calibration import Calibration, Parameter, calibrate
 from rbsdem.case import Case, read_case
@@ -36,9 +39,9 @@ from rbsdem.springs import (
     SteelSpring,
     Takeda,
 )
-from rbsdem.trade import Trade, trade
 
 __version__ = _version()
+_moved.install()
 
 __all__ = [
     "AccuracyWarning",
@@ -87,3 +90,8 @@ __all__ = [
     "time_history",
     "trade",
 ]
+
+if not TYPE_CHECKING:  # A type checker would take any name for one that exists.
+
+    def __getattr__(name: str) -> None:
+        raise _moved.moved_attribute(__name__, name)

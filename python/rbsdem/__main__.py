@@ -30,7 +30,7 @@ def executable() -> str:
 def main() -> int:
     """Run the executable with the arguments of the command line, or `trade` or `peer`."""
     if sys.argv[1:2] == ["trade"]:
-        from rbsdem.trade.command import main as trade  # noqa: PLC0415
+        from rbsdem.accuracy.command import main as trade  # noqa: PLC0415
 
         return trade(sys.argv[2:])
     if sys.argv[1:2] == ["peer"]:

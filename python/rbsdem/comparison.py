@@ -167,7 +167,7 @@ class Comparison:
 
     def table(self) -> Table:
         """Return the half-cycles as a table of rich, test and model side by side: mm, kN, kJ."""
-        from rbsdem.trade.table import need_rich  # noqa: PLC0415
+        from rbsdem.accuracy.table import need_rich  # noqa: PLC0415
 
         rich = need_rich()
         table = rich.table.Table(box=rich.box.SIMPLE_HEAD, padding=(0, 1), show_edge=False)

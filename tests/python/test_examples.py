@@ -113,7 +113,7 @@ def test_namelist_blocks_of_the_readme_run(executable, tmp_path):
 def test_commands_of_the_readme_are_those_there():
     """Scripts and documents that the README names exist."""
     text = (REPOSITORY / "README.md").read_text("utf-8")
-    named = set(re.findall(r"\b(?:scripts|docs|tests|data|examples)/[\w./-]*\w", text))
+    named = set(re.findall(r"\b(?:scripts|docs|studies|tests|data|examples)/[\w./-]*\w", text))
     assert "scripts/demo.sh" in named
     assert "scripts/test.sh" in named
     missing = [name for name in sorted(named) if not (REPOSITORY / name).exists()]

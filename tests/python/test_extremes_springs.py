@@ -2,7 +2,7 @@
 
 The bilinear rule is the play operator, which is exact in fractions. The Takeda rule has a second
 implementation elsewhere (test_springs.py); here are its closed forms and what must not change.
-`measure_...` take the number of points: few here, 1e7 in docs/extremes.py.
+`measure_...` take the number of points: few here, 1e7 in studies/extremes.py.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 RK4 multiplies the amplitude of an undamped mode by |R(i omega h)|, R(z) = 1 + z + z^2/2 + z^3/6 +
 z^4/24, so the energy after any number of steps is known in closed form, below the limit and
-above. `measure_...` take the number of steps: few here, many in docs/extremes.py.
+above. `measure_...` take the number of steps: few here, many in studies/extremes.py.
 """
 
 from __future__ import annotations

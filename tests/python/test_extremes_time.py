@@ -2,7 +2,7 @@
 
 Linear columns have an exact answer to loads that are linear between their points, whatever the
 spacing: the matrix exponential, point by point. `measure_...` take the length of the record: short
-here, an hour in docs/extremes.py.
+here, an hour in studies/extremes.py.
 """
 
 from __future__ import annotations

@@ -283,7 +283,7 @@ def imported(tree: ast.AST) -> Iterator[str]:
 
 def python_faults(root: Path) -> Iterator[Fault]:
     """Only `_core.py` knows the extension."""
-    for path in tracked(root, "*.py", "python", "tests", "examples", "docs", "scripts"):
+    for path in tracked(root, "*.py", "python", "tests", "examples", "studies", "scripts"):
         if path == root / "python" / "rbsdem" / "_core.py":
             continue
         for name in imported(ast.parse(path.read_text(encoding="utf-8"))):
@@ -293,7 +293,7 @@ def python_faults(root: Path) -> Iterator[Fault]:
 
 def path_faults(root: Path) -> Iterator[Fault]:
     """Tests and texts name no path of the machine that they were written on."""
-    files = tracked(root, "*", "tests", "docs", "examples", "data")
+    files = tracked(root, "*", "tests", "docs", "examples", "studies", "data")
     files += sorted(root.glob("*.md"))
     for path in files:
         try:

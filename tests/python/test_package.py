@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import importlib.metadata
 import inspect
 import os
@@ -398,3 +399,11 @@ def test_arrays_of_any_layout_and_kind_are_taken():
     assert np.array_equal(whole, [2.0, -4.0, 6.0])
     assert rbsdem.cyclic(COLUMN, []).force.shape == (0,)
     assert TAKEDA.response([]).shape == (0,)
+
+
+def test_a_module_that_has_moved_names_its_new_place():
+    with pytest.raises(ImportError, match=r"rbsdem\.trade is now rbsdem\.accuracy"):
+        importlib.import_module("rbsdem.trade.rows")
+    assert rbsdem.trade is importlib.import_module("rbsdem.accuracy").trade
+    with pytest.raises(AttributeError, match="has no attribute 'nothing'"):
+        _ = rbsdem.nothing

@@ -17,13 +17,13 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem.trade import Trade, scene, trade
-from rbsdem.trade import command as trade_command
-from rbsdem.trade.answer import Answer, Setting, errors_of
-from rbsdem.trade.path import at_times, common_interval, reversals
-from rbsdem.trade.physics import half_spring, split_bodies
-from rbsdem.trade.rows import seconds_text
-from rbsdem.trade.scene import make_scene
+from rbsdem.accuracy import Trade, scene, trade
+from rbsdem.accuracy import command as trade_command
+from rbsdem.accuracy.answer import Answer, Setting, errors_of
+from rbsdem.accuracy.path import at_times, common_interval, reversals
+from rbsdem.accuracy.physics import half_spring, split_bodies
+from rbsdem.accuracy.rows import seconds_text
+from rbsdem.accuracy.scene import make_scene
 
 LENGTH, MASS = 1.6, 614.4
 SHEAR, BENDING = 7.0387e8, 2.5428e8

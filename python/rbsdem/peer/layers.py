@@ -33,7 +33,7 @@ class Hinge:
     """Numbers of the layered hinge that are the same for all columns.
 
     The defaults are fitted to the rectangular flexural tests of the PEER Structural Performance
-    Database (``docs/fit_hinge.py``); the forms are published relations. With n the axial load
+    Database (``studies/fit_hinge.py``); the forms are published relations. With n the axial load
     ratio, `..._axial` is the exponent e of a factor exp(e (n - 0.2)).
 
     Attributes

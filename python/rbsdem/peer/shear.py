@@ -34,7 +34,7 @@ class ShearNumbers:
     """Numbers of the shear spring that are the same for all columns.
 
     The defaults are fitted to the tests of the PEER Structural Performance Database that failed in
-    shear, or in shear after flexure (``docs/fit_shear.py``).
+    shear, or in shear after flexure (``studies/fit_shear.py``).
 
     Attributes
     ----------

@@ -1,6 +1,6 @@
 """Fit the numbers of the shear spring of the blind model, and score them on series left out.
 
-    python docs/fit_shear.py FOLDER [--folds 5] [--evaluations 150] [--jobs 2]
+    python studies/fit_shear.py FOLDER [--folds 5] [--evaluations 150] [--jobs 2]
 
 FOLDER holds the histories and the table of the tests (docs/peer.md). Fitted is the mean nrmse of
 the tests that failed in shear or in shear after flexure, all shapes, and what the spring adds to

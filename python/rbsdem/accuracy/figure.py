@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rbsdem import plot
+from rbsdem.accuracy.ladder import LEVELS
 from rbsdem.errors import InputError
-from rbsdem.trade.ladder import LEVELS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from rbsdem.trade import Trade
-    from rbsdem.trade.rows import Row
+    from rbsdem.accuracy import Trade
+    from rbsdem.accuracy.rows import Row
 
 #: Marker, filling and gray of each method; located events are filled.
 MARKS: dict[tuple[str, str | None], dict[str, Any]] = {

@@ -1,6 +1,6 @@
 """Print the springs of table 3 of the paper beside those computed from table 2.
 
-    python docs/section_table.py [--sensitivity]
+    python studies/section_table.py [--sensitivity]
 
 The reference values are those of an independent program with the same laws. With --sensitivity:
 what other choices would give.

@@ -8,14 +8,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from rbsdem.accuracy.answer import Answer, Run, Setting, errors_of
+from rbsdem.accuracy.ladder import IMPLICIT, LEVELS, Budget, Probe, predicted, too_expensive
+from rbsdem.accuracy.reference import Reference
+from rbsdem.accuracy.scene import VERTICAL, Scene
 from rbsdem.column import Column
 from rbsdem.damping import Damping
 from rbsdem.errors import InputError
 from rbsdem.springs import Spring
-from rbsdem.trade.answer import Answer, Run, Setting, errors_of
-from rbsdem.trade.ladder import IMPLICIT, LEVELS, Budget, Probe, predicted, too_expensive
-from rbsdem.trade.reference import Reference
-from rbsdem.trade.scene import VERTICAL, Scene
 
 #: What rotary inertia that is taken off leaves: a body without any has no equation of motion.
 LITTLE_INERTIA = 0.01

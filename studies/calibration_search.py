@@ -1,6 +1,6 @@
 """Why the search of a calibration is what it is: it against others, with about as many analyses.
 
-    python docs/calibration_search.py [DIR]
+    python studies/calibration_search.py [DIR]
 
 Six numbers of the Takeda spring of the paper's columns, fitted to the loops of columns whose
 numbers were drawn at random, and to the measured loops if DIR has them; three seeds each. Printed:

@@ -1,6 +1,6 @@
 """Draw docs/takeda.svg: outer loops, and inner loops with the three readings of B_1.
 
-python docs/takeda_figure.py
+python studies/takeda_figure.py
 """
 
 from __future__ import annotations
@@ -16,6 +16,8 @@ import rbsdem
 
 mpl.use("svg")
 from matplotlib import pyplot as plt
+
+DOCS = Path(__file__).resolve().parents[1] / "docs"
 
 STYLE = {
     "font.family": "DejaVu Sans",
@@ -87,7 +89,7 @@ def main() -> None:
         )
         right.set_title("(b) an inner loop, $B_1 = 0.22$", loc="left")
         right.legend(frameon=False, loc="lower right", title="inner", alignment="left")
-        figure.savefig(Path(__file__).with_name("takeda.svg"), metadata={"Date": None})
+        figure.savefig(DOCS / "takeda.svg", metadata={"Date": None})
 
 
 if __name__ == "__main__":

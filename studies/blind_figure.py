@@ -1,6 +1,6 @@
 """Draw docs/blind_columns.png: the four columns of the paper, predicted from their drawings.
 
-python docs/blind_figure.py FOLDER
+python studies/blind_figure.py FOLDER
 """
 
 from __future__ import annotations
@@ -10,6 +10,8 @@ from pathlib import Path
 
 import rbsdem
 from rbsdem import peer
+
+DOCS = Path(__file__).resolve().parents[1] / "docs"
 
 
 def main() -> None:
@@ -29,7 +31,7 @@ def main() -> None:
         title = f"{author}\n{number}\nnrmse {score:.3f}"
         panels.append(rbsdem.plot.Panel(title, result, test, specimen.length))
     figure = rbsdem.plot.four_panels(panels)
-    figure.savefig(Path(__file__).with_name("blind_columns.png"), dpi=110)
+    figure.savefig(DOCS / "blind_columns.png", dpi=110)
 
 
 if __name__ == "__main__":

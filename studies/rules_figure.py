@@ -1,6 +1,6 @@
 """Draw docs/rules.svg: the backbone and its corners, deterioration, and pinched reloading.
 
-python docs/rules_figure.py
+python studies/rules_figure.py
 """
 
 from __future__ import annotations
@@ -15,6 +15,8 @@ import rbsdem
 
 mpl.use("svg")
 from matplotlib import pyplot as plt
+
+DOCS = Path(__file__).resolve().parents[1] / "docs"
 
 STYLE = {
     "font.family": "DejaVu Sans",
@@ -84,7 +86,7 @@ def main() -> None:
             ("reloading", (0.6, -0.35), (2.0, -0.8)),
         ):
             axes[0].annotate(text, at, to, arrowprops=THIN)
-        figure.savefig(Path(__file__).with_name("rules.svg"), metadata={"Date": None})
+        figure.savefig(DOCS / "rules.svg", metadata={"Date": None})
 
 
 if __name__ == "__main__":

@@ -1,11 +1,11 @@
 """What accuracy costs for the four columns of the paper: the tables and figures of trade.md.
 
-    python docs/trade_paper.py [--budget SECONDS]
+    python studies/trade_paper.py [--budget SECONDS]
 
 Three scenes for each column: drifts of a cyclic test, static with P-Delta; the reversal forces of
 its test, slowly, as in figure 3 of the paper (equation 4: finite rotations, no axial load); the
 ground motion of examples/03-ground-motion with the mass that the axial load is the weight of.
-Prints Markdown and writes trade_slow.png and trade_ground.png beside this file.
+Prints Markdown and writes trade_slow.png and trade_ground.png to docs.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ import numpy as np
 
 import rbsdem
 from rbsdem import plot
+from rbsdem.accuracy import Row, Trade, trade
+from rbsdem.accuracy.figure import draw
+from rbsdem.accuracy.rows import seconds_text
 from rbsdem.peer import shipped_reversals
-from rbsdem.trade import Row, Trade, trade
-from rbsdem.trade.figure import draw
-from rbsdem.trade.rows import seconds_text
 
-HERE = Path(__file__).resolve().parent
-MOTION = HERE.parent / "examples" / "03-ground-motion" / "ground.csv"
+ROOT = Path(__file__).resolve().parents[1]
+MOTION = ROOT / "examples" / "03-ground-motion" / "ground.csv"
 GRAVITY = 9.80665
 DRIFTS = (0.0025, 0.005, 0.01, 0.02, 0.03)
 TOLERANCES = (1e-2, 1e-3, 1e-5, 1e-7)
@@ -243,7 +243,7 @@ def main() -> None:
         words.append((title, families))
         physics_table(found)
         if scene != "static":
-            picture(found, HERE / f"trade_{scene}.png")
+            picture(found, ROOT / "docs" / f"trade_{scene}.png")
     title, found = "Three bodies of examples/03-ground-motion", {"chain": chain(3 * given.budget)}
     print(f"### {title}\n")
     settings_table(found)

@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
+from rbsdem.accuracy import figure, files, table
+from rbsdem.accuracy.answer import Run, Setting
+from rbsdem.accuracy.ladder import Budget, checked_methods, climb, ladders, own_setting, probe
+from rbsdem.accuracy.physics import Effect, Physics, find_physics
+from rbsdem.accuracy.reference import Reference, find_reference
+from rbsdem.accuracy.rows import Choice, Row, cheapest, choose, make_rows, third_method
+from rbsdem.accuracy.scene import Scene, make_scene
 from rbsdem.column import Column
 from rbsdem.errors import InputError, SolveError
 from rbsdem.springs import Spring
-from rbsdem.trade import figure, files, table
-from rbsdem.trade.answer import Run, Setting
-from rbsdem.trade.ladder import Budget, checked_methods, climb, ladders, own_setting, probe
-from rbsdem.trade.physics import Effect, Physics, find_physics
-from rbsdem.trade.reference import Reference, find_reference
-from rbsdem.trade.rows import Choice, Row, cheapest, choose, make_rows, third_method
-from rbsdem.trade.scene import Scene, make_scene
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,12 +1,14 @@
 """Write docs/chain.svg: the chain of rigid bodies, and one joint in detail.
 
-python docs/chain.py
+python studies/chain.py
 """
 
 from __future__ import annotations
 
 import math
 from pathlib import Path
+
+DOCS = Path(__file__).resolve().parents[1] / "docs"
 
 INK, BODY, EDGE, SHEAR, FLEXURE, GREY = (
     "#1f2937", "#e7ebf1", "#5b6677", "#1d6fb8", "#b4471f", "#8a94a3",
@@ -269,7 +271,7 @@ def main() -> None:
     chain(d)
     d.line((445, 60), (445, 600), "#d5dae2", 1)
     joint(d)
-    d.write(Path(__file__).with_suffix(".svg"))
+    d.write(DOCS / "chain.svg")
 
 
 if __name__ == "__main__":

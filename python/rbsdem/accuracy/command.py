@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from rbsdem._parser import CommandParser
+from rbsdem.accuracy import figure, table, trade
 from rbsdem.case import Case, read_case
 from rbsdem.errors import InputError, RbsdemError
-from rbsdem.trade import figure, table, trade
 
 DESCRIPTION = """\
 What accuracy costs in a case, and which parts of the model it needs: runs it over methods, steps

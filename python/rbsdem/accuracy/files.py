@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rbsdem.trade import Trade
+    from rbsdem.accuracy import Trade
 
 COLUMNS = (
     "method",

@@ -1,6 +1,6 @@
 """Print the table of observed numbers in docs/validation.md.
 
-    python docs/observed.py
+    python studies/observed.py
 
 Uses the installed package alone; takes some seconds. Round-off differs from machine to machine in
 the last digits, the orders do not.

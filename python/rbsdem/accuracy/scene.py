@@ -14,12 +14,12 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _core
 from rbsdem._core import Array
+from rbsdem.accuracy.answer import Answer, Run, Setting
+from rbsdem.accuracy.path import along, at_times, reversals
 from rbsdem.analysis import cyclic, time_history
 from rbsdem.column import Column
 from rbsdem.errors import AccuracyWarning, InputError, SolveError
 from rbsdem.results import Result
-from rbsdem.trade.answer import Answer, Run, Setting
-from rbsdem.trade.path import along, at_times, reversals
 
 #: Histories are compared at this number of times or more; a loading of fewer gets some in between.
 LEAST_ROWS = 200

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from rbsdem.accuracy.answer import Answer, Run, Setting, errors_of
+from rbsdem.accuracy.ladder import IMPLICIT, Budget, Probe, predicted
+from rbsdem.accuracy.scene import Scene
 from rbsdem.errors import RbsdemError
-from rbsdem.trade.answer import Answer, Run, Setting, errors_of
-from rbsdem.trade.ladder import IMPLICIT, Budget, Probe, predicted
-from rbsdem.trade.scene import Scene
 
 #: Where methods begin that were not run before: tolerance of rk45, share of the limit for rk4. Next
 #: ones are a hundredth, to the least that rk45 takes, and a half.

@@ -1,10 +1,11 @@
 """How good blind prediction is: the tables of docs/peer.md.
 
-    python docs/blind_table.py FOLDER [--jobs 2]
+    python studies/blind_table.py FOLDER [--jobs 2]
 
 FOLDER holds the histories and the table of the tests. Scores are those of `rbsdem.compare`. The
-numbers of the model were fitted to flexural tests of rectangular columns (docs/fit_hinge.py) and to
-shear failures (docs/fit_shear.py): those scripts print what is left on series left out.
+numbers of the model were fitted to flexural tests of rectangular columns (studies/fit_hinge.py)
+and to shear failures (studies/fit_shear.py): those scripts print the scores on the series that
+were left out.
 """
 
 from __future__ import annotations

@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from rbsdem.trade.answer import Errors, Run, Setting, errors_of
-from rbsdem.trade.ladder import IMPLICIT
-from rbsdem.trade.reference import Reference
+from rbsdem.accuracy.answer import Errors, Run, Setting, errors_of
+from rbsdem.accuracy.ladder import IMPLICIT
+from rbsdem.accuracy.reference import Reference
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """Print what was observed at the extremes: the long versions of tests/python/test_extremes_*.py.
 
-    python docs/extremes.py
+    python studies/extremes.py
 
 Uses the installed package alone; takes some 15 s.
 """

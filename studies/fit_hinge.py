@@ -1,6 +1,6 @@
 """Fit the numbers of the layered hinge of the blind model, and score them on series left out.
 
-    python docs/fit_hinge.py FOLDER [--folds 5] [--evaluations 10] [--jobs 2] [--out FILE]
+    python studies/fit_hinge.py FOLDER [--folds 5] [--evaluations 10] [--jobs 2] [--out FILE]
 
 FOLDER holds the histories and the table of the tests (docs/peer.md). Fitted are all flexural tests
 of rectangular columns with one set of numbers, from values as in the literature, on which a weak

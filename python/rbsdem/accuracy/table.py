@@ -7,15 +7,15 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from rbsdem.accuracy.ladder import Budget
+from rbsdem.accuracy.rows import seconds_text
 from rbsdem.errors import InputError
-from rbsdem.trade.ladder import Budget
-from rbsdem.trade.rows import seconds_text
 
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from rbsdem.trade import Trade
-    from rbsdem.trade.rows import Row
+    from rbsdem.accuracy import Trade
+    from rbsdem.accuracy.rows import Row
 
 
 def need_rich() -> Any:

@@ -1,4 +1,4 @@
-"""Rows of docs/observed.py on the methods in time: orders, energy, large rotations."""
+"""Rows of studies/observed.py on the methods in time: orders, energy, large rotations."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Run every example in the documentation and compare with the output printed there.
 
-    python docs/check.py [FILE.md ...]
+    python scripts/check_docs.py [FILE.md ...]
 
-In the Markdown files of this folder (README.md of the project too, if named):
+In the Markdown files of docs (README.md of the project too, if named):
 
 - a block after ``<!-- file: NAME -->`` is written to a file of that name in a scratch folder;
 - a block of language ``console`` is run there, line by line that begins with ``$``, and the output
@@ -28,14 +28,14 @@ BLOCK = re.compile(
 )
 
 
-HERE = Path(__file__).resolve().parent
+ROOT = Path(__file__).resolve().parents[1]
 
 NAME = re.compile(r"`(test_\w+)(\.py|…)?`")
 
 
 def tests() -> str:
     """Return the text of all Python tests, and the names of their files."""
-    files = sorted((HERE.parent / "tests").rglob("*.py"))
+    files = sorted((ROOT / "tests").rglob("*.py"))
     return "\n".join(f"file {file.name}\n{file.read_text(encoding='utf-8')}" for file in files)
 
 
@@ -108,7 +108,7 @@ def run(command: list[str], folder: Path) -> tuple[int, str]:
 
 def main() -> int:
     """Check all files; return 1 if an example does not do what it says."""
-    paths = [Path(name) for name in sys.argv[1:]] or sorted(HERE.glob("*.md"))
+    paths = [Path(name) for name in sys.argv[1:]] or sorted((ROOT / "docs").glob("*.md"))
     faults = []
     source = tests()
     for path in paths:

@@ -1,6 +1,6 @@
 """How well a model can follow measured columns: every test of a folder calibrated.
 
-    python docs/calibration_table.py DIR [--model NAME] [--free NAME...] [--only NAME...]
+    python studies/calibration_table.py DIR [--model NAME] [--free NAME...] [--only NAME...]
         [--section KIND] [--failure MODE] [--loss LOSS] [--evaluations N] [--seconds S]
         [--jobs N] [--out FILE]
 

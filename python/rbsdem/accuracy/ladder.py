@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from rbsdem.accuracy.answer import Run, Setting
+from rbsdem.accuracy.path import common_interval
+from rbsdem.accuracy.scene import Scene
 from rbsdem.analysis import METHODS, time_history
 from rbsdem.column import Column
 from rbsdem.errors import InputError, RbsdemError
-from rbsdem.trade.answer import Run, Setting
-from rbsdem.trade.path import common_interval
-from rbsdem.trade.scene import Scene
 
 #: Levels of kinematics, each with more physics than the one before.
 LEVELS = ("small", "pdelta", "finite")

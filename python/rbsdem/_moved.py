@@ -1,0 +1,43 @@
+"""Modules that have a new name: importing an old one raises an error that says the new one."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from importlib.abc import MetaPathFinder
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+
+# Old name: new name.
+MOVED = {
+    "rbsdem.trade": "rbsdem.accuracy",
+}
+
+
+class MovedFinder(MetaPathFinder):
+    """Asked by Python for a module that no other finder has found."""
+
+    def find_spec(
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,
+        target: ModuleType | None = None,
+    ) -> ModuleSpec | None:
+        """Raise `ImportError` for a module that has moved; leave all others alone."""
+        if fullname in MOVED:
+            raise ImportError(f"the module {fullname} is now {MOVED[fullname]}", name=fullname)
+        return None
+
+
+def install() -> None:
+    """Append the finder to `sys.meta_path`, once."""
+    if not any(isinstance(finder, MovedFinder) for finder in sys.meta_path):
+        sys.meta_path.append(MovedFinder())
+
+
+def moved_attribute(module: str, name: str) -> AttributeError:
+    """Return the error for an attribute that a package does not have."""
+    full = f"{module}.{name}"
+    if full in MOVED:
+        return AttributeError(f"{full} is now {MOVED[full]}", name=name)
+    return AttributeError(f"module {module!r} has no attribute {name!r}", name=name)
