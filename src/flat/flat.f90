@@ -314,7 +314,7 @@ subroutine rbs_check_section(nc, codes, nn, numbers, figures, status, message)
    use rbs_base_error, only: error_type
    use rbs_flat_door, only: tell
    use rbs_flat_section, only: section_from_numbers, figures_of_section
-   use rbs_section_section, only: section_type
+   use rbs_section_cross_section, only: section_type
    implicit none
    integer(c_int), intent(in) :: nc, nn, codes(nc)
    real(c_double), intent(in) :: numbers(nn)
@@ -337,9 +337,9 @@ subroutine rbs_axial_capacity(nc, codes, nn, numbers, least, most, status, messa
    use rbs_flat_door, only: tell
    use rbs_flat_section, only: section_from_numbers
    use rbs_section_balance, only: axial_capacity
-   use rbs_section_concrete, only: tension_bare
+   use rbs_section_concrete_law, only: tension_bare
    use rbs_section_resultants, only: section_laws
-   use rbs_section_section, only: section_type
+   use rbs_section_cross_section, only: section_type
    implicit none
    integer(c_int), intent(in) :: nc, nn, codes(nc)
    real(c_double), intent(in) :: numbers(nn)
@@ -366,7 +366,7 @@ subroutine rbs_moment_curvature(nc, codes, nn, numbers, axial_load, tension, con
    use rbs_flat_section, only: section_from_numbers
    use rbs_section_balance, only: follow
    use rbs_section_resultants, only: section_laws
-   use rbs_section_section, only: section_type
+   use rbs_section_cross_section, only: section_type
    implicit none
    integer(c_int), intent(in) :: nc, nn, tension, confined, m, codes(nc)
    real(c_double), intent(in) :: numbers(nn), axial_load, curvature(m)
@@ -396,7 +396,7 @@ subroutine rbs_section_events(nc, codes, nn, numbers, axial_load, tension, confi
    use rbs_flat_section, only: section_from_numbers, point_numbers
    use rbs_section_events, only: check_rules, events_type, find_events, rule_type
    use rbs_section_resultants, only: section_laws
-   use rbs_section_section, only: section_type
+   use rbs_section_cross_section, only: section_type
    implicit none
    integer(c_int), intent(in) :: nc, nn, tension, confined, codes(nc)
    real(c_double), intent(in) :: numbers(nn), axial_load, strains(2)
@@ -443,7 +443,7 @@ subroutine rbs_section_flexure(nc, codes, nn, numbers, settings, stiffened, conf
    use rbs_flat_section, only: section_from_numbers, point_numbers, spring_figures
    use rbs_section_events, only: check_rules, rule_type
    use rbs_section_flexural_spring, only: check_hinge, fit_flexural_spring, flexural_spring_type, hinge_type
-   use rbs_section_section, only: section_type
+   use rbs_section_cross_section, only: section_type
    implicit none
    integer(c_int), intent(in) :: nc, nn, stiffened, confined, codes(nc)
    real(c_double), intent(in) :: numbers(nn), settings(8)
@@ -492,9 +492,9 @@ subroutine rbs_section_concrete(nc, codes, nn, numbers, tension, part, m, strain
    use rbs_base_error, only: error_type
    use rbs_flat_door, only: tell
    use rbs_flat_section, only: section_from_numbers
-   use rbs_section_concrete, only: concrete_stress
+   use rbs_section_concrete_law, only: concrete_stress
    use rbs_section_resultants, only: laws_type, section_laws
-   use rbs_section_section, only: section_type
+   use rbs_section_cross_section, only: section_type
    implicit none
    integer(c_int), intent(in) :: nc, nn, tension, part, m, codes(nc)
    real(c_double), intent(in) :: numbers(nn), strain(m)
@@ -528,7 +528,7 @@ subroutine rbs_section_shear(nc, codes, nn, numbers, axial_load, span, tension, 
    use rbs_flat_door, only: tell
    use rbs_flat_section, only: section_from_numbers
    use rbs_flat_shear, only: shear_into_arrays
-   use rbs_section_section, only: section_type
+   use rbs_section_cross_section, only: section_type
    implicit none
    integer(c_int), intent(in) :: nc, nn, tension, confined, coupled, layers, m, codes(nc)
    real(c_double), intent(in) :: numbers(nn), axial_load, span, share, curvature(m)
@@ -572,7 +572,7 @@ subroutine rbs_concrete_response(numbers, tension, m, strain, stress, status, me
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list
    use rbs_flat_door, only: tell
-   use rbs_section_concrete, only: check_concrete, concrete_stress, concrete_type, plain_concrete
+   use rbs_section_concrete_law, only: check_concrete, concrete_stress, concrete_type, plain_concrete
    implicit none
    real(c_double), intent(in) :: numbers(5)
    integer(c_int), intent(in) :: tension, m
@@ -600,7 +600,7 @@ subroutine rbs_steel_response(numbers, m, strain, stress, status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list
    use rbs_flat_door, only: tell
-   use rbs_section_steel, only: check_steel, steel_stress, steel_type
+   use rbs_section_steel_law, only: check_steel, steel_stress, steel_type
    implicit none
    real(c_double), intent(in) :: numbers(5)
    integer(c_int), intent(in) :: m

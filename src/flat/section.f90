@@ -7,13 +7,13 @@ module rbs_flat_section
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list
    use rbs_base_kinds, only: wp
-   use rbs_section_check, only: check_section
-   use rbs_section_concrete, only: check_concrete, plain_concrete
+   use rbs_section_section_check, only: check_section
+   use rbs_section_concrete_law, only: check_concrete, plain_concrete
    use rbs_section_confinement, only: confine, volumetric_ratio
    use rbs_section_events, only: point_type
    use rbs_section_flexural_spring, only: flexural_spring_type
-   use rbs_section_section, only: section_type, slice, core_width, core_depth, no_ties
-   use rbs_section_steel, only: steel_type
+   use rbs_section_cross_section, only: section_type, slice, core_width, core_depth, no_ties
+   use rbs_section_steel_law, only: steel_type
    implicit none
    private
 

@@ -3,11 +3,11 @@ module rbs_flat_shear
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list
    use rbs_base_kinds, only: wp
-   use rbs_section_concrete, only: plain_concrete
+   use rbs_section_concrete_law, only: plain_concrete
    use rbs_section_mcft_layer, only: layer_state, layer_stress, layer_type, solve_layer, stress_of_state
-   use rbs_section_section, only: section_type
-   use rbs_section_shear, only: check_shear, follow_shear, shear_diagram_type, shear_point
-   use rbs_section_steel, only: steel_type
+   use rbs_section_cross_section, only: section_type
+   use rbs_section_shear_diagram, only: check_shear, follow_shear, shear_diagram_type, shear_point
+   use rbs_section_steel_law, only: steel_type
    implicit none
    private
 

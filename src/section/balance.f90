@@ -9,7 +9,7 @@ module rbs_section_balance
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_section_resultants, only: laws_type, resultants_type, resultants, force_scale
-   use rbs_section_section, only: section_type
+   use rbs_section_cross_section, only: section_type
    implicit none
    private
 

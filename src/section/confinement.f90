@@ -1,9 +1,9 @@
 !> Confinement of the core by hoops, ties or a spiral (Mander, Priestley, Park 1988, ASCE 114(8)).
 module rbs_section_confinement
    use rbs_base_kinds, only: wp
-   use rbs_section_concrete, only: confined_concrete, spalling_concrete
-   use rbs_section_section, only: section_type, no_ties, spiral, circular_hoops, core_width, core_depth, &
-                                  hoop_area, steel_area
+   use rbs_section_concrete_law, only: confined_concrete, spalling_concrete
+   use rbs_section_cross_section, only: section_type, no_ties, spiral, circular_hoops, core_width, &
+                                        core_depth, hoop_area, steel_area
    use rbs_base_constants, only: pi
    implicit none
    private

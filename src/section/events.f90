@@ -4,8 +4,8 @@ module rbs_section_events
    use rbs_base_kinds, only: wp
    use rbs_section_balance, only: state_type, begin, advance
    use rbs_section_resultants, only: laws_type
-   use rbs_section_section, only: section_type, core_depth
-   use rbs_section_steel, only: steel_yield_strain
+   use rbs_section_cross_section, only: section_type, core_depth
+   use rbs_section_steel_law, only: steel_yield_strain
    use rbs_spec_check, only: check_name, check_positive
    implicit none
    private

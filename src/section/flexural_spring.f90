@@ -8,10 +8,10 @@ module rbs_section_flexural_spring
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_section_concrete, only: tension_bare, tension_ts
+   use rbs_section_concrete_law, only: tension_bare, tension_ts
    use rbs_section_events, only: events_type, point_type, rule_type, find_events, reach_moment
    use rbs_section_resultants, only: laws_type, section_laws
-   use rbs_section_section, only: section_type
+   use rbs_section_cross_section, only: section_type
    use rbs_spec_check, only: is_given, check_positive, check_not_negative
    implicit none
    private

@@ -16,8 +16,8 @@
 !> upward in eps_1, each with eps_2 from sigma_z = 0, for the first that carries tau.
 module rbs_section_mcft_layer
    use rbs_base_kinds, only: wp
-   use rbs_section_concrete, only: concrete_type, concrete_both
-   use rbs_section_steel, only: steel_type, steel_both, steel_stress
+   use rbs_section_concrete_law, only: concrete_type, concrete_both
+   use rbs_section_steel_law, only: steel_type, steel_both, steel_stress
    implicit none
    private
 

@@ -1,9 +1,9 @@
 !> Axial force and moment of a section under a plane strain, and how the axial force changes with it.
 module rbs_section_resultants
    use rbs_base_kinds, only: wp
-   use rbs_section_concrete, only: concrete_type, concrete_both, tension_zero
-   use rbs_section_section, only: section_type
-   use rbs_section_steel, only: steel_both
+   use rbs_section_concrete_law, only: concrete_type, concrete_both, tension_zero
+   use rbs_section_cross_section, only: section_type
+   use rbs_section_steel_law, only: steel_both
    implicit none
    private
 

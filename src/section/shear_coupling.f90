@@ -9,7 +9,7 @@ module rbs_section_shear_coupling
    use rbs_section_mcft_layer, only: layer_type, layer_state, layer_stress, solve_layer, stress_of_state
    use rbs_section_resultants, only: force_scale
    use rbs_section_shear_flow, only: flow_type, stresses_of_forces
-   use rbs_section_steel, only: steel_stress
+   use rbs_section_steel_law, only: steel_stress
    implicit none
    private
 

@@ -7,10 +7,10 @@
 module rbs_section_shear_flow
    use rbs_base_kinds, only: wp
    use rbs_section_balance, only: state_type
-   use rbs_section_concrete, only: concrete_type, concrete_stress
+   use rbs_section_concrete_law, only: concrete_type, concrete_stress
    use rbs_section_resultants, only: laws_type
-   use rbs_section_section, only: section_type, no_ties, core_depth, hoop_area
-   use rbs_section_steel, only: steel_stress
+   use rbs_section_cross_section, only: section_type, no_ties, core_depth, hoop_area
+   use rbs_section_steel_law, only: steel_stress
    implicit none
    private
 

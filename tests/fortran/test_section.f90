@@ -5,14 +5,15 @@ module test_section
    use rbs_base_error, only: analysis_failed, bad_input, error_type
    use rbs_base_kinds, only: wp
    use rbs_section_balance, only: axial_capacity, follow
-   use rbs_section_concrete, only: concrete_stress, concrete_tangent, concrete_type, confined_concrete, &
-                                   plain_concrete, spalling_concrete, tension_bare, tension_ts, tension_zero
+   use rbs_section_concrete_law, only: concrete_stress, concrete_tangent, concrete_type, confined_concrete, &
+                                       plain_concrete, spalling_concrete, tension_bare, tension_ts, &
+                                       tension_zero
    use rbs_section_confinement, only: confine, volumetric_ratio
    use rbs_section_events, only: events_type, find_events, rule_type
    use rbs_section_flexural_spring, only: fit_flexural_spring, flexural_spring_type, hinge_type
    use rbs_section_resultants, only: laws_type, resultants, resultants_type, section_laws
-   use rbs_section_section, only: gross_area, section_type, slice, spiral, ties
-   use rbs_section_steel, only: steel_stress, steel_tangent, steel_type
+   use rbs_section_cross_section, only: gross_area, section_type, slice, spiral, ties
+   use rbs_section_steel_law, only: steel_stress, steel_tangent, steel_type
    implicit none
    private
 

@@ -6,15 +6,15 @@ module test_shear
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_section_balance, only: advance, begin, state_type
-   use rbs_section_concrete, only: concrete_stress, plain_concrete, tension_ts
+   use rbs_section_concrete_law, only: concrete_stress, plain_concrete, tension_ts
    use rbs_section_mcft_layer, only: crack_softening, layer_state, layer_stress, layer_type, solve_layer, &
                                      stress_of_state
    use rbs_section_resultants, only: section_laws
-   use rbs_section_section, only: core_depth, gross_area, section_type, slice, spiral, ties
-   use rbs_section_shear, only: check_shear, follow_shear, shear_diagram_type
+   use rbs_section_cross_section, only: core_depth, gross_area, section_type, slice, spiral, ties
+   use rbs_section_shear_diagram, only: check_shear, follow_shear, shear_diagram_type
    use rbs_section_shear_coupling, only: couple
    use rbs_section_shear_flow, only: begin_flow, flow_type, shear_stresses, transverse_ratio
-   use rbs_section_steel, only: steel_stress, steel_type
+   use rbs_section_steel_law, only: steel_stress, steel_type
    implicit none
    private
 

@@ -1,10 +1,10 @@
-!> Whether a section is one: sizes, cover, bars inside the concrete, ties.
-module rbs_section_check
+!> Checks of a section: its sizes and cover, bars inside the concrete, ties.
+module rbs_section_section_check
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_section_section, only: section_type, no_ties, gross_area, core_width, core_depth
-   use rbs_section_steel, only: check_steel
+   use rbs_section_cross_section, only: section_type, no_ties, gross_area, core_width, core_depth
+   use rbs_section_steel_law, only: check_steel
    use rbs_spec_check, only: check_finite, check_positive, check_not_negative
    implicit none
    private
@@ -110,4 +110,4 @@ contains
                         'one to the outer edge of the ties')
    end subroutine check_transverse
 
-end module rbs_section_check
+end module rbs_section_section_check

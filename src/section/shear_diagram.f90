@@ -4,14 +4,14 @@
 !> For each curvature the section in flexure gives the strain and the shear stress of each layer, which
 !> answers with its shear strain; gamma is their mean over the area, so that an uncracked section of concrete
 !> has V = (E_c/2) A gamma exactly.
-module rbs_section_shear
+module rbs_section_shear_diagram
    use rbs_base_error, only: error_type, message_list
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_section_balance, only: state_type, begin, advance
    use rbs_section_mcft_layer, only: layer_type, layer_state, solve_layer
    use rbs_section_resultants, only: section_laws
-   use rbs_section_section, only: section_type, slice, gross_area
+   use rbs_section_cross_section, only: section_type, slice, gross_area
    use rbs_section_shear_coupling, only: couple
    use rbs_section_shear_flow, only: flow_type, begin_flow, shear_stresses, transverse_ratio
    use rbs_spec_check, only: check_finite, check_positive
@@ -290,4 +290,4 @@ contains
       end do
    end subroutine check_shear
 
-end module rbs_section_shear
+end module rbs_section_shear_diagram

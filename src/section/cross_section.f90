@@ -3,11 +3,11 @@
 !> y runs from mid-depth, positive to the face that a positive curvature puts in tension:
 !> strain(y) = eps_0 - phi y, compression positive. Strips go from y = -depth/2 to depth/2. Concrete
 !> displaced by a bar is deducted where the bar is.
-module rbs_section_section
+module rbs_section_cross_section
    use rbs_base_constants, only: pi
    use rbs_base_kinds, only: wp
-   use rbs_section_concrete, only: concrete_type
-   use rbs_section_steel, only: steel_type
+   use rbs_section_concrete_law, only: concrete_type
+   use rbs_section_steel_law, only: steel_type
    implicit none
    private
 
@@ -132,4 +132,4 @@ contains
       hoop_area = 0.25_wp*pi*transverse%diameter**2
    end function hoop_area
 
-end module rbs_section_section
+end module rbs_section_cross_section

@@ -2,7 +2,7 @@
 !>
 !> E_s up to f_y; flat to eps_sh; f_u - (f_u - f_y)((eps_u - eps)/(eps_u - eps_sh))^2 up to eps_u; broken,
 !> without stress, beyond (Response-2000, manual table 2-2: quadratic with no slope at its maximum).
-module rbs_section_steel
+module rbs_section_steel_law
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -109,4 +109,4 @@ contains
       end if
    end subroutine check_steel
 
-end module rbs_section_steel
+end module rbs_section_steel_law

@@ -4,7 +4,7 @@
 !> and the decay k past the peak from its strength (Thorenfeldt, Tomaszewicz, Jensen 1987; Collins and
 !> Mitchell 1991); confined concrete has k = 1, and peak and n of Mander, Priestley, Park 1988 (ASCE 114(8)).
 !> The initial slope is E_c in both. Tension: E_c eps up to f_t, then one of three laws.
-module rbs_section_concrete
+module rbs_section_concrete_law
    use rbs_base_constants, only: unset, unbounded
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
@@ -223,4 +223,4 @@ contains
       end if
    end subroutine check_concrete
 
-end module rbs_section_concrete
+end module rbs_section_concrete_law
