@@ -69,7 +69,7 @@ _COUNTS = ("steps", "rows", "events", "cut_steps")
 #: Letters of the name of a method; why the program chose it comes behind.
 _METHOD_LENGTH = 20
 
-#: Values of a row before those of the joints (`rbs_results_row`).
+#: Values of a row before those of the joints (`rbs_output_row`).
 ROW_JOINTS = 10
 
 

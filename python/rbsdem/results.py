@@ -67,7 +67,7 @@ class Result:
 
 
 def result_from_rows(rows: Array, column: Column, summary: dict[str, Any]) -> Result:
-    """Return the result that rows of the Fortran part (`rbs_results_row`) hold, as views."""
+    """Return the result that rows of the Fortran part (`rbs_output_row`) hold, as views."""
     first, n = _core.ROW_JOINTS, column.n
     joints = [rows[:, first + i * n : first + (i + 1) * n] for i in range(2 * column.unknowns // n)]
     if column.axial is None:

@@ -3,7 +3,7 @@ module rbs_app_progress
    use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: error_unit, int64
    use rbs_base_kinds, only: wp
-   use rbs_results_progress, only: progress_type
+   use rbs_output_observer, only: observer_type
    implicit none
    private
 
@@ -16,7 +16,7 @@ module rbs_app_progress
 
    character(len=1), parameter :: carriage_return = achar(13)
 
-   type, extends(progress_type) :: terminal_progress
+   type, extends(observer_type) :: terminal_progress
       logical :: shown = .false.
       logical, private :: wanted = .false.
       real(wp), private :: begin = 0.0_wp, last = 0.0_wp

@@ -11,13 +11,15 @@ module rbs_app_run
    use rbs_io_case, only: case_history, load_case
    use rbs_io_csv, only: csv_recorder
    use rbs_io_namelist, only: read_case
-   use rbs_results_notes, only: rotation_note
-   use rbs_results_row, only: row_labels
-   use rbs_results_summary, only: summary_type, summary_names
-   use rbs_solve_history, only: initial_state
-   use rbs_solve_modal, only: modes_type, find_modes
-   use rbs_solve_run, only: make_column, run_static, plan_dynamic, run_dynamic
+   use rbs_output_notes, only: rotation_note
+   use rbs_output_row, only: row_labels
+   use rbs_output_summary, only: summary_type, summary_names
+   use rbs_solve_make_column, only: make_column
+   use rbs_solve_modal_modes, only: modes_type, find_modes
+   use rbs_solve_static_run_static, only: run_static
+   use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
+   use rbs_solve_time_run_dynamic, only: plan_dynamic, run_dynamic
    use rbs_spec_case, only: case_spec
    use rbs_version, only: version
    implicit none

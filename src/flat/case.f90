@@ -7,7 +7,7 @@ module rbs_flat_case
    use rbs_flat_pack, only: numbers_from_column
    use rbs_io_case, only: case_history, load_case
    use rbs_loading_signal, only: signal_type
-   use rbs_solve_run, only: make_column
+   use rbs_solve_make_column, only: make_column
    use rbs_spec_case, only: case_spec
    implicit none
    private

@@ -7,13 +7,14 @@ module rbs_flat_door
    use rbs_column_column, only: column_type
    use rbs_loading_protocol, only: protocol_values
    use rbs_loading_signal, only: signal_type
-   use rbs_results_notes, only: rotation_note
-   use rbs_results_recorder, only: array_recorder
-   use rbs_results_summary, only: summary_type
-   use rbs_solve_history, only: initial_state
-   use rbs_solve_loads, only: loads_type
-   use rbs_solve_run, only: run_static, run_dynamic, plan_dynamic
+   use rbs_output_notes, only: rotation_note
+   use rbs_output_recorder, only: array_recorder
+   use rbs_output_summary, only: summary_type
+   use rbs_solve_static_run_static, only: run_static
+   use rbs_solve_time_loads, only: loads_type
+   use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
+   use rbs_solve_time_run_dynamic, only: run_dynamic, plan_dynamic
    use rbs_spec_analysis, only: analysis_spec
    use rbs_spec_loading, only: loading_spec
    implicit none

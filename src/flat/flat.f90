@@ -77,7 +77,7 @@ subroutine rbs_modes(nc, codes, nn, numbers, kinematics, unknowns, omega, shapes
    use rbs_column_column, only: column_type
    use rbs_flat_door, only: tell
    use rbs_flat_pack, only: column_from_numbers
-   use rbs_solve_modal, only: modes_type, find_modes
+   use rbs_solve_modal_modes, only: modes_type, find_modes
    implicit none
    integer(c_int), intent(in) :: nc, nn, unknowns, codes(nc)
    real(c_double), intent(in) :: numbers(nn)
@@ -139,7 +139,7 @@ subroutine rbs_cyclic(nc, codes, nn, numbers, kinematics, by_force, m, values, e
    use rbs_column_column, only: column_type
    use rbs_flat_door, only: into_rows_static, tell_run
    use rbs_flat_pack, only: column_from_numbers
-   use rbs_results_summary, only: summary_type
+   use rbs_output_summary, only: summary_type
    implicit none
    integer(c_int), intent(in) :: nc, nn, by_force, m, every, width, height, codes(nc)
    real(c_double), intent(in) :: numbers(nn), values(m), collapse_drift
@@ -171,8 +171,8 @@ subroutine rbs_time_history(nc, codes, nn, numbers, kinematics, m, time, mf, for
    use rbs_column_column, only: column_type
    use rbs_flat_door, only: analysis_from_numbers, into_rows_dynamic, little_room, make_loads, tell_run
    use rbs_flat_pack, only: column_from_numbers
-   use rbs_results_summary, only: summary_type
-   use rbs_solve_loads, only: loads_type
+   use rbs_output_summary, only: summary_type
+   use rbs_solve_time_loads, only: loads_type
    use rbs_spec_analysis, only: analysis_spec
    implicit none
    integer(c_int), intent(in) :: nc, nn, m, mf, mg, mv, ma, mi, opening_given, every, width, height
@@ -300,7 +300,7 @@ end subroutine rbs_read_history
 
 subroutine rbs_kept_rows(points, every, rows)
    use iso_c_binding, only: c_int
-   use rbs_solve_static, only: kept_rows
+   use rbs_solve_static_trace, only: kept_rows
    implicit none
    integer(c_int), intent(in) :: points, every
    integer(c_int), intent(out) :: rows

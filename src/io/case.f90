@@ -8,8 +8,8 @@ module rbs_io_case
    use rbs_io_namelist, only: read_case
    use rbs_loading_protocol, only: protocol_values
    use rbs_loading_signal, only: signal_type
-   use rbs_solve_loads, only: loads_type
-   use rbs_solve_run, only: check_values
+   use rbs_solve_check_values, only: check_values
+   use rbs_solve_time_loads, only: loads_type
    use rbs_spec_analysis, only: analysis_spec
    use rbs_spec_case, only: case_spec
    use rbs_spec_check, only: is_given

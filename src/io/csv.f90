@@ -7,8 +7,8 @@ module rbs_io_csv
                                           c_ptr, c_size_t
    use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_results_recorder, only: recorder_type
-   use rbs_results_row, only: row_time
+   use rbs_output_recorder, only: recorder_type
+   use rbs_output_row, only: row_time
    implicit none
    private
 

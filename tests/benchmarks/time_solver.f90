@@ -17,13 +17,15 @@ program time_solver
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
    use rbs_hysteresis_springs, only: follow_path
-   use rbs_results_recorder, only: array_recorder
-   use rbs_results_row, only: row_size
-   use rbs_results_summary, only: summary_type
-   use rbs_solve_history, only: initial_state
-   use rbs_solve_loads, only: loads_type
-   use rbs_solve_run, only: make_column, run_static, plan_dynamic, run_dynamic
+   use rbs_output_recorder, only: array_recorder
+   use rbs_output_row, only: row_size
+   use rbs_output_summary, only: summary_type
+   use rbs_solve_make_column, only: make_column
+   use rbs_solve_static_run_static, only: run_static
+   use rbs_solve_time_loads, only: loads_type
+   use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
+   use rbs_solve_time_run_dynamic, only: plan_dynamic, run_dynamic
    use rbs_spec_analysis, only: analysis_spec
    use rbs_spec_column, only: column_spec
    use rbs_spec_spring, only: spring_spec

@@ -8,17 +8,17 @@ module runs
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
    use rbs_loading_signal, only: signal_type
-   use rbs_results_recorder, only: array_recorder
-   use rbs_results_row, only: row_size, row_joints
-   use rbs_results_summary, only: summary_type
-   use rbs_solve_history, only: initial_state
-   use rbs_solve_loads, only: loads_type
-   use rbs_solve_located, only: located_stepper
-   use rbs_solve_pair45, only: pair45_scheme
-   use rbs_solve_rk4, only: rk4_scheme
-   use rbs_solve_run, only: plan_dynamic, run_dynamic
-   use rbs_solve_state, only: state_type, stepper_type
+   use rbs_output_recorder, only: array_recorder
+   use rbs_output_row, only: row_size, row_joints
+   use rbs_output_summary, only: summary_type
+   use rbs_solve_time_loads, only: loads_type
+   use rbs_solve_time_located, only: located_stepper
+   use rbs_solve_time_march, only: initial_state
+   use rbs_solve_time_pair45, only: pair45_scheme
    use rbs_solve_time_plan, only: time_plan
+   use rbs_solve_time_rk4, only: rk4_scheme
+   use rbs_solve_time_run_dynamic, only: plan_dynamic, run_dynamic
+   use rbs_solve_time_state, only: state_type, stepper_type
    use rbs_spec_analysis, only: analysis_spec
    use rbs_spec_column, only: column_spec
    use rbs_spec_spring, only: spring_spec

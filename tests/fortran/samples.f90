@@ -4,7 +4,7 @@ module samples
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
-   use rbs_solve_run, only: make_column
+   use rbs_solve_make_column, only: make_column
    use rbs_spec_column, only: column_spec
    use rbs_spec_spring, only: spring_spec
    implicit none

@@ -11,10 +11,10 @@ module test_chain
    use rbs_column_column, only: column_type
    use rbs_column_mass, only: symmetric_mass
    use rbs_loading_signal, only: signal_type
-   use rbs_solve_loads, only: loads_type, lateral, horizontal, vertical, axial
-   use rbs_solve_modal, only: modes_type, find_modes
-   use rbs_solve_rk4, only: rk4_scheme
-   use rbs_solve_state, only: state_type
+   use rbs_solve_modal_modes, only: modes_type, find_modes
+   use rbs_solve_time_loads, only: loads_type, lateral, horizontal, vertical, axial
+   use rbs_solve_time_rk4, only: rk4_scheme
+   use rbs_solve_time_state, only: state_type
    use rbs_spec_column, only: column_spec
    use runs, only: new_state, signal_of
    use samples, only: bilinear, made, random_type, rich_column

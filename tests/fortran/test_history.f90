@@ -8,18 +8,19 @@ module test_history
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
    use rbs_hysteresis_springs, only: follow_path, spring_array
-   use rbs_results_progress, only: progress_type
-   use rbs_results_recorder, only: array_recorder, recorder_type
-   use rbs_results_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
+   use rbs_output_observer, only: observer_type
+   use rbs_output_recorder, only: array_recorder, recorder_type
+   use rbs_output_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
                               row_spring, row_damping, row_axial, row_residual, row_joints
-   use rbs_results_summary, only: summary_type
-   use rbs_solve_history, only: initial_state, march
-   use rbs_solve_loads, only: loads_type
-   use rbs_solve_modal, only: modes_type, find_modes
-   use rbs_solve_motion, only: motion_type
-   use rbs_solve_rk4, only: rk4_stepper
-   use rbs_solve_run, only: plan_dynamic, run_dynamic, run_static
+   use rbs_output_summary, only: summary_type
+   use rbs_solve_modal_modes, only: modes_type, find_modes
+   use rbs_solve_static_run_static, only: run_static
+   use rbs_solve_time_loads, only: loads_type
+   use rbs_solve_time_march, only: initial_state, march
+   use rbs_solve_time_motion, only: motion_type
    use rbs_solve_time_plan, only: time_plan
+   use rbs_solve_time_rk4, only: rk4_stepper
+   use rbs_solve_time_run_dynamic, only: plan_dynamic, run_dynamic
    use rbs_spec_column, only: column_spec
    use runs, only: run_data, run, times, last_deformation
    use samples, only: chain, column_1, elastic, made, random_type, d_y, k_u, mass_1, height_1
@@ -36,7 +37,7 @@ module test_history
    end type failing_recorder
 
    !> Counts how often it is told, and remembers the last share.
-   type, extends(progress_type) :: counting_progress
+   type, extends(observer_type) :: counting_progress
       integer :: count = 0
       real(wp) :: share = 0.0_wp
       logical :: ascends = .true.

@@ -7,10 +7,10 @@ module test_implicit
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
-   use rbs_solve_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha
-   use rbs_solve_loads, only: loads_type
-   use rbs_solve_modal, only: modes_type, find_modes, frequency_bounds
-   use rbs_solve_state, only: state_type
+   use rbs_solve_modal_modes, only: modes_type, find_modes, frequency_bounds
+   use rbs_solve_time_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha
+   use rbs_solve_time_loads, only: loads_type
+   use rbs_solve_time_state, only: state_type
    use rbs_spec_column, only: column_spec
    use runs, only: scene_type, scenes, new_scene, new_mass, play, play_located, find_reference, new_state, &
                    signal_of, check_order, residual_of, distance

@@ -10,7 +10,7 @@ module test_layered
    use rbs_hysteresis_rule, only: rule_type
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_springs, only: follow_path, spring_array
-   use rbs_solve_run, only: make_column
+   use rbs_solve_make_column, only: make_column
    use rbs_spec_column, only: column_spec
    use rbs_spec_spring, only: spring_spec, initial_stiffness
    use rbs_spec_spring_table, only: rule_names

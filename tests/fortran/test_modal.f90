@@ -7,7 +7,7 @@ module test_modal
    use rbs_column_axial, only: critical_factor, geometric_stiffness
    use rbs_column_column, only: column_type
    use rbs_column_mass, only: symmetric_mass
-   use rbs_solve_modal, only: modes_type, find_modes, frequency_bounds, stability_limit
+   use rbs_solve_modal_modes, only: modes_type, find_modes, frequency_bounds, stability_limit
    use rbs_spec_column, only: column_spec, most_dense
    use samples, only: bilinear, chain, column_1, elastic, made, random_type, k_c, s_k, mass_1, height_1
    implicit none

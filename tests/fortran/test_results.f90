@@ -3,11 +3,11 @@ module test_results
    use check, only: unit_test, check_close, check_equal, check_same, check_true
    use rbs_base_error, only: error_type, fatal_error
    use rbs_base_kinds, only: wp
-   use rbs_results_recorder, only: array_recorder
-   use rbs_results_row, only: row_size, row_labels, row_time, row_displacement, row_force, row_input, &
+   use rbs_output_recorder, only: array_recorder
+   use rbs_output_row, only: row_size, row_labels, row_time, row_displacement, row_force, row_input, &
                               row_kinetic, row_spring, row_damping, row_axial, row_residual, row_top, &
                               row_joints
-   use rbs_results_summary, only: summary_type, summary_size, summary_names
+   use rbs_output_summary, only: summary_type, summary_size, summary_names
    implicit none
    private
 

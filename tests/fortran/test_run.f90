@@ -9,16 +9,16 @@ module test_run
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
-   use rbs_results_recorder, only: array_recorder
-   use rbs_results_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
+   use rbs_output_recorder, only: array_recorder
+   use rbs_output_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
                               row_spring, row_damping, row_axial, row_residual, row_top, row_joints
-   use rbs_results_summary, only: summary_type
-   use rbs_solve_history, only: initial_state, march
-   use rbs_solve_loads, only: loads_type
-   use rbs_solve_located, only: located_stepper
-   use rbs_solve_run, only: plan_dynamic
-   use rbs_solve_state, only: state_type, stepper_type
+   use rbs_output_summary, only: summary_type
+   use rbs_solve_time_loads, only: loads_type
+   use rbs_solve_time_located, only: located_stepper
+   use rbs_solve_time_march, only: initial_state, march
    use rbs_solve_time_plan, only: time_plan, new_plan
+   use rbs_solve_time_run_dynamic, only: plan_dynamic
+   use rbs_solve_time_state, only: state_type, stepper_type
    use rbs_spec_analysis, only: analysis_spec
    use rbs_spec_column, only: column_spec
    use runs, only: run_data, run, times, new_located

@@ -7,7 +7,7 @@ module test_spec
    use rbs_base_error, only: error_type, message_list, bad_input
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
-   use rbs_solve_run, only: make_column
+   use rbs_solve_make_column, only: make_column
    use rbs_spec_analysis, only: analysis_spec, method_names
    use rbs_spec_case, only: case_spec
    use rbs_spec_check, only: is_given

@@ -9,13 +9,13 @@ module test_static
    use rbs_column_axial, only: geometric_forces
    use rbs_column_column, only: column_type
    use rbs_hysteresis_springs, only: follow_path, spring_array
-   use rbs_results_recorder, only: array_recorder, recorder_type
-   use rbs_results_row, only: row_size, row_time, row_displacement, row_force, row_axial, row_residual, &
+   use rbs_output_recorder, only: array_recorder, recorder_type
+   use rbs_output_row, only: row_size, row_time, row_displacement, row_force, row_axial, row_residual, &
                               row_joints, row_spring, row_input, row_top
-   use rbs_results_summary, only: summary_type
-   use rbs_solve_equilibrium, only: equilibrium_type
-   use rbs_solve_run, only: run_static
-   use rbs_solve_static, only: kept_rows
+   use rbs_output_summary, only: summary_type
+   use rbs_solve_static_equilibrium, only: equilibrium_type
+   use rbs_solve_static_run_static, only: run_static
+   use rbs_solve_static_trace, only: kept_rows
    use rbs_spec_column, only: column_spec
    use samples, only: bilinear, bilinear_1, chain, column_1, elastic, made, random_type, takeda_1, &
                       k_c, d_y, f_y, k_u, s_k, s_d, height_1

@@ -7,12 +7,12 @@ module test_static_finite
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
    use rbs_hysteresis_springs, only: follow_path, spring_array
-   use rbs_results_recorder, only: array_recorder
-   use rbs_results_row, only: row_size, row_displacement, row_force, row_axial, row_residual, row_joints, &
+   use rbs_output_recorder, only: array_recorder
+   use rbs_output_row, only: row_size, row_displacement, row_force, row_axial, row_residual, row_joints, &
                               row_spring, row_input, row_top
-   use rbs_results_summary, only: summary_type
-   use rbs_solve_static, only: trace
-   use rbs_solve_static_finite, only: trace_finite
+   use rbs_output_summary, only: summary_type
+   use rbs_solve_static_trace, only: trace
+   use rbs_solve_static_trace_finite, only: trace_finite
    use rbs_spec_column, only: column_spec
    use rbs_spec_spring, only: spring_spec
    use samples, only: bilinear, bilinear_1, chain, column_1, elastic, made, random_type, takeda_1, &

@@ -7,12 +7,12 @@ module test_steppers
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
-   use rbs_solve_loads, only: loads_type
-   use rbs_solve_located, only: located_stepper
-   use rbs_solve_modal, only: modes_type, find_modes
-   use rbs_solve_pair45, only: pair45_scheme
-   use rbs_solve_rk4, only: rk4_stepper
-   use rbs_solve_state, only: state_type
+   use rbs_solve_modal_modes, only: modes_type, find_modes
+   use rbs_solve_time_loads, only: loads_type
+   use rbs_solve_time_located, only: located_stepper
+   use rbs_solve_time_pair45, only: pair45_scheme
+   use rbs_solve_time_rk4, only: rk4_stepper
+   use rbs_solve_time_state, only: state_type
    use rbs_spec_column, only: column_spec
    use runs, only: scene_type, scenes, new_scene, new_mass, play, play_located, find_reference, new_state, &
                    new_located, signal_of, check_order, residual_of, distance

@@ -23,12 +23,18 @@ FLOORS = (
     ("hysteresis",),
     ("column", "section"),
     ("loading",),
-    ("results",),
+    ("output",),
     ("solve",),
     ("io", "flat"),
     ("app",),
 )
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
+
+#: Rooms inside solve, by floor: each kind of analysis stands alone, except that time asks modal.
+ANALYSES = {"modal": 0, "static": 1, "time": 1}
+
+#: What each room inside solve/ may use of the others; what they share lies beside them.
+INNER = {"": (), "modal": (), "static": (), "time": ("modal",)}
 
 #: Files without a module: what f2py reads, and the program.
 NO_MODULE = ("flat/flat.f90", "app/main.f90")
@@ -104,6 +110,12 @@ def uses(code: list[str]) -> Iterator[str]:
             yield match[1]
 
 
+def inner_room(name: str) -> str:
+    """Return the room inside solve/ that a file or a module of it belongs to, or an empty text."""
+    match = re.match(r"(?:rbs_)?solve[/_](\w+?)[/_]", name)
+    return match[1] if match and match[1] in INNER else ""
+
+
 def check_arrows(name: str, code: list[str]) -> Iterator[str]:
     """`use` goes to lower floors and stays in the room otherwise."""
     room = name.split("/", maxsplit=1)[0].removesuffix(".f90")
@@ -120,6 +132,10 @@ def check_arrows(name: str, code: list[str]) -> Iterator[str]:
             yield f"uses {module}, whose room has no floor"
         elif other != room and FLOOR[other] >= FLOOR[room]:
             yield f"uses {module}: an arrow from {room} back to {other}"
+        elif other == room == "solve":
+            here, there = inner_room(name), inner_room(module)
+            if there not in ("", here, *INNER[here]):
+                yield f"uses {module}: an arrow from solve/{here} to solve/{there}"
     for statement in code:
         match = re.match(r"use\b(.*)", statement)
         if match and "only" not in match[1]:
@@ -325,8 +341,8 @@ def test_this_repository() -> None:
 def test_the_repository_is_read() -> None:
     files = {path.relative_to(ROOT / "src").as_posix() for path in (ROOT / "src").rglob("*.f90")}
     assert set(NO_MODULE) <= files
-    assert {"base/kinds.f90", "solve/static.f90", "hysteresis/takeda.f90"} <= files
-    code = statements((ROOT / "src/solve/static_path.f90").read_text(encoding="utf-8"))
+    assert {"base/kinds.f90", "solve/static/path.f90", "hysteresis/takeda.f90"} <= files
+    code = statements((ROOT / "src/solve/static/path.f90").read_text(encoding="utf-8"))
     assert "rbs_hysteresis_springs" in set(uses(code))
     assert f"module {VERSION[1]}" in (ROOT / "src" / VERSION[0]).read_text(encoding="utf-8")
 
@@ -457,6 +473,18 @@ BAD = {
         "src/attic/thing.f90",
         GOOD_MODULE.format(module="rbs_attic_thing"),
         "no floor",
+    ),
+    "static uses time": (
+        "src/solve/static/thing.f90",
+        GOOD_MODULE.format(module="rbs_solve_static_thing").replace(
+            USE, USE + "   use rbs_solve_time_thing, only: x\n"
+        ),
+        "arrow from solve/static to solve/time",
+    ),
+    "what is shared uses time": (
+        SOLVE,
+        changed(USE, USE + "   use rbs_solve_time_thing, only: x\n"),
+        "arrow from solve/ to solve/time",
     ),
     "use without only": (SOLVE, changed(USE, "   use rbs_base_kinds\n"), "has no only"),
     "a continued arrow back": (

@@ -8,13 +8,13 @@
 !> A few bodies are solved in (slip, relative rotation) with full matrices. More are solved in (slip,
 !> absolute rotation), where K is a band of two diagonals beside the main one: k_M couples neighbouring
 !> rotations, the axial load only the slip of a joint and the rotation below it.
-module rbs_solve_equilibrium
+module rbs_solve_static_equilibrium
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: factor_positive, solve_positive, solve_general
    use rbs_column_axial, only: geometric_stiffness, geometric_forces
    use rbs_column_column, only: column_type
    use rbs_column_dead_loads, only: to_joints
-   use rbs_solve_bordered, only: bordered_band
+   use rbs_solve_static_bordered, only: bordered_band
    implicit none
    private
 
@@ -373,4 +373,4 @@ contains
       end do
    end subroutine along_joints
 
-end module rbs_solve_equilibrium
+end module rbs_solve_static_equilibrium

@@ -1,11 +1,11 @@
 !> The classical Runge-Kutta scheme with fixed steps (the paper's choice).
-module rbs_solve_rk4
+module rbs_solve_time_rk4
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_solve_loads, only: lateral, horizontal
-   use rbs_solve_rk4_one_body, only: advance_one_body, step_of_one_body
-   use rbs_solve_scheme, only: scheme_type
-   use rbs_solve_state, only: state_type, stepper_type, in_bounds
+   use rbs_solve_time_loads, only: lateral, horizontal
+   use rbs_solve_time_rk4_one_body, only: advance_one_body, step_of_one_body
+   use rbs_solve_time_scheme, only: scheme_type
+   use rbs_solve_time_state, only: state_type, stepper_type, in_bounds
    implicit none
    private
 
@@ -171,4 +171,4 @@ contains
       if (.not. state%lost) call state%springs%move_all(state%q)
    end subroutine advance
 
-end module rbs_solve_rk4
+end module rbs_solve_time_rk4

@@ -1,10 +1,10 @@
 !> The state of a column in time, what it has received so far, and who moves it on.
-module rbs_solve_state
+module rbs_solve_time_state
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_solve_loads, only: loads_type
-   use rbs_solve_motion, only: motion_type
+   use rbs_solve_time_loads, only: loads_type
+   use rbs_solve_time_motion, only: motion_type
    implicit none
    private
 
@@ -69,4 +69,4 @@ contains
       in_bounds = inside == m
    end function in_bounds
 
-end module rbs_solve_state
+end module rbs_solve_time_state

@@ -1,5 +1,5 @@
 !> What acts on a column in time.
-module rbs_solve_loads
+module rbs_solve_time_loads
    use rbs_base_kinds, only: wp
    use rbs_loading_signal, only: signal_type
    implicit none
@@ -75,4 +75,4 @@ contains
       if (self%acts(axial)) corner = min(corner, self%axial%corner_after(t))
    end function corner_after
 
-end module rbs_solve_loads
+end module rbs_solve_time_loads

@@ -5,12 +5,12 @@
 !>
 !> The last one puts a spring exactly on the end of its line. The tangent K = -dg/dz is a symmetric band in
 !> absolute rotations (see `rbs_column_dead_loads`).
-module rbs_solve_finite_equilibrium
+module rbs_solve_static_finite_equilibrium
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
    use rbs_column_dead_loads, only: per_joint, dead_loads, add_springs, to_joints
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_solve_bordered, only: bordered_band
+   use rbs_solve_static_bordered, only: bordered_band
    implicit none
    private
 
@@ -242,4 +242,4 @@ contains
       end do
    end subroutine remember
 
-end module rbs_solve_finite_equilibrium
+end module rbs_solve_static_finite_equilibrium

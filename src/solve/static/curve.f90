@@ -1,9 +1,9 @@
 !> The curve of a column between two points of its path: values and rates at both ends, a cubic between.
-module rbs_solve_curve
+module rbs_solve_static_curve
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_solve_finite_equilibrium, only: path_point
+   use rbs_solve_static_finite_equilibrium, only: path_point
    use rbs_solve_static_path, only: on_the_end
    implicit none
    private
@@ -356,4 +356,4 @@ contains
       largest_rate = max(abs(self%near%rate(i)), abs(self%far%rate(i)), least/same_rate)
    end function largest_rate
 
-end module rbs_solve_curve
+end module rbs_solve_static_curve

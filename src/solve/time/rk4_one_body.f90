@@ -1,11 +1,11 @@
 !> The classical Runge-Kutta step for the paper's column: one body, small rotations, no damping, lateral force
 !> and horizontal ground motion. Two unknowns stay in registers, where the loops of a chain and their
 !> calls would be nearly all of the time. The equations are those of the chain.
-module rbs_solve_rk4_one_body
+module rbs_solve_time_rk4_one_body
    use rbs_base_kinds, only: wp
-   use rbs_solve_loads, only: lateral, horizontal
-   use rbs_solve_motion, only: motion_type
-   use rbs_solve_state, only: state_type, out_of_bounds
+   use rbs_solve_time_loads, only: lateral, horizontal
+   use rbs_solve_time_motion, only: motion_type
+   use rbs_solve_time_state, only: state_type, out_of_bounds
    implicit none
    private
 
@@ -116,4 +116,4 @@ contains
                         + (load_along(3)*u4 + load_about(3)*r4))
    end subroutine step_of_one_body
 
-end module rbs_solve_rk4_one_body
+end module rbs_solve_time_rk4_one_body

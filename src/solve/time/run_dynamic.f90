@@ -1,35 +1,31 @@
-!> The analyses, from what the user asked for to rows: where both doors meet.
-module rbs_solve_run
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use rbs_base_constants, only: beyond_meaning, pi
-   use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
+!> The entry of the analyses in time: choice of the method, plan of the steps, run.
+module rbs_solve_time_run_dynamic
+   use rbs_base_constants, only: pi
+   use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_axial, only: check_stable
-   use rbs_column_column, only: column_type, new_column, small, finite
-   use rbs_hysteresis_factory, only: carries_axial_load
+   use rbs_column_column, only: column_type, small, finite
    use rbs_loading_signal, only: signal_type
-   use rbs_results_progress, only: progress_type
-   use rbs_results_recorder, only: recorder_type
-   use rbs_results_summary, only: summary_type
-   use rbs_solve_history, only: initial_state, march
-   use rbs_solve_implicit, only: new_newmark, new_hht, new_generalised_alpha
-   use rbs_solve_loads, only: loads_type
-   use rbs_solve_located, only: located_stepper
-   use rbs_solve_modal, only: frequency_bounds, stability_limit
-   use rbs_solve_pair45, only: pair45_scheme
-   use rbs_solve_rk4, only: rk4_stepper, rk4_scheme
-   use rbs_solve_state, only: stepper_type
-   use rbs_solve_static, only: trace
-   use rbs_solve_static_finite, only: trace_finite
+   use rbs_output_observer, only: observer_type
+   use rbs_output_recorder, only: recorder_type
+   use rbs_output_summary, only: summary_type
+   use rbs_solve_check_values, only: check_values
+   use rbs_solve_modal_modes, only: frequency_bounds, stability_limit
+   use rbs_solve_time_implicit, only: new_newmark, new_hht, new_generalised_alpha
+   use rbs_solve_time_loads, only: loads_type
+   use rbs_solve_time_located, only: located_stepper
+   use rbs_solve_time_march, only: initial_state, march
+   use rbs_solve_time_pair45, only: pair45_scheme
    use rbs_solve_time_plan, only: time_plan, new_plan, check_times, check_length
+   use rbs_solve_time_rk4, only: rk4_stepper, rk4_scheme
+   use rbs_solve_time_state, only: stepper_type
    use rbs_spec_analysis, only: analysis_spec
    use rbs_spec_check, only: is_given
-   use rbs_spec_column, only: column_spec
    implicit none
    private
 
-   public :: make_column, run_static, plan_dynamic, run_dynamic, check_values
+   public :: plan_dynamic, run_dynamic
 
    !> Where the user gives no step: share of the stability limit for rk4, share of the longest natural
    !> period for the implicit methods.
@@ -47,58 +43,6 @@ module rbs_solve_run
    real(wp), parameter :: few_times = 5.0_wp, cheap = 1.0e6_wp, dear = 3.0e9_wp
 
 contains
-
-   !> Validate a column and make it.
-   subroutine make_column(spec, column, error)
-      type(column_spec), intent(in) :: spec
-      type(column_type), intent(out) :: column
-      type(error_type), allocatable, intent(out) :: error
-      type(message_list) :: messages
-      integer :: i
-
-      call spec%validate(messages)
-      call messages%raise(error)
-      if (allocated(error)) return
-      do i = 1, size(spec%flexure)
-         if (carries_axial_load(spec%flexure(i))) cycle
-         call fatal_error(error, bad_input, 'flexure spring of joint '//to_text(i)//': its layers cannot '// &
-                          'carry axial_load = '//to_text(spec%flexure(i)%axial_load)//' N; lower it, or '// &
-                          'give stronger layers')
-         return
-      end do
-      call new_column(column, spec)
-   end subroutine make_column
-
-   !> Static path through displacements of the top or lateral forces.
-   subroutine run_static(column, by_force, target, every, collapse_drift, recorder, summary, error, progress)
-      type(column_type), intent(in) :: column
-      !> Whether the targets are lateral forces [N], else displacements of the top [m]
-      logical, intent(in) :: by_force
-      !> Targets (m)
-      real(wp), intent(in) :: target(:)
-      !> Every n-th point is kept, and the last; `unset_integer`: all
-      integer, intent(in) :: every
-      !> Displacement of the top over the height at which the path ends as collapsed; `unset`: none
-      real(wp), intent(in) :: collapse_drift
-      class(recorder_type), intent(inout) :: recorder
-      type(summary_type), intent(out) :: summary
-      type(error_type), allocatable, intent(out) :: error
-      class(progress_type), intent(inout), optional :: progress
-
-      if (by_force) then
-         call check_values(target, 'force', error)
-      else
-         call check_values(target, 'displacement', error)
-      end if
-      if (allocated(error)) return
-      if (column%kinematics == finite) then
-         call trace_finite(column, by_force, target, every, collapse_drift, recorder, summary, error, &
-                           progress)
-      else
-         call trace(column, by_force, target, every, collapse_drift, recorder, summary, error, progress)
-      end if
-      summary%method = 'static'
-   end subroutine run_static
 
    !> Choice of the method, stability limit and plan of the steps of a dynamic analysis.
    subroutine plan_dynamic(column, analysis, time, loads, plan, error)
@@ -230,7 +174,7 @@ contains
       class(recorder_type), intent(inout) :: recorder
       type(summary_type), intent(out) :: summary
       type(error_type), allocatable, intent(out) :: error
-      class(progress_type), intent(inout), optional :: progress
+      class(observer_type), intent(inout), optional :: progress
       class(stepper_type), allocatable :: stepper
 
       call check_signal(loads%force, 'force', error)
@@ -305,26 +249,4 @@ contains
       call check_values(signal%value, name, error)
    end subroutine check_signal
 
-   !> Values must be finite, and so must what is made of them.
-   subroutine check_values(values, name, error)
-      real(wp), intent(in) :: values(:)
-      character(len=*), intent(in) :: name
-      type(error_type), allocatable, intent(out) :: error
-      integer :: i
-
-      do i = 1, size(values)
-         if (.not. ieee_is_finite(values(i))) then
-            call fatal_error(error, bad_input, name//': value '//to_text(i)//' of '// &
-                             to_text(size(values))//' is '//to_text(values(i))// &
-                             '; it must be a finite number')
-            return
-         else if (abs(values(i)) > beyond_meaning) then
-            call fatal_error(error, bad_input, name//': value '//to_text(i)//' of '// &
-                             to_text(size(values))//' is '//to_text(values(i))// &
-                             '; products of it would not be finite: check its exponent and unit')
-            return
-         end if
-      end do
-   end subroutine check_values
-
-end module rbs_solve_run
+end module rbs_solve_time_run_dynamic

@@ -1,17 +1,17 @@
 !> Static path for small rotations, event to event: the column goes along its line to the target or to the
 !> next end of a spring's line, whichever comes first. Exact for `small` and `pdelta`; no tolerance, no
 !> increments.
-module rbs_solve_static
+module rbs_solve_static_trace
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_axial, only: axial_energy
    use rbs_column_column, only: column_type, small
-   use rbs_results_progress, only: progress_type
-   use rbs_results_recorder, only: recorder_type
-   use rbs_results_summary, only: summary_type
-   use rbs_solve_equilibrium, only: equilibrium_type
+   use rbs_output_observer, only: observer_type
+   use rbs_output_recorder, only: recorder_type
+   use rbs_output_summary, only: summary_type
    use rbs_solve_static_corner, only: turn_corner
+   use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_path, only: static_path, describe_state, kept_rows, is_on_end, on_the_end
    implicit none
    private
@@ -55,7 +55,7 @@ contains
       !> On failure everything up to the last good state has been recorded
       type(error_type), allocatable, intent(out) :: error
       !> Told now and then how far the path is
-      class(progress_type), intent(inout), optional :: progress
+      class(observer_type), intent(inout), optional :: progress
       type(straight_path) :: path
       integer :: m
 
@@ -234,4 +234,4 @@ contains
       axial_work = axial_work + sum(self%column%axial_joint*self%springs%d(2*n + 1:))
    end subroutine measure
 
-end module rbs_solve_static
+end module rbs_solve_static_trace

@@ -1,8 +1,8 @@
 !> The embedded pair of order 5(4) of Dormand and Prince (1980), with the estimate of its error.
-module rbs_solve_pair45
+module rbs_solve_time_pair45
    use rbs_base_kinds, only: wp
-   use rbs_solve_scheme, only: scheme_type
-   use rbs_solve_state, only: state_type
+   use rbs_solve_time_scheme, only: scheme_type
+   use rbs_solve_time_state, only: state_type
    implicit none
    private
 
@@ -95,4 +95,4 @@ contains
       call state%motion%acceleration(state%springs, self%q, self%v, load, self%rate_v(:, stage))
    end subroutine reach_stage
 
-end module rbs_solve_pair45
+end module rbs_solve_time_pair45

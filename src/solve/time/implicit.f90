@@ -8,7 +8,7 @@
 !> straight lines, so the tangent step is exact up to the next end of a line. Where Newton's method goes back
 !> and forth between two branches, the solution goes from end to end instead. A step that does not converge
 !> is taken back to the stored state and cut in two.
-module rbs_solve_implicit
+module rbs_solve_time_implicit
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: solve_general_band, solve_tridiagonal
@@ -17,9 +17,9 @@ module rbs_solve_implicit
    use rbs_column_band, only: add_spring_band, add_geometric_band, opening_stiffness, to_joints
    use rbs_column_chain, only: body_velocities
    use rbs_column_column, only: joint_name
-   use rbs_solve_loads, only: lateral, horizontal, vertical, axial
-   use rbs_solve_motion, only: motion_type
-   use rbs_solve_state, only: state_type, stepper_type, in_bounds, out_of_bounds
+   use rbs_solve_time_loads, only: lateral, horizontal, vertical, axial
+   use rbs_solve_time_motion, only: motion_type
+   use rbs_solve_time_state, only: state_type, stepper_type, in_bounds, out_of_bounds
    implicit none
    private
 
@@ -681,4 +681,4 @@ contains
       self%g0 = self%g1
    end subroutine commit
 
-end module rbs_solve_implicit
+end module rbs_solve_time_implicit

@@ -1,18 +1,18 @@
 !> Response in time: marching through the plan, energy balance, rows.
-module rbs_solve_history
+module rbs_solve_time_march
    use rbs_base_constants, only: unset_integer
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, joint_name
-   use rbs_results_progress, only: progress_type
-   use rbs_results_recorder, only: recorder_type
-   use rbs_results_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
+   use rbs_output_observer, only: observer_type
+   use rbs_output_recorder, only: recorder_type
+   use rbs_output_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
                               row_spring, row_damping, row_axial, row_residual, row_top, row_joints
-   use rbs_results_summary, only: summary_type
-   use rbs_solve_loads, only: loads_type, lateral, axial
-   use rbs_solve_state, only: state_type, stepper_type, out_of_bounds
+   use rbs_output_summary, only: summary_type
+   use rbs_solve_time_loads, only: loads_type, lateral, axial
    use rbs_solve_time_plan, only: time_plan
+   use rbs_solve_time_state, only: state_type, stepper_type, out_of_bounds
    use rbs_spec_check, only: is_given
    implicit none
    private
@@ -50,7 +50,7 @@ contains
       !> On failure everything up to the last good state has been recorded
       type(error_type), allocatable, intent(out) :: error
       !> Told now and then how far the run is
-      class(progress_type), intent(inout), optional :: progress
+      class(observer_type), intent(inout), optional :: progress
       type(state_type) :: state
       real(wp), allocatable :: row(:)
       real(wp) :: begin, finish, displacement, furthest, h
@@ -259,4 +259,4 @@ contains
       end do
    end function largest_rotation
 
-end module rbs_solve_history
+end module rbs_solve_time_march

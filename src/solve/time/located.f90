@@ -1,15 +1,15 @@
 !> Explicit steps that are cut where a spring's line ends or its velocity turns, so that the order of the
 !> scheme is kept through yielding and unloading; with a scheme that estimates its error also steps whose
 !> length follows from a tolerance.
-module rbs_solve_located
+module rbs_solve_time_located
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_chain, only: kinetic_of
    use rbs_column_column, only: joint_name
-   use rbs_solve_scheme, only: scheme_type
-   use rbs_solve_state, only: state_type, stepper_type, out_of_bounds, in_bounds
+   use rbs_solve_time_scheme, only: scheme_type
+   use rbs_solve_time_state, only: state_type, stepper_type, out_of_bounds, in_bounds
    implicit none
    private
 
@@ -386,4 +386,4 @@ contains
                        "larger tolerance, or method = 'generalised_alpha' for a stiff column")
    end subroutine report_no_step
 
-end module rbs_solve_located
+end module rbs_solve_time_located

@@ -4,18 +4,18 @@
 !> corrected by Newton's method, never accepted without convergence. An event is a point of the curve and
 !> is found as one: a spring stands on the end of its line while what is driven is free; or the motion of
 !> a spring on a one-way line turns back, where its rate is zero.
-module rbs_solve_static_finite
+module rbs_solve_static_trace_finite
    use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
    use rbs_column_finite, only: finite_potential, finite_top
-   use rbs_results_progress, only: progress_type
-   use rbs_results_recorder, only: recorder_type
-   use rbs_results_summary, only: summary_type
-   use rbs_solve_curve, only: curve_type, clean, first_ahead, largest_turn, most_turn, same_rate
-   use rbs_solve_finite_equilibrium, only: finite_equilibrium, path_point
+   use rbs_output_observer, only: observer_type
+   use rbs_output_recorder, only: recorder_type
+   use rbs_output_summary, only: summary_type
    use rbs_solve_static_corner, only: turn_corner
+   use rbs_solve_static_curve, only: curve_type, clean, first_ahead, largest_turn, most_turn, same_rate
+   use rbs_solve_static_finite_equilibrium, only: finite_equilibrium, path_point
    use rbs_solve_static_path, only: static_path, describe_state, name_spring, is_on_end
    implicit none
    private
@@ -65,7 +65,7 @@ contains
       !> On failure everything up to the last good state has been recorded
       type(error_type), allocatable, intent(out) :: error
       !> Told now and then how far the path is
-      class(progress_type), intent(inout), optional :: progress
+      class(observer_type), intent(inout), optional :: progress
       type(turning_path) :: path
       integer :: m
 
@@ -398,4 +398,4 @@ contains
       rotation = largest_turn(self%column, self%springs%d)
    end subroutine measure
 
-end module rbs_solve_static_finite
+end module rbs_solve_static_trace_finite

@@ -1,7 +1,7 @@
 !> What an explicit scheme is: one step from a state, tried without moving it.
-module rbs_solve_scheme
+module rbs_solve_time_scheme
    use rbs_base_kinds, only: wp
-   use rbs_solve_state, only: state_type
+   use rbs_solve_time_state, only: state_type
    implicit none
    private
 
@@ -63,4 +63,4 @@ contains
       self%begun = .false.
    end subroutine accept
 
-end module rbs_solve_scheme
+end module rbs_solve_time_scheme

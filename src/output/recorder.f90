@@ -1,5 +1,5 @@
 !> Where kept rows go: an array (Python) or a file (executable). The solver does not know which.
-module rbs_results_recorder
+module rbs_output_recorder
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    implicit none
@@ -13,7 +13,7 @@ module rbs_results_recorder
    end type recorder_type
 
    abstract interface
-      !> Take one kept row; the order of its values is that of `rbs_results_row`.
+      !> Take one kept row; the order of its values is that of `rbs_output_row`.
       subroutine record_interface(self, row, error)
          import :: recorder_type, error_type, wp
          implicit none
@@ -45,4 +45,4 @@ contains
       self%rows(:, self%count) = row
    end subroutine record
 
-end module rbs_results_recorder
+end module rbs_output_recorder

@@ -1,5 +1,5 @@
 !> What one kept row holds, in this order; the same for the csv and for Python.
-module rbs_results_row
+module rbs_output_row
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    implicit none
@@ -60,4 +60,4 @@ contains
       end do
    end function row_labels
 
-end module rbs_results_row
+end module rbs_output_row

@@ -1,9 +1,9 @@
 !> What a run allows and the user perhaps does not mean.
-module rbs_results_notes
+module rbs_output_notes
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, small, finite
-   use rbs_results_summary, only: summary_type
+   use rbs_output_summary, only: summary_type
    implicit none
    private
 
@@ -39,4 +39,4 @@ contains
       text = text//"; use 'finite'"
    end subroutine rotation_note
 
-end module rbs_results_notes
+end module rbs_output_notes

@@ -5,7 +5,7 @@
 !>
 !> With finite rotations M depends on q (paper, eq 4, without its last term in row 2, which is a misprint
 !> and makes energy drift).
-module rbs_solve_motion
+module rbs_solve_time_motion
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_column_axial, only: axial_energy
@@ -16,8 +16,8 @@ module rbs_solve_motion
                                 finite_power, finite_top
    use rbs_column_mass, only: symmetric_mass
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_solve_loads, only: lateral, horizontal, vertical, axial
-   use rbs_solve_modal, only: modes_type, find_modes
+   use rbs_solve_modal_modes, only: modes_type, find_modes
+   use rbs_solve_time_loads, only: lateral, horizontal, vertical, axial
    implicit none
    private
 
@@ -25,7 +25,7 @@ module rbs_solve_motion
 
    type :: motion_type
       type(column_type) :: column
-      !> Which of the four loads act (see `rbs_solve_loads`)
+      !> Which of the four loads act (see `rbs_solve_time_loads`)
       logical :: acts(4) = .false.
       !> Damping of the joints, beta k0 (unknowns) [N s/m, N m s]
       real(wp), allocatable :: joint_damping(:)
@@ -468,4 +468,4 @@ contains
       end do
    end function dot
 
-end module rbs_solve_motion
+end module rbs_solve_time_motion

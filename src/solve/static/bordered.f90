@@ -5,7 +5,7 @@
 !> A need not be positive definite, and may have no inverse where the force has its peak, while the whole
 !> has one. There a plain block elimination fails; the mixed one used here does not (W. Govaerts, Stable
 !> solvers and block elimination for bordered systems, SIAM J. Matrix Anal. Appl. 12 (1991) 469-483).
-module rbs_solve_bordered
+module rbs_solve_static_bordered
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: solve_general_band
    use rbs_base_narrow_band, only: factor_narrow_band, solve_narrow_band
@@ -259,4 +259,4 @@ contains
       end do
    end subroutine scale_rows
 
-end module rbs_solve_bordered
+end module rbs_solve_static_bordered

@@ -8,11 +8,11 @@ module rbs_solve_static_path
    use rbs_column_column, only: column_type, joint_name
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_results_progress, only: progress_type
-   use rbs_results_recorder, only: recorder_type
-   use rbs_results_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
+   use rbs_output_observer, only: observer_type
+   use rbs_output_recorder, only: recorder_type
+   use rbs_output_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
                               row_spring, row_damping, row_axial, row_residual, row_top, row_joints
-   use rbs_results_summary, only: summary_type
+   use rbs_output_summary, only: summary_type
    implicit none
    private
 
@@ -158,7 +158,7 @@ contains
       !> On failure everything up to the last good state has been recorded
       type(error_type), allocatable, intent(out) :: error
       !> Told now and then how far the path is
-      class(progress_type), intent(inout), optional :: progress
+      class(observer_type), intent(inout), optional :: progress
       type(error_type), allocatable :: failure
       real(wp), allocatable :: row(:)
       real(wp) :: height

@@ -1,7 +1,7 @@
 !> What is told of a run besides its rows.
-module rbs_results_summary
+module rbs_output_summary
    use rbs_base_kinds, only: wp
-   use rbs_results_row, only: row_input, row_kinetic, row_spring, row_damping, row_residual
+   use rbs_output_row, only: row_input, row_kinetic, row_spring, row_damping, row_residual
    implicit none
    private
 
@@ -63,7 +63,7 @@ contains
    !> Take the energies of a kept row into account.
    pure subroutine see(self, row)
       class(summary_type), intent(inout) :: self
-      !> Values as in `rbs_results_row`
+      !> Values as in `rbs_output_row`
       real(wp), intent(in) :: row(:)
 
       self%rows = self%rows + 1
@@ -86,4 +86,4 @@ contains
                 real(self%cut_steps, wp), merge(1.0_wp, 0.0_wp, self%collapsed)]
    end function as_array
 
-end module rbs_results_summary
+end module rbs_output_summary

@@ -1,5 +1,5 @@
 !> Natural frequencies, mode shapes and the stable step of RK4.
-module rbs_solve_modal
+module rbs_solve_modal_modes
    use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: factor_positive, singular_values, solve_upper
@@ -331,4 +331,4 @@ contains
       growth = abs(1.0_wp + z*(1.0_wp + z/2.0_wp*(1.0_wp + z/3.0_wp*(1.0_wp + z/4.0_wp))))
    end function growth
 
-end module rbs_solve_modal
+end module rbs_solve_modal_modes

@@ -1,0 +1,36 @@
+!> A column from what the user asked for.
+module rbs_solve_make_column
+   use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
+   use rbs_base_text, only: to_text
+   use rbs_column_column, only: column_type, new_column
+   use rbs_hysteresis_factory, only: carries_axial_load
+   use rbs_spec_column, only: column_spec
+   implicit none
+   private
+
+   public :: make_column
+
+contains
+
+   !> Validate a column and make it.
+   subroutine make_column(spec, column, error)
+      type(column_spec), intent(in) :: spec
+      type(column_type), intent(out) :: column
+      type(error_type), allocatable, intent(out) :: error
+      type(message_list) :: messages
+      integer :: i
+
+      call spec%validate(messages)
+      call messages%raise(error)
+      if (allocated(error)) return
+      do i = 1, size(spec%flexure)
+         if (carries_axial_load(spec%flexure(i))) cycle
+         call fatal_error(error, bad_input, 'flexure spring of joint '//to_text(i)//': its layers cannot '// &
+                          'carry axial_load = '//to_text(spec%flexure(i)%axial_load)//' N; lower it, or '// &
+                          'give stronger layers')
+         return
+      end do
+      call new_column(column, spec)
+   end subroutine make_column
+
+end module rbs_solve_make_column
