@@ -2,7 +2,7 @@
 !>
 !> Whole numbers: circular, kind of ties, number of strips, of steels, of bars; place of the steel of each
 !> bar. Reals: the scalars in the order of `section_from_numbers`, five of each steel, y and area of each bar.
-!> The Python side is `rbsdem.section.shapes`.
+!> The Python side is `rbsdem.section.section`.
 module rbs_flat_section
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list

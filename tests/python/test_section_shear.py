@@ -26,7 +26,8 @@ from rbsdem.section import (
     Ties,
     strength,
 )
-from rbsdem.section.shear import closed_form_shear, fit_shear_spring, shear_diagram
+from rbsdem.section.shear_diagram import shear_diagram
+from rbsdem.section.shear_spring import closed_form_shear, fit_shear_spring
 
 MPA = 1e6
 KEYS = ("soesianawati_1", "tanaka_park_1", "tanaka_park_5", "zahn_7")

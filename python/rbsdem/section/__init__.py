@@ -5,11 +5,14 @@ Concrete, steel, bars and ties make a `RectangularSection` or a `CircularSection
 compression, y is positive to the face that a positive curvature puts in tension.
 """
 
+from rbsdem.section.circular import CircularSection
 from rbsdem.section.diagram import Confinement, Diagram, Events, Point
 from rbsdem.section.materials import Concrete, Steel
+from rbsdem.section.rectangular import RectangularSection
 from rbsdem.section.reinforcement import Bar, Layout, Spiral, Ties
-from rbsdem.section.shapes import CircularSection, RectangularSection, Section
-from rbsdem.section.shear import ShearDiagram, ShearSpring
+from rbsdem.section.section import Section
+from rbsdem.section.shear_diagram import ShearDiagram
+from rbsdem.section.shear_spring import ShearSpring
 from rbsdem.section.spring_fit import SectionSprings
 
 __all__ = [

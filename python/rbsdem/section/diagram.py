@@ -15,7 +15,7 @@ from rbsdem.section.materials import tension_place
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from rbsdem.section.shapes import Section
+    from rbsdem.section.section import Section
 
 __all__ = ["Confinement", "Diagram", "Events", "Point", "make_diagram", "make_point"]
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rbsdem.section.diagram import Diagram, Events
-    from rbsdem.section.shapes import Section
+    from rbsdem.section.section import Section
     from rbsdem.section.spring_fit import SectionSprings
 
 __all__ = ["EVENT_MARKS", "draw_diagram", "draw_section", "draw_springs", "new_axes"]
@@ -120,19 +120,16 @@ def draw_springs(springs: SectionSprings) -> Figure:
 
 def draw_section(section: Section, ax: Axes | None = None) -> Axes:
     """Draw outline, ties and bars to scale, the tension face below; see `Section.plot`."""
-    from matplotlib.patches import Circle, Rectangle  # noqa: PLC0415
+    from matplotlib.patches import Circle, Polygon  # noqa: PLC0415
 
     with style():
         ax = new_axes(ax, (2.6, 2.8))
         w, h = 1e3 * section.width, 1e3 * section.depth
-        if section.circular:
-            ax.add_patch(Circle((0.0, 0.0), 0.5 * h, **_CONCRETE))
-        else:
-            ax.add_patch(Rectangle((-0.5 * w, -0.5 * h), w, h, **_CONCRETE))
+        ax.add_patch(Polygon(1e3 * section.outline(), **_CONCRETE))
         if section.ties is not None:
-            _draw_ties(section, ax)
-        for x, y, diameter in _bars_to_draw(section):
-            ax.add_patch(Circle((x, -y), 0.5 * diameter, zorder=3, **_BAR))
+            _draw_ties(section, section.ties.diameter, ax)
+        for x, y, diameter in section.place_bars(_single_bars(section)):
+            ax.add_patch(Circle((1e3 * x, -1e3 * y), 0.5e3 * diameter, zorder=3, **_BAR))
         reach_x, reach_y = 0.54 * w, 0.54 * h
         ax.set_xlim(-reach_x, reach_x)
         ax.set_ylim(-reach_y, reach_y)
@@ -146,77 +143,23 @@ def draw_section(section: Section, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def _draw_ties(section: Section, ax: Axes) -> None:
-    """Draw hoop and inner legs as bands of their true thickness."""
-    from matplotlib.patches import Circle, FancyBboxPatch, Rectangle  # noqa: PLC0415
+def _draw_ties(section: Section, thickness: float, ax: Axes) -> None:
+    """Draw hoop and inner legs as bands of their true thickness [m]."""
+    from matplotlib.patches import Polygon  # noqa: PLC0415
 
-    core, ties = section.confinement, section.ties
-    if core is None or ties is None:
-        return
-    b, d, thick = 1e3 * core.width, 1e3 * core.depth, 1e3 * ties.diameter
-    if section.circular:
-        for radius, look in ((0.5 * (d + thick), _TIE), (0.5 * (d - thick), _INSIDE)):
-            ax.add_patch(Circle((0.0, 0.0), radius, zorder=2, **look))
-        return
-    bend = 0.5 * 1e3 * (section.bar_diameter or 0.0)
-    for more, look in ((thick, _TIE), (-thick, _INSIDE)):
-        rounding = bend + 0.5 * more + 0.5 * thick
-        ax.add_patch(
-            FancyBboxPatch(
-                (-0.5 * (b + more) + rounding, -0.5 * (d + more) + rounding),
-                b + more - 2 * rounding,
-                d + more - 2 * rounding,
-                boxstyle=f"round,pad={rounding},rounding_size={rounding}",
-                zorder=2,
-                **look,
-            )
-        )
-    inset = 0.5 * thick + bend
-    for x in np.linspace(-0.5 * b + inset, 0.5 * b - inset, round(ties.legs))[1:-1]:
-        ax.add_patch(Rectangle((x - 0.5 * thick, -0.5 * d), thick, d, zorder=2, **_TIE))
-    for y in np.linspace(-0.5 * d + inset, 0.5 * d - inset, round(ties.legs_across))[1:-1]:
-        ax.add_patch(Rectangle((-0.5 * b, y - 0.5 * thick), b, thick, zorder=2, **_TIE))
+    bend = 0.5 * (section.bar_diameter or 0.0)
+    for inset, look in ((0.0, _TIE), (thickness, _INSIDE)):
+        line = section.hoop_line(inset, bend + thickness - inset)
+        ax.add_patch(Polygon(1e3 * line, zorder=2, **look))
+    for leg in section.inner_legs():
+        ax.add_patch(Polygon(1e3 * leg, zorder=2, **_TIE))
 
 
-def _bars_to_draw(section: Section) -> list[tuple[float, float, float]]:
-    """Return x, y and diameter of every bar [mm]; only y is known, so rows are spread evenly."""
+def _single_bars(section: Section) -> list[tuple[float, float]]:
+    """Return y and diameter of every bar [m]; an entry of `bars` may be a row of several."""
     bars = []
     for y, area, _ in section.bars:
         one = 0.25 * math.pi * (section.bar_diameter or 0.0) ** 2
-        count = max(1, round(area / one)) if one > 0.0 else 1  # an entry may be a row
-        bars += [(1e3 * y, 2e3 * math.sqrt(area / count / math.pi))] * count
-    if section.circular:
-        return [(x, y, d) for (y, d), x in zip(bars, _around(bars), strict=True)]
-    core = section.confinement
-    inner = 1e3 * (section.width - 2.0 * section.side_cover)
-    if core is not None:
-        inner = 1e3 * (core.width - section.ties.diameter)
-    drawn = []
-    for level in dict.fromkeys(_level(y, section) for y, _ in bars):
-        row = [(y, d) for y, d in bars if _level(y, section) == level]
-        # The thickest stand in the corners.
-        row.sort(key=lambda bar: bar[1])
-        ends = row[-2:] if len(row) > 1 else []
-        row = [*ends[:1], *row[: len(row) - len(ends)], *ends[1:]]
-        edge = 0.5 * inner - 0.5 * row[0][1]
-        places = np.linspace(-edge, edge, len(row)) if len(row) > 1 else [0.0]
-        drawn += [(float(x), y, d) for x, (y, d) in zip(places, row, strict=True)]
-    return drawn
-
-
-def _level(y: float, section: Section) -> int:
-    """Return the row that a bar belongs to: bars of other diameters touch the same tie."""
-    return round(y / max(5.0, 0.6e3 * (section.bar_diameter or 0.01)))
-
-
-def _around(bars: list[tuple[float, float]]) -> list[float]:
-    """Return x of the bars of a circle [mm], left and right in turn."""
-    radius = max((abs(y) for y, _ in bars), default=0.0)
-    seen: dict[int, int] = {}
-    places = []
-    for y, _ in bars:
-        level = round(y)
-        side = 1 if seen.setdefault(level, 0) % 2 == 0 else -1
-        seen[level] += 1
-        places.append(side * math.sqrt(max(0.0, radius**2 - y**2)))
-    return places
+        count = max(1, round(area / one)) if one > 0.0 else 1
+        bars += [(y, 2.0 * math.sqrt(area / count / math.pi))] * count
+    return bars

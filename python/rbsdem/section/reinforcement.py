@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -165,6 +166,8 @@ class Ties:
         If a number is refused.
     """
 
+    kind: ClassVar[str] = "ties"
+
     diameter: float
     spacing: float
     steel: Steel
@@ -202,6 +205,10 @@ class Spiral:
         If a number is refused.
     """
 
+    #: Bars that cross the section, along the depth and across it: both sides of a turn.
+    legs: ClassVar[float] = 2.0
+    legs_across: ClassVar[float] = 2.0
+
     diameter: float
     spacing: float
     steel: Steel
@@ -214,6 +221,11 @@ class Spiral:
         object.__setattr__(self, "hoops", _core.switch(self.hoops, "spiral: hoops"))
         if not isinstance(self.steel, Steel):
             raise InputError(f"spiral: steel = {self.steel!r} must be a Steel")
+
+    @property
+    def kind(self) -> str:
+        """What it is: "spiral" or "hoops"."""
+        return "hoops" if self.hoops else "spiral"
 
 
 def _area(diameter: float) -> float:

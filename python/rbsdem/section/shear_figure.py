@@ -15,7 +15,8 @@ from rbsdem.section.figure import EVENT_MARKS, new_axes
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from rbsdem.section.shear import ShearDiagram, ShearSpring
+    from rbsdem.section.shear_diagram import ShearDiagram
+    from rbsdem.section.shear_spring import ShearSpring
 
 __all__ = ["draw_shear"]
 

@@ -11,13 +11,13 @@ from rbsdem import _core
 from rbsdem._core import UNSET
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.section.diagram import Events, make_point
-from rbsdem.section.shear import ShearSpring, closed_form_shear, fit_shear_spring
+from rbsdem.section.shear_spring import ShearSpring, closed_form_shear, fit_shear_spring
 from rbsdem.springs import Bilinear, Takeda
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rbsdem.section.shapes import Section
+    from rbsdem.section.section import Section
 
 __all__ = ["SHEAR", "YIELD_RULES", "SectionSprings", "fit_springs"]
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from rbsdem.errors import InputError
 
 if TYPE_CHECKING:
-    from rbsdem.section.shapes import Section
+    from rbsdem.section.section import Section
 
 __all__ = [
     "ShearSizes",
@@ -90,16 +90,11 @@ def shear_sizes(section: Section) -> ShearSizes:
         if y > -1e-9 * section.depth
     ]
     steel = sum(area for _, area in half)
-    outer = [(y, area) for y, area in half if y > 1e-9 * section.depth]
-    d = 0.8 * section.depth
-    if outer and not section.circular:
-        d = 0.5 * section.depth + sum(y * a for y, a in outer) / sum(a for _, a in outer)
     ties = section.ties
     area = spacing = tie_yield = 0.0
     core = section.depth
     if ties is not None:
-        legs = 2.0 if section.circular else getattr(ties, "legs", 2.0)
-        area = legs * 0.25 * math.pi * ties.diameter**2
+        area = ties.legs * 0.25 * math.pi * ties.diameter**2
         tie_yield = ties.steel.fy
         core = section.depth - 2.0 * section.cover - ties.diameter
     spacing = ties.spacing if ties is not None else math.inf
@@ -107,7 +102,7 @@ def shear_sizes(section: Section) -> ShearSizes:
         section.concrete_law["fc"],
         section.width,
         section.depth,
-        d,
+        section.effective_depth,
         section.gross_area,
         steel,
         area,

@@ -1,8 +1,9 @@
-"""Rectangular and circular sections of reinforced concrete."""
+"""What sections of reinforced concrete have in common, whatever their shape."""
 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -16,29 +17,62 @@ from rbsdem.errors import InputError
 from rbsdem.section.diagram import Confinement, Diagram, make_diagram
 from rbsdem.section.materials import Concrete, Steel, tension_place
 from rbsdem.section.reinforcement import Bar, Layout, Spiral, Ties
-from rbsdem.section.shear import ShearDiagram, shear_diagram
+from rbsdem.section.shear_diagram import ShearDiagram, shear_diagram
 from rbsdem.section.spring_fit import SectionSprings, fit_springs
 from rbsdem.section.strength import shear_strength_mcft
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["CircularSection", "RectangularSection", "Section"]
+__all__ = ["Section"]
+
+#: Shapes in the Fortran part.
+_SHAPES = ("rectangle", "circle")
 
 #: Kinds of transverse reinforcement in the Fortran part.
-_NO_TIES, _TIES, _SPIRAL, _HOOPS = range(4)
+_KINDS = ("none", "ties", "spiral", "hoops")
 
 _NO_STEEL = (1.0, 1.0, 1.0, 1.0, 1.0)
 
 
 @dataclass(frozen=True)
-class Section:
-    """What rectangular and circular sections share; use one of these."""
+class Section(ABC):
+    """What all sections share; `RectangularSection` and `CircularSection` know their shape."""
 
-    #: Shape in the Fortran part.
-    circular: ClassVar[bool] = False
-    #: Words in messages.
-    shape: ClassVar[str] = ""
+    #: Name of the shape.
+    shape: ClassVar[str]
+    #: The transverse bars that this shape takes, for messages.
+    hoops: ClassVar[str]
+
+    @abstractmethod
+    def _lay_out(self, layout: Layout, inset: float) -> list[Bar]:
+        """Return the bars of a layout; `inset` is from the face to the edge of the bars [m]."""
+
+    @property
+    @abstractmethod
+    def gross_area(self) -> float:
+        """Area of the concrete outline [m2]."""
+
+    @property
+    @abstractmethod
+    def effective_depth(self) -> float:
+        """From the compression face to the centre of the bars in the half in tension [m]."""
+
+    @abstractmethod
+    def outline(self) -> Array:
+        """Return the outline of the concrete, a point a row: x and y [m]."""
+
+    @abstractmethod
+    def hoop_line(self, inset: float, bend: float) -> Array:
+        """Return the closed line at `inset` inside the outer edge of the transverse bars [m]."""
+
+    @abstractmethod
+    def inner_legs(self) -> list[Array]:
+        """Return the corners of each leg of the ties between the outer ones [m]."""
+
+    @abstractmethod
+    def place_bars(self, bars: Sequence[tuple[float, float]]) -> list[tuple[float, float, float]]:
+        """Return x, y and diameter of bars of which y and diameter are given [m]."""
 
     def _put(self, name: str, value: object) -> None:
         object.__setattr__(self, name, value)
@@ -52,12 +86,12 @@ class Section:
             raise InputError(f"section: concrete = {concrete!r} must be a Concrete")
         if not (isinstance(self.strips, int) and 10 <= self.strips <= 100_000):
             raise InputError(f"section: strips = {self.strips!r} must be from 10 to 100000")
-        self._take_bars(depth, cover, transverse)
+        self._take_bars(cover, transverse)
         bars = self.bars
         steels = list(dict.fromkeys(steel for _, _, steel in bars))
         kind, tie_numbers = _transverse_numbers(transverse)
         places = [steels.index(steel) + 1 for _, _, steel in bars]
-        codes = [int(self.circular), kind, self.strips, len(steels), len(bars), *places]
+        codes = [_SHAPES.index(self.shape), kind, self.strips, len(steels), len(bars), *places]
         numbers = [width, depth, cover, side_cover, self.bar_diameter or 0.0]
         numbers += concrete.numbers() + tie_numbers
         for steel in steels:
@@ -67,7 +101,7 @@ class Section:
         self._put("_numbers", np.array(numbers, dtype=np.float64))
         self._put("_figures", _core.check_section(self._packed))
 
-    def _take_bars(self, depth: float, cover: float, transverse: Ties | Spiral | None) -> None:
+    def _take_bars(self, cover: float, transverse: Ties | Spiral | None) -> None:
         """Set the bars, from list or layout, and the diameter of the outermost one in tension."""
         if self.layout is not None:
             if len(self.bars) > 0:
@@ -75,8 +109,7 @@ class Section:
             if not isinstance(self.layout, Layout):
                 raise InputError(f"section: layout = {self.layout!r} must be a Layout")
             inset = cover + (transverse.diameter if transverse else 0.0)
-            place = self.layout.circular if self.circular else self.layout.rectangular
-            self._put("bars", tuple(place(depth, inset)))
+            self._put("bars", tuple(self._lay_out(self.layout, inset)))
             if self.bar_diameter is None:
                 self._put("bar_diameter", self.layout.diameter)
         else:
@@ -91,11 +124,6 @@ class Section:
     @property
     def _packed(self) -> tuple[Any, Any]:
         return self._codes, self._numbers
-
-    @property
-    def gross_area(self) -> float:
-        """Area of the concrete outline [m2]."""
-        return self.width * self.depth
 
     @property
     def steel_area(self) -> float:
@@ -121,7 +149,7 @@ class Section:
     @property
     def confinement(self) -> Confinement | None:
         """What the ties make of the core (Mander, Priestley, Park 1988); None without ties."""
-        if self._codes[1] == _NO_TIES:
+        if self.ties is None:
             return None
         return Confinement(*self._figures[6:15].tolist())
 
@@ -308,8 +336,8 @@ class Section:
         curvature : array_like, optional
             Rising positive curvatures [1/m].
         **options
-            As for `rbsdem.section.shear.shear_diagram`: furthest, points, tension, confined,
-            layers, knee.
+            As for `rbsdem.section.shear_diagram.shear_diagram`: furthest, points, tension,
+            confined, layers, knee.
 
         Returns
         -------
@@ -370,152 +398,11 @@ class Section:
 
     def _confined(self, confined: Any) -> bool:
         wanted = _core.switch(confined, "confined")
-        if wanted and self._codes[1] == _NO_TIES:
+        if wanted and self.ties is None:
             raise InputError(
-                "confined = True needs transverse bars that confine: give the section "
-                + ("a spiral" if self.circular else "ties")
+                f"confined = True needs transverse bars that confine: give the section {self.hoops}"
             )
         return wanted
-
-
-@dataclass(frozen=True)
-class RectangularSection(Section):
-    """A rectangular section.
-
-    Parameters
-    ----------
-    width, depth : float
-        Depth is in the direction of loading [m].
-    concrete : Concrete
-        Its laws.
-    bars : sequence of (y, area, steel), optional
-        Bars one by one: distance from mid-depth, positive to the tension face [m], area [m2],
-        `Steel`. A row of bars may be one entry if `bar_diameter` is given.
-    layout : Layout, optional
-        Bars by number and diameter, in place of `bars`.
-    ties : Ties, optional
-        Transverse bars; they confine the core where it is asked for, and carry shear.
-    cover : float, optional
-        Clear cover to the outer edge of the ties [m].
-    side_cover : float, optional
-        The same at the faces along the depth, if it is another one [m].
-    bar_diameter : float, optional
-        Of the main bars [m], for the length of the hinge and the confinement. By default that of
-        the layout, or of a round bar with the area of the outermost one in tension.
-    strips : int, optional
-        Strips of concrete over the depth.
-
-    Raises
-    ------
-    InputError
-        With a line for everything that is wrong.
-
-    Examples
-    --------
-    >>> steel = Steel(446e6, 702e6)
-    >>> section = RectangularSection(
-    ...     0.4,
-    ...     0.4,
-    ...     Concrete(46.5e6),
-    ...     layout=Layout(12, 0.016, steel),
-    ...     ties=Ties(0.007, 0.085, Steel(364e6, 521e6), legs=4),
-    ...     cover=0.013,
-    ... )
-    >>> round(section.moment_curvature(744e3, 0.01) / 1e3)
-    260
-    """
-
-    shape: ClassVar[str] = "rectangle"
-
-    width: float = 0.0
-    depth: float = 0.0
-    concrete: Concrete | None = None
-    bars: Sequence[Bar] = ()
-    layout: Layout | None = None
-    ties: Ties | None = None
-    cover: float = 0.0
-    side_cover: float | None = None
-    bar_diameter: float | None = None
-    strips: int = 400
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.ties, Ties | None):
-            raise InputError(f"section: ties = {self.ties!r} must be Ties")
-        for name in ("width", "depth", "cover"):
-            self._put(name, _core.number(getattr(self, name), f"section: {name}"))
-        if self.side_cover is None:
-            self._put("side_cover", self.cover)
-        self._put("side_cover", _core.number(self.side_cover, "section: side_cover"))
-        self._finish(self.width, self.depth, self.side_cover, self.ties)
-
-
-@dataclass(frozen=True)
-class CircularSection(Section):
-    """A circular section.
-
-    Parameters
-    ----------
-    diameter : float
-        Of the concrete [m].
-    concrete : Concrete
-        Its laws.
-    bars : sequence of (y, area, steel), optional
-        As for `RectangularSection`.
-    layout : Layout, optional
-        Bars around the circle, the first at the tension face, in place of `bars`.
-    spiral : Spiral, optional
-        Transverse bars.
-    cover : float, optional
-        Clear cover to the outer edge of the spiral [m].
-    bar_diameter : float, optional
-        As for `RectangularSection`.
-    strips : int, optional
-        Strips of concrete over the depth.
-
-    Raises
-    ------
-    InputError
-        With a line for everything that is wrong.
-    """
-
-    circular: ClassVar[bool] = True
-    shape: ClassVar[str] = "circle"
-
-    diameter: float = 0.0
-    concrete: Concrete | None = None
-    bars: Sequence[Bar] = ()
-    layout: Layout | None = None
-    spiral: Spiral | None = None
-    cover: float = 0.0
-    bar_diameter: float | None = None
-    strips: int = 400
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.spiral, Spiral | None):
-            raise InputError(f"section: spiral = {self.spiral!r} must be a Spiral")
-        for name in ("diameter", "cover"):
-            self._put(name, _core.number(getattr(self, name), f"section: {name}"))
-        self._finish(self.diameter, self.diameter, self.cover, self.spiral)
-
-    @property
-    def width(self) -> float:
-        """The diameter [m]."""
-        return self.diameter
-
-    @property
-    def depth(self) -> float:
-        """The diameter [m]."""
-        return self.diameter
-
-    @property
-    def ties(self) -> Spiral | None:
-        """The spiral."""
-        return self.spiral
-
-    @property
-    def gross_area(self) -> float:
-        """Area of the concrete outline [m2]."""
-        return 0.25 * math.pi * self.diameter**2
 
 
 def _bar(bar: Any, number: int) -> Bar:
@@ -536,9 +423,6 @@ def _bar(bar: Any, number: int) -> Bar:
 def _transverse_numbers(ties: Ties | Spiral | None) -> tuple[int, list[float]]:
     """Return kind and numbers of the transverse bars."""
     if ties is None:
-        return _NO_TIES, [0.0, 0.0, 0.0, 0.0, *_NO_STEEL]
-    if isinstance(ties, Spiral):
-        kind = _HOOPS if ties.hoops else _SPIRAL
-        return kind, [ties.diameter, ties.spacing, 2.0, 2.0, *ties.steel.numbers()]
-    legs = [ties.legs, float(ties.legs_across or 0.0)]
-    return _TIES, [ties.diameter, ties.spacing, *legs, *ties.steel.numbers()]
+        return _KINDS.index("none"), [0.0, 0.0, 0.0, 0.0, *_NO_STEEL]
+    sizes = [ties.diameter, ties.spacing, ties.legs, float(ties.legs_across or 0.0)]
+    return _KINDS.index(ties.kind), sizes + ties.steel.numbers()

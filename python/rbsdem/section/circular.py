@@ -1,0 +1,163 @@
+"""Circular sections."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from rbsdem import _core
+from rbsdem._core import Array
+from rbsdem.errors import InputError
+from rbsdem.section.materials import Concrete
+from rbsdem.section.reinforcement import Bar, Layout, Spiral
+from rbsdem.section.section import Section
+
+__all__ = ["CircularSection"]
+
+
+@dataclass(frozen=True)
+class CircularSection(Section):
+    """A circular section.
+
+    Parameters
+    ----------
+    diameter : float
+        Of the concrete [m].
+    concrete : Concrete
+        Its laws.
+    bars : sequence of (y, area, steel), optional
+        As for `RectangularSection`.
+    layout : Layout, optional
+        Bars around the circle, the first at the tension face, in place of `bars`.
+    spiral : Spiral, optional
+        Transverse bars.
+    cover : float, optional
+        Clear cover to the outer edge of the spiral [m].
+    bar_diameter : float, optional
+        As for `RectangularSection`.
+    strips : int, optional
+        Strips of concrete over the depth.
+
+    Raises
+    ------
+    InputError
+        With a line for everything that is wrong.
+    """
+
+    shape: ClassVar[str] = "circle"
+    hoops: ClassVar[str] = "a spiral"
+
+    diameter: float
+    concrete: Concrete
+    bars: Sequence[Bar] = ()
+    layout: Layout | None = None
+    spiral: Spiral | None = None
+    cover: float = 0.0
+    bar_diameter: float | None = None
+    strips: int = 400
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.spiral, Spiral | None):
+            raise InputError(f"section: spiral = {self.spiral!r} must be a Spiral")
+        for name in ("diameter", "cover"):
+            self._put(name, _core.number(getattr(self, name), f"section: {name}"))
+        self._finish(self.diameter, self.diameter, self.cover, self.spiral)
+
+    def _lay_out(self, layout: Layout, inset: float) -> list[Bar]:
+        return layout.circular(self.diameter, inset)
+
+    @property
+    def width(self) -> float:
+        """The diameter [m]."""
+        return self.diameter
+
+    @property
+    def depth(self) -> float:
+        """The diameter [m]."""
+        return self.diameter
+
+    @property
+    def ties(self) -> Spiral | None:
+        """The spiral."""
+        return self.spiral
+
+    @property
+    def gross_area(self) -> float:
+        """Area of the concrete outline [m2]."""
+        return 0.25 * math.pi * self.diameter**2
+
+    @property
+    def effective_depth(self) -> float:
+        """0.8 of the diameter [m] (ACI 318-19, 22.5.2.2)."""
+        return 0.8 * self.diameter
+
+    # ---- geometry for the figure -----------------------------------------------------------------
+
+    def outline(self) -> Array:
+        """Return the outline of the concrete.
+
+        Returns
+        -------
+        ndarray, shape (n, 2)
+            x and y [m].
+        """
+        return _ring(0.5 * self.diameter)
+
+    def hoop_line(self, inset: float, bend: float) -> Array:
+        """Return the closed line at a distance inside the outer edge of the spiral.
+
+        Parameters
+        ----------
+        inset : float
+            The distance [m].
+        bend : float
+            Not used: a circle has no corners.
+
+        Returns
+        -------
+        ndarray, shape (n, 2)
+            x and y [m].
+        """
+        return _ring(0.5 * self.diameter - self.cover - inset)
+
+    def inner_legs(self) -> list[Array]:
+        """Return an empty list: a spiral has no legs inside.
+
+        Returns
+        -------
+        list of ndarray
+            Empty.
+        """
+        return []
+
+    def place_bars(self, bars: Sequence[tuple[float, float]]) -> list[tuple[float, float, float]]:
+        """Return where bars stand across the width: around the circle, left and right in turn.
+
+        Parameters
+        ----------
+        bars : sequence of (y, diameter)
+            Distance from mid-depth and diameter of each bar [m].
+
+        Returns
+        -------
+        list of (x, y, diameter)
+            The same bars [m].
+        """
+        radius = max((abs(y) for y, _ in bars), default=0.0)
+        seen: dict[int, int] = {}
+        placed = []
+        for y, d in bars:
+            level = round(1e3 * y)
+            side = 1 if seen.setdefault(level, 0) % 2 == 0 else -1
+            seen[level] += 1
+            placed.append((side * math.sqrt(max(0.0, radius**2 - y**2)), y, d))
+        return placed
+
+
+def _ring(radius: float) -> Array:
+    angle = np.linspace(0.0, 2.0 * np.pi, 181)
+    return radius * np.column_stack([np.cos(angle), np.sin(angle)])

@@ -1,0 +1,202 @@
+"""Rectangular sections."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from rbsdem import _core
+from rbsdem._core import Array
+from rbsdem.errors import InputError
+from rbsdem.section.materials import Concrete
+from rbsdem.section.reinforcement import Bar, Layout, Ties
+from rbsdem.section.section import Section
+
+__all__ = ["RectangularSection"]
+
+
+@dataclass(frozen=True)
+class RectangularSection(Section):
+    """A rectangular section.
+
+    Parameters
+    ----------
+    width, depth : float
+        Depth is in the direction of loading [m].
+    concrete : Concrete
+        Its laws.
+    bars : sequence of (y, area, steel), optional
+        Bars one by one: distance from mid-depth, positive to the tension face [m], area [m2],
+        `Steel`. A row of bars may be one entry if `bar_diameter` is given.
+    layout : Layout, optional
+        Bars by number and diameter, in place of `bars`.
+    ties : Ties, optional
+        Transverse bars; they confine the core where it is asked for, and carry shear.
+    cover : float, optional
+        Clear cover to the outer edge of the ties [m].
+    side_cover : float, optional
+        The same at the faces along the depth, if it is another one [m].
+    bar_diameter : float, optional
+        Of the main bars [m], for the length of the hinge and the confinement. By default that of
+        the layout, or of a round bar with the area of the outermost one in tension.
+    strips : int, optional
+        Strips of concrete over the depth.
+
+    Raises
+    ------
+    InputError
+        With a line for everything that is wrong.
+
+    Examples
+    --------
+    >>> steel = Steel(446e6, 702e6)
+    >>> section = RectangularSection(
+    ...     0.4,
+    ...     0.4,
+    ...     Concrete(46.5e6),
+    ...     layout=Layout(12, 0.016, steel),
+    ...     ties=Ties(0.007, 0.085, Steel(364e6, 521e6), legs=4),
+    ...     cover=0.013,
+    ... )
+    >>> round(section.moment_curvature(744e3, 0.01) / 1e3)
+    260
+    """
+
+    shape: ClassVar[str] = "rectangle"
+    hoops: ClassVar[str] = "ties"
+
+    width: float
+    depth: float
+    concrete: Concrete
+    bars: Sequence[Bar] = ()
+    layout: Layout | None = None
+    ties: Ties | None = None
+    cover: float = 0.0
+    side_cover: float | None = None
+    bar_diameter: float | None = None
+    strips: int = 400
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.ties, Ties | None):
+            raise InputError(f"section: ties = {self.ties!r} must be Ties")
+        for name in ("width", "depth", "cover"):
+            self._put(name, _core.number(getattr(self, name), f"section: {name}"))
+        if self.side_cover is None:
+            self._put("side_cover", self.cover)
+        self._put("side_cover", _core.number(self.side_cover, "section: side_cover"))
+        self._finish(self.width, self.depth, self.side_cover, self.ties)
+
+    def _lay_out(self, layout: Layout, inset: float) -> list[Bar]:
+        return layout.rectangular(self.depth, inset)
+
+    @property
+    def gross_area(self) -> float:
+        """Area of the concrete outline [m2]."""
+        return self.width * self.depth
+
+    @property
+    def effective_depth(self) -> float:
+        """From the compression face to the centre of the bars in the half in tension [m].
+
+        0.8 of the depth if there is no bar in that half.
+        """
+        outer = [(y, area) for y, area, _ in self.bars if y > 1e-9 * self.depth]
+        if not outer:
+            return 0.8 * self.depth
+        return 0.5 * self.depth + sum(y * a for y, a in outer) / sum(a for _, a in outer)
+
+    # ---- geometry for the figure -----------------------------------------------------------------
+
+    def outline(self) -> Array:
+        """Return the corners of the concrete.
+
+        Returns
+        -------
+        ndarray, shape (4, 2)
+            x and y [m].
+        """
+        return _box(0.5 * self.width, 0.5 * self.depth)
+
+    def hoop_line(self, inset: float, bend: float) -> Array:
+        """Return the closed line at a distance inside the outer edge of the ties.
+
+        Parameters
+        ----------
+        inset : float
+            The distance [m].
+        bend : float
+            Radius of the corners [m].
+
+        Returns
+        -------
+        ndarray, shape (n, 2)
+            x and y [m].
+        """
+        half = np.array(
+            [
+                0.5 * self.width - float(self.side_cover or 0.0) - inset - bend,
+                0.5 * self.depth - self.cover - inset - bend,
+            ]
+        )
+        angle = np.linspace(0.0, 0.5 * np.pi, 16)
+        corner = bend * np.column_stack([np.cos(angle), np.sin(angle)])
+        turned = [corner, corner[:, ::-1] * [-1, 1], -corner, corner[:, ::-1] * [1, -1]]
+        signs = [(1, 1), (-1, 1), (-1, -1), (1, -1)]
+        return np.vstack([half * sign + arc for sign, arc in zip(signs, turned, strict=True)])
+
+    def inner_legs(self) -> list[Array]:
+        """Return the legs of the ties between the outer ones.
+
+        Returns
+        -------
+        list of ndarray, shape (4, 2)
+            Corners of each leg [m].
+        """
+        if self.ties is None:
+            return []
+        half_tie = 0.5 * self.ties.diameter
+        b = 0.5 * self.width - float(self.side_cover or 0.0) - half_tie
+        d = 0.5 * self.depth - self.cover - half_tie
+        inset = half_tie + 0.5 * float(self.bar_diameter or 0.0)
+        along = np.linspace(inset - b, b - inset, round(self.ties.legs))[1:-1]
+        across = np.linspace(inset - d, d - inset, round(self.ties.legs_across or 0))[1:-1]
+        legs = [_box(half_tie, d) + np.array([x, 0.0]) for x in along]
+        return legs + [_box(b, half_tie) + np.array([0.0, y]) for y in across]
+
+    def place_bars(self, bars: Sequence[tuple[float, float]]) -> list[tuple[float, float, float]]:
+        """Return where bars stand across the width: in rows, equal distances apart.
+
+        Parameters
+        ----------
+        bars : sequence of (y, diameter)
+            Distance from mid-depth and diameter of each bar [m].
+
+        Returns
+        -------
+        list of (x, y, diameter)
+            The same bars [m].
+        """
+        # Bars of other diameters belong to the same row: they touch the same tie.
+        height = max(0.005, 0.6 * (self.bar_diameter or 0.01))
+        inner = self.width - 2.0 * float(self.side_cover or 0.0)
+        inner -= 2.0 * self.ties.diameter if self.ties is not None else 0.0
+        placed = []
+        for level in dict.fromkeys(round(y / height) for y, _ in bars):
+            row = [(y, d) for y, d in bars if round(y / height) == level]
+            # The thickest stand in the corners.
+            row.sort(key=lambda bar: bar[1])
+            ends = row[-2:] if len(row) > 1 else []
+            row = [*ends[:1], *row[: len(row) - len(ends)], *ends[1:]]
+            edge = 0.5 * inner - 0.5 * row[0][1]
+            places = np.linspace(-edge, edge, len(row)) if len(row) > 1 else [0.0]
+            placed += [(float(x), y, d) for x, (y, d) in zip(places, row, strict=True)]
+        return placed
+
+
+def _box(half_width: float, half_depth: float) -> Array:
+    """Return the corners of a rectangle about the origin."""
+    signs = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+    return signs * [half_width, half_depth]
