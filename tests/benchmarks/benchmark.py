@@ -102,9 +102,16 @@ def through_python(repeats: int) -> list[Row]:
         k_c=2.5428e8, d_c=3.1891e-4, k_y=6.2937e7, d_y=2.7183e-3, k_u=7.5772e6, b1=0.22
     )
     response = seconds(lambda: spring.response(rotation), 3 * repeats)
+    paper = rbsdem.paper_sections()["tanaka_park_5"]
+    section, load = paper.section, paper.axial_load
+    curvature = np.linspace(0.0, 0.1, 100)
+    moments = seconds(lambda: section.moment_curvature(load, curvature), 3 * repeats)
+    shear = seconds(lambda: section.shear_diagram(paper.length, load, furthest=0.022), 3 * repeats)
     return [
         Row("static, N = 1, 20 000 points", "ms", 10, [1e3 * t for t in static]),
         Row("Takeda spring, 20 000 points", "ms", None, [1e3 * t for t in response]),
+        Row("section, 100 moments", "ms", 5, [1e3 * t for t in moments]),
+        Row("section, shear diagram", "ms", 20, [1e3 * t for t in shear]),
     ]
 
 

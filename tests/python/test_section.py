@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 
 import numpy as np
 import pytest
@@ -389,22 +388,6 @@ def test_all_faults_of_a_section_come_at_once():
     with pytest.raises(InputError) as caught:
         RectangularSection(0.4, 0.4, Concrete(30e6), bars=[(0.3, 2e-4, STEEL), (-0.3, 2e-4, STEEL)])
     assert len(str(caught.value).splitlines()) == 2
-
-
-# ---- cost ----------------------------------------------------------------------------------------
-
-
-def test_hundred_points_take_less_than_five_milliseconds():
-    """The quickest of many: a loaded machine is no fault of the section."""
-    section = tied()
-    curvature = np.linspace(0.0, 0.1, 100)
-
-    def seconds() -> float:
-        start = time.perf_counter()
-        section.moment_curvature(8e5, curvature)
-        return time.perf_counter() - start
-
-    assert min(seconds() for _ in range(30)) < 5e-3
 
 
 def test_sections_are_values():

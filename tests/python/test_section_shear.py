@@ -7,7 +7,6 @@ second time and scipy for the unknowns.
 from __future__ import annotations
 
 import math
-import time
 import warnings
 
 import numpy as np
@@ -339,16 +338,6 @@ def test_what_is_refused(arguments: dict, words: str) -> None:
     given = {"length": length, "axial_load": load} | arguments
     with pytest.raises(rbsdem.InputError, match=words):
         shear_diagram(section, **given)
-
-
-def test_a_diagram_takes_a_few_milliseconds() -> None:
-    section, length, load = column("tanaka_park_5")
-    times = []
-    for _ in range(5):
-        start = time.perf_counter()
-        shear_diagram(section, length, load, furthest=0.022)
-        times.append(time.perf_counter() - start)
-    assert min(times) < 0.02
 
 
 def test_figure_of_the_diagram() -> None:
