@@ -9,7 +9,7 @@ module rbs_hysteresis_backbone
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_segment, only: segment
    use rbs_spec_backbone, only: backbone_spec
-   use rbs_spec_check, only: is_given
+   use rbs_base_check, only: is_given
    implicit none
    private
 

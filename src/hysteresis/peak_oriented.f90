@@ -20,7 +20,7 @@ module rbs_hysteresis_peak_oriented
    use rbs_hysteresis_rule, only: rule_type
    use rbs_hysteresis_segment, only: segment
    use rbs_spec_backbone, only: backbone_spec
-   use rbs_spec_check, only: is_given
+   use rbs_base_check, only: is_given
    implicit none
    private
 

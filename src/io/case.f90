@@ -12,7 +12,7 @@ module rbs_io_case
    use rbs_solve_time_loads, only: loads_type
    use rbs_spec_analysis, only: analysis_spec
    use rbs_spec_case, only: case_spec
-   use rbs_spec_check, only: is_given
+   use rbs_base_check, only: is_given
    implicit none
    private
 

@@ -6,9 +6,9 @@ module rbs_io_loading_file
    use rbs_base_text, only: lower, list_of, nearest_name, to_text
    use rbs_io_history, only: history_type, read_history
    use rbs_io_text_file, only: is_integer
-   use rbs_spec_check, only: is_given
+   use rbs_base_check, only: is_given
    use rbs_spec_loading, only: loading_spec, units_of
-   use rbs_spec_units, only: unit_type, to_si
+   use rbs_base_units, only: unit_type, to_si
    implicit none
    private
 

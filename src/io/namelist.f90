@@ -10,7 +10,7 @@ module rbs_io_namelist
    use rbs_io_text_file, only: text_file, load_text
    use rbs_spec_analysis, only: analysis_spec, output_spec
    use rbs_spec_case, only: case_spec, most_loadings
-   use rbs_spec_check, only: is_given
+   use rbs_base_check, only: is_given
    use rbs_spec_column, only: column_spec, most_bodies, most_dense
    use rbs_spec_loading, only: loading_spec
    implicit none

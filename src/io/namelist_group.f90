@@ -6,7 +6,7 @@ module rbs_io_namelist_group
    use rbs_base_text, only: to_text
    use rbs_io_namelist_entry, only: location
    use rbs_io_namelist_pieces, only: nml_scan
-   use rbs_spec_check, only: is_given
+   use rbs_base_check, only: is_given
    implicit none
    private
 

@@ -7,7 +7,7 @@ module rbs_io_namelist_springs
    use rbs_io_namelist_entry, only: key_type, key, entry_text, location, text_length
    use rbs_io_namelist_group, only: reader, find_groups, check_status, take_text
    use rbs_io_namelist_scan, only: most_messages
-   use rbs_spec_check, only: check_name
+   use rbs_base_check, only: check_name
    use rbs_spec_column, only: most_bodies
    use rbs_spec_spring, only: spring_spec
    use rbs_spec_spring_table, only: number_names, number_count, layer_rules, rule_names

@@ -4,7 +4,7 @@ module rbs_loading_protocol
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_spec_loading, only: loading_spec, units_of
-   use rbs_spec_units, only: unit_type, to_si
+   use rbs_base_units, only: unit_type, to_si
    implicit none
    private
 

@@ -9,7 +9,7 @@ module rbs_section_concrete_law
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_spec_check, only: is_given, check_positive, check_not_negative
+   use rbs_base_check, only: is_given, check_positive, check_not_negative
    implicit none
    private
 

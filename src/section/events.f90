@@ -6,7 +6,7 @@ module rbs_section_events
    use rbs_section_resultants, only: laws_type
    use rbs_section_cross_section, only: section_type, core_depth
    use rbs_section_steel_law, only: steel_yield_strain
-   use rbs_spec_check, only: check_name, check_positive
+   use rbs_base_check, only: check_name, check_positive
    implicit none
    private
 

@@ -12,7 +12,7 @@ module rbs_section_flexural_spring
    use rbs_section_events, only: events_type, point_type, rule_type, find_events, reach_moment
    use rbs_section_resultants, only: laws_type, section_laws
    use rbs_section_cross_section, only: section_type
-   use rbs_spec_check, only: is_given, check_positive, check_not_negative
+   use rbs_base_check, only: is_given, check_positive, check_not_negative
    implicit none
    private
 

@@ -5,7 +5,7 @@ module rbs_section_section_check
    use rbs_base_text, only: to_text
    use rbs_section_cross_section, only: section_type, no_ties, gross_area, core_width, core_depth
    use rbs_section_steel_law, only: check_steel
-   use rbs_spec_check, only: check_finite, check_positive, check_not_negative
+   use rbs_base_check, only: check_finite, check_positive, check_not_negative
    implicit none
    private
 

@@ -14,7 +14,7 @@ module rbs_section_shear_diagram
    use rbs_section_cross_section, only: section_type, slice, gross_area
    use rbs_section_shear_coupling, only: couple
    use rbs_section_shear_flow, only: flow_type, begin_flow, shear_stresses, transverse_ratio
-   use rbs_spec_check, only: check_finite, check_positive
+   use rbs_base_check, only: check_finite, check_positive
    implicit none
    private
 

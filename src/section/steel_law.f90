@@ -6,7 +6,7 @@ module rbs_section_steel_law
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_spec_check, only: check_positive
+   use rbs_base_check, only: check_positive
    implicit none
    private
 

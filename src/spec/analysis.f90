@@ -4,7 +4,7 @@ module rbs_spec_analysis
    use rbs_base_constants, only: unset, unset_integer
    use rbs_base_error, only: message_list
    use rbs_base_text, only: to_text
-   use rbs_spec_check, only: is_given, check_positive, check_finite, check_name
+   use rbs_base_check, only: is_given, check_positive, check_finite, check_name
    implicit none
    private
 

@@ -14,7 +14,7 @@ module rbs_spec_backbone
    use rbs_base_constants, only: unset
    use rbs_base_error, only: message_list
    use rbs_base_text, only: to_text
-   use rbs_spec_check, only: is_given, check_positive, check_not_negative
+   use rbs_base_check, only: is_given, check_positive, check_not_negative
    implicit none
    private
 

@@ -5,7 +5,7 @@ module rbs_spec_column
    use rbs_base_constants, only: unset, standard_gravity
    use rbs_base_error, only: message_list
    use rbs_base_text, only: to_text
-   use rbs_spec_check, only: check_positive, check_not_negative, check_finite, check_name
+   use rbs_base_check, only: check_positive, check_not_negative, check_finite, check_name
    use rbs_spec_spring, only: spring_spec
    use rbs_spec_spring_table, only: is_capped
    implicit none

@@ -4,8 +4,8 @@ module rbs_spec_loading
    use rbs_base_constants, only: unset
    use rbs_base_error, only: message_list
    use rbs_base_text, only: to_text
-   use rbs_spec_check, only: is_given, check_positive, check_finite, check_name
-   use rbs_spec_units, only: unit_type, length_units, force_units, acceleration_units
+   use rbs_base_check, only: is_given, check_positive, check_finite, check_name
+   use rbs_base_units, only: unit_type, length_units, force_units, acceleration_units
    implicit none
    private
 

@@ -9,7 +9,7 @@ module rbs_spec_spring
    use rbs_base_error, only: message_list
    use rbs_base_text, only: to_text
    use rbs_spec_backbone, only: backbone_spec
-   use rbs_spec_check, only: is_given, check_positive, check_not_negative, check_finite, check_name
+   use rbs_base_check, only: is_given, check_positive, check_not_negative, check_finite, check_name
    use rbs_spec_spring_table, only: rule_names, layer_rules, inner_names, number_names, number_count, &
                                     name_length, side_suffix, takes, is_capped
    implicit none

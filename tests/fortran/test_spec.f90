@@ -10,11 +10,11 @@ module test_spec
    use rbs_solve_make_column, only: make_column
    use rbs_spec_analysis, only: analysis_spec, method_names
    use rbs_spec_case, only: case_spec
-   use rbs_spec_check, only: is_given
+   use rbs_base_check, only: is_given
    use rbs_spec_column, only: column_spec, most_bodies, most_dense
    use rbs_spec_loading, only: loading_spec, units_of
    use rbs_spec_spring, only: spring_spec, initial_stiffness
-   use rbs_spec_units, only: unit_type, to_si, length_units, force_units, acceleration_units
+   use rbs_base_units, only: unit_type, to_si, length_units, force_units, acceleration_units
    use samples, only: elastic, bilinear, takeda, bilinear_1, takeda_1, column_1, chain, k_c, d_c, k_y, &
                       d_y, k_u, s_k
    implicit none

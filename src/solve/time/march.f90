@@ -13,7 +13,7 @@ module rbs_solve_time_march
    use rbs_solve_time_loads, only: loads_type, lateral, axial
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_state, only: state_type, stepper_type, out_of_bounds
-   use rbs_spec_check, only: is_given
+   use rbs_base_check, only: is_given
    implicit none
    private
 

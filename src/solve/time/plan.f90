@@ -5,7 +5,7 @@ module rbs_solve_time_plan
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_spec_check, only: is_given
+   use rbs_base_check, only: is_given
    implicit none
    private
 

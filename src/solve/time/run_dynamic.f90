@@ -21,7 +21,7 @@ module rbs_solve_time_run_dynamic
    use rbs_solve_time_rk4, only: rk4_stepper, rk4_scheme
    use rbs_solve_time_state, only: stepper_type
    use rbs_spec_analysis, only: analysis_spec
-   use rbs_spec_check, only: is_given
+   use rbs_base_check, only: is_given
    implicit none
    private
 

@@ -1,5 +1,5 @@
 !> Units of history files; inside the program everything is SI.
-module rbs_spec_units
+module rbs_base_units
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: standard_gravity
    implicit none
@@ -41,4 +41,4 @@ contains
       end if
    end function to_si
 
-end module rbs_spec_units
+end module rbs_base_units

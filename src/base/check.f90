@@ -1,6 +1,6 @@
 !> Checks on single numbers of an input: each adds one message that names the thing, its value and
 !> what it may be.
-module rbs_spec_check
+module rbs_base_check
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_kinds, only: wp
@@ -109,4 +109,4 @@ contains
       end if
    end subroutine check_name
 
-end module rbs_spec_check
+end module rbs_base_check
