@@ -12,8 +12,8 @@ module rbs_hysteresis_springs
 
    public :: spring_array, follow_path
 
-   !> More lines than this within one move are a circle of lines without length: a fault of a rule. The
-   !> longest honest move closes all the open inner loops that a rule remembers.
+   !> More lines than this within one move mean that a rule leads in a circle of lines without length, which
+   !> is a fault of the rule. The longest correct move closes all the open inner loops that a rule remembers.
    integer, parameter :: most_lines = 10000
 
    !> Holds one rule. Arrays of a polymorphic type are kept out of the program; arrays of this are fine.
@@ -43,26 +43,28 @@ module rbs_hysteresis_springs
       real(wp), allocatable :: d(:)
       !> Present line: anchor and slope (count)
       real(wp), allocatable :: d0(:), f0(:), k(:)
-      !> First and last deformation that belong to the present line (count)
+      !> First and last deformation that belong to the present line (count). Where the end itself does not
+      !> belong to it, they are the numbers next to it.
       real(wp), allocatable :: first(:), last(:)
+      !> Whether the ends themselves belong to the line (count), see `segment`
+      logical, allocatable :: lo_closed(:), hi_closed(:)
       !> One-way lines (count), see `segment`
       integer, allocatable :: one_way(:)
       !> Work done on each spring along its path, exact (count) [J]
       real(wp), allocatable :: work(:)
       !> Number of lines left so far
       integer :: events = 0
-      !> Changes with every line that is taken up, going back included: who has factored something for the
-      !> lines of one version need not do it again
+      !> Changes with every new line, also where `restore` goes back: what has been factored for the lines of
+      !> one version is still valid while the version is the same
       integer :: version = 0
-      !> Whether a rule has gone in a circle; the state is then of no use
+      !> Whether a rule has led in a circle; the state must not be used then
       logical :: stuck = .false.
-      !> The lines themselves (count), with the ends as the rules gave them
-      type(segment), allocatable :: line(:)
       type(rule_slot), allocatable, private :: slot(:)
       type(journal_type), private :: journal
    contains
       procedure :: create
       procedure :: force
+      procedure :: end_toward
       procedure :: move
       procedure :: move_all
       procedure :: walk
@@ -83,17 +85,18 @@ contains
       class(spring_array), intent(out) :: self
       !> Validated numbers of each spring
       type(spring_spec), intent(in) :: specs(:)
+      type(segment) :: line
       integer :: i, n
 
       n = size(specs)
       self%count = n
-      allocate (self%slot(n), self%line(n), self%one_way(n))
+      allocate (self%slot(n), self%one_way(n), self%lo_closed(n), self%hi_closed(n))
       allocate (self%d(n), self%work(n), source=0.0_wp)
       allocate (self%d0(n), self%f0(n), self%k(n), self%first(n), self%last(n))
       do i = 1, n
          call new_rule(self%slot(i)%rule, specs(i))
-         call self%slot(i)%rule%start(self%line(i))
-         call put_line(self, i)
+         call self%slot(i)%rule%start(line)
+         call put_line(self, i, line)
       end do
    end subroutine create
 
@@ -105,6 +108,23 @@ contains
       force = self%f0(i) + self%k(i)*(self%d(i) - self%d0(i))
    end function force
 
+   !> The end of the present line in a direction, +1 or -1 [m or rad]. The rear end of a one-way line is where
+   !> the spring stands.
+   pure real(wp) function end_toward(self, i, direction)
+      class(spring_array), intent(in) :: self
+      integer, intent(in) :: i, direction
+
+      if (self%one_way(i) /= 0 .and. self%one_way(i) /= direction) then
+         end_toward = self%d(i)
+      else if (direction > 0) then
+         end_toward = self%last(i)
+         if (.not. self%hi_closed(i) .and. end_toward < unbounded) end_toward = nearest(end_toward, 1.0_wp)
+      else
+         end_toward = self%first(i)
+         if (.not. self%lo_closed(i) .and. end_toward > -unbounded) end_toward = nearest(end_toward, -1.0_wp)
+      end if
+   end function end_toward
+
    !> Move every spring to a new deformation.
    subroutine move_all(self, d)
       class(spring_array), intent(inout) :: self
@@ -113,7 +133,7 @@ contains
       integer :: i
 
       if (self%count == 2) then
-         ! One body: where both stay on their lines, no loops and no calls.
+         ! One body: as long as both stay on their lines, there is neither a loop nor a call.
          if (d(1) <= self%last(1) .and. d(1) >= self%first(1) .and. &
              d(2) <= self%last(2) .and. d(2) >= self%first(2)) then
             call walk_pair(d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, &
@@ -127,7 +147,7 @@ contains
          end do
          if (self%stuck) return
       end if
-      ! Those that are there already walk no way.
+      ! Springs that are there already do not move any more.
       call walk_all(self%count, d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, &
                     self%last)
    end subroutine move_all
@@ -210,18 +230,18 @@ contains
          way = f - self%force(i)
          if (.not. abs(way) > 0.0_wp) return
          direction = merge(1, -1, way > 0.0_wp)
-         associate (line => self%line(i))
-            if (self%one_way(i) /= -direction) then
-               far = line%end_toward(direction)
-               is_there = line%k > 0.0_wp .and. abs(far) >= unbounded
-               if (abs(far) < unbounded) is_there = direction*(line%force(far) - f) >= 0.0_wp
+         if (self%one_way(i) /= -direction) then
+            associate (d0 => self%d0(i), f0 => self%f0(i), k => self%k(i))
+               far = self%end_toward(i, direction)
+               is_there = k > 0.0_wp .and. abs(far) >= unbounded
+               if (abs(far) < unbounded) is_there = direction*(f0 + k*(far - d0) - f) >= 0.0_wp
                if (is_there) then
-                  call walk(self, i, line%d0 + (f - line%f0)/line%k)
+                  call walk(self, i, d0 + (f - f0)/k)
                   return
                end if
-               if (abs(far) >= unbounded) exit
-            end if
-         end associate
+            end associate
+            if (abs(far) >= unbounded) exit
+         end if
          call self%leave(i, direction)
       end do
       found = .false.
@@ -269,10 +289,9 @@ contains
          if (journal%changed > 0) self%version = modulo(self%version + 1, huge(1))
          do j = 1, journal%changed
             i = journal%spring(j)
-            self%line(i) = journal%line(j)
             self%slot(i) = journal%slot(j)
             journal%is_kept(i) = .false.
-            call put_line(self, i)
+            call put_line(self, i, journal%line(j))
          end do
          journal%changed = 0
          where (self%one_way > 0) self%first = self%d
@@ -290,7 +309,7 @@ contains
          journal%is_kept(i) = .true.
          journal%changed = journal%changed + 1
          journal%spring(journal%changed) = i
-         journal%line(journal%changed) = self%line(i)
+         journal%line(journal%changed) = line_of(self, i)
          journal%slot(journal%changed) = self%slot(i)
       end associate
    end subroutine keep
@@ -334,41 +353,53 @@ contains
       end if
    end subroutine walk
 
-   !> Go to the end of the present line and ask the rule for the one that follows. The rear end of a
-   !> one-way line is where the spring is.
+   !> Go to the end of the present line and ask the rule for the line that follows. A one-way line whose
+   !> motion turns back ends where the spring stands.
    subroutine change_line(self, i, direction)
       class(spring_array), intent(inout) :: self
       integer, intent(in) :: i, direction
+      type(segment) :: line
 
       if (self%journal%open) call keep(self, i)
-      if (self%one_way(i) == direction .or. self%one_way(i) == 0) then
-         call walk(self, i, self%line(i)%end_toward(direction))
-      else if (direction < 0) then
-         self%line(i)%lo = self%d(i)
-      else
-         self%line(i)%hi = self%d(i)
-      end if
-      call self%slot(i)%rule%next(self%line(i), direction)
+      if (self%one_way(i) /= -direction) call walk(self, i, self%end_toward(i, direction))
+      line = line_of(self, i)
+      call self%slot(i)%rule%next(line, direction)
       self%events = self%events + 1
       self%version = modulo(self%version + 1, huge(1))
-      call put_line(self, i)
+      call put_line(self, i, line)
    end subroutine change_line
 
-   !> Copy a line into the arrays. An open end is the line's up to the number before it.
-   subroutine put_line(self, i)
-      class(spring_array), intent(inout) :: self
+   !> The present line of a spring, as its rule is handed it.
+   pure type(segment) function line_of(self, i) result(line)
+      class(spring_array), intent(in) :: self
       integer, intent(in) :: i
 
-      associate (line => self%line(i))
-         self%d0(i) = line%d0
-         self%f0(i) = line%f0
-         self%k(i) = line%k
-         self%one_way(i) = line%one_way
-         self%first(i) = line%lo
-         self%last(i) = line%hi
-         if (.not. line%lo_closed .and. line%lo > -unbounded) self%first(i) = nearest(line%lo, 1.0_wp)
-         if (.not. line%hi_closed .and. line%hi < unbounded) self%last(i) = nearest(line%hi, -1.0_wp)
-      end associate
+      line%d0 = self%d0(i)
+      line%f0 = self%f0(i)
+      line%k = self%k(i)
+      line%lo = self%end_toward(i, -1)
+      line%hi = self%end_toward(i, 1)
+      line%lo_closed = self%lo_closed(i)
+      line%hi_closed = self%hi_closed(i)
+      line%one_way = self%one_way(i)
+   end function line_of
+
+   !> Store the line of a spring. The last number before an open end is the last that belongs to the line.
+   pure subroutine put_line(self, i, line)
+      class(spring_array), intent(inout) :: self
+      integer, intent(in) :: i
+      type(segment), intent(in) :: line
+
+      self%d0(i) = line%d0
+      self%f0(i) = line%f0
+      self%k(i) = line%k
+      self%lo_closed(i) = line%lo_closed
+      self%hi_closed(i) = line%hi_closed
+      self%one_way(i) = line%one_way
+      self%first(i) = line%lo
+      self%last(i) = line%hi
+      if (.not. line%lo_closed .and. line%lo > -unbounded) self%first(i) = nearest(line%lo, 1.0_wp)
+      if (.not. line%hi_closed .and. line%hi < unbounded) self%last(i) = nearest(line%hi, -1.0_wp)
    end subroutine put_line
 
    !> A spring stands at an end of its line and is about to go on beyond it.
@@ -391,8 +422,8 @@ contains
       integer, intent(in) :: direction
       logical :: closed
 
-      closed = merge(self%line(i)%hi_closed, self%line(i)%lo_closed, direction > 0)
-      call walk(self, i, self%line(i)%end_toward(direction))
+      closed = merge(self%hi_closed(i), self%lo_closed(i), direction > 0)
+      call walk(self, i, self%end_toward(i, direction))
       if (.not. closed) call self%leave(i, direction)
    end subroutine arrive
 

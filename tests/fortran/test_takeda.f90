@@ -308,11 +308,9 @@ contains
          call spring%create([spec])
          do j = 1, size(d)
             call spring%move(1, d(j))
-            associate (line => spring%line(1))
-               if (.not. (line%lo_closed .or. line%hi_closed)) cycle
-               if (spring%one_way(1) /= 0) cycle
-               direction = merge(1, -1, line%hi_closed)
-            end associate
+            if (.not. (spring%lo_closed(1) .or. spring%hi_closed(1))) cycle
+            if (spring%one_way(1) /= 0) cycle
+            direction = merge(1, -1, spring%hi_closed(1))
             found = found + 1
             call spring%arrive(1, direction)
             back = spring%d(1) - 1.0e-3_wp*direction

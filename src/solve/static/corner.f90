@@ -108,9 +108,9 @@ contains
       barred = 0
       associate (springs => path%springs)
          if (path%rate(i) > 0.0_wp) then
-            if (springs%one_way(i) < 0 .or. springs%d(i) >= springs%line(i)%hi) barred = 1
+            if (springs%one_way(i) < 0 .or. springs%d(i) >= springs%end_toward(i, 1)) barred = 1
          else if (path%rate(i) < 0.0_wp) then
-            if (springs%one_way(i) > 0 .or. springs%d(i) <= springs%line(i)%lo) barred = -1
+            if (springs%one_way(i) > 0 .or. springs%d(i) <= springs%end_toward(i, -1)) barred = -1
          end if
       end associate
    end function barred
@@ -140,10 +140,7 @@ contains
       integer, allocatable :: tried(:)
       integer :: trial, i, most
 
-      associate (springs => path%springs, m => path%moving)
-         tried = pack([(i, i=1, m)], springs%one_way(:m) /= 0 .or. springs%d(:m) >= springs%line(:m)%hi &
-                      .or. springs%d(:m) <= springs%line(:m)%lo)
-      end associate
+      tried = pack([(i, i=1, path%moving)], [(at_corner(path, i), i=1, path%moving)])
       tried = [pack(tried, path%changed(tried) > 1), pack(tried, path%changed(tried) <= 1)]
       most = min(most_tried, int(log(real(most_work, wp)/path%moving)/log(2.0_wp)))
       tried = tried(:min(size(tried), most))
@@ -162,6 +159,17 @@ contains
       found = .false.
    end subroutine try_all_ways
 
+   !> Whether a spring can leave its line where it stands.
+   pure logical function at_corner(path, i)
+      class(static_path), intent(in) :: path
+      integer, intent(in) :: i
+
+      associate (springs => path%springs)
+         at_corner = springs%one_way(i) /= 0 .or. springs%d(i) >= springs%end_toward(i, 1) .or. &
+                     springs%d(i) <= springs%end_toward(i, -1)
+      end associate
+   end function at_corner
+
    !> The way by which a spring at a corner leaves its line.
    pure integer function way_out(path, i)
       class(static_path), intent(in) :: path
@@ -169,7 +177,7 @@ contains
 
       if (path%springs%one_way(i) /= 0) then
          way_out = -path%springs%one_way(i)
-      else if (path%springs%d(i) >= path%springs%line(i)%hi) then
+      else if (path%springs%d(i) >= path%springs%end_toward(i, 1)) then
          way_out = 1
       else
          way_out = -1

@@ -199,7 +199,7 @@ contains
          associate (rise => length*here%rate(i))
             if (.not. abs(rise) > 0.0_wp) cycle
             side = merge(1, -1, rise > 0.0_wp)
-            room = side*(springs%line(i)%end_toward(side) - here%q(i))
+            room = side*(springs%end_toward(i, side) - here%q(i))
             if (room < share*abs(rise)) then
                spring = i
                way = side
@@ -229,7 +229,7 @@ contains
       do i = 1, springs%count
          do side = -1, 1, 2
             if (springs%one_way(i) == -side) cycle
-            associate (finish => springs%line(i)%end_toward(side))
+            associate (finish => springs%end_toward(i, side))
                ! No cubic reaches farther; an end at infinity is never reached.
                reach = max(side*self%near%q(i), side*self%far%q(i)) &
                        + 0.25_wp*self%length*(abs(self%near%rate(i)) + abs(self%far%rate(i)))

@@ -6,7 +6,6 @@ module rbs_solve_static_path
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, joint_name
-   use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_observer, only: observer_type
    use rbs_output_recorder, only: recorder_type
@@ -195,16 +194,20 @@ contains
    end subroutine follow
 
    !> Whether a spring has come to the open end that it goes to.
-   pure logical function is_on_end(line, d, rate)
-      type(segment), intent(in) :: line
-      !> Deformation [m or rad], and its rate, of which the sign counts
+   pure logical function is_on_end(springs, i, d, rate)
+      type(spring_array), intent(in) :: springs
+      integer, intent(in) :: i
+      !> Deformation [m or rad], and its rate, of which only the sign counts
       real(wp), intent(in) :: d, rate
+      real(wp) :: finish
 
       is_on_end = .false.
-      if (rate > 0.0_wp .and. .not. line%hi_closed) then
-         is_on_end = line%hi - d <= on_the_end*abs(line%hi)
-      else if (rate < 0.0_wp .and. .not. line%lo_closed) then
-         is_on_end = d - line%lo <= on_the_end*abs(line%lo)
+      if (rate > 0.0_wp .and. .not. springs%hi_closed(i)) then
+         finish = springs%end_toward(i, 1)
+         is_on_end = finish - d <= on_the_end*abs(finish)
+      else if (rate < 0.0_wp .and. .not. springs%lo_closed(i)) then
+         finish = springs%end_toward(i, -1)
+         is_on_end = d - finish <= on_the_end*abs(finish)
       end if
    end function is_on_end
 

@@ -143,10 +143,10 @@ contains
       way = huge(1.0_wp)
       self%ends = 0
       do i = 1, self%moving
-         associate (line => self%springs%line(i), rate => self%rate(i))
+         associate (springs => self%springs, rate => self%rate(i))
             room = huge(1.0_wp)
-            if (rate > 0.0_wp) room = distance(line%hi - self%q(i), rate)
-            if (rate < 0.0_wp) room = distance(self%q(i) - line%lo, -rate)
+            if (rate > 0.0_wp) room = distance(springs%end_toward(i, 1) - self%q(i), rate)
+            if (rate < 0.0_wp) room = distance(self%q(i) - springs%end_toward(i, -1), -rate)
             if (room < way) then
                way = room
                self%ends = i
@@ -177,7 +177,7 @@ contains
          do i = 1, self%moving
             d = self%q(i) + self%rate(i)*abs(change)
             call springs%walk(i, min(max(d, springs%first(i)), springs%last(i)))
-            if (is_on_end(springs%line(i), d, self%rate(i))) then
+            if (is_on_end(springs, i, d, self%rate(i))) then
                call springs%arrive(i, merge(1, -1, self%rate(i) > 0.0_wp))
                self%direction = 0
             end if

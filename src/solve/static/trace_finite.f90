@@ -207,7 +207,7 @@ contains
             there%q = here%q + here%rate*(share*length)
             there%force = here%force + here%force_rate*(share*(goal - self%control))
             call self%equilibrium%find_point(self%springs, there, spring, &
-                                             self%springs%line(spring)%end_toward(way), done)
+                                             self%springs%end_toward(spring, way), done)
             reached = merge(there%force, there%displacement, self%by_force)
             associate (way_there => self%direction*(reached - self%control))
                if (done .and. way_there >= 0.0_wp .and. way_there <= length) return
@@ -238,7 +238,7 @@ contains
       do tries = 1, 30
          call self%curve%guess(share, self%there)
          call self%equilibrium%find_point(self%springs, self%there, spring, &
-                                          self%springs%line(spring)%end_toward(way), done)
+                                          self%springs%end_toward(spring, way), done)
          if (.not. done) return
          reached = merge(self%there%force, self%there%displacement, self%by_force)
          change = self%direction*(reached - self%control)
@@ -356,7 +356,7 @@ contains
       associate (springs => self%springs, q => self%there%q, rate => self%there%rate)
          do i = 1, self%moving
             call springs%walk(i, min(max(q(i), springs%first(i)), springs%last(i)))
-            if (.not. is_on_end(springs%line(i), q(i), rate(i))) cycle
+            if (.not. is_on_end(springs, i, q(i), rate(i))) cycle
             call springs%arrive(i, merge(1, -1, rate(i) > 0.0_wp))
             self%direction = 0
          end do

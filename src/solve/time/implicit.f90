@@ -450,9 +450,9 @@ contains
             if (q(i) + dq(i) >= springs%first(i) .and. q(i) + dq(i) <= springs%last(i)) cycle
             if (dq(i) > 0.0_wp) then
                ! The rear end of a one-way line is where the spring was put last.
-               room = merge(springs%d(i), springs%line(i)%hi, springs%one_way(i) < 0) - q(i)
+               room = springs%end_toward(i, 1) - q(i)
             else
-               room = q(i) - merge(springs%d(i), springs%line(i)%lo, springs%one_way(i) > 0)
+               room = q(i) - springs%end_toward(i, -1)
             end if
             if (room >= share*abs(dq(i))) cycle
             share = max(room, 0.0_wp)/abs(dq(i))

@@ -126,7 +126,7 @@ contains
          if (event%turns) then
             state%v(i) = 0.0_wp
          else
-            state%q(i) = state%springs%line(i)%end_toward(event%way)
+            state%q(i) = state%springs%end_toward(i, event%way)
          end if
       end if
       associate (springs => state%springs)
@@ -185,10 +185,8 @@ contains
       associate (springs => state%springs)
          do changes = 0, 20 + 10*springs%count
             do i = 1, springs%count
-               if (springs%one_way(i) == 0 .and. springs%d(i) >= springs%first(i) .and. &
-                   springs%d(i) <= springs%last(i)) then
-                  if (springs%d(i) < springs%line(i)%hi .and. springs%d(i) > springs%line(i)%lo) cycle
-               end if
+               if (springs%one_way(i) == 0 .and. springs%d(i) > springs%first(i) .and. &
+                   springs%d(i) < springs%last(i)) cycle
                way = direction_of(state%v(i))
                if (way == 0) then
                   if (.not. known) then
@@ -199,8 +197,8 @@ contains
                end if
                if (way == 0) cycle
                if (springs%one_way(i) == -way) exit
-               if (way > 0 .and. springs%d(i) >= springs%line(i)%hi) exit
-               if (way < 0 .and. springs%d(i) <= springs%line(i)%lo) exit
+               if (way > 0 .and. springs%d(i) >= springs%end_toward(i, 1)) exit
+               if (way < 0 .and. springs%d(i) <= springs%end_toward(i, -1)) exit
             end do
             if (i > springs%count) return
             call springs%leave(i, way)
@@ -267,7 +265,7 @@ contains
          furthest = d + 0.5_wp*v*turning
          if (is_beyond(state, i, furthest, way)) then
             ! Over the end and back within the step.
-            far = state%springs%line(i)%end_toward(way) - d
+            far = state%springs%end_toward(i, way) - d
             event = event_type(i, way, .false., time_to(far, v, turning), turning)
             return
          else if (state%springs%one_way(i) == way) then
@@ -279,7 +277,7 @@ contains
       if (turning < h) way = -direction_of(v)
       if (way == 0) return
       if (is_beyond(state, i, scheme%q(i), way)) then
-         far = state%springs%line(i)%end_toward(way) - d
+         far = state%springs%end_toward(i, way) - d
          event = event_type(i, way, .false., h*min(max(far/(scheme%q(i) - d), 0.0_wp), 1.0_wp), h)
       else if (state%springs%one_way(i) == -way) then
          event = event_type(i, way, .true., 0.5_wp*h, h)
@@ -296,7 +294,7 @@ contains
 
       is_beyond = .false.
       if (state%springs%one_way(i) == -way) return
-      end_of_line = state%springs%line(i)%end_toward(way)
+      end_of_line = state%springs%end_toward(i, way)
       if (abs(end_of_line) > out_of_bounds) return
       is_beyond = way*(d - end_of_line) > 4.0_wp*spacing(max(abs(end_of_line), abs(state%q(i))))
    end function is_beyond
@@ -338,7 +336,7 @@ contains
       integer :: iteration, i
 
       i = event%spring
-      target = state%springs%line(i)%end_toward(event%way)
+      target = state%springs%end_toward(i, event%way)
       low = 0.0_wp
       high = min(event%latest, h)
       t = min(max(event%estimate, 0.0_wp), high)
