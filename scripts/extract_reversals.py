@@ -16,8 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
+from rbsdem.comparison import summarise, turning_points
 from rbsdem.errors import RbsdemError
-from rbsdem.loops import summarise
 from rbsdem.paper import paper_sections
 from rbsdem.peer import HISTORY_FILES, find_history
 
@@ -64,26 +64,6 @@ def read_rows(path: Path) -> tuple[list[tuple[str, str]], np.ndarray]:
     return printed, np.array(numbers)
 
 
-def turning_points(displacement: np.ndarray, threshold: float) -> list[int]:
-    """Return the rows at which the displacement turns back by more than `threshold`."""
-    rows: list[int] = []
-    low = high = direction = 0
-    for i, d in enumerate(displacement):
-        if d > displacement[high]:
-            high = i
-        if d < displacement[low]:
-            low = i
-        if direction >= 0 and displacement[high] - d > threshold:
-            if direction > 0:
-                rows.append(high)
-            direction, low = -1, i
-        elif direction <= 0 and d - displacement[low] > threshold:
-            if direction < 0:
-                rows.append(low)
-            direction, high = 1, i
-    return rows
-
-
 def header(key: str, name: str, path: Path, rows: int) -> list[str]:
     """Return the source note of one file of reversal points."""
     author, title = REPORTS[key]
@@ -118,8 +98,8 @@ def main() -> int:
     sections = paper_sections()
     summary = [
         "# What the full measured histories of the four tests amount to, in the definitions of",
-        "# rbsdem.loops: largest absolute force and the displacement at it, largest absolute",
-        "# displacement, work of the force over the whole history, secant stiffness at half of the",
+        "# rbsdem.comparison: largest absolute force and the displacement at it, largest absolute",
+        "# displacement, work of the force over the whole history, secant stiffness at 70 % of the",
         "# largest force. Written by scripts/extract_reversals.py; sources in data/README.md.",
         "key,rows,peak_force_kN,displacement_at_peak_mm,peak_displacement_mm,energy_kJ,"
         "stiffness_kN_per_mm",
@@ -131,7 +111,7 @@ def main() -> int:
             return 1
         printed, values = read_rows(path)
         d, f = values.T
-        picked = [0, *turning_points(d, THRESHOLD * np.max(np.abs(d))), len(d) - 1]
+        picked = [0, *turning_points(d, share=THRESHOLD), len(d) - 1]
         lines = header(key, sections[key].specimen, path, len(d))
         lines += [",".join(printed[i]) for i in picked]
         target = arguments.out / f"reversals_{key}.csv"

@@ -5,7 +5,7 @@ SI units throughout: N, m, kg, s, rad. Axial load is positive in compression.
 
 from typing import TYPE_CHECKING
 
-from rbsdem import _moved, loops, peer, plot
+from rbsdem import _moved, comparison, peer, plot
 from rbsdem._core import version as _version
 from rbsdem.accuracy import Trade, trade
 from rbsdem.analysis import Modes, cyclic, mass_matrix, modes, time_history
@@ -76,8 +76,8 @@ __all__ = [
     "Trade",
     "calibrate",
     "compare",
+    "comparison",
     "cyclic",
-    "loops",
     "mass_matrix",
     "modes",
     "paper_columns",

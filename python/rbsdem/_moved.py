@@ -11,6 +11,8 @@ from types import ModuleType
 # Old name: new name.
 MOVED = {
     "rbsdem.trade": "rbsdem.accuracy",
+    "rbsdem.loops": "rbsdem.comparison (loop_metrics is rbsdem.compare)",
+    "rbsdem.cycles": "rbsdem.comparison",
 }
 
 

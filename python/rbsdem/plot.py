@@ -1,8 +1,8 @@
 """Force-displacement loops as a journal prints them: mm and kN, the model over the test.
 
 Needs matplotlib (``pip install rbsdem[plot]``), which is imported when a figure is asked for.
-Functions take SI and draw millimetres and kilonewtons; ``ax=None`` makes a figure of its own. The
-style is the dictionary `RC`, in force only while a function draws.
+Functions take SI and draw millimetres and kilonewtons. Without axes they make a figure in the house
+style, the dictionary `RC`; axes that are given keep the style of the caller.
 """
 
 from __future__ import annotations
@@ -12,18 +12,20 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rbsdem._curve import Curve, pair
+from rbsdem._optional import need_matplotlib
 from rbsdem.errors import InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["RC", "Panel", "four_panels", "loop", "loops_over_test", "save", "style"]
+__all__ = ["RC", "Panel", "axes_or_new", "four_panels", "loop", "loops_over_test", "save", "style"]
 
 RC: dict[str, Any] = {
     "font.family": "STIXGeneral",
@@ -74,16 +76,6 @@ FIGURE_SIZE = (6.9, 6.0)
 DPI = 300
 
 
-class HasLoop(Protocol):
-    """Anything with a loop, as a `rbsdem.Result` or a test that `rbsdem.read_peer` returns."""
-
-    displacement: NDArray[np.float64]
-    force: NDArray[np.float64]
-
-
-Curve: TypeAlias = HasLoop | tuple[ArrayLike, ArrayLike]
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Panel:
     """What one panel of `four_panels` shows.
@@ -91,7 +83,7 @@ class Panel:
     Attributes
     ----------
     title : str
-        Name of the specimen; the letter comes by itself.
+        Name of the specimen, without the letter of the panel.
     model, test : Curve
         Objects with `displacement` and `force`, or pairs of arrays [m, N].
     height : float, optional
@@ -110,10 +102,32 @@ class Panel:
 @contextmanager
 def style() -> Iterator[None]:
     """Put the house style `RC` in force inside a ``with`` block, nowhere else."""
+    need_matplotlib()
     import matplotlib as mpl  # noqa: PLC0415
 
     with mpl.rc_context(RC):
         yield
+
+
+@contextmanager
+def axes_or_new(ax: Axes | None, size: tuple[float, float] = (3.5, 3.0)) -> Iterator[Axes]:
+    """Yield the axes of the caller in the caller's style, or new axes in the house style.
+
+    Parameters
+    ----------
+    ax : matplotlib Axes or None
+        Axes of the caller; None makes a figure.
+    size : tuple of float
+        Width and height of a new figure [in].
+    """
+    need_matplotlib()
+    if ax is not None:
+        yield ax
+        return
+    import matplotlib.pyplot as plt  # noqa: PLC0415
+
+    with style():
+        yield plt.subplots(figsize=size, layout="constrained")[1]
 
 
 def loop(
@@ -157,14 +171,11 @@ def loop(
     >>> ax.get_xlabel()
     'Top displacement (mm)'
     """
-    _need_matplotlib()
-    pair = (curve, force) if force is not None else curve
-    d, f = _curve(pair, "the loop")
-    with style():
-        ax = _axes(ax)
-        ax.plot(d, f, **{**MODEL_LINE, **line})
-        _dress(ax, height)
-    return ax
+    d, f = _curve((curve, force) if force is not None else curve, "the loop")
+    with axes_or_new(ax) as drawn:
+        drawn.plot(d, f, **_line(MODEL_LINE, line))
+        _dress(drawn, height)
+    return drawn
 
 
 def loops_over_test(
@@ -176,6 +187,7 @@ def loops_over_test(
     test_points: bool = False,
     legend: bool = True,
     ax: Axes | None = None,
+    **line: Any,
 ) -> Axes:
     """Draw a computed loop over the measured one: solid black over broken gray, as in figure 3.
 
@@ -193,6 +205,8 @@ def loops_over_test(
         Say which line is which.
     ax : matplotlib Axes, optional
         Where to draw; a new figure without it.
+    **line
+        Properties of the model's line, as for ``Axes.plot``.
 
     Returns
     -------
@@ -206,19 +220,18 @@ def loops_over_test(
     ImportError
         If matplotlib is not installed.
     """
-    _need_matplotlib()
     measured = _curve(test, "the test")
     computed = _curve(model, "the model")
-    with style():
-        ax = _axes(ax)
-        ax.plot(*measured, label="Test", **(TEST_POINTS if test_points else TEST_LINE))
-        ax.plot(*computed, label="Model", **MODEL_LINE)
-        _dress(ax, height)
+    with axes_or_new(ax) as drawn:
+        drawn.plot(*measured, label="Test", **(TEST_POINTS if test_points else TEST_LINE))
+        drawn.plot(*computed, **_line({**MODEL_LINE, "label": "Model"}, line))
+        _dress(drawn, height)
         if title:
-            ax.text(0.035, 0.955, title, transform=ax.transAxes, ha="left", va="top", zorder=5)
+            at = drawn.transAxes
+            drawn.text(0.035, 0.955, title, transform=at, ha="left", va="top", zorder=5)
         if legend:
-            ax.legend(loc="lower right", handlelength=2.4)
-    return ax
+            drawn.legend(loc="lower right", handlelength=2.4)
+    return drawn
 
 
 def four_panels(
@@ -246,9 +259,9 @@ def four_panels(
     ImportError
         If matplotlib is not installed.
     """
-    _need_matplotlib()
     if not 1 <= len(panels) <= 4:
         raise InputError(f"four_panels: {len(panels)} panels; give one to four")
+    need_matplotlib()
     from matplotlib.figure import Figure  # noqa: PLC0415
 
     rows = 1 if len(panels) <= 2 else 2
@@ -314,34 +327,21 @@ def save(figure: Figure, path: str | os.PathLike[str], *, pdf: bool = False) -> 
     return files
 
 
-def _need_matplotlib() -> None:
-    try:
-        import matplotlib  # noqa: PLC0415
-    except ImportError as error:
-        raise ImportError(
-            "plots need matplotlib, which is not installed: pip install rbsdem[plot]"
-        ) from error
-    del matplotlib
+def _line(default: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
+    """Return the properties of a line, those given in place of the defaults, aliases included."""
+    from matplotlib.cbook import normalize_kwargs  # noqa: PLC0415
+    from matplotlib.lines import Line2D  # noqa: PLC0415
 
-
-def _axes(ax: Axes | None) -> Axes:
-    if ax is not None:
-        return ax
-    import matplotlib.pyplot as plt  # noqa: PLC0415
-
-    return plt.subplots(figsize=(3.5, 3.0), layout="constrained")[1]
+    return {**default, **normalize_kwargs(given, Line2D)}
 
 
 def _curve(curve: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return displacements [mm] and forces [kN] of a result, a test or a pair of arrays."""
-    if hasattr(curve, "displacement") and hasattr(curve, "force"):
-        curve = curve.displacement, curve.force
+    d, f = (np.asarray(values) for values in pair(curve, name))
     try:
-        d, f = (np.asarray(values, dtype=np.float64) for values in curve)
+        d, f = d.astype(np.float64), f.astype(np.float64)
     except (TypeError, ValueError) as error:
-        raise InputError(
-            f"{name} is neither a result or test nor a pair of displacements and forces"
-        ) from error
+        raise InputError(f"{name}: displacements and forces must be arrays of numbers") from error
     if d.ndim != 1 or d.shape != f.shape or d.size == 0:
         raise InputError(
             f"{name}: displacements have shape {d.shape}, forces {f.shape}; "
@@ -354,7 +354,8 @@ def _dress(ax: Axes, height: float | None) -> None:
     """Limits symmetric about zero, zero lines, labels, and drift ratios on top."""
     from matplotlib.ticker import MaxNLocator  # noqa: PLC0415
 
-    lines = [line for line in ax.get_lines() if line.get_gid() != "zero"]
+    # Lines across the axes, such as those through zero, have no extent of their own.
+    lines = [line for line in ax.get_lines() if line.get_transform() == ax.transData]
     points = [np.asarray(line.get_xydata(), dtype=np.float64) for line in lines]
     reach = np.nanmax(np.abs(np.vstack(points)), axis=0)
     x, y = (1.08 * value if value > 0 else 1.0 for value in reach)
@@ -372,9 +373,11 @@ def _dress(ax: Axes, height: float | None) -> None:
     if height is not None:
         if not height > 0:
             raise InputError(f"height = {height} m; give a positive height for the drift ratios")
+        if any(child.get_gid() == "drift" for child in ax.child_axes):
+            return
         share = 0.1 / height  # per cent of a height in m, of a displacement in mm
         top = ax.secondary_xaxis(
-            "top", functions=(lambda d: d * share, lambda drift: drift / share)
+            "top", functions=(lambda d: d * share, lambda drift: drift / share), gid="drift"
         )
         top.xaxis.set_major_locator(MaxNLocator(nbins=9, symmetric=True, steps=[1, 2, 5, 10]))
         top.set_xlabel("Drift ratio (%)")

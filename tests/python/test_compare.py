@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import math
+import pickle
 import runpy
 
 import numpy as np
@@ -11,11 +12,12 @@ import pytest
 from conftest import REPOSITORY
 
 import rbsdem
-from rbsdem import cycles
-from rbsdem.comparison import SCORES
+from rbsdem.comparison import SCORES, cycles
 from rbsdem.errors import InputError
 
 DEFINITIONS = REPOSITORY.parent / "shared" / "loop_metrics.py"
+
+THEIRS = {"stiffness_ratio": "k70_ratio", "path_fraction": "done", "nrmse_reached": "nrmse_done"}
 
 SHEAR = rbsdem.Bilinear(7e8, 1.3e-4, 8e6)
 FLEXURE = rbsdem.Takeda(2.5e8, 3.2e-4, 6.3e7, 2.7e-3, 7.6e6, b1=0.3)
@@ -48,7 +50,7 @@ def curves() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def test_a_copy_of_the_test_has_no_error(curves):
     d, f, _ = curves
     c = rbsdem.compare((d, f), (d, f))
-    assert (c.nrmse, c.done, c.rms_best) == pytest.approx((0.0, 1.0, 0.0), abs=1e-14)
+    assert (c.nrmse, c.path_fraction, c.rms_best) == pytest.approx((0.0, 1.0, 0.0), abs=1e-14)
     ratios = c.peak_ratio, c.energy_ratio, c.stiffness_ratio, c.end_ratio
     assert ratios == pytest.approx((1.0, 1.0, 1.0, 1.0))
 
@@ -75,17 +77,17 @@ def test_a_factor_of_the_force_is_a_factor_of_every_force_ratio(curves, factor):
 
 @pytest.mark.parametrize("share", [0.0, 0.2, 0.49, 0.51, 0.8, 1.0])
 def test_what_was_not_reached_counts_as_the_largest_force(curves, share):
-    """nrmse^2 = done nrmse_done^2 + (1 - done)."""
+    """nrmse^2 = path_fraction nrmse_reached^2 + (1 - path_fraction)."""
     d, f, m = curves
     force = m.copy()
     force[round(share * d.size) :] = np.nan
     c = rbsdem.compare((d, force), (d, f))
     assert c.rows == round(share * d.size)
-    inside = 0.0 if c.done == 0 else c.done * c.nrmse_done**2
-    assert c.nrmse == pytest.approx(math.sqrt(inside + 1 - c.done))
+    inside = 0.0 if c.path_fraction == 0 else c.path_fraction * c.nrmse_reached**2
+    assert c.nrmse == pytest.approx(math.sqrt(inside + 1 - c.path_fraction))
     # Ratios of less than half of the path would say nothing.
-    assert math.isnan(c.peak_ratio) == math.isnan(c.energy_ratio) == (c.done < 0.5)
-    assert math.isnan(c.end_ratio) == (c.done < 1)
+    assert math.isnan(c.peak_ratio) == math.isnan(c.energy_ratio) == (c.path_fraction < 0.5)
+    assert math.isnan(c.end_ratio) == (c.path_fraction < 1)
     assert c.scores == {name: getattr(c, name) for name in SCORES} | c.scores
 
 
@@ -100,7 +102,7 @@ def test_scores_are_those_of_the_shared_definitions(curves, stop):
     c = rbsdem.compare((d, model), (d, f))
     expected = reference(1e3 * d, 1e-3 * f, 1e-3 * model)
     for name in SCORES:
-        other = {"stiffness_ratio": "k70_ratio"}.get(name, name)
+        other = THEIRS.get(name, name)
         assert getattr(c, name) == pytest.approx(expected[other], rel=1e-11, nan_ok=True), name
 
 
@@ -109,6 +111,19 @@ def test_stiffness_is_the_secant_at_70_per_cent_of_the_own_peak():
     test, model = np.array([0.0, 70.0, 100.0, 0.0]), np.array([0.0, 10.0, 20.0, 0.0])
     # 70 at 1; 14 at 1.4.
     assert rbsdem.compare((d, model), (d, test)).stiffness_ratio == pytest.approx(10.0 / 70.0)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"), [("done", "path_fraction"), ("nrmse_done", "nrmse_reached")]
+)
+def test_an_old_name_of_a_score_says_the_new_one(curves, old, new):
+    d, f, _ = curves
+    c = rbsdem.compare((d, f), (d, f))
+    with pytest.raises(AttributeError, match=f"Comparison.{old} is now {new}"):
+        getattr(c, old)
+    with pytest.raises(AttributeError, match="no attribute 'score'"):
+        _ = c.score
+    assert pickle.loads(pickle.dumps(c)).scores == c.scores
 
 
 # ---- what belongs together -----------------------------------------------------------------------
@@ -131,7 +146,7 @@ def test_a_result_is_compared_with_the_test_that_drove_it(curves):
 def test_with_exact_rotations_too(curves):
     d, f, _ = curves
     result = rbsdem.cyclic(column(axial_load=7e5, kinematics="finite"), displacement=d)
-    assert rbsdem.compare(result, (d, f)).done == 1
+    assert rbsdem.compare(result, (d, f)).path_fraction == 1
 
 
 def test_an_analysis_that_broke_off(curves):
@@ -165,8 +180,8 @@ def test_rows_that_do_not_belong_together_are_refused(curves, changed, words):
     [
         (([0, 1], [0, 1]), ([0, 1], [0, 0]), "force is 0"),
         (([0, 1], [0, 1]), ([0, math.nan], [0, 1]), "displacement: value 2"),
-        (([0, 1], [0, 1]), ([0, 1], [0, 1, 2]), "2 displacements and 3 forces"),
-        (([0, 1], [0]), ([0, 1], [0, 1]), "2 displacements and 1 forces"),
+        (([0, 1], [0, 1]), ([0, 1], [0, 1, 2]), "force has 3 rows, test: displacement has 2"),
+        (([0, 1], [0]), ([0, 1], [0, 1]), "force has 1 rows, displacement has 2"),
         (([0, 0], [0, 1]), ([0, 0], [0, 1]), "displacement that changes"),
         (([0, 1], [0, 1]), 3, "test is neither"),
         (None, ([0, 1], [0, 1]), "result is neither"),
@@ -229,7 +244,7 @@ def test_energy_of_the_half_cycles_is_that_of_the_path():
     # It ends at a tip, and what is stored there is in the last one.
     h = cycles.half_cycles(d, f)
     assert h.row[-1] == d.size - 1
-    assert h.energy.sum() == pytest.approx(rbsdem.loops.energy(d, f), rel=1e-12)
+    assert h.energy.sum() == pytest.approx(rbsdem.comparison.energy(d, f), rel=1e-12)
 
 
 def test_test_and_model_share_their_tips(curves):
@@ -292,7 +307,7 @@ def test_drift_at_loss_of_test_and_model():
 def test_nothing_reached_is_no_fault(curves):
     d, f, _ = curves
     c = rbsdem.compare((d, np.full(d.size, np.nan)), (d, f))
-    assert (c.nrmse, c.done, c.rows) == (1.0, 0.0, 0)
+    assert (c.nrmse, c.path_fraction, c.rows) == (1.0, 0.0, 0)
     assert math.isnan(c.model_drift_at_loss)
     assert len(c.model_cycles) == 0
     assert "none" in str(c)

@@ -27,7 +27,7 @@ PROMISED = {
 }  # fmt: skip
 
 MODULES = [
-    "analysis", "case", "column", "comparison", "cycles", "damping", "errors", "loops", "paper",
+    "analysis", "case", "column", "comparison", "damping", "errors", "paper",
     "peer", "plot", "springs",
 ]  # fmt: skip
 
@@ -405,5 +405,10 @@ def test_a_module_that_has_moved_names_its_new_place():
     with pytest.raises(ImportError, match=r"rbsdem\.trade is now rbsdem\.accuracy"):
         importlib.import_module("rbsdem.trade.rows")
     assert rbsdem.trade is importlib.import_module("rbsdem.accuracy").trade
+    for old in ("loops", "cycles"):
+        with pytest.raises(ImportError, match=rf"rbsdem\.{old} is now rbsdem\.comparison"):
+            importlib.import_module(f"rbsdem.{old}")
+        with pytest.raises(AttributeError, match=rf"rbsdem\.{old} is now rbsdem\.comparison"):
+            getattr(rbsdem, old)
     with pytest.raises(AttributeError, match="has no attribute 'nothing'"):
         _ = rbsdem.nothing

@@ -148,8 +148,8 @@ def test_an_early_end_keeps_what_was_reached(table, monkeypatch):
     row = peer.predict_one(table[0], good)
     assert (row.status, row.error) == ("stopped", "step 150: no")
     assert row.comparison.rows == 150
-    assert 0.3 < row.comparison.done < 1
-    assert row.nrmse > row.score("nrmse_done")
+    assert 0.3 < row.comparison.path_fraction < 1
+    assert row.nrmse > row.score("nrmse_reached")
 
 
 def test_a_history_that_says_nothing_is_a_row(folder):

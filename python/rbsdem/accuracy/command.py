@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from rbsdem._optional import need_rich
 from rbsdem._parser import CommandParser
 from rbsdem.accuracy import figure, table, trade
 from rbsdem.case import Case, read_case
@@ -67,7 +68,7 @@ def _run(given: argparse.Namespace) -> int:
     case = read_case(given.case)
     if not given.quiet:
         # Before the work, not after it.
-        table.need_rich()
+        need_rich()
     methods = given.methods.split(",") if given.methods else None
     found = trade(
         case.column,

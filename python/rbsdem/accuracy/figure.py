@@ -45,15 +45,10 @@ def draw(trade: Trade, ax: Axes | None = None) -> Axes:
     done = [row for row in trade.rows if math.isfinite(row.error)]
     if not done or trade.reference is None:
         raise InputError("trade: there is no setting with an error to draw; see notes")
-    plot._need_matplotlib()
     floor = max(trade.reference.resolution, 1e-16)
-    with plot.style():
-        if ax is None:
-            import matplotlib.pyplot as plt  # noqa: PLC0415
-
-            ax = plt.subplots(figsize=(5.2, 3.6), layout="constrained")[1]
+    with plot.axes_or_new(ax, (5.2, 3.6)) as drawn:
         front = sorted((row for row in done if row.pareto), key=lambda row: row.seconds)
-        ax.plot(
+        drawn.plot(
             *_points(front, floor),
             drawstyle="steps-post",
             color="0.8",
@@ -76,7 +71,7 @@ def draw(trade: Trade, ax: Axes | None = None) -> Axes:
             mark = MARKS[method, events]
             if own:
                 label, mark = "as given", OWN
-            ax.plot(
+            drawn.plot(
                 *_points(rows, floor),
                 label=label,
                 linewidth=0.6,
@@ -86,8 +81,8 @@ def draw(trade: Trade, ax: Axes | None = None) -> Axes:
                 zorder=3,
                 **mark,
             )
-        _dress(ax, trade, floor)
-    return ax
+        _dress(drawn, trade, floor)
+    return drawn
 
 
 def _points(rows: Sequence[Row], floor: float) -> tuple[list[float], list[float]]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from rbsdem._optional import escaped, need_rich
 from rbsdem.accuracy.ladder import Budget
 from rbsdem.accuracy.rows import seconds_text
 from rbsdem.errors import InputError
@@ -16,19 +17,6 @@ if TYPE_CHECKING:
 
     from rbsdem.accuracy import Trade
     from rbsdem.accuracy.rows import Row
-
-
-def need_rich() -> Any:
-    """Return rich, or raise `ImportError` with the way to get it."""
-    try:
-        import rich.box  # noqa: PLC0415
-        import rich.progress  # noqa: PLC0415
-        import rich.table  # noqa: PLC0415
-    except ImportError as error:
-        raise ImportError(
-            "tables and progress need rich, which is not installed: pip install rbsdem[plot]"
-        ) from error
-    return rich
 
 
 @contextmanager
@@ -140,13 +128,6 @@ def report(trade: Trade, title: str) -> None:
     for note in trade.notes:
         say(f"Note: {note}.")
     say(f"\nDone in {trade.seconds:.1f} s of {trade.budget:g} s.")
-
-
-def escaped(text: str) -> str:
-    """Return a text in which rich finds no markup."""
-    from rich.markup import escape  # noqa: PLC0415
-
-    return escape(text)
 
 
 def physics_table(trade: Trade) -> Table:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rbsdem import plot
+from rbsdem._optional import need_matplotlib, need_rich
 from rbsdem.errors import InputError
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ def table(fit: Calibration) -> Table:
 
 def draw(fit: Calibration, axes: Sequence[Axes] | None) -> Sequence[Axes]:
     """Draw before and after over the test, both to one scale."""
-    plot._need_matplotlib()
+    need_matplotlib()
     if axes is None:
         import matplotlib.pyplot as plt  # noqa: PLC0415
 
@@ -113,19 +114,6 @@ def telling(evaluations: int) -> Iterator[Callable[[int, float], None]]:
             bar.update(task, completed=min(done, evaluations), description=f"nrmse {best:.4f}")
 
         yield told
-
-
-def need_rich() -> Any:
-    """Return rich, or raise `ImportError` with the way to get it."""
-    try:
-        import rich.box  # noqa: PLC0415
-        import rich.progress  # noqa: PLC0415
-        import rich.table  # noqa: PLC0415
-    except ImportError as error:
-        raise ImportError(
-            "tables and progress need rich, which is not installed: pip install rbsdem[plot]"
-        ) from error
-    return rich
 
 
 def _score(scores: Comparison, name: str) -> str:

@@ -133,7 +133,7 @@ def predict_one(specimen: Specimen, model: Model = blind.DEFAULT, **options: Any
         warnings.simplefilter("always")
         status, error, result, seconds = _analyse(specimen, test, model, options)
     comparison = compare(result, test)
-    if status == "completed" and comparison.done < 1:
+    if status == "completed" and comparison.path_fraction < 1:
         status, error = "stopped", f"the forces end at row {comparison.rows}"
     return Prediction(
         specimen,

@@ -85,7 +85,7 @@ def main(arguments: Sequence[str]) -> int:
 
 def _run(given: argparse.Namespace) -> int:
     # What may be missing or wrong, before the work.
-    from rbsdem.accuracy.table import need_rich  # noqa: PLC0415
+    from rbsdem._optional import need_rich  # noqa: PLC0415
 
     need_rich()
     tests = chosen(read_specimens(given.folder), given.section, given.failure, given.only)

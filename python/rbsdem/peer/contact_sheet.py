@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rbsdem import plot
+from rbsdem._optional import need_matplotlib
 
 if TYPE_CHECKING:
     from rbsdem._core import Array
@@ -27,7 +28,7 @@ def write_contact_sheet(predictions: Predictions, path: Path) -> Path:
 
     One pair of axes and two collections of lines for all cells: a pair for each would take seconds.
     """
-    plot._need_matplotlib()
+    need_matplotlib()
     from matplotlib.collections import LineCollection  # noqa: PLC0415
     from matplotlib.figure import Figure  # noqa: PLC0415
 

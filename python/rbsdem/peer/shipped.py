@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from rbsdem.comparison import Loop
 from rbsdem.errors import InputError
-from rbsdem.loops import Loop
 from rbsdem.paper import data_text
 
 __all__ = [
@@ -141,9 +141,9 @@ def measured_loops() -> dict[str, Loop]:
 
     Returns
     -------
-    dict of str to rbsdem.loops.Loop
-        Peak force, displacement at it, largest displacement, energy and initial stiffness of each
-        test, SI units, in the definitions of `rbsdem.loops`.
+    dict of str to rbsdem.comparison.Loop
+        Peak force, displacement at it, largest displacement, energy and stiffness of each
+        test, SI units, in the definitions of `rbsdem.comparison`.
     """
     lines = data_text("measured_loops.csv").splitlines()
     rows = [line.split(",") for line in lines if not line.startswith("#")][1:]

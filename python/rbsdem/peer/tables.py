@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from rbsdem.accuracy.table import escaped, need_rich
+from rbsdem._optional import escaped, need_rich
 
 if TYPE_CHECKING:
     from rich.table import Table

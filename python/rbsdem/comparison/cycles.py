@@ -1,9 +1,9 @@
 """Cycle by cycle: turning points, energy, stiffness, damping; and where strength is lost.
 
 A half-cycle belongs to a turning point of the displacement, its tip. It lasts from where the force
-changes its sign before the tip to where it does so after it: nothing is stored at zero force, so
-the work between is what was dissipated. Each curve has its own zeros of force; the tips are those
-of the displacement, which a test and a model driven through it share.
+changes its sign before the tip to where it does so after it. Nothing is stored at zero force, so
+the work between the two is the energy dissipated. Each curve has its own zeros of force; the tips
+are those of the displacement, which a test and a model driven through it share.
 """
 
 from __future__ import annotations
@@ -17,6 +17,8 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _core
 from rbsdem._core import Array
+from rbsdem._curve import columns
+from rbsdem.comparison.metrics import work
 from rbsdem.errors import InputError
 
 __all__ = [
@@ -25,11 +27,12 @@ __all__ = [
     "envelope",
     "half_cycles",
     "strength_loss",
+    "tip_rows",
     "turning_points",
 ]
 
 TURN = 0.02
-"""Share of the largest absolute displacement by which it turns back at a turning point."""
+"""Share of its largest absolute value by which a displacement turns back at a turning point."""
 
 _NEARLY = 0.95
 """Share of the largest displacement so far that a repeated cycle has to reach."""
@@ -50,14 +53,14 @@ class HalfCycles:
     peak_force : ndarray, shape (c,)
         The largest on the way to the tip, in its direction [N].
     energy : ndarray, shape (c,)
-        Dissipated from zero force to zero force [J]; what is stored at the end of a history that
-        ends loaded is in the last one.
+        Dissipated from zero force to zero force [J]. If a history ends under load, the last value
+        includes what is stored there.
     stiffness : ndarray, shape (c,)
-        Secant from the origin to the tip [N/m]; NaN where force and displacement of the tip have
-        not the same sign.
+        Secant from the origin to the tip [N/m]; NaN where force and displacement of the tip differ
+        in sign.
     damping : ndarray, shape (c,)
-        Equivalent viscous damping ratio E/(pi F d), with the energy E of the half-cycle and force
-        and displacement of its tip; NaN as for the stiffness.
+        Equivalent viscous damping ratio E/(pi F d), with the energy E of the half-cycle and the
+        force and displacement of its tip; NaN as for the stiffness.
     """
 
     row: np.ndarray
@@ -78,14 +81,14 @@ def turning_points(displacement: ArrayLike, *, share: float = TURN) -> np.ndarra
     Parameters
     ----------
     displacement : array_like, shape (m,)
-        In the order of the test [m].
+        The displacement, in the order of the test [m].
     share : float, optional
-        By what share of its largest absolute value it has to turn back, from 0 to 1.
+        Share of its largest absolute value by which it has to turn back, from 0 to 1.
 
     Returns
     -------
     ndarray of int, shape (k,)
-        Rows of the extremes, neither the first nor the last row of the history.
+        Rows of the extremes; the first and the last row of the history are not among them.
 
     Raises
     ------
@@ -97,7 +100,7 @@ def turning_points(displacement: ArrayLike, *, share: float = TURN) -> np.ndarra
         raise InputError(f"share = {share} must be from 0 to 1")
     if d.size < 3:
         return np.empty(0, dtype=np.intp)
-    # Between local extremes nothing can turn: those only, of a plateau the first row.
+    # Only local extremes can be turning points; of a plateau, its first row.
     step = np.diff(d)
     moves = np.flatnonzero(step)
     rows = [*(moves[np.flatnonzero(np.diff(np.sign(step[moves])))] + 1).tolist(), d.size - 1]
@@ -107,7 +110,7 @@ def turning_points(displacement: ArrayLike, *, share: float = TURN) -> np.ndarra
     for row in rows:
         away = d[row] - d[extreme]
         if direction == 0:
-            # The first move; small ones at the begin set no direction.
+            # The first move; a small one sets no direction.
             if abs(away) > threshold:
                 direction, extreme = math.copysign(1.0, away), row
         elif away * direction > 0:
@@ -128,8 +131,8 @@ def half_cycles(
     displacement, force : array_like, shape (m,)
         The curve, row by row [m, N].
     tips : array_like of int, shape (c,), optional
-        Rows of the tips, ascending; without it the turning points, and the last row if the curve is
-        still loaded outwards there.
+        Rows of the tips, ascending. By default the turning points, and the last row if the curve
+        is still loaded outwards there.
 
     Returns
     -------
@@ -141,21 +144,21 @@ def half_cycles(
     InputError
         If the arrays differ in length or a number is not finite.
     """
-    d, f = _curve(displacement, force)
+    d, f = _columns(displacement, force)
     rows = tip_rows(d, f) if tips is None else np.asarray(tips, dtype=np.intp)
-    work = np.concatenate(([0.0], np.cumsum(0.5 * (f[1:] + f[:-1]) * np.diff(d))))
+    done = work(d, f)
     before = np.concatenate(([0], rows[:-1])) if rows.size else rows
     sides = np.sign(d[rows] - d[before])
-    # Work up to the zeros of force: at the begin, between two tips, at the end.
+    # Work up to the zeros of force: before the first tip, between two tips, after the last.
     zeros = np.empty(rows.size + 1)
     peaks = np.empty(rows.size)
     zeros[0] = 0.0
     for i, (first, last, side) in enumerate(zip(before, rows, sides, strict=True)):
         peaks[i] = side * np.max(side * f[first : last + 1])
         if i > 0:
-            zeros[i] = _work_to_zero(d, f, work, first, last, side)
+            zeros[i] = _work_to_zero(d, f, done, first, last, side)
     if rows.size:
-        zeros[-1] = _work_to_zero(d, f, work, rows[-1], d.size - 1, -sides[-1])
+        zeros[-1] = _work_to_zero(d, f, done, rows[-1], d.size - 1, -sides[-1])
     product = f[rows] * d[rows]
     carries = product > 0
     safe = np.where(carries, product, 1.0)
@@ -183,20 +186,20 @@ def tip_rows(d: Array, f: Array) -> np.ndarray:
     return turns
 
 
-def _work_to_zero(d: Array, f: Array, work: Array, first: int, last: int, side: float) -> float:
+def _work_to_zero(d: Array, f: Array, done: Array, first: int, last: int, side: float) -> float:
     """Return the work up to where the force takes the sign `side` between two rows."""
     swing = side * f[first : last + 1]
     if swing.size == 0:
-        return float(work[first])
+        return float(done[first])
     at = int(np.argmax(swing >= 0))
     if swing[at] < 0:
-        # It never does: up to where it comes nearest.
-        return float(work[first + int(np.argmax(swing))])
+        # It never does; take the row where it comes nearest.
+        return float(done[first + int(np.argmax(swing))])
     row = first + at
     if at == 0:
-        return float(work[row])
+        return float(done[row])
     share = swing[at - 1] / (swing[at - 1] - swing[at])
-    return float(work[row - 1] + 0.5 * f[row - 1] * share * (d[row] - d[row - 1]))
+    return float(done[row - 1] + 0.5 * f[row - 1] * share * (d[row] - d[row - 1]))
 
 
 def envelope(displacement: ArrayLike, force: ArrayLike, side: int) -> np.ndarray:
@@ -212,15 +215,15 @@ def envelope(displacement: ArrayLike, force: ArrayLike, side: int) -> np.ndarray
     Returns
     -------
     ndarray of int, shape (k,)
-        The rows beyond the largest displacement so far, and of each half-cycle that comes back to
-        it (within 5 %) without going beyond, the one of the largest force.
+        The rows that go beyond the largest displacement so far. Of each half-cycle that comes back
+        to it (within 5 %) without going beyond, the row of the largest force.
 
     Raises
     ------
     InputError
         If the arrays differ in length or a number is not finite, or if `side` is neither.
     """
-    d, f = _curve(displacement, force)
+    d, f = _columns(displacement, force)
     if side not in (1, -1):
         raise InputError(f"side = {side!r} must be 1 or -1")
     x, y = side * d, side * f
@@ -251,9 +254,9 @@ def strength_loss(displacement: ArrayLike, force: ArrayLike, *, share: float = 0
     -------
     float
         On the envelope of a side, the first displacement past the largest force at which the force
-        is down to (1 - share) of it, linear between two points; of the sides the one at which this
-        happens first, unsigned [m]. A side counts whose largest force is half of that of the curve
-        or more. NaN if none loses so much.
+        is down to (1 - share) of it, interpolated between two points. The side at which this
+        happens first is taken; the displacement is unsigned [m]. A side whose largest force is
+        less than half of that of the curve does not count. NaN if no side loses so much.
 
     Raises
     ------
@@ -262,7 +265,7 @@ def strength_loss(displacement: ArrayLike, force: ArrayLike, *, share: float = 0
     """
     if not 0 < share < 1:
         raise InputError(f"share = {share} must be above 0 and below 1")
-    d, f = _curve(displacement, force)
+    d, f = _columns(displacement, force)
     found = (math.inf, math.nan)
     for side in (1, -1):
         rows = envelope(d, f, side)
@@ -278,9 +281,6 @@ def strength_loss(displacement: ArrayLike, force: ArrayLike, *, share: float = 0
     return found[1]
 
 
-def _curve(displacement: ArrayLike, force: ArrayLike) -> tuple[Array, Array]:
-    d = _core.finite_vector(displacement, "displacement")
-    f = _core.finite_vector(force, "force")
-    if d.shape != f.shape:
-        raise InputError(f"displacement has {d.size} rows, force {f.size}; they must be equal")
+def _columns(displacement: ArrayLike, force: ArrayLike) -> tuple[Array, Array]:
+    d, f = columns(("displacement", "force"), displacement, force, least=0)
     return d, f

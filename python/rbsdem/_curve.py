@@ -1,0 +1,81 @@
+"""Force-displacement curves as functions take them: an object with both, or a pair of arrays."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol, TypeAlias
+
+from numpy.typing import ArrayLike
+
+from rbsdem import _core
+from rbsdem._core import Array
+from rbsdem.errors import InputError
+
+
+class HasLoop(Protocol):
+    """Anything with a loop, such as a `rbsdem.Result` or a test from `rbsdem.read_peer`."""
+
+    @property
+    def displacement(self) -> Array:
+        """Displacement, row by row [m]."""
+
+    @property
+    def force(self) -> Array:
+        """Force, row by row [N]."""
+
+
+Curve: TypeAlias = HasLoop | tuple[ArrayLike, ArrayLike]
+
+
+def pair(curve: Any, name: str) -> tuple[Any, Any]:
+    """Return displacement and force of an object that has both, or of a pair.
+
+    Parameters
+    ----------
+    curve : Curve
+        The object or the pair.
+    name : str
+        What messages call it.
+
+    Raises
+    ------
+    InputError
+        If it is neither.
+    """
+    if hasattr(curve, "displacement") and hasattr(curve, "force"):
+        return curve.displacement, curve.force
+    try:
+        displacement, force = curve
+    except (TypeError, ValueError):
+        raise InputError(
+            f"{name} is neither an object with displacement and force nor a pair of the two"
+        ) from None
+    return displacement, force
+
+
+def columns(names: tuple[str, ...], *values: ArrayLike, least: int = 2) -> list[Array]:
+    """Return arrays of finite numbers, all of one length.
+
+    Parameters
+    ----------
+    names : tuple of str
+        What messages call the arrays.
+    *values : array_like, shape (rows,)
+        The arrays.
+    least : int, default 2
+        How many rows there must be.
+
+    Raises
+    ------
+    InputError
+        If a value is not a finite number, the lengths differ, or there are fewer rows.
+    """
+    arrays = [_core.finite_vector(value, name) for name, value in zip(names, values, strict=True)]
+    first = arrays[0].size
+    for name, array in zip(names, arrays, strict=True):
+        if array.size != first:
+            raise InputError(
+                f"{name} has {array.size} rows, {names[0]} has {first}; they must be equal"
+            )
+    if first < least:
+        raise InputError(f"{names[0]} has {first} rows; a curve needs at least {least}")
+    return arrays

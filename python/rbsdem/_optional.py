@@ -1,0 +1,36 @@
+"""Packages that only figures and tables need, and the message if one is not installed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+def need_matplotlib() -> None:
+    """Raise `ImportError` with the way to get matplotlib if it is not installed."""
+    try:
+        import matplotlib  # noqa: PLC0415
+    except ImportError as error:
+        raise ImportError(
+            "plots need matplotlib, which is not installed: pip install rbsdem[plot]"
+        ) from error
+    del matplotlib
+
+
+def need_rich() -> Any:
+    """Return rich, or raise `ImportError` with the way to get it."""
+    try:
+        import rich.box  # noqa: PLC0415
+        import rich.progress  # noqa: PLC0415
+        import rich.table  # noqa: PLC0415
+    except ImportError as error:
+        raise ImportError(
+            "tables and progress need rich, which is not installed: pip install rbsdem[plot]"
+        ) from error
+    return rich
+
+
+def escaped(text: str) -> str:
+    """Return a text in which rich finds no markup."""
+    from rich.markup import escape  # noqa: PLC0415
+
+    return escape(text)

@@ -1,0 +1,42 @@
+"""Who draws a record, and who makes a table of it.
+
+A record (a comparison, a diagram, the rows of a trade) does not know its views. Its methods `plot`,
+`table` and the like ask here, and the module that draws the record registers its functions here. So
+imports go one way: this module <- records <- views. The package of a record imports its views,
+which registers them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+_FUNCTIONS: dict[tuple[type, str], Callable[..., Any]] = {}
+
+
+def view_of(kind: type, name: str) -> Callable[[Function], Function]:
+    """Register the function below as a view of a record.
+
+    Parameters
+    ----------
+    kind : type
+        Class of the record.
+    name : str
+        Name of the view, usually that of the method: "plot", "table".
+    """
+
+    def register(function: Function) -> Function:
+        _FUNCTIONS[kind, name] = function
+        return function
+
+    return register
+
+
+def view(record: object, name: str, *arguments: Any, **options: Any) -> Any:
+    """Return what the view of a record returns, given the record and the arguments."""
+    for kind in type(record).__mro__:
+        if (kind, name) in _FUNCTIONS:
+            return _FUNCTIONS[kind, name](record, *arguments, **options)
+    raise NotImplementedError(f"there is no {name} of a {type(record).__name__}")
