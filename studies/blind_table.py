@@ -3,7 +3,7 @@
     python studies/blind_table.py FOLDER [--jobs 2]
 
 FOLDER holds the histories and the table of the tests. Scores are those of `rbsdem.compare`. The
-numbers of the model were fitted to flexural tests of rectangular columns (studies/fit_hinge.py)
+parameters of the model were fitted to flexural tests of rectangular columns (studies/fit_hinge.py)
 and to shear failures (studies/fit_shear.py): those scripts print the scores on the series that
 were left out.
 """
@@ -20,6 +20,7 @@ import numpy as np
 
 import rbsdem
 from rbsdem import peer
+from rbsdem.section import MODELS
 
 SCORES = ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio")
 CLASSES = (-1.0, 0.05, 0.15, 0.3, 0.45, 1.0)
@@ -80,10 +81,7 @@ def bodies(tests: peer.Specimens) -> None:
     change: dict[int, list[float]] = {n: [] for n in SIZES}
     for specimen in tests:
         d = specimen.test().displacement
-        forces = {
-            n: rbsdem.cyclic(peer.column(specimen, "best", n=n), displacement=d).force
-            for n in SIZES
-        }
+        forces = {n: rbsdem.cyclic(peer.column(specimen, n=n), displacement=d).force for n in SIZES}
         finest = forces[SIZES[-1]]
         for n, force in forces.items():
             rows = min(len(force), len(finest))
@@ -105,7 +103,7 @@ def main() -> None:
     warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
     tests = peer.read_specimens(given.folder).with_history()
     found = {}
-    for model in ("best", "paper"):
+    for model in MODELS:
         found[model] = peer.predict(tests, model, jobs=given.jobs)
         ended = sum(row.status == "completed" for row in found[model])
         each = [1e3 * (row.seconds_model + row.seconds_analysis) for row in found[model]]
@@ -123,10 +121,10 @@ def main() -> None:
         table(f"model {model}", found[model], groups)
     rectangular = tests.where(section="rectangular")
     names = {row.name for row in rectangular}
-    best = [row for row in found["best"] if row.specimen.name in names]
-    by_axial_load(best)
-    series = sorted({row.specimen.series for row in best})
-    table("series", best, {name: lambda s, name=name: s.series == name for name in series})
+    layered = [row for row in found["layered"] if row.specimen.name in names]
+    by_axial_load(layered)
+    series = sorted({row.specimen.series for row in layered})
+    table("series", layered, {name: lambda s, name=name: s.series == name for name in series})
     the_papers_four(rectangular, found)
     bodies(rectangular.where(failure_mode="Flexure"))
 

@@ -135,7 +135,7 @@ def lumped(specimen: Specimen) -> rbsdem.Column:
 def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description="Calibrate every test of a folder.")
     parser.add_argument("folder", metavar="DIR")
-    parser.add_argument("--model", default="best")
+    parser.add_argument("--model", default="layered")
     parser.add_argument("--free", nargs="+", metavar="NAME")
     parser.add_argument("--only", nargs="+", metavar="NAME", help="parts of names of tests")
     parser.add_argument("--section", default="rectangular", help="'' for all")

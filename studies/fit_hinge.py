@@ -1,11 +1,11 @@
-"""Fit the numbers of the layered hinge of the blind model, and score them on series left out.
+"""Fit the parameters of the layered hinge of the blind model, and score them on series left out.
 
     python studies/fit_hinge.py FOLDER [--folds 5] [--evaluations 10] [--jobs 2] [--out FILE]
 
 FOLDER holds the histories and the table of the tests (docs/peer.md). Fitted are all flexural tests
-of rectangular columns with one set of numbers, from values as in the literature, on which a weak
-prior keeps them. A test counts by n^2/(n^2 + s^2), n its nrmse: those that no number of the model
-mends do not pull. Series, not tests, are left out: the columns of a series are much alike.
+of rectangular columns with one set of parameters, from values as in the literature, on which a weak
+prior keeps them. A test counts by n^2/(n^2 + s^2), n its nrmse: those that no parameter mends do
+not pull. Series, not tests, are left out: the columns of a series are much alike.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import csv
 import math
 import warnings
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
@@ -25,11 +26,11 @@ from scipy.optimize import least_squares
 import rbsdem
 from rbsdem import peer
 from rbsdem.calibration.misfit import Target, forces
-from rbsdem.peer.layers import Hinge
+from rbsdem.section import HingeParameters, ModelParameters, parameters
 
 
-class Number(NamedTuple):
-    """A number that is fitted; `spread` is relative for positive ones, absolute for exponents."""
+class Fitted(NamedTuple):
+    """A parameter; `spread` is relative for positive ones, absolute for exponents."""
 
     start: float
     spread: float
@@ -37,36 +38,36 @@ class Number(NamedTuple):
     high: float
 
 
-NUMBERS = {
-    "steel_strength": Number(1.05, 0.1, 0.9, 1.2),
-    "hardening": Number(1.0, 0.5, 0.3, 2.0),
-    "roundness": Number(10.0, 0.5, 3.0, 25.0),
-    "roundness_axial": Number(0.0, 2.0, -4.0, 4.0),
-    "roundness_loss": Number(0.85, 0.1, 0.5, 0.97),
-    "roundness_reach": Number(0.4, 0.5, 0.05, 1.5),
-    "growth": Number(0.05, 1.0, 0.005, 0.3),
-    "fatigue": Number(0.003, 1.0, 2e-4, 0.05),
-    "concrete_strength": Number(0.9, 0.15, 0.6, 1.2),
-    "concrete_size": Number(0.0, 0.1, -0.3, 0.4),
-    "peak_strain": Number(1.1, 0.3, 0.7, 2.0),
-    "confinement": Number(1.0, 0.3, 0.3, 2.0),
-    "core_fall": Number(1.0, 1.0, 0.05, 10.0),
-    "cover_fall": Number(1.0, 0.7, 0.1, 10.0),
-    "residual": Number(0.3, 0.5, 0.05, 0.8),
-    "hinge_length": Number(0.8, 0.4, 0.2, 2.0),
-    "hinge_axial": Number(0.0, 1.5, -4.0, 3.0),
-    "hinge_depth": Number(0.1, 1.0, 0.01, 0.6),
-    "compression_length": Number(1.5, 0.4, 0.5, 3.0),
-    "slip_length": Number(0.015, 0.5, 0.003, 0.05),
-    "slip_axial": Number(0.0, 1.5, -4.0, 3.0),
-    "stiffness": Number(0.9, 0.3, 0.3, 2.0),
-    "stiffness_axial": Number(1.0, 1.0, 0.0, 4.0),
-    "shear_stiffness": Number(0.7, 0.4, 0.2, 1.0),
-    "plastic": Number(1.5, 0.4, 0.5, 3.0),
-    "misfit": Number(0.3, 0.5, 0.05, 0.8),
-    "contact": Number(0.3, 0.5, 0.05, 0.8),
-    "contact_axial": Number(0.0, 1.5, -4.0, 4.0),
-    "wear": Number(0.05, 0.7, 0.005, 0.3),
+PARAMETERS = {
+    "steel_strength": Fitted(1.05, 0.1, 0.9, 1.2),
+    "hardening": Fitted(1.0, 0.5, 0.3, 2.0),
+    "r0": Fitted(10.0, 0.5, 3.0, 25.0),
+    "r0_axial": Fitted(0.0, 2.0, -4.0, 4.0),
+    "cr1": Fitted(0.85, 0.1, 0.5, 0.97),
+    "cr2": Fitted(0.4, 0.5, 0.05, 1.5),
+    "isotropic_hardening": Fitted(0.05, 1.0, 0.005, 0.3),
+    "fatigue": Fitted(0.003, 1.0, 2e-4, 0.05),
+    "concrete_strength": Fitted(0.9, 0.15, 0.6, 1.2),
+    "concrete_size": Fitted(0.0, 0.1, -0.3, 0.4),
+    "peak_strain": Fitted(1.1, 0.3, 0.7, 2.0),
+    "confinement": Fitted(1.0, 0.3, 0.3, 2.0),
+    "core_softening": Fitted(1.0, 1.0, 0.05, 10.0),
+    "cover_softening": Fitted(1.0, 0.7, 0.1, 10.0),
+    "residual": Fitted(0.3, 0.5, 0.05, 0.8),
+    "hinge_length": Fitted(0.8, 0.4, 0.2, 2.0),
+    "hinge_axial": Fitted(0.0, 1.5, -4.0, 3.0),
+    "hinge_depth": Fitted(0.1, 1.0, 0.01, 0.6),
+    "compression_length": Fitted(1.5, 0.4, 0.5, 3.0),
+    "slip_length": Fitted(0.015, 0.5, 0.003, 0.05),
+    "slip_axial": Fitted(0.0, 1.5, -4.0, 3.0),
+    "stiffness": Fitted(0.9, 0.3, 0.3, 2.0),
+    "stiffness_axial": Fitted(1.0, 1.0, 0.0, 4.0),
+    "shear_stiffness": Fitted(0.7, 0.4, 0.2, 1.0),
+    "plastic": Fitted(1.5, 0.4, 0.5, 3.0),
+    "misfit": Fitted(0.3, 0.5, 0.05, 0.8),
+    "contact": Fitted(0.3, 0.5, 0.05, 0.8),
+    "contact_axial": Fitted(0.0, 1.5, -4.0, 4.0),
+    "wear": Fitted(0.05, 0.7, 0.005, 0.3),
 }
 
 # nrmse of a test that counts half.
@@ -81,27 +82,28 @@ AXIAL_LOAD_RATIOS = (-1.0, 0.05, 0.15, 0.3, 0.45, 1.0)
 EVERY = 5
 
 
-def value(number: Number, place: float) -> float:
-    """Return the number at a place, which counts spreads from the start."""
-    if number.low > 0:
-        return number.start * math.exp(number.spread * place)
-    return number.start + number.spread * place
+def value(parameter: Fitted, place: float) -> float:
+    """Return the value at a place, which counts spreads from the start."""
+    if parameter.low > 0:
+        return parameter.start * math.exp(parameter.spread * place)
+    return parameter.start + parameter.spread * place
 
 
 def bounds() -> tuple[list[float], list[float]]:
     """Return the bounds of the places."""
     sides = ([], [])
-    for number in NUMBERS.values():
-        for side, end in zip(sides, (number.low, number.high), strict=True):
-            way = math.log(end / number.start) if number.low > 0 else end - number.start
-            side.append(way / number.spread)
+    for one in PARAMETERS.values():
+        for side, end in zip(sides, (one.low, one.high), strict=True):
+            way = math.log(end / one.start) if one.low > 0 else end - one.start
+            side.append(way / one.spread)
     return sides
 
 
-def hinge(places: np.ndarray) -> Hinge:
-    """Return the hinge of places."""
-    items = zip(NUMBERS.items(), places.tolist(), strict=True)
-    return Hinge(**{name: value(number, place) for (name, number), place in items})
+def at(places: np.ndarray) -> ModelParameters:
+    """Return the parameters of the model with the hinge of places."""
+    items = zip(PARAMETERS.items(), places.tolist(), strict=True)
+    hinge = HingeParameters(**{name: value(one, place) for (name, one), place in items})
+    return replace(parameters(), hinge=hinge)
 
 
 class Case:
@@ -116,18 +118,18 @@ class Case:
     def __init__(self, specimen: peer.Specimen) -> None:
         self.specimen, self.target = specimen, Target(specimen.test())
 
-    def error(self, numbers: Hinge) -> np.ndarray:
+    def error(self, given: ModelParameters) -> np.ndarray:
         """Return the errors along the path and, last, those of the two ratios."""
-        column = peer.column(self.specimen, "best", hinge=numbers)
+        column = peer.column(self.specimen, model_parameters=given)
         force = forces(column, self.target.displacement)[0]
         error = self.target.error(force)[::EVERY]
         peak, energy = self.target.ratios(force)
         ratios = np.clip([PEAK * (peak - 1), ENERGY * (energy - 1)], -HALF, HALF)
         return np.append(error / math.sqrt(len(error)), ratios)
 
-    def residual(self, numbers: Hinge) -> np.ndarray:
+    def residual(self, given: ModelParameters) -> np.ndarray:
         """Return the errors so that their square sum is the bounded loss."""
-        error = self.error(numbers)
+        error = self.error(given)
         return error / math.sqrt(error @ error + HALF**2)
 
 
@@ -141,11 +143,11 @@ def _begin(folder: str) -> None:
 
 def _one(task: tuple[int, np.ndarray]) -> np.ndarray:
     number, places = task
-    return _cases[number].residual(hinge(places))
+    return _cases[number].residual(at(places))
 
 
 def _slopes(task: tuple[int, np.ndarray]) -> np.ndarray:
-    """Return the change of the residual of a test by each number, by differences."""
+    """Return the change of the residual of a test by each parameter, by differences."""
     number, places = task
     _, high = bounds()
     here, columns = _one(task), []
@@ -175,18 +177,18 @@ def fit(pool: ProcessPoolExecutor, numbers: list[int], evaluations: int) -> np.n
         rows = pool.map(_slopes, [(i, places) for i in numbers], chunksize=2)
         return np.vstack([*(weight * row for row in rows), prior * np.eye(len(places))])
 
-    start = np.zeros(len(NUMBERS))
+    start = np.zeros(len(PARAMETERS))
     found = least_squares(residual, start, slopes, bounds(), ftol=1e-3, max_nfev=evaluations)
     return found.x
 
 
-def scores(cases: list[Case], numbers: Hinge) -> dict[str, list[float]]:
+def scores(cases: list[Case], given: ModelParameters) -> dict[str, list[float]]:
     """Return scores of tests by their names."""
     tests = [case.specimen for case in cases]
     names = ("nrmse", "peak_ratio", "energy_ratio")
     return {
         row.specimen.name: [row.score(name) for name in names]
-        for row in peer.predict(tests, "best", hinge=numbers)
+        for row in peer.predict(tests, model_parameters=given)
     }
 
 
@@ -213,21 +215,21 @@ def main() -> None:
     given = parser.parse_args()
 
     _begin(given.folder)
-    show("numbers as they stand", scores(_cases, Hinge()))
+    show(f"parameters {parameters().version}", scores(_cases, parameters()))
     names = sorted({case.specimen.series for case in _cases})
     # The order of the alphabet has nothing to do with the tests.
     folds = [names[i :: given.folds] for i in range(given.folds)]
     with ProcessPoolExecutor(given.jobs, initializer=_begin, initargs=(given.folder,)) as pool:
         places = fit(pool, list(range(len(_cases))), given.evaluations)
-        show("all series, fitted to them", scores(_cases, hinge(places)))
-        for name, number, place in zip(NUMBERS, NUMBERS.values(), places, strict=True):
-            print(f"    {name}: float = {value(number, place):.3g}", flush=True)
+        show("all series, fitted to them", scores(_cases, at(places)))
+        for (name, one), place in zip(PARAMETERS.items(), places, strict=True):
+            print(f"    {name}={value(one, place):.3g},", flush=True)
         left_out: dict[str, list[float]] = {}
         for fold in folds:
             inside = [i for i, c in enumerate(_cases) if c.specimen.series not in fold]
             outside = [c for c in _cases if c.specimen.series in fold]
             places = fit(pool, inside, given.evaluations)
-            found = scores(outside, hinge(places))
+            found = scores(outside, at(places))
             show(f"without {', '.join(fold)}", found)
             left_out |= found
     show("every series left out once", left_out)

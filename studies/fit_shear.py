@@ -1,4 +1,4 @@
-"""Fit the numbers of the shear spring of the blind model, and score them on series left out.
+"""Fit the parameters of the shear spring of the blind model, and score them on series left out.
 
     python studies/fit_shear.py FOLDER [--folds 5] [--evaluations 150] [--jobs 2]
 
@@ -21,14 +21,15 @@ import rbsdem
 from rbsdem import peer
 from rbsdem.calibration.misfit import Target, forces, rms
 from rbsdem.peer.drawing import draw
-from rbsdem.peer.shear import ShearNumbers, shear_spring
+from rbsdem.section import ShearParameters, parameters
+from rbsdem.section.shear_model import shear_spring
 
 # Bounds of what is fitted; the others keep their values.
 BOUNDS = {
     "strength": (0.6, 1.6),
     "hardening": (1.0, 1.6),
     "cap": (5e-4, 0.1),
-    "fall": (0.02, 0.6),
+    "softening": (0.02, 0.6),
     "endurance": (0.5, 500.0),
     "pinch_force": (0.02, 1.0),
     "pinch_slip": (0.02, 0.98),
@@ -53,14 +54,14 @@ class Case:
 
     def __init__(self, specimen: peer.Specimen) -> None:
         self.specimen, self.target = specimen, Target(specimen.test())
-        self.column = peer.column(specimen, "best")
+        self.column = peer.column(specimen)
         self.section = draw(specimen).section()
         foot = self.column.shear[0]
         self.stiffness = foot.f_c / foot.d_c * specimen.length
         force = self.force(rbsdem.Elastic(foot.f_c / foot.d_c))
         self.without = rms(self.target.error(force))
         self.failed = specimen.failure_mode != "Flexure"
-        strength = foot.f_y / ShearNumbers().strength
+        strength = foot.f_y / parameters().shear.strength
         self.near = float(np.max(np.abs(force), initial=0.0)) > NEAR * strength
 
     def force(self, foot: rbsdem.springs.Spring) -> np.ndarray:
@@ -68,53 +69,51 @@ class Case:
         column = replace(self.column, shear=[foot, *self.column.shear[1:]])
         return forces(column, self.target.displacement)[0]
 
-    def score(self, numbers: ShearNumbers) -> float:
-        """Return the nrmse with numbers of the shear spring."""
+    def score(self, given: ShearParameters) -> float:
+        """Return the nrmse with other parameters of the shear spring."""
         s = self.specimen
-        foot = shear_spring(self.section, s.length, s.axial_load, self.stiffness, numbers)
+        foot = shear_spring(self.section, s.length, s.axial_load, self.stiffness, given)
         return rms(self.target.error(self.force(foot)))
 
 
-def numbers_at(place: np.ndarray) -> ShearNumbers:
-    """Return the numbers of a place from -inf to inf in each direction."""
+def parameters_at(place: np.ndarray) -> ShearParameters:
+    """Return the parameters of a place from -inf to inf in each direction."""
     values = np.exp(LOW + (HIGH - LOW) / (1 + np.exp(-place)))
-    return ShearNumbers(**dict(zip(BOUNDS, values.tolist(), strict=True)))
+    return replace(parameters().shear, **dict(zip(BOUNDS, values.tolist(), strict=True)))
 
 
-def place_of(numbers: ShearNumbers) -> np.ndarray:
-    """Return the place of numbers."""
-    values = np.log([getattr(numbers, name) for name in BOUNDS])
+def place_of(given: ShearParameters) -> np.ndarray:
+    """Return the place of parameters."""
+    values = np.log([getattr(given, name) for name in BOUNDS])
     share = np.clip((values - LOW) / (HIGH - LOW), 0.03, 0.97)
     return np.log(share / (1 - share))
 
 
-def fit(cases: list[Case], evaluations: int) -> ShearNumbers:
-    """Return the numbers that suit the cases best, by the simplex of Nelder and Mead."""
+def fit(cases: list[Case], evaluations: int) -> ShearParameters:
+    """Return the parameters that suit the cases best, by the simplex of Nelder and Mead."""
     shear = [case for case in cases if case.failed]
     other = [case for case in cases if not case.failed and case.near]
 
     def loss(place: np.ndarray) -> float:
-        numbers = numbers_at(place)
-        harm = [max(0.0, case.score(numbers) - case.without) for case in other]
-        return float(
-            np.mean([case.score(numbers) for case in shear]) + HARM * np.mean(harm or [0.0])
-        )
+        given = parameters_at(place)
+        harm = [max(0.0, case.score(given) - case.without) for case in other]
+        return float(np.mean([case.score(given) for case in shear]) + HARM * np.mean(harm or [0.0]))
 
-    start = place_of(ShearNumbers())
+    start = place_of(parameters().shear)
     simplex = np.vstack([start, start - 0.8 * np.diag(np.sign(start))])
     options = {"initial_simplex": simplex, "maxfev": evaluations, "adaptive": True}
-    return numbers_at(minimize(loss, start, method="Nelder-Mead", options=options).x)
+    return parameters_at(minimize(loss, start, method="Nelder-Mead", options=options).x)
 
 
 def _left_out(
     folder: str, series: list[str], evaluations: int
-) -> list[tuple[str, float, float, ShearNumbers]]:
+) -> list[tuple[str, float, float, ShearParameters]]:
     """Fit without some series; return name and nrmse of their tests without spring and with it."""
     warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
     cases = load(folder)
-    numbers = fit([c for c in cases if c.specimen.series not in series], evaluations)
+    given = fit([c for c in cases if c.specimen.series not in series], evaluations)
     return [
-        (c.specimen.name, c.without, c.score(numbers), numbers)
+        (c.specimen.name, c.without, c.score(given), given)
         for c in cases
         if c.specimen.series in series
     ]

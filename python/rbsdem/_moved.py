@@ -13,6 +13,14 @@ MOVED = {
     "rbsdem.trade": "rbsdem.accuracy",
     "rbsdem.loops": "rbsdem.comparison (loop_metrics is rbsdem.compare)",
     "rbsdem.cycles": "rbsdem.comparison",
+    "rbsdem.peer.blind": "rbsdem.section.model",
+    "rbsdem.peer.layers": "rbsdem.section.hinge",
+    "rbsdem.peer.shear": "rbsdem.section.shear_model",
+    "rbsdem.peer.strips": "rbsdem.section.strips",
+    "rbsdem.peer.Hinge": "rbsdem.section.HingeParameters",
+    "rbsdem.peer.LayeredColumn": "rbsdem.section.LayeredColumn",
+    "rbsdem.peer.MODELS": "rbsdem.section.MODELS",
+    "rbsdem.peer.ShearNumbers": "rbsdem.section.ShearParameters",
 }
 
 

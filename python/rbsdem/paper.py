@@ -27,6 +27,7 @@ from rbsdem.section import (
     Steel,
     Ties,
 )
+from rbsdem.section.model import CONCRETE_DENSITY
 from rbsdem.springs import Bilinear, Takeda
 
 __all__ = [
@@ -40,9 +41,6 @@ __all__ = [
 
 KEYS = ("soesianawati_1", "tanaka_park_1", "tanaka_park_5", "zahn_7")
 """The four columns of the paper, in its order."""
-
-CONCRETE_DENSITY = 2400.0
-"""Density of reinforced concrete that gives the columns their mass [kg/m3]; not in the paper."""
 
 # Whole numbers to divide or multiply by: 400 mm is then the same number as 0.4 m.
 _DIVIDE = {"-": 1, "mm": 1000, "mm2": 1000**2}

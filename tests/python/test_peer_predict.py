@@ -58,18 +58,18 @@ def deadly(specimen: peer.Specimen) -> rbsdem.Column:
 # The command with a model that does not come to an end on its third test.
 ENDLESS = """
 import itertools, pathlib, sys, time
-from rbsdem.peer import blind, command
+from rbsdem.peer import batch, command
 
-paper = blind.MODELS["paper"]
+make = batch.column_of
 count = itertools.count()
 
-def endless(specimen):
+def endless(specimen, model):
     if next(count) == 2:
         pathlib.Path("begun").touch()
         time.sleep(60)
-    return paper(specimen)
+    return make(specimen, model)
 
-blind.MODELS["paper"] = endless
+batch.column_of = endless
 raise SystemExit(command.main(sys.argv[1:] + ["--model", "paper"]))
 """
 
@@ -205,7 +205,8 @@ def test_broken_off_keeps_what_is_done(table):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ({"model": "nonsense"}, "'nonsense' is not known; there are paper"),
+        ({"model": "nonsense"}, "'nonsense' is not known; there are layered, paper"),
+        ({"version": "1.0"}, "version = '1.0' of the layered model is not known; there are 2026.1"),
         ({"jobs": 0}, "jobs = 0"),
     ],
 )
@@ -345,7 +346,7 @@ def test_command(folder, tmp_path, capsys):
     assert run(folder, "--jobs", "1", "--out", out, "--loops", "--failure", "flexure") == 0
     text = capsys.readouterr().out
     assert "Me 1991 No. 1" in text
-    assert "Model best: 3 tests in" in text
+    assert "Model layered 2026.1: 3 tests in" in text
     assert "rectangular, Flexure" in text
     names = {path.name for path in out.iterdir()}
     assert names == {"results.csv", "summary.csv", "gallery.html", "loops.png", "loops"}

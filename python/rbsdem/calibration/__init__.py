@@ -29,11 +29,11 @@ from rbsdem.calibration.determined import (
 )
 from rbsdem.calibration.misfit import LOSSES, Misfit, Target, forces
 from rbsdem.calibration.names import Numbers, free_numbers
-from rbsdem.calibration.parameter import Parameter, Recipe
 from rbsdem.calibration.search import Search, need_scipy
 from rbsdem.column import Column
 from rbsdem.comparison import Comparison, compare
 from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.parameter import Parameter, Recipe
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -12,9 +12,9 @@ import numpy as np
 from rbsdem import _core
 from rbsdem._core import Array
 from rbsdem.analysis import cyclic
-from rbsdem.calibration.parameter import Parameter
 from rbsdem.column import Column
 from rbsdem.errors import InputError, SolveError
+from rbsdem.parameter import Parameter
 
 #: Points along the path of displacement at which the error is taken.
 POINTS = 2000

@@ -9,9 +9,9 @@ from typing import Any
 
 from rbsdem import _core
 from rbsdem.calibration import paths
-from rbsdem.calibration.parameter import Parameter, is_recipe
 from rbsdem.column import Column
 from rbsdem.errors import InputError
+from rbsdem.parameter import Parameter, is_recipe
 
 #: Names that a message lists.
 _MANY = 30

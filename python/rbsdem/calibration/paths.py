@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from rbsdem.calibration.parameter import Parameter
 from rbsdem.column import Column
+from rbsdem.parameter import Parameter
 
 #: A spring is found within a factor of this, unless its rule says otherwise.
 REACH = 5.0

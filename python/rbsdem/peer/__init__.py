@@ -5,14 +5,15 @@ The histories belong to the database and are no part of rbsdem; a user gets them
 points come with rbsdem.
 """
 
+from typing import TYPE_CHECKING
+
+from rbsdem import _moved
 from rbsdem.peer.batch import predict, predict_one
-from rbsdem.peer.blind import MODELS, LayeredColumn, column
+from rbsdem.peer.columns import column
 from rbsdem.peer.drawing import Drawing, DrawnBar, draw
 from rbsdem.peer.file import PeerTest, read_peer
-from rbsdem.peer.layers import Hinge
 from rbsdem.peer.measured import PDELTA_CODES, MeasuredTest, net_force
 from rbsdem.peer.predictions import Group, Prediction, Predictions, Quartiles
-from rbsdem.peer.shear import ShearNumbers
 from rbsdem.peer.shipped import (
     FOLDER_VARIABLE,
     HISTORY_FILES,
@@ -27,13 +28,10 @@ from rbsdem.peer.specimens import Specimens, read_specimens
 __all__ = [
     "FOLDER_VARIABLE",
     "HISTORY_FILES",
-    "MODELS",
     "PDELTA_CODES",
     "Drawing",
     "DrawnBar",
     "Group",
-    "Hinge",
-    "LayeredColumn",
     "MeasuredTest",
     "Observed",
     "PeerTest",
@@ -41,7 +39,6 @@ __all__ = [
     "Predictions",
     "Quartiles",
     "Reversals",
-    "ShearNumbers",
     "Specimen",
     "Specimens",
     "column",
@@ -55,3 +52,8 @@ __all__ = [
     "read_specimens",
     "shipped_reversals",
 ]
+
+if not TYPE_CHECKING:  # A type checker would take any name for one that exists.
+
+    def __getattr__(name: str) -> None:
+        raise _moved.moved_attribute(__name__, name)

@@ -21,10 +21,11 @@ from rbsdem.analysis import cyclic
 from rbsdem.column import Column
 from rbsdem.comparison import compare
 from rbsdem.errors import InputError, RbsdemError, SolveError
-from rbsdem.peer import blind
+from rbsdem.peer.columns import column as column_of
 from rbsdem.peer.measured import MeasuredTest
 from rbsdem.peer.predictions import Prediction, Predictions
 from rbsdem.peer.specimen import Specimen
+from rbsdem.section.model import DEFAULT, model_name
 
 __all__ = ["predict", "predict_one"]
 
@@ -39,7 +40,7 @@ _shared: dict[str, Event] = {}
 
 def predict(
     specimens: Iterable[Specimen],
-    model: Model = blind.DEFAULT,
+    model: Model = DEFAULT,
     *,
     jobs: int = 1,
     progress: bool = False,
@@ -73,14 +74,13 @@ def predict(
     Raises
     ------
     InputError
-        If the model is not known or `jobs` is below 1.
+        If the model or its version is not known, or `jobs` is below 1.
     ImportError
         If progress is asked for without rich.
     """
     if _core.whole(jobs, "jobs") < 1:
         raise InputError(f"jobs = {jobs} must be 1 or more")
-    if not callable(model) and model not in blind.MODELS:
-        raise InputError(f"model = {model!r} is not known; there are {', '.join(blind.MODELS)}")
+    name = _name(model, options)
     if jobs > 1:
         _check_sent(model, options)
     tests = list(specimens)
@@ -99,13 +99,13 @@ def predict(
             interrupted = True
     return Predictions(
         (rows[number] for number in sorted(rows)),
-        model=_name(model),
+        model=name,
         seconds=time.perf_counter() - begin,
         interrupted=interrupted,
     )
 
 
-def predict_one(specimen: Specimen, model: Model = blind.DEFAULT, **options: Any) -> Prediction:
+def predict_one(specimen: Specimen, model: Model = DEFAULT, **options: Any) -> Prediction:
     """Predict one test; what goes wrong is told in the row that is returned.
 
     Parameters
@@ -122,7 +122,7 @@ def predict_one(specimen: Specimen, model: Model = blind.DEFAULT, **options: Any
     Prediction
         Its status, its scores and its times.
     """
-    name = _name(model)
+    name = _name(model, options)
     try:
         test = specimen.test()
         # A test that says nothing, before the work.
@@ -157,7 +157,7 @@ def _analyse(
         if callable(model):
             column = model(specimen, **options)
         else:
-            column = blind.column(specimen, model, **options)
+            column = column_of(specimen, model, **options)
         built = time.perf_counter()
         result = cyclic(column, displacement=test.displacement)
         status, error = "completed", ""
@@ -222,7 +222,7 @@ def _one_by_one(
                 pool.shutdown(wait=False)
                 pool = None
                 error = "the process died; run this test alone (jobs = 1) to see why"
-                row = Prediction(tests[number], _name(model), "failed", error=error)
+                row = Prediction(tests[number], _name(model, options), "failed", error=error)
             yield number, row
     finally:
         if pool is not None:
@@ -268,8 +268,11 @@ def _check_sent(model: Model, options: dict[str, Any]) -> None:
         ) from error
 
 
-def _name(model: Model) -> str:
-    return getattr(model, "__name__", repr(model)) if callable(model) else model
+def _name(model: Model, options: dict[str, Any]) -> str:
+    """Return the name of the model, with the version of its parameters."""
+    if callable(model):
+        return getattr(model, "__name__", repr(model))
+    return model_name(model, options.get("version"), options.get("model_parameters"))
 
 
 def _bar(total: int) -> Any:

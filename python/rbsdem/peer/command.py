@@ -11,11 +11,11 @@ from pathlib import Path
 
 from rbsdem._parser import CommandParser
 from rbsdem.errors import InputError, RbsdemError
-from rbsdem.peer import blind
 from rbsdem.peer.batch import predict
 from rbsdem.peer.predictions import Predictions
 from rbsdem.peer.specimen import Specimen
 from rbsdem.peer.specimens import Specimens, read_specimens
+from rbsdem.section.model import DEFAULT, MODELS, model_name
 
 DESCRIPTION = """\
 Predict every test of a folder from its properties and compare with what was measured. The folder
@@ -35,8 +35,11 @@ INTERRUPTED = 130
 def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
     parser = CommandParser("peer", DESCRIPTION, EPILOG)
     parser.add_argument("folder", type=Path, metavar="DIR", help="folder of the tests")
+    parser.add_argument("--model", default=DEFAULT, help=f"{', '.join(MODELS)}; default {DEFAULT}")
     parser.add_argument(
-        "--model", default=blind.DEFAULT, choices=list(blind.MODELS), help="default %(default)s"
+        "--model-version",
+        metavar="VERSION",
+        help="version of the parameters of the layered model; the newest by default",
     )
     parser.add_argument(
         "--section",
@@ -91,12 +94,18 @@ def _run(given: argparse.Namespace) -> int:
     tests = chosen(read_specimens(given.folder), given.section, given.failure, given.only)
     if not hasattr(tests[0], given.by):
         raise InputError(f"--by {given.by} is no property, as failure_mode, section, series")
+    options = {} if given.model_version is None else {"version": given.model_version}
+    model_name(given.model, **options)
     if given.loops and given.out is None:
         raise InputError("--loops writes files; say where with --out DIR")
     if given.out is not None:
         given.out.mkdir(parents=True, exist_ok=True)
     found = predict(
-        tests, given.model, jobs=given.jobs, progress=not given.quiet and sys.stderr.isatty()
+        tests,
+        given.model,
+        jobs=given.jobs,
+        progress=not given.quiet and sys.stderr.isatty(),
+        **options,
     )
     _report(found, given.by, given.quiet)
     if given.out is not None:

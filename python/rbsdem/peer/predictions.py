@@ -36,7 +36,7 @@ class Prediction:
     specimen : Specimen
         The test.
     model : str
-        Name of the model.
+        Name of the model with the version of its parameters, as "layered 2026.1".
     status : str
         "completed", "stopped" (the analysis came to an end before the test did), "failed" (there is
         no analysis), or "no history" (there is nothing to compare with; not counted).
@@ -137,7 +137,7 @@ class Predictions(Sequence[Prediction]):
     rows : iterable of Prediction
         One for each test.
     model : str, optional
-        Name of the model.
+        Name of the model with the version of its parameters.
     seconds : float, optional
         Wall time of everything [s].
     interrupted : bool, optional

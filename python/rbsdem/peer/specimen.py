@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rbsdem.errors import InputError
-from rbsdem.paper import CONCRETE_DENSITY
 from rbsdem.peer.file import PeerTest, read_peer
 from rbsdem.peer.measured import MeasuredTest, net_force, top_displacement
+from rbsdem.section.model import CONCRETE_DENSITY
 
 __all__ = ["Observed", "Specimen"]
 

@@ -1,13 +1,21 @@
 """Sections of reinforced concrete: moment-curvature, springs of a column, figures.
 
 Concrete, steel, bars and ties make a `RectangularSection` or a `CircularSection`; its
-`moment_curvature`, `diagram` and `springs` do the rest. Strains and axial loads are positive in
-compression, y is positive to the face that a positive curvature puts in tension.
+`moment_curvature`, `diagram`, `springs` and `column` do the rest. Strains and axial loads are
+positive in compression, y is positive to the face that a positive curvature puts in tension.
 """
 
 from rbsdem.section.circular import CircularSection
 from rbsdem.section.diagram import Confinement, Diagram, Events, Point
 from rbsdem.section.materials import Concrete, Steel
+from rbsdem.section.model import MODELS, LayeredColumn, LayeredModel
+from rbsdem.section.parameters import (
+    HingeParameters,
+    ModelParameters,
+    ShearParameters,
+    parameters,
+    versions,
+)
 from rbsdem.section.rectangular import RectangularSection
 from rbsdem.section.reinforcement import Bar, Layout, Spiral, Ties
 from rbsdem.section.section import Section
@@ -16,20 +24,28 @@ from rbsdem.section.shear_spring import ShearSpring
 from rbsdem.section.spring_fit import SectionSprings
 
 __all__ = [
+    "MODELS",
     "Bar",
     "CircularSection",
     "Concrete",
     "Confinement",
     "Diagram",
     "Events",
+    "HingeParameters",
+    "LayeredColumn",
+    "LayeredModel",
     "Layout",
+    "ModelParameters",
     "Point",
     "RectangularSection",
     "Section",
     "SectionSprings",
     "ShearDiagram",
+    "ShearParameters",
     "ShearSpring",
     "Spiral",
     "Steel",
     "Ties",
+    "parameters",
+    "versions",
 ]

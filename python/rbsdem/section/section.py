@@ -16,6 +16,7 @@ from rbsdem._core import Array
 from rbsdem.errors import InputError
 from rbsdem.section.diagram import Confinement, Diagram, make_diagram
 from rbsdem.section.materials import Concrete, Steel, tension_place
+from rbsdem.section.model import DEFAULT, Model, make_column
 from rbsdem.section.reinforcement import Bar, Layout, Spiral, Ties
 from rbsdem.section.shear_diagram import ShearDiagram, shear_diagram
 from rbsdem.section.spring_fit import SectionSprings, fit_springs
@@ -23,6 +24,10 @@ from rbsdem.section.strength import shear_strength_mcft
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from rbsdem.column import Column
+    from rbsdem.section.parameters import ModelParameters
+    from rbsdem.section.strips import Strips
 
 __all__ = ["Section"]
 
@@ -57,6 +62,12 @@ class Section(ABC):
     @abstractmethod
     def effective_depth(self) -> float:
         """From the compression face to the centre of the bars in the half in tension [m]."""
+
+    @abstractmethod
+    def cut(
+        self, number: int, *, restrained: int | None = None, round_core: bool = False
+    ) -> Strips:
+        """Cut the section into strips of core and cover; see the shapes."""
 
     @abstractmethod
     def outline(self) -> Array:
@@ -317,6 +328,90 @@ class Section(ABC):
             cracked by the axial load, lightly reinforced).
         """
         return fit_springs(self, length, self._load(axial_load), **options)
+
+    def column(
+        self,
+        height: float,
+        *,
+        axial_load: float,
+        mass: float | None = None,
+        n: int | None = None,
+        model: Model = DEFAULT,
+        version: str | None = None,
+        model_parameters: ModelParameters | None = None,
+        axial_height: float | None = None,
+        restrained: int | None = None,
+        round_core: bool = False,
+    ) -> Column:
+        """Return the column with this section, with second-order effects of the axial load.
+
+        Parameters
+        ----------
+        height : float
+            From the foot to the lateral load [m].
+        axial_load : float
+            Compression positive [N].
+        mass : float, optional
+            Mass of the column [kg]; by default that of its volume and
+            `rbsdem.section.model.CONCRETE_DENSITY`.
+        n : int, optional
+            Number of bodies, by default 1 in "paper" and 2 in "layered", which needs as many.
+        model : {"layered", "paper"}, optional
+            "layered": a hinge of concrete and steel layers with bar slip at the foot, elastic
+            joints above it (`rbsdem.section.hinge`), in series a shear spring that cracks, fails
+            and pinches (`rbsdem.section.shear_model`). "paper": one component with trilinear Takeda
+            flexure and bilinear shear by the section analysis, as the paper has them; with `n`
+            above 1, joints with the section's springs of their tributary lengths above that hinge.
+        version : str, optional
+            Version of the parameters of the layered model, as "2026.1"; the newest by default
+            (`rbsdem.section.versions` lists them).
+        model_parameters : ModelParameters, optional
+            Parameters in place of those of a version, as of `rbsdem.section.parameters`.
+        axial_height : float, optional
+            Height at which the axial load acts, from the foot [m]; by default that of the column.
+            The sections carry `axial_load`, and the column has its second-order moment at this
+            height.
+        restrained : int, optional
+            Longitudinal bars held in a corner of a hoop or by a tie, for the confinement in the
+            layered model. By default the four corners, and four more for each leg beyond two.
+        round_core : bool, optional
+            Whether the ties of a rectangular section stand for a spiral around a round core.
+
+        Returns
+        -------
+        Column
+            A `LayeredColumn`, which knows its section and the version of its parameters, or for
+            "paper" a plain `rbsdem.Column`.
+
+        Raises
+        ------
+        InputError
+            If a value is refused, or the section cannot carry the axial load.
+
+        Examples
+        --------
+        >>> bars = Layout(12, 0.016, Steel(446e6, 702e6))
+        >>> ties = Ties(0.007, 0.085, Steel(364e6, 521e6), legs=4)
+        >>> section = RectangularSection(
+        ...     0.4, 0.4, Concrete(46.5e6), layout=bars, ties=ties, cover=0.013
+        ... )
+        >>> column = section.column(1.6, axial_load=744e3)
+        >>> column.n, column.version
+        (2, '2026.1')
+        """
+        return make_column(
+            self,
+            height,
+            axial_load=axial_load,
+            mass=mass,
+            n=n,
+            model=model,
+            version=version,
+            model_parameters=model_parameters,
+            axial_height=axial_height,
+            restrained=restrained,
+            round_core=round_core,
+        )
 
     def shear_diagram(
         self,

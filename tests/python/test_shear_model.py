@@ -10,7 +10,8 @@ import pytest
 
 import rbsdem
 from rbsdem import peer
-from rbsdem.peer.shear import ShearNumbers, cracked_shear_stiffness, shear_spring
+from rbsdem.section import parameters
+from rbsdem.section.shear_model import cracked_shear_stiffness, shear_spring
 from rbsdem.section.strength import shear_strength_mcft, shear_strength_sezen
 
 # Slender and well tied; the same squat, with few ties and much steel.
@@ -47,7 +48,7 @@ def section(specimen: peer.Specimen) -> rbsdem.section.Section:
 
 
 def spring(specimen: peer.Specimen, **numbers: float) -> rbsdem.Pinching:
-    given = ShearNumbers().with_numbers(**numbers)
+    given = replace(parameters().shear, **numbers)
     s = specimen
     return shear_spring(section(s), s.length, s.axial_load, STIFFNESS, given)
 
@@ -117,18 +118,18 @@ def test_a_spring_comes_of_every_section(change, numbers):
 def test_a_slender_column_does_not_know_of_shear_failure():
     """Its shear spring stays on the lines before yield: what lies behind them has no say."""
     d = cycles(SLENDER, 0.005, 0.01, 0.02, 0.03)
-    column = peer.column(SLENDER, "best")
+    column = peer.column(SLENDER, "layered")
     force = rbsdem.cyclic(column, displacement=d).force
     assert np.max(np.abs(force)) < 0.7 * column.shear[0].f_y
     other = column.with_parameters(shear_endurance=10.0, shear_pinch_force=0.05)
-    assert other.shear_numbers.endurance == 10.0
+    assert other.recipe.parameters.shear.endurance == 10.0
     assert np.array_equal(rbsdem.cyclic(other, displacement=d).force, force)
 
 
 def test_a_squat_column_fails_in_shear():
     d = cycles(SQUAT, 0.005, 0.01, 0.02, 0.03, 0.03, 0.03)
     # An endurance of its own: the test is of the rule, not of fitted numbers.
-    column = peer.column(SQUAT, "best").with_parameters(shear_endurance=100.0)
+    column = peer.column(SQUAT, "layered").with_parameters(shear_endurance=100.0)
     foot = column.shear[0]
     bending = replace(column, shear=[rbsdem.Elastic(foot.f_c / foot.d_c), *column.shear[1:]])
     force = rbsdem.cyclic(column, displacement=d).force
@@ -147,28 +148,32 @@ def test_a_squat_column_fails_in_shear():
 def test_the_number_of_bodies_does_not_matter(specimen):
     d = cycles(specimen, 0.005, 0.015)
     two, six = (
-        rbsdem.cyclic(peer.column(specimen, "best", n=n), displacement=d).force for n in (2, 6)
+        rbsdem.cyclic(peer.column(specimen, "layered", n=n), displacement=d).force for n in (2, 6)
     )
     assert np.max(np.abs(two - six)) < 0.01 * np.max(np.abs(two))
 
 
 def test_parameters_of_the_shear_spring_can_be_calibrated():
-    column = peer.column(SQUAT, "best")
+    def values(column: rbsdem.section.LayeredColumn) -> tuple[float, float]:
+        given = column.recipe.parameters
+        return given.shear.strength, given.hinge.steel_strength
+
+    column = peer.column(SQUAT, "layered")
     found = column.parameters
-    assert found["shear_strength"].value == ShearNumbers().strength
+    assert found["shear_strength"].value == parameters().shear.strength
     changed = column.with_parameters(shear_strength=1.5, steel_strength=1.2)
-    at_one = column.shear[0].f_y / ShearNumbers().strength
+    at_one = column.shear[0].f_y / parameters().shear.strength
     assert changed.shear[0].f_y == pytest.approx(1.5 * at_one)
-    assert (changed.shear_numbers.strength, changed.hinge.steel_strength) == (1.5, 1.2)
+    assert values(changed) == (1.5, 1.2)
     # Both stay as the next ones change.
-    again = changed.with_parameters(roundness=5.0)
-    assert (again.shear_numbers.strength, again.hinge.steel_strength) == (1.5, 1.2)
+    again = changed.with_parameters(r0=5.0)
+    assert values(again) == (1.5, 1.2)
 
 
 # ---- where displacement and axial load act -------------------------------------------------------
 
 
-@pytest.mark.parametrize("model", ["paper", "best"])
+@pytest.mark.parametrize("model", ["paper", "layered"])
 def test_axial_load_above_the_top(model):
     """P at L + L_top has the second-order moment of P (L + L_top)/L at L; the section carries P."""
     high = replace(SLENDER, top_length=0.5, pdelta_code=3)
@@ -194,7 +199,7 @@ def test_displacement_measured_below_the_top(tmp_path, measured_mm):
     (tmp_path / "own.csv").write_text("displacement_mm,force_kN\n0,0\n1,1\n")
     (specimen,) = peer.read_specimens(tmp_path)
     top = cycles(specimen, 0.005, 0.01, 0.02)
-    net = rbsdem.cyclic(peer.column(specimen, "best"), displacement=top).force
+    net = rbsdem.cyclic(peer.column(specimen, "layered"), displacement=top).force
     # Code 3: the hinge of the ram at L + L_top, its other end at the foot.
     force = net + 700e3 * np.sin(np.arctan(top / 2.0))
     rows = np.column_stack((top * measured_mm / 2000 * 1e3, force / 1e3))
@@ -203,7 +208,7 @@ def test_displacement_measured_below_the_top(tmp_path, measured_mm):
     )
     test = specimen.test()
     assert test.displacement == pytest.approx(top, rel=1e-12, abs=1e-15)
-    assert peer.predict_one(specimen, "best").nrmse < 1e-9
+    assert peer.predict_one(specimen, "layered").nrmse < 1e-9
     assert test.base_moment == pytest.approx(net * 2.0 + 700e3 * 1.125 * top)
 
 
@@ -216,7 +221,7 @@ def test_shear_failures_of_the_database(peer_folder):
     table = peer.read_specimens(peer_folder).where(section="rectangular").with_history()
     rows = {"Flexure": [], "other": []}
     for specimen in table:
-        test, column = specimen.test(), peer.column(specimen, "best")
+        test, column = specimen.test(), peer.column(specimen, "layered")
         foot = column.shear[0]
         rigid = replace(column, shear=[rbsdem.Elastic(foot.f_c / foot.d_c), *column.shear[1:]])
         kind = "Flexure" if specimen.failure_mode == "Flexure" else "other"

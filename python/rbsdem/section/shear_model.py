@@ -1,13 +1,12 @@
 """The shear spring at the foot of a column: cracks, yields its ties, fails, and pinches.
 
 The lines up to the largest force are published relations; what comes behind them, and the pinching,
-are general numbers fitted to tests (`ShearNumbers`). The spring needs no decision whether a column
+are parameters fitted to tests (`ShearParameters`). The spring needs no decision whether a column
 is critical in shear: one that yields in flexure first never leaves the lines before yield.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rbsdem.section.strength import (
@@ -18,55 +17,16 @@ from rbsdem.section.strength import (
 from rbsdem.springs import Pinching
 
 if TYPE_CHECKING:
-    from rbsdem.section import Section
+    from rbsdem.section.parameters import ShearParameters
+    from rbsdem.section.section import Section
 
-__all__ = ["ShearNumbers", "cracked_shear_stiffness", "shear_spring"]
+__all__ = ["cracked_shear_stiffness", "shear_spring"]
 
 _ES = 200e9
 
 # Cracked stiffness without ties, and cracking force under tension: shares of the uncracked
 # stiffness and of the yield force that keep the lines of the spring apart.
 _LEAST = 0.01
-
-
-@dataclass(frozen=True)
-class ShearNumbers:
-    """Numbers of the shear spring that are the same for all columns.
-
-    The defaults are fitted to the tests of the PEER Structural Performance Database that failed in
-    shear, or in shear after flexure (``studies/fit_shear.py``).
-
-    Attributes
-    ----------
-    strength : float
-        Force at which the ties yield over the shear strength of the simplified modified compression
-        field theory (Bentz, Vecchio, Collins 2006).
-    hardening : float
-        Largest force over that at yield, 1 or more.
-    cap : float
-        Slip from there to the largest force, over the length of the column.
-    fall : float
-        Slip from the largest force to where the softening line has none left, over the length.
-    residual : float
-        Residual over largest force.
-    endurance : float
-        Energy that the strength lasts for, over yield force times yield slip; 0: for ever.
-    pinch_force, pinch_slip : float
-        `kappa_f` and `kappa_d` of `rbsdem.Pinching`.
-    """
-
-    strength: float = 0.965
-    hardening: float = 1.11
-    cap: float = 0.0234
-    fall: float = 0.0941
-    residual: float = 0.05
-    endurance: float = 217.0
-    pinch_force: float = 0.288
-    pinch_slip: float = 0.741
-
-    def with_numbers(self, **numbers: float) -> ShearNumbers:
-        """Return them with others in place of some."""
-        return replace(self, **numbers)
 
 
 def cracked_shear_stiffness(section: Section) -> float:
@@ -97,7 +57,7 @@ def shear_spring(
     length: float,
     axial_load: float,
     stiffness: float,
-    numbers: ShearNumbers | None = None,
+    given: ShearParameters,
 ) -> Pinching:
     """Make the shear spring of a column.
 
@@ -111,8 +71,8 @@ def shear_spring(
         Compression positive [N].
     stiffness : float
         Shear stiffness before cracking, force over strain [N].
-    numbers : ShearNumbers, optional
-        Those of all columns without it.
+    given : ShearParameters
+        Parameters of the model.
 
     Returns
     -------
@@ -126,7 +86,6 @@ def shear_spring(
     InputError
         If the length is not positive.
     """
-    given = numbers or ShearNumbers()
     sizes = shear_sizes(section)
     # A section without bars in tension, which has no strength, still needs a spring with one.
     f_y = given.strength * shear_strength_mcft(section, length, axial_load)
@@ -148,7 +107,7 @@ def shear_spring(
         f_y=f_y,
         d_cap=d_y + rise,
         f_cap=f_cap,
-        d_pc=given.fall * length,
+        d_pc=given.softening * length,
         f_res=min(given.residual * f_cap, 0.9 * f_y),
         lambda_s=given.endurance,
         kappa_f=given.pinch_force,

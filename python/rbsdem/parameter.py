@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from rbsdem import _core
-from rbsdem.column import Column
 from rbsdem.errors import InputError
+
+if TYPE_CHECKING:
+    from rbsdem.column import Column
+
+__all__ = ["Parameter", "Recipe", "is_recipe"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""A drawn section cut into strips of core and of cover, with what confines the core.
+"""A section cut into strips of core and of cover, with what confines the core.
 
 Rectangles in rectangular hoops, circles and squares in a spiral; the confinement is that of Mander,
 Priestley and Park (1988), ASCE Journal of Structural Engineering 114(8).
@@ -12,9 +12,17 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rbsdem.peer.drawing import Drawing
+    from rbsdem.section.section import Section
 
-__all__ = ["Strip", "Strips", "cut"]
+__all__ = [
+    "Strip",
+    "Strips",
+    "box",
+    "core_diameter",
+    "disc",
+    "hoop_confinement",
+    "spiral_confinement",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,64 +70,53 @@ class Strips:
     confining_stress: float
     tie_ratio: float
 
+    @classmethod
+    def of(
+        cls,
+        whole: list[Strip],
+        core: list[Strip],
+        confinement: tuple[float, float],
+        *,
+        area: float,
+        inertia: float,
+        shear_area: float,
+    ) -> Strips:
+        """Return the strips of a section and of the core in it, cut at the same depths.
 
-def cut(drawing: Drawing, number: int) -> Strips:
-    """Cut a section into strips of equal thickness across the direction of loading.
-
-    Parameters
-    ----------
-    drawing : Drawing
-        The section.
-    number : int
-        Of strips.
-
-    Returns
-    -------
-    Strips
-        In order of y; in each strip core and cover have centroids of their own.
-    """
-    width, depth = drawing.width, drawing.depth
-    if drawing.shape == "circular":
-        whole = _disc(depth, depth, number)
-        area, inertia, form = math.pi / 4 * depth**2, math.pi / 64 * depth**4, 0.9
-    else:
-        whole = _box(width, depth, depth, number)
-        area, inertia, form = width * depth, width * depth**3 / 12, 5 / 6
-    if drawing.shape == "rectangular":
-        core_width = width - 2 * drawing.side_cover - drawing.tie_diameter
-        core_depth = depth - 2 * drawing.cover - drawing.tie_diameter
-        core = _box(core_width, core_depth, depth, number)
-        stress, ratio = _hoops(drawing, core_width, core_depth)
-    else:
-        diameter = depth - 2 * drawing.cover - drawing.tie_diameter
-        core = _disc(diameter, depth, number)
-        stress, ratio = _spiral(drawing, diameter)
-    # Slivers along the rim of the core are round-off.
-    least = 1e-9 * area
-    return Strips(
-        core=tuple(strip for strip in core if strip.area > least),
-        cover=tuple(
-            rest for w, c in zip(whole, core, strict=True) if (rest := _without(w, c)).area > least
-        ),
-        area=area,
-        inertia=inertia,
-        shear_area=form * area,
-        confining_stress=stress,
-        tie_ratio=ratio,
-    )
+        Parameters
+        ----------
+        whole, core : list of Strip
+            Of the same length.
+        confinement : (float, float)
+            Confining stress [Pa] and ratio of the transverse bars.
+        area, inertia, shear_area : float
+            Of the whole section [m2], [m4], [m2].
+        """
+        # Slivers along the rim of the core are round-off.
+        least = 1e-9 * area
+        rest = [_without(w, c) for w, c in zip(whole, core, strict=True)]
+        return cls(
+            core=tuple(strip for strip in core if strip.area > least),
+            cover=tuple(strip for strip in rest if strip.area > least),
+            area=area,
+            inertia=inertia,
+            shear_area=shear_area,
+            confining_stress=confinement[0],
+            tie_ratio=confinement[1],
+        )
 
 
 def _edges(depth: float, number: int) -> list[float]:
     return [depth * (i / number - 0.5) for i in range(number + 1)]
 
 
-def _box(width: float, own_depth: float, depth: float, number: int) -> list[Strip]:
+def box(width: float, own_depth: float, depth: float, number: int) -> list[Strip]:
     """Return a rectangle's share in strips of a depth that it is in the middle of."""
     ends = [min(max(y, -own_depth / 2), own_depth / 2) for y in _edges(depth, number)]
     return [Strip((low + high) / 2, (high - low) * width) for low, high in pairwise(ends)]
 
 
-def _disc(diameter: float, depth: float, number: int) -> list[Strip]:
+def disc(diameter: float, depth: float, number: int) -> list[Strip]:
     """Return a circle's share in strips of a depth that it is in the middle of."""
     r = diameter / 2
     ends = [min(max(y, -r), r) for y in _edges(depth, number)]
@@ -142,43 +139,62 @@ def _without(whole: Strip, part: Strip) -> Strip:
     return Strip((whole.y * whole.area - part.y * part.area) / area, area)
 
 
-def _hoops(drawing: Drawing, core_width: float, core_depth: float) -> tuple[float, float]:
+def hoop_confinement(
+    section: Section, core_width: float, core_depth: float, restrained: int | None
+) -> tuple[float, float]:
     """Return the confining stress of rectangular hoops [Pa] and their volume ratio.
 
     Effectiveness by the parabolas between the bars around the perimeter and between the hoops.
     """
-    if not drawing.tie_diameter or not drawing.tie_spacing:
+    ties, bar = section.ties, section.bar_diameter or 0.0
+    if ties is None:
         return 0.0, 0.0
-    ratio = drawing.legs * math.pi / 4 * drawing.tie_diameter**2
-    ratio /= drawing.tie_spacing * core_width
+    ratio = ties.legs * math.pi / 4 * ties.diameter**2
+    ratio /= ties.spacing * core_width
     area = core_width * core_depth
-    if drawing.legs <= 2:
-        clear = core_width - drawing.bar_diameter, core_depth - drawing.bar_diameter
+    if ties.legs <= 2:
+        clear = core_width - bar, core_depth - bar
         parabolas = 2 * (clear[0] ** 2 + clear[1] ** 2) / 6
     else:
-        bars = max(4, drawing.restrained)
-        clear_one = max(0.0, 2 * (core_width + core_depth) / bars - drawing.bar_diameter)
+        bars = max(4, _restrained(section) if restrained is None else restrained)
+        clear_one = max(0.0, 2 * (core_width + core_depth) / bars - bar)
         parabolas = bars * clear_one**2 / 6
-    gap = drawing.tie_spacing - drawing.tie_diameter
-    effective = max(0.0, 1 - parabolas / area) / (1 - _bars(drawing, area))
+    gap = ties.spacing - ties.diameter
+    effective = max(0.0, 1 - parabolas / area) / (1 - _bars(section, area))
     effective *= max(0.0, 1 - gap / (2 * core_width)) * max(0.0, 1 - gap / (2 * core_depth))
-    return effective * ratio * drawing.tie_yield_stress, 2 * ratio
+    return effective * ratio * ties.steel.fy, 2 * ratio
 
 
-def _spiral(drawing: Drawing, diameter: float) -> tuple[float, float]:
+def core_diameter(section: Section) -> float:
+    """Return the diameter of a round core, to the centre line of the spiral [m]."""
+    return section.depth - 2 * section.cover - (section.ties.diameter if section.ties else 0.0)
+
+
+def _restrained(section: Section) -> int:
+    """Return how many bars the legs hold: the corners, and four for each leg beyond two."""
+    if section.layout is not None:
+        number = section.layout.number
+    else:
+        # An entry of `bars` may be a row of them.
+        number = round(section.steel_area / (math.pi / 4 * section.bar_diameter**2))
+    return min(number, 4 + 4 * round(section.ties.legs - 2))
+
+
+def spiral_confinement(section: Section, diameter: float) -> tuple[float, float]:
     """Return the confining stress of a spiral [Pa] and its volume ratio.
 
     Effectiveness by the parabola between two turns: (1 - s'/(2 d_s))/(1 - rho_cc).
     """
-    if not drawing.tie_diameter or not drawing.tie_spacing:
+    ties = section.ties
+    if ties is None:
         return 0.0, 0.0
-    ratio = math.pi * drawing.tie_diameter**2 / (diameter * drawing.tie_spacing)
-    gap = drawing.tie_spacing - drawing.tie_diameter
+    ratio = math.pi * ties.diameter**2 / (diameter * ties.spacing)
+    gap = ties.spacing - ties.diameter
     effective = max(0.0, 1 - gap / (2 * diameter))
-    effective /= 1 - _bars(drawing, math.pi / 4 * diameter**2)
-    return 0.5 * effective * ratio * drawing.tie_yield_stress, ratio
+    effective /= 1 - _bars(section, math.pi / 4 * diameter**2)
+    return 0.5 * effective * ratio * ties.steel.fy, ratio
 
 
-def _bars(drawing: Drawing, core_area: float) -> float:
+def _bars(section: Section, core_area: float) -> float:
     """Return the share of longitudinal bars in the core, up to the 8 % that codes allow."""
-    return min(0.08, drawing.steel_area / core_area)
+    return min(0.08, section.steel_area / core_area)

@@ -1,0 +1,189 @@
+"""The joint at the foot of a column as layers of concrete and steel, from its section.
+
+The layers of concrete act over the length of the hinge; those of steel over that length and the
+length of yielding in the footing, so that the bars slip out of it. The column above is elastic.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING
+
+from rbsdem.errors import InputError
+from rbsdem.section.materials import Steel
+from rbsdem.springs import ConcreteSpring, Layered, SteelSpring
+
+if TYPE_CHECKING:
+    from rbsdem.section.parameters import HingeParameters
+    from rbsdem.section.section import Section
+
+__all__ = ["HingeJoint", "hinge_joint"]
+
+_STRIPS = 14
+# The hinge is lumped at the foot, where it turns the whole length, not that above its middle: the
+# column above makes up for it.
+_STIFFEST = 2.0
+# Longest hinges over the length of the column, and the largest contact.
+_LONGEST_STEEL, _LONGEST_CONCRETE = 0.4, 0.8
+_LARGEST_CONTACT = 0.9
+
+
+@dataclass(frozen=True)
+class HingeJoint:
+    """What the layered hinge gives a column.
+
+    Attributes
+    ----------
+    spring : Layered
+        Flexural spring of the foot.
+    length : float
+        Of the hinge, over which its concrete acts [m]: the column above it begins there.
+    flexural_stiffness : float
+        E I of the column above [N m2].
+    shear_stiffness : float
+        G A of the column [N].
+    limits : dict of str to float
+        Largest values of the parameters that have one for this column: beyond it they would change
+        nothing.
+    """
+
+    spring: Layered
+    length: float
+    flexural_stiffness: float
+    shear_stiffness: float
+    limits: dict[str, float]
+
+
+def hinge_joint(
+    section: Section,
+    length: float,
+    axial_load: float,
+    hinge: HingeParameters,
+    *,
+    restrained: int | None = None,
+    round_core: bool = False,
+) -> HingeJoint:
+    """Make the layered hinge of a section.
+
+    Parameters
+    ----------
+    section : Section
+        The section at the foot.
+    length : float
+        From the foot to the lateral load [m].
+    axial_load : float
+        Compression positive [N].
+    hinge : HingeParameters
+        Parameters of the model.
+    restrained, round_core
+        As for `rbsdem.RectangularSection.cut`.
+
+    Returns
+    -------
+    HingeJoint
+        Spring of the foot and stiffness of the column above it.
+
+    Raises
+    ------
+    InputError
+        If the section has no bars, or if concrete at its strength and bars at yield cannot carry
+        the axial load.
+    """
+    if not section.bars:
+        raise InputError("the layered model needs a section with longitudinal bars; give bars")
+    depth, cylinder = section.depth, section.concrete.fc
+    strips = section.cut(_STRIPS, restrained=restrained, round_core=round_core)
+    ratio = axial_load / (cylinder * strips.area)
+
+    def by_axial(value: float, exponent: float) -> float:
+        return value * math.exp(exponent * (ratio - 0.2))
+
+    modulus = section.concrete_law["ec"]
+    strength = hinge.concrete_strength * cylinder * (cylinder / 40e6) ** -hinge.concrete_size
+    peak = 0.002 * hinge.peak_strain
+    relative = hinge.confinement * strips.confining_stress / cylinder
+    gain = -1.254 + 2.254 * math.sqrt(1 + 7.94 * relative) - 2 * relative
+    core = gain * strength
+    core_peak = peak * (1 + 5 * (gain - 1))
+    tie_yield = section.ties.steel.fy if section.ties else 0.0
+    core_ultimate = 0.004 + 0.14 * strips.tie_ratio * tie_yield / core
+    yield_stress = max(steel.fy for _, _, steel in section.bars)
+    bond = yield_stress / 1e6 * section.bar_diameter
+    one_length = by_axial(1.0, hinge.hinge_axial) * (0.08 * length + 0.022 * bond)
+    steel_length = by_axial(hinge.hinge_length, hinge.hinge_axial) * (0.08 * length + 0.022 * bond)
+    steel_length = min(steel_length + hinge.hinge_depth * depth, _LONGEST_STEEL * length)
+    concrete_length = min(hinge.compression_length * steel_length, _LONGEST_CONCRETE * length)
+    contact = min(_LARGEST_CONTACT, by_axial(hinge.contact, hinge.contact_axial))
+
+    # Most strips are alike, and so are most bars: what is the same to 1e-6 mm2 is made once.
+    @cache
+    def concrete(
+        area: float, stress: float, strain: float, softening: float, rest: float
+    ) -> ConcreteSpring:
+        secant = 1.3 * stress / strain
+        return ConcreteSpring(
+            k=max(modulus, secant) * area / concrete_length,
+            f_peak=stress * area,
+            d_peak=strain * concrete_length,
+            k_fall=max(softening, 1e6) * area / concrete_length,
+            f_res=rest * area,
+            plastic=hinge.plastic,
+            contact=contact,
+            misfit=hinge.misfit,
+            wear=hinge.wear,
+        )
+
+    layers: list[tuple[float, ConcreteSpring | SteelSpring]] = []
+    softening = hinge.core_softening * 0.2 * core / max(core_ultimate - core_peak, 0.002)
+    for strip in strips.core:
+        spring = concrete(round(strip.area, 12), core, core_peak, softening, hinge.residual * core)
+        layers.append((strip.y, spring))
+    softening = hinge.cover_softening * 0.8 * strength / 0.004
+    for strip in strips.cover:
+        layers.append((strip.y, concrete(round(strip.area, 12), strength, peak, softening, 0.0)))
+    slip = by_axial(hinge.slip_length, hinge.slip_axial) * bond
+
+    @cache
+    def bar(area: float, steel: Steel) -> SteelSpring:
+        fy, fu = hinge.steel_strength * steel.fy, hinge.steel_strength * steel.fu
+        stiffness = steel.es * area / (steel_length + slip)
+        return SteelSpring(
+            k=stiffness,
+            f_y=fy * area,
+            k_post=stiffness * max(0.0005, hinge.hardening * (fu - fy) / 0.08 / steel.es),
+            r0=by_axial(hinge.r0, hinge.r0_axial),
+            r1=hinge.cr1,
+            r2=hinge.cr2,
+            growth=hinge.isotropic_hardening,
+            endurance=1 / hinge.fatigue if hinge.fatigue > 0 else 0.0,
+        )
+
+    layers += [(y, bar(area, steel)) for y, area, steel in section.bars]
+    _check(axial_load, layers)
+    uncracked = modulus * strips.inertia
+    uncracked += sum(steel.es * (area * y**2) for y, area, steel in section.bars)
+    return HingeJoint(
+        Layered(axial_load, tuple(layers)),
+        concrete_length,
+        min(_STIFFEST, by_axial(hinge.stiffness, hinge.stiffness_axial)) * uncracked,
+        hinge.shear_stiffness * modulus / 2.4 * strips.shear_area,
+        {
+            "hinge_length": (_LONGEST_STEEL * length - hinge.hinge_depth * depth) / one_length,
+            "compression_length": _LONGEST_CONCRETE * length / steel_length,
+            "stiffness": _STIFFEST / by_axial(1.0, hinge.stiffness_axial),
+            "contact": _LARGEST_CONTACT / by_axial(1.0, hinge.contact_axial),
+        },
+    )
+
+
+def _check(axial_load: float, layers: list[tuple[float, ConcreteSpring | SteelSpring]]) -> None:
+    """Refuse what only hardening bars would carry."""
+    bars = sum(spring.f_y for _, spring in layers if isinstance(spring, SteelSpring))
+    whole = bars + sum(spring.f_peak for _, spring in layers if isinstance(spring, ConcreteSpring))
+    if not -bars < axial_load < whole:
+        raise InputError(
+            f"axial load = {axial_load / 1e3:g} kN is not between {-bars / 1e3:.0f} and "
+            f"{whole / 1e3:.0f} kN, which bars and concrete of the section carry"
+        )

@@ -1,0 +1,368 @@
+"""Columns from a section: the layered model and that of the paper.
+
+Both stand on the section alone; no number of a test at hand enters.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
+
+from rbsdem import _core
+from rbsdem.column import Column
+from rbsdem.errors import InputError
+from rbsdem.parameter import Parameter
+from rbsdem.section.hinge import HingeJoint, hinge_joint
+from rbsdem.section.parameters import ModelParameters, parameters
+from rbsdem.section.shear_model import shear_spring
+from rbsdem.springs import Bilinear, Elastic, Spring
+
+if TYPE_CHECKING:
+    from rbsdem.section.section import Section
+
+__all__ = [
+    "CONCRETE_DENSITY",
+    "DEFAULT",
+    "MODELS",
+    "LayeredColumn",
+    "LayeredModel",
+    "Model",
+    "check_model",
+    "make_column",
+    "model_name",
+]
+
+Model: TypeAlias = Literal["layered", "paper"]
+"""Name of a model."""
+
+MODELS: tuple[str, ...] = get_args(Model)
+"""Names of the models."""
+
+DEFAULT: Model = "layered"
+"""The model that is taken if none is named."""
+
+CONCRETE_DENSITY = 2400.0
+"""Density of reinforced concrete for the mass of a column [kg/m3]."""
+
+# A column is between these heights [m]: a number in millimetres is not.
+_LEAST_HEIGHT, _LARGEST_HEIGHT = 0.05, 100.0
+
+
+def check_model(model: str) -> None:
+    """Raise `InputError` if there is no model of this name."""
+    if model == "best":
+        raise InputError("model = 'best' is now 'layered'")
+    if model not in MODELS:
+        raise InputError(f"model = {model!r} is not known; there are {', '.join(MODELS)}")
+
+
+def model_name(
+    model: str, version: str | None = None, model_parameters: ModelParameters | None = None
+) -> str:
+    """Return the name of a model with the version of its parameters, as "layered 2026.1".
+
+    Parameters
+    ----------
+    model : str
+        "layered" or "paper", which has no fitted parameters.
+    version, model_parameters
+        As for `rbsdem.section.Section.column`.
+
+    Raises
+    ------
+    InputError
+        If there is no such model or version.
+    """
+    check_model(model)
+    if model != "layered":
+        return model
+    return f"{model} {(model_parameters or parameters(version)).label}"
+
+
+def make_column(
+    section: Section,
+    height: float,
+    *,
+    axial_load: float,
+    mass: float | None = None,
+    n: int | None = None,
+    model: Model = DEFAULT,
+    version: str | None = None,
+    model_parameters: ModelParameters | None = None,
+    axial_height: float | None = None,
+    restrained: int | None = None,
+    round_core: bool = False,
+) -> Column:
+    """Make the column of a section; `rbsdem.section.Section.column` says what the arguments are."""
+    check_model(model)
+    height = _core.number(height, "height")
+    if not _LEAST_HEIGHT <= height <= _LARGEST_HEIGHT:
+        raise InputError(
+            f"height = {height:g} m must be between {_LEAST_HEIGHT:g} and {_LARGEST_HEIGHT:g}; "
+            "1600 mm is 1.6"
+        )
+    axial_load = _core.number(axial_load, "axial_load")
+    if mass is None:
+        mass = section.gross_area * height * CONCRETE_DENSITY
+    top = 1.0
+    if axial_height is not None:
+        axial_height = _core.number(axial_height, "axial_height")
+        if not axial_height > 0:
+            raise InputError(f"axial_height = {axial_height:g} m must be above zero")
+        top = axial_height / height
+    # The load at the top that has the second-order moment of the one at its height.
+    common = {"mass": mass, "axial_load": axial_load * top, "kinematics": "pdelta"}
+    if model == "paper":
+        given = {
+            "version": version,
+            "model_parameters": model_parameters,
+            "restrained": restrained,
+            "round_core": round_core or None,
+        }
+        for name, value in given.items():
+            if value is not None:
+                raise InputError(f"{name} is for model = 'layered'; remove it")
+        return _paper(section, height, axial_load, _count(1 if n is None else n, 1), common)
+    if version is not None and model_parameters is not None:
+        raise InputError("give version or model_parameters, not both")
+    recipe = LayeredModel(
+        section=section,
+        height=height,
+        axial_load=axial_load,
+        n=_count(2 if n is None else n, 2),
+        parameters=model_parameters or parameters(version),
+        restrained=restrained,
+        round_core=round_core,
+    )
+    return LayeredColumn(height, n=recipe.n, recipe=recipe, **recipe.made, **common)
+
+
+def _count(n: int, least: int) -> int:
+    n = _core.whole(n, "n")
+    if n < least:
+        more = ": the layered model needs a joint above the hinge" if least == 2 else ""
+        raise InputError(f"n = {n}{more}; give {least} or more")
+    return n
+
+
+def _paper(
+    section: Section, height: float, axial_load: float, n: int, common: dict[str, Any]
+) -> Column:
+    # Columns of high axial load are controlled by compression: they yield there.
+    springs = section.springs(height, axial_load, yield_rule="first")
+    shear = springs.shear
+    if shear is None:
+        # Knee of the shear diagram in closed form: 0.48 of the uncracked stiffness.
+        stiffness = 0.48 * section.concrete_law["ec"] / 2 * section.gross_area
+        shear = Elastic(stiffness / height)
+    flexure = [springs.flexure]
+    lengths = None
+    if n > 1:
+        # Each joint has its share of the slip, and the curvature of its part.
+        shear = _share(shear, n)
+        lengths, part = _parts(height, springs.hinge_length, n)
+        above = section.springs(
+            height, axial_load, yield_rule="first", hinge_length=part / _lumping(n), shear="none"
+        )
+        flexure += [above.flexure] * (n - 1)
+    return Column(height, shear=shear, flexure=flexure, n=n, lengths=lengths, **common)
+
+
+def _parts(height: float, hinge_length: float, n: int) -> tuple[tuple[float, ...], float]:
+    """Return the lengths of the bodies, and of the parts that the joints above the hinge are for.
+
+    The joints are in the middles of n - 1 equal parts of the column above the hinge.
+    """
+    part = (height - hinge_length) / (n - 1)
+    heights = [0.0, *(hinge_length + (i + 0.5) * part for i in range(n - 1)), height]
+    return tuple(high - low for low, high in pairwise(heights)), part
+
+
+def _lumping(n: int) -> float:
+    """Return the deflection of the top by n - 1 joints over that of the continuous column.
+
+    1 - 1/(4 m^2) with m joints in the middles of m parts and the moment of a force at the top.
+    """
+    return 1 - 0.25 / (n - 1) ** 2
+
+
+def _share(spring: Bilinear | Elastic, n: int) -> Bilinear | Elastic:
+    """Return one of n equal springs in series that together are the given one."""
+    if isinstance(spring, Elastic):
+        return Elastic(n * spring.k)
+    return replace(spring, k=n * spring.k, d_y=spring.d_y / n, k_post=n * spring.k_post)
+
+
+@dataclass(frozen=True)
+class LayeredModel:
+    """What a layered column is made from.
+
+    Attributes
+    ----------
+    section : Section
+        Its section.
+    height : float
+        From the foot to the lateral load [m].
+    axial_load : float
+        That the sections carry, compression positive [N].
+    n : int
+        Number of bodies.
+    parameters : ModelParameters
+        Parameters of the model with their version.
+    restrained, round_core
+        As for `rbsdem.section.Section.column`.
+    """
+
+    section: Section
+    height: float
+    axial_load: float
+    n: int
+    parameters: ModelParameters
+    restrained: int | None = None
+    round_core: bool = False
+
+    @cached_property
+    def joint(self) -> HingeJoint:
+        """The hinge at the foot."""
+        return hinge_joint(
+            self.section,
+            self.height,
+            self.axial_load,
+            self.parameters.hinge,
+            restrained=self.restrained,
+            round_core=self.round_core,
+        )
+
+    @cached_property
+    def made(self) -> dict[str, tuple[Spring, ...] | tuple[float, ...]]:
+        """The arguments of `rbsdem.Column` that the model makes: shear, flexure, lengths.
+
+        Elastic joints stand at the middles of n - 1 equal parts above the hinge. All slip is at the
+        foot: where the column fails in shear is where it bends most.
+        """
+        joint, n = self.joint, self.n
+        lengths, part = _parts(self.height, joint.length, n)
+        # Flexible as the continuous column, whatever n is.
+        stiffness = joint.flexural_stiffness / part * _lumping(n)
+        foot = shear_spring(
+            self.section,
+            self.height,
+            self.axial_load,
+            joint.shear_stiffness,
+            self.parameters.shear,
+        )
+        rigid = Elastic(1e3 * joint.shear_stiffness / self.height)
+        return {
+            "shear": (foot, *[rigid] * (n - 1)),
+            "flexure": (joint.spring, *[Elastic(stiffness)] * (n - 1)),
+            "lengths": lengths,
+        }
+
+
+#: Parameters of the layered hinge that may be calibrated; bounds are factors of their values.
+_FREE = {
+    "steel_strength": (0.7, 1.5, "-", "yield and ultimate stress over the measured ones"),
+    "concrete_strength": (0.6, 1.7, "-", "strength in place over that of cylinders"),
+    "hinge_length": (0.2, 4.0, "-", "factor of the hinge length"),
+    "compression_length": (0.3, 3.0, "-", "hinge length of the concrete over that of the steel"),
+    "wear": (0.05, 8.0, "-", "strength of the concrete lost by a cycle"),
+    "r0": (0.3, 3.0, "-", "R0 of the steel"),
+    "stiffness": (0.2, 4.0, "-", "flexural stiffness above the hinge over the gross one"),
+    "fatigue": (0.05, 50.0, "-", "1 over the plastic work that halves the strength"),
+    "slip_length": (0.1, 5.0, "1/MPa", "length of yielding in the footing"),
+    "confinement": (0.1, 5.0, "-", "factor of the confining stress"),
+    "cover_softening": (0.2, 20.0, "-", "factor of the slope behind the peak of the cover"),
+    "core_softening": (0.1, 50.0, "-", "factor of the slope behind the peak of the core"),
+    "contact": (0.1, 2.0, "-", "share of the force at which a crack is closed"),
+    "shear_strength": (0.5, 2.0, "-", "shear force at yield of the ties over the shear strength"),
+    "shear_endurance": (0.02, 50.0, "-", "energy that the shear strength lasts for"),
+    "shear_pinch_force": (0.1, 3.0, "-", "force at the break of pinched reloading"),
+}
+
+
+@dataclass(frozen=True)
+class LayeredColumn(Column):
+    """A column on a layered hinge that knows how it was made.
+
+    Attributes
+    ----------
+    recipe : LayeredModel
+        Section and parameters that its springs are made from. Change parameters by
+        `with_parameters`, which makes the springs anew.
+    """
+
+    recipe: LayeredModel | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.recipe, LayeredModel):
+            raise InputError(
+                "a LayeredColumn is made by rbsdem.section.Section.column or rbsdem.peer.column"
+            )
+        super().__post_init__()
+
+    @property
+    def version(self) -> str:
+        """Version of the parameters, as "2026.1", or "2026.1 changed"."""
+        return self._recipe.parameters.label
+
+    @property
+    def parameters(self) -> dict[str, Parameter]:
+        """Parameters that `rbsdem.calibrate` may fit, the most telling first; `shear_...` last.
+
+        The bounds end where a larger value would change nothing.
+        """
+        values, limits = self._recipe.parameters.values, self._recipe.joint.limits
+        found = {}
+        for name, (low, high, unit, what) in _FREE.items():
+            if not self._kept(_made_from(name)):
+                limit = limits.get(name, float("inf"))
+                value = min(values[name], limit)
+                found[name] = Parameter(value, low * value, min(high * value, limit), unit, what)
+        return found
+
+    def with_parameters(self, **values: float) -> LayeredColumn:
+        """Return the column with other parameters of its model; all else stays as it is.
+
+        Parameters
+        ----------
+        **values
+            Any of `ModelParameters.values`.
+
+        Raises
+        ------
+        InputError
+            If a name is not known, a value is refused or so large that it changes nothing, or if
+            the springs it belongs to were replaced by others.
+        """
+        recipe = replace(self._recipe, parameters=self._recipe.parameters.with_values(**values))
+        for name, value in values.items():
+            field = _made_from(name)
+            if self._kept(field):
+                raise InputError(
+                    f"parameters: {name} belongs to springs that were replaced: {field} of this "
+                    "column is not that of its model"
+                )
+            limit = recipe.joint.limits.get(name)
+            if limit is not None and value > limit * (1 + 1e-9):
+                raise InputError(
+                    f"parameters: {name} = {value:g} is above {limit:.4g}, beyond which it changes "
+                    "nothing in this column"
+                )
+        made = {name: value for name, value in recipe.made.items() if not self._kept(name)}
+        return replace(self, recipe=recipe, **made)
+
+    def _kept(self, field: str) -> bool:
+        """Whether springs or lengths were replaced, so that they are no longer the model's."""
+        return bool(getattr(self, field) != self._recipe.made[field])
+
+    @property
+    def _recipe(self) -> LayeredModel:
+        assert self.recipe is not None
+        return self.recipe
+
+
+def _made_from(name: str) -> str:
+    """Return the springs that a parameter belongs to."""
+    return "shear" if name.startswith("shear_") and name != "shear_stiffness" else "flexure"

@@ -1,0 +1,368 @@
+"""Blind columns: where their joints are, what the number of bodies changes, what may be fitted."""
+
+from __future__ import annotations
+
+import copy
+import hashlib
+import math
+import pickle
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+import rbsdem
+from rbsdem import peer
+from rbsdem.errors import InputError
+from rbsdem.section import parameters, versions
+from rbsdem.section.parameters import VERSIONS
+
+SPECIMEN = peer.Specimen(
+    name="Square",
+    section="rectangular",
+    length=1.6,
+    width=0.4,
+    depth=0.4,
+    concrete_strength=40e6,
+    axial_load=1.2e6,
+    longitudinal_number=8,
+    cover=0.02,
+    corner_diameter=0.02,
+    intermediate_diameter=0.02,
+    intermediate_perpendicular=1,
+    intermediate_parallel=1,
+    corner_yield_stress=450e6,
+    longitudinal_ultimate_stress=650e6,
+    transverse_yield_stress=400e6,
+    transverse_diameter=0.01,
+    transverse_spacing=0.08,
+    shear_legs=3.0,
+)
+# Turning points; every row of a static run is exact.
+LOOP = 1.6 * np.array([0.0, 0.003, -0.003, 0.01, -0.01, 0.01, -0.02, 0.03, -0.03, 0.0])
+
+
+def stiffness_at_first(column: rbsdem.Column, load: float) -> float:
+    """Return force over displacement of a small push, with the second-order part taken out."""
+    d = 1e-6
+    height = sum(column.lengths) if column.lengths is not None else column.height
+    force = rbsdem.cyclic(column, displacement=[0.0, d]).force[-1]
+    return force / d + load / height
+
+
+def test_the_number_of_bodies_does_not_matter_in_the_layered_model():
+    """The hinge keeps its length, the top its flexibility; P-Delta between the bodies differs."""
+    forces = [
+        rbsdem.cyclic(peer.column(SPECIMEN, "layered", n=n), displacement=LOOP).force
+        for n in (2, 3, 5, 9, 17)
+    ]
+    largest = np.max(np.abs(forces[0]))
+    for force in forces[1:]:
+        assert np.max(np.abs(force - forces[0])) < 2e-3 * largest
+
+
+@pytest.mark.parametrize("n", [2, 3, 8])
+def test_elastic_stiffness_of_the_layered_model_in_closed_form(n):
+    """1/k = (L - l)^3/3EI + (L/k_hinge) L + 1/k_shear, without axial load."""
+    bare = replace(SPECIMEN, axial_load=0.0)
+    column = peer.column(bare, "layered", n=n)
+    joint = column.recipe.joint
+    d = 1e-7
+    foot = joint.spring.response([d])[0] / d
+    length, above = bare.length, bare.length - joint.length
+    shear = column.shear[0].f_c / column.shear[0].d_c
+    flexibility = above**3 / (3 * joint.flexural_stiffness) + length**2 / foot + 1 / shear
+    assert stiffness_at_first(column, 0.0) == pytest.approx(1 / flexibility, rel=2e-3)
+
+
+@pytest.mark.parametrize("n", [2, 4, 9])
+def test_more_bodies_in_the_papers_model_add_the_flexibility_above_the_hinge(n):
+    bare = replace(SPECIMEN, axial_load=0.0)
+    one, column = peer.column(bare, "paper"), peer.column(bare, "paper", n=n)
+    springs = peer.draw(bare).section().springs(bare.length, 0.0, yield_rule="first")
+    bending = springs.flexure.k_c * springs.hinge_length
+    above = (bare.length - springs.hinge_length) ** 3 / (3 * bending)
+    expected = 1 / stiffness_at_first(one, 0.0) + above
+    assert 1 / stiffness_at_first(column, 0.0) == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("model", ["paper", "layered"])
+def test_both_directions_are_alike(model):
+    column = peer.column(SPECIMEN, model)
+    force = rbsdem.cyclic(column, displacement=LOOP).force
+    mirrored = rbsdem.cyclic(column, displacement=-LOOP).force
+    assert mirrored == pytest.approx(-force, rel=1e-6, abs=1e-6 * np.max(np.abs(force)))
+
+
+def test_strength_of_the_hinge_is_that_of_the_section():
+    """Plane sections with the same strengths: near the confined moment of the section analysis."""
+    plain = parameters().with_values(
+        steel_strength=1.0, concrete_strength=1.0, concrete_size=0.0, isotropic_hardening=0.0
+    )
+    spring = peer.column(SPECIMEN, "layered", model_parameters=plain).flexure[0]
+    largest = np.max(spring.response(np.linspace(0, 0.04, 200)[1:]))
+    moment = (
+        peer.draw(SPECIMEN)
+        .section()
+        .moment_curvature(1.2e6, np.linspace(0, 0.15, 100)[1:], tension="zero", confined=True)
+    )
+    assert largest == pytest.approx(np.max(moment), rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("model", "options", "text"),
+    [
+        ("layered", {"n": 1}, "n = 1: the layered model needs a joint above the hinge; give 2"),
+        ("paper", {"n": 0}, "n = 0; give 1 or more"),
+        ("layered", {"n": 2.5}, "n = 2.5 must be a whole number"),
+        ("best", {}, "model = 'best' is now 'layered'"),
+        ("bets", {}, "'bets' is not known; there are layered, paper"),
+    ],
+)
+def test_wrong_choices_are_refused(model, options, text):
+    with pytest.raises(InputError, match=text):
+        peer.column(SPECIMEN, model, **options)
+
+
+@pytest.mark.parametrize("load", [9e6, -1.5e6])
+def test_an_axial_load_over_the_capacity_is_refused(load):
+    crushed = replace(SPECIMEN, axial_load=load)
+    with pytest.raises(InputError, match=f"axial load = {load / 1e3:g} kN is not between"):
+        peer.column(crushed, "layered")
+
+
+def test_numbers_to_fit_stand_between_their_bounds_and_come_back():
+    column = peer.column(SPECIMEN, "layered")
+    for name, number in column.parameters.items():
+        assert number.low < number.value < number.high, name
+        other = column.with_parameters(**{name: math.sqrt(number.low * number.high)})
+        assert other.parameters[name].value == pytest.approx(math.sqrt(number.low * number.high))
+        assert other.n == column.n
+
+
+@pytest.mark.parametrize(
+    ("changed", "text"),
+    [
+        ({"concrete_strength": 40.0}, "concrete_strength = 40 Pa .* 40 MPa is 40e6"),
+        ({"length": 1600.0}, "length = 1600 m .* 1600 mm is 1.6"),
+        ({"width": 0.0}, "width = 0 m must be"),
+        ({"axial_load": math.nan}, "axial_load = nan N must be"),
+        ({"longitudinal_number": 0}, "longitudinal_number = 0"),
+        ({"length": -1.0, "depth": 400.0}, "length = -1 m(.|\n)*depth = 400 m"),
+    ],
+)
+@pytest.mark.parametrize("model", ["paper", "layered"])
+def test_numbers_that_no_column_has_are_refused(model, changed, text):
+    with pytest.raises(InputError, match=text):
+        peer.column(replace(SPECIMEN, **changed), model)
+
+
+# ---- from a section ------------------------------------------------------------------------------
+
+SECTION = rbsdem.RectangularSection(
+    0.4,
+    0.4,
+    rbsdem.Concrete(40e6),
+    layout=rbsdem.section.Layout(8, 0.02, rbsdem.Steel(450e6, 650e6)),
+    ties=rbsdem.section.Ties(0.01, 0.08, rbsdem.Steel(400e6), legs=3),
+    cover=0.02,
+)
+
+
+@pytest.mark.parametrize("model", ["layered", "paper"])
+def test_a_section_makes_the_column_of_the_specimen(model):
+    """What a section does not tell follows from it: restrained bars, mass."""
+    column = SECTION.column(1.6, axial_load=1.2e6, model=model)
+    drawn = peer.column(SPECIMEN, model)
+    assert (column.height, column.n, column.kinematics) == (1.6, drawn.n, "pdelta")
+    assert column.axial_load == drawn.axial_load
+    assert column.mass == pytest.approx(0.4 * 0.4 * 1.6 * 2400)
+    force = rbsdem.cyclic(column, displacement=LOOP).force
+    expected = rbsdem.cyclic(drawn, displacement=LOOP).force
+    assert force == pytest.approx(expected, rel=1e-9, abs=1e-9 * np.max(np.abs(expected)))
+
+
+def test_a_circular_section_makes_both_models():
+    steel = rbsdem.Steel(450e6, 650e6)
+    section = rbsdem.CircularSection(
+        0.5,
+        rbsdem.Concrete(35e6),
+        layout=rbsdem.section.Layout(12, 0.02, steel),
+        spiral=rbsdem.section.Spiral(0.01, 0.06, steel),
+        cover=0.025,
+    )
+    peaks = [
+        np.max(np.abs(rbsdem.cyclic(column, displacement=[0.0, 0.03, -0.03]).force))
+        for model in ("layered", "paper")
+        for column in [section.column(1.8, axial_load=900e3, model=model, mass=800.0)]
+    ]
+    assert peaks[0] == pytest.approx(peaks[1], rel=0.3)
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        ({"height": 1600.0}, "height = 1600 m must be between .*; 1600 mm is 1.6"),
+        ({"version": "1999.1"}, "version = '1999.1' .* there are 2026.1"),
+        ({"version": "2026.1", "model_parameters": parameters()}, "not both"),
+        ({"model": "paper", "version": "2026.1"}, "version is for model = 'layered'; remove it"),
+        ({"model": "paper", "round_core": True}, "round_core is for model = 'layered'"),
+        ({"axial_height": 0.0}, "axial_height = 0 m must be above zero"),
+        ({"axial_load": 9e6}, "axial load = 9000 kN is not between"),
+    ],
+)
+def test_arguments_that_a_section_refuses(options, text):
+    with pytest.raises(InputError, match=text):
+        SECTION.column(**{"height": 1.6, "axial_load": 1.2e6} | options)
+
+
+# ---- versions of the parameters ------------------------------------------------------------------
+
+
+def test_a_refit_does_not_change_an_older_version(monkeypatch):
+    """A new entry is the default from then on; the older one gives what it gave."""
+    before = SECTION.column(1.6, axial_load=1.2e6)
+    newer = replace(parameters().with_values(steel_strength=1.3), version="2099.1")
+    monkeypatch.setitem(VERSIONS, "2099.1", newer)
+    assert versions()[-1] == "2099.1"
+    assert SECTION.column(1.6, axial_load=1.2e6).version == "2099.1"
+    again = SECTION.column(1.6, axial_load=1.2e6, version=before.version)
+    assert again == before
+    assert peer.column(SPECIMEN, version="2099.1").version == "2099.1"
+
+
+def test_the_first_version_stands():
+    """Its values are part of every answer that names it: a refit is a new version."""
+    values = parameters("2026.1").values
+    digest = hashlib.sha256(repr(sorted(values.items())).encode()).hexdigest()
+    assert (len(values), digest[:16]) == (37, "49181d2b5952f626")
+
+
+def test_changed_parameters_are_named_as_changed():
+    column = SECTION.column(1.6, axial_load=1.2e6)
+    changed = column.with_parameters(steel_strength=1.0)
+    assert (column.version, changed.version) == ("2026.1", "2026.1 changed")
+    back = changed.with_parameters(steel_strength=parameters().hinge.steel_strength)
+    assert back == column
+
+
+@pytest.mark.parametrize(
+    ("values", "text"),
+    [
+        ({"growth": 1.0}, "parameters: growth is now isotropic_hardening"),
+        ({"steel_strenght": 1.0}, "did you mean 'steel_strength'"),
+        ({"wear": math.nan}, "hinge: wear = nan must be a finite number"),
+    ],
+)
+def test_values_that_parameters_refuse(values, text):
+    with pytest.raises(InputError, match=text):
+        parameters().with_values(**values)
+
+
+@pytest.mark.parametrize("name", ["Hinge", "LayeredColumn", "MODELS", "ShearNumbers"])
+def test_old_names_say_the_new_one(name):
+    with pytest.raises(AttributeError, match=rf"rbsdem.peer.{name} is now rbsdem.section"):
+        getattr(peer, name)
+
+
+def test_old_options_say_the_new_one():
+    with pytest.raises(InputError, match="hinge= is now model_parameters="):
+        peer.column(SPECIMEN, hinge=None)
+
+
+# ---- what a change of parameters keeps -----------------------------------------------------------
+
+LAYERED = SECTION.column(1.6, axial_load=1.2e6)
+KEPT = {
+    "mass": {"mass": 5e3},
+    "axial_load": {"axial_load": 1.1e6},
+    "kinematics": {"kinematics": "finite"},
+    "masses": {"mass": None, "masses": (100.0, 400.0)},
+    "lengths": {"lengths": (0.3, 1.3)},
+    "shear": {"shear": rbsdem.Elastic(1e9)},
+    "flexure": {"flexure": rbsdem.Elastic(1e8)},
+    "self_weight": {"self_weight": True},
+    "gravity": {"gravity": 9.0},
+    "top_mass": {"top_mass": 2e4},
+    "top_inertia": {"top_mass": 1.0, "top_inertia": 5.0},
+    "depth": {"depth": 0.4},
+    "rotary_inertia": {"rotary_inertia": 3.0},
+    "damping": {"damping": 0.05},
+    "mass_damping": {"mass_damping": 0.1},
+    "stiffness_damping": {"stiffness_damping": 1e-4},
+    "axial_follows": {"kinematics": "finite", "axial_follows": True},
+    "force_follows": {"kinematics": "finite", "force_follows": True},
+}
+# With the height and the number of bodies the springs are others; joints that open have no layers.
+OTHERS = {"height", "n", "recipe", "axial"}
+
+
+def test_every_field_of_a_column_is_tried():
+    """A new field of Column belongs into KEPT."""
+    assert {field.name for field in fields(LAYERED) if field.init} == set(KEPT) | OTHERS
+
+
+@pytest.mark.parametrize("name", KEPT)
+def test_other_parameters_keep_what_was_replaced(name):
+    """Also springs and lengths that are not the model's any more; the others are made anew."""
+    column = replace(LAYERED, **KEPT[name])
+    assert column.with_parameters() == column
+    changed = column.with_parameters(
+        **{"steel_strength": 1.0} if name != "flexure" else {"shear_strength": 1.0}
+    )
+    for field in fields(column):
+        same = getattr(changed, field.name) == getattr(column, field.name)
+        made = field.name in ("shear", "flexure", "lengths", "recipe")
+        assert same or made, field.name
+    if name in ("shear", "flexure", "lengths"):
+        assert getattr(changed, name) == getattr(column, name)
+    assert changed != column
+
+
+@pytest.mark.parametrize(("springs", "name"), [("shear", "shear_strength"), ("flexure", "wear")])
+def test_parameters_of_springs_that_were_replaced_are_refused(springs, name):
+    column = replace(LAYERED, **KEPT[springs])
+    assert name in LAYERED.parameters
+    assert name not in column.parameters
+    with pytest.raises(InputError, match=f"{name} belongs to springs that were replaced"):
+        column.with_parameters(**{name: 1.0})
+
+
+def test_a_layered_column_comes_back_from_pickle_and_copy():
+    for again in (pickle.loads(pickle.dumps(LAYERED)), copy.deepcopy(LAYERED)):
+        assert again == LAYERED
+        assert again.with_parameters(wear=0.1) == LAYERED.with_parameters(wear=0.1)
+
+
+# ---- bounds end where the model does -------------------------------------------------------------
+
+STOCKY = SECTION.column(0.7, axial_load=3.5e6)
+
+
+@pytest.mark.parametrize("column", [LAYERED, STOCKY], ids=["slender", "stocky"])
+def test_each_parameter_has_its_say_up_to_its_bounds(column):
+    """A value beyond, where the model would take the bound instead, is refused."""
+
+    def springs(**values: float) -> tuple[object, ...]:
+        other = column.with_parameters(**values)
+        return other.shear, other.flexure, other.lengths
+
+    for name, one in column.parameters.items():
+        for place in (0.0, 0.5, 0.9):
+            nearer, further = one.at(place), one.at(place + 0.1)
+            assert springs(**{name: nearer}) != springs(**{name: further}), (name, place)
+    for name in ("hinge_length", "compression_length", "stiffness", "contact"):
+        limit = column.recipe.joint.limits[name]
+        column.with_parameters(**{name: limit})
+        with pytest.raises(InputError, match=f"{name} = .* is above .* changes nothing"):
+            column.with_parameters(**{name: 1.001 * limit})
+
+
+def test_a_parameter_beyond_its_limit_starts_at_the_limit():
+    """The version's stiffness above a stocky hinge of high axial load would be above 2."""
+    column = SECTION.column(1.6, axial_load=5e6)
+    stiffness = column.parameters["stiffness"]
+    assert column.recipe.parameters.hinge.stiffness > column.recipe.joint.limits["stiffness"]
+    assert stiffness.value == stiffness.high == column.recipe.joint.limits["stiffness"]
+    same = column.with_parameters(stiffness=stiffness.value)
+    assert same.flexure[1].k == pytest.approx(column.flexure[1].k)
