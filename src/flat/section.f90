@@ -1,6 +1,6 @@
 !> A section as two plain arrays, one of whole numbers and one of reals: how it crosses from Python.
 !>
-!> Whole numbers: circular, kind of ties, number of strips, of steels, of bars; place of the steel of each
+!> Whole numbers: shape, kind of ties, number of strips, of steels, of bars; place of the steel of each
 !> bar. Reals: the scalars in the order of `section_from_numbers`, five of each steel, y and area of each bar.
 !> The Python side is `rbsdem.section.section`.
 module rbs_flat_section
@@ -9,10 +9,12 @@ module rbs_flat_section
    use rbs_base_kinds, only: wp
    use rbs_section_section_check, only: check_section
    use rbs_section_concrete_law, only: check_concrete, plain_concrete
-   use rbs_section_confinement, only: confine, volumetric_ratio
+   use rbs_section_confinement, only: volumetric_ratio
    use rbs_section_events, only: point_type
    use rbs_section_flexural_spring, only: flexural_spring_type
-   use rbs_section_cross_section, only: section_type, slice, core_width, core_depth, no_ties
+   use rbs_section_cross_section, only: enclose_core, section_type, no_ties
+   use rbs_section_section_build, only: build_section
+   use rbs_section_shapes, only: new_shape
    use rbs_section_steel_law, only: steel_type
    implicit none
    private
@@ -34,9 +36,7 @@ contains
 
       steels = codes(4)
       bars = codes(5)
-      section%circular = codes(1) /= 0
-      section%width = numbers(1)
-      section%depth = numbers(2)
+      call new_shape(int(codes(1)), numbers(1), numbers(2), section%shape)
       section%cover = numbers(3)
       section%side_cover = numbers(4)
       section%bar_diameter = numbers(5)
@@ -52,19 +52,18 @@ contains
          section%steels(i) = steel_of(numbers(at + 1:at + steel_size))
       end do
       at = scalars + steels*steel_size
-      allocate (section%bar_y(bars), section%bar_area(bars), section%bar_in_core(bars))
+      allocate (section%bar_y(bars), section%bar_area(bars))
       section%bar_steel = codes(codes_before + 1:codes_before + bars)
       section%bar_y = numbers(at + 1:at + bars)
       section%bar_area = numbers(at + bars + 1:at + 2*bars)
 
       call check_concrete(numbers(6), numbers(7), numbers(8), numbers(9), numbers(10), messages)
+      call enclose_core(section)
       call check_section(section, messages)
       call messages%raise(error)
       if (allocated(error)) return
       section%plain = plain_concrete(numbers(6), numbers(7), numbers(8), numbers(9))
-      section%bar_in_core = abs(section%bar_y) <= 0.5_wp*core_depth(section)
-      call confine(section, numbers(10))
-      call slice(section, codes(3))
+      call build_section(section, numbers(10), int(codes(3)))
    end subroutine section_from_numbers
 
    pure type(steel_type) function steel_of(numbers)
@@ -86,7 +85,8 @@ contains
          figures(7:10) = [c%fc, c%eps0, c%n, c%eps_cu]
       end associate
       figures(11:13) = [section%effectiveness, section%lateral_stress, volumetric_ratio(section)]
-      if (section%transverse%kind /= no_ties) figures(14:15) = [core_width(section), core_depth(section)]
+      if (section%transverse%kind == no_ties) return
+      figures(14:15) = [section%core_shape%width, section%core_shape%depth]
    end subroutine figures_of_section
 
    !> Curvature, moment, strain at mid-depth and whether it was found (1) or not (0).

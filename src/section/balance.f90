@@ -81,8 +81,8 @@ contains
 
       found = .true.
       first = state%curvature
-      steps = max(1, ceiling(abs(curvature - first)*section%depth/ &
-                             max(longest_step, longest_growth*abs(first)*section%depth)))
+      steps = max(1, ceiling(abs(curvature - first)*section%shape%depth/ &
+                             max(longest_step, longest_growth*abs(first)*section%shape%depth)))
       do i = 1, steps
          next = state
          next%curvature = curvature
@@ -141,7 +141,7 @@ contains
 
       turn = next%curvature - last%curvature
       guess = last%eps0 + last%trend*turn
-      near = 2.0e-5_wp + 0.3_wp*abs(turn)*section%depth
+      near = 2.0e-5_wp + 0.3_wp*abs(turn)*section%shape%depth
       limit = tolerance*force_scale(section)
       next%eps0 = guess
       found = .false.
@@ -183,7 +183,7 @@ contains
       direction = sign(1.0_wp, axial_load - here%n)
       furthest = crushed
       if (direction < 0.0_wp) furthest = largest_opening(section)
-      furthest = furthest + abs(curvature)*section%depth
+      furthest = furthest + abs(curvature)*section%shape%depth
       step = first_search
       do
          next = at + direction*step
@@ -195,7 +195,7 @@ contains
          end if
          at = next
          here = there
-         step = min(longest_search + search_share*abs(curvature)*section%depth, search_growth*step)
+         step = min(longest_search + search_share*abs(curvature)*section%shape%depth, search_growth*step)
       end do
       found = .false.
    end subroutine settle

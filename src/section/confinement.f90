@@ -2,9 +2,7 @@
 module rbs_section_confinement
    use rbs_base_kinds, only: wp
    use rbs_section_concrete_law, only: confined_concrete, spalling_concrete
-   use rbs_section_cross_section, only: section_type, no_ties, spiral, circular_hoops, core_width, &
-                                        core_depth, hoop_area, steel_area
-   use rbs_base_constants, only: pi
+   use rbs_section_cross_section, only: section_type, no_ties, spiral, circular_hoops, hoop_area, steel_area
    implicit none
    private
 
@@ -24,11 +22,11 @@ contains
       section%lateral_stress = 0.0_wp
       section%effectiveness = 0.0_wp
       if (section%transverse%kind == no_ties) return
-      if (.not. min(core_width(section), core_depth(section)) > 0.0_wp) return
+      if (.not. min(section%core_shape%width, section%core_shape%depth) > 0.0_wp) return
       section%effectiveness = effectiveness(section)
       ratio = volumetric_ratio(section)
       yield = section%transverse%steel%fy
-      ! Ties: the mean of the two directions, rho_s is the sum of both; circular: rho_s f_yh/2 as well.
+      ! The ratio is the sum of both directions; half of it is their mean.
       section%lateral_stress = 0.5_wp*section%effectiveness*ratio*yield
       section%core = confined_concrete(section%plain, section%lateral_stress, 0.0_wp)
       eps_cu = 0.004_wp + 1.4_wp*ratio*yield*section%transverse%steel%eps_u/section%core%fc
@@ -36,21 +34,16 @@ contains
       section%shell = spalling_concrete(section%plain, eps_spall)
    end subroutine confine
 
-   !> Volume of transverse steel over that of the core.
+   !> Volume of transverse steel over that of the core: the sum of both directions. A round hoop has two legs
+   !> in each, which gives its 4 A/(d s).
    pure real(wp) function volumetric_ratio(section) result(ratio)
       type(section_type), intent(in) :: section
-      real(wp) :: across, along
 
       ratio = 0.0_wp
       if (section%transverse%kind == no_ties) return
-      associate (t => section%transverse)
-         if (section%circular) then
-            ratio = 4.0_wp*hoop_area(t)/(core_depth(section)*t%spacing)
-         else
-            along = t%legs*hoop_area(t)/(t%spacing*core_width(section))
-            across = t%legs_across*hoop_area(t)/(t%spacing*core_depth(section))
-            ratio = along + across
-         end if
+      associate (t => section%transverse, core => section%core_shape)
+         ratio = t%legs*hoop_area(t)/(t%spacing*core%width) + &
+                 t%legs_across*hoop_area(t)/(t%spacing*core%depth)
       end associate
    end function volumetric_ratio
 
@@ -59,10 +52,9 @@ contains
       type(section_type), intent(in) :: section
       real(wp) :: b_c, d_c, clear, part, core
 
-      b_c = core_width(section)
-      d_c = core_depth(section)
-      core = b_c*d_c
-      if (section%circular) core = 0.25_wp*pi*d_c**2
+      b_c = section%core_shape%width
+      d_c = section%core_shape%depth
+      core = section%core_shape%area()
       clear = max(0.0_wp, section%transverse%spacing - section%transverse%diameter)
       part = max(0.0_wp, 1.0_wp - 0.5_wp*clear/d_c)
       select case (section%transverse%kind)

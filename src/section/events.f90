@@ -4,7 +4,7 @@ module rbs_section_events
    use rbs_base_kinds, only: wp
    use rbs_section_balance, only: state_type, begin, advance
    use rbs_section_resultants, only: laws_type
-   use rbs_section_cross_section, only: section_type, core_depth
+   use rbs_section_cross_section, only: section_type
    use rbs_section_steel_law, only: steel_yield_strain
    use rbs_base_check, only: check_name, check_positive
    implicit none
@@ -107,7 +107,7 @@ contains
              (events%yield%found .or. compressed(section, here) > section%plain%eps0)) then
             call catch(seek_drop, failed_share*events%peak%moment, drop)
          end if
-         if (drop%found .or. here%curvature*section%depth > furthest) exit
+         if (drop%found .or. here%curvature*section%shape%depth > furthest) exit
       end do
       events%last = as_point(here)
       if (rule%ultimate == ultimate_drop) events%ultimate = drop
@@ -149,7 +149,7 @@ contains
          last = here
          call advance(section, laws, axial_load, last%curvature + step_of(section, last%curvature), &
                       here, found)
-         if (.not. found .or. here%curvature*section%depth > furthest) return
+         if (.not. found .or. here%curvature*section%shape%depth > furthest) return
       end do
       call locate(section, laws, axial_load, rule_type(), seek_moment, moment, last, here, point)
    end subroutine reach_moment
@@ -158,7 +158,7 @@ contains
       type(section_type), intent(in) :: section
       real(wp), intent(in) :: curvature
 
-      step_of = first_step/section%depth + growth*curvature
+      step_of = first_step/section%shape%depth + growth*curvature
    end function step_of
 
    !> Negative before, positive beyond what is sought; a pure number.
@@ -174,7 +174,7 @@ contains
 
       select case (what)
       case (seek_cracking)
-         beyond = (0.5_wp*state%curvature*section%depth - state%eps0 - laws%shell%ft/laws%shell%ec)/ &
+         beyond = (0.5_wp*state%curvature*section%shape%depth - state%eps0 - laws%shell%ft/laws%shell%ec)/ &
                   laws%shell%eps0
       case (seek_yield)
          beyond = bar_ratio(section, state, at_rupture=.false.) - 1.0_wp
@@ -188,7 +188,7 @@ contains
       case default
          select case (rule%ultimate)
          case (ultimate_mander)
-            core_edge = state%eps0 + 0.5_wp*state%curvature*core_depth(section)
+            core_edge = state%eps0 + 0.5_wp*state%curvature*section%core_shape%depth
             beyond = core_edge/section%core%eps_cu - 1.0_wp
          case (ultimate_steel)
             beyond = bar_ratio(section, state, at_rupture=.true.) - 1.0_wp
@@ -203,7 +203,7 @@ contains
       type(section_type), intent(in) :: section
       type(state_type), intent(in) :: state
 
-      compressed = state%eps0 + 0.5_wp*state%curvature*section%depth
+      compressed = state%eps0 + 0.5_wp*state%curvature*section%shape%depth
    end function compressed
 
    !> Largest tensile strain of the bars over that of yield or of rupture; -1 without bars.

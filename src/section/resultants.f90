@@ -58,21 +58,23 @@ contains
       integer :: i, cut
 
       cut = cut_strip(section, laws, eps0, curvature)
-      do i = 1, size(section%y)
-         if (i == cut) cycle
-         strain = eps0 - curvature*section%y(i)
-         call concrete_both(laws%shell, strain, stress, tangent)
-         force = stress*section%area(i)
-         stiffness = tangent*section%area(i)
-         if (laws%confined .and. section%core_area(i) > 0.0_wp) then
-            call concrete_both(laws%core, strain, stress_core, tangent_core)
-            force = force + (stress_core - stress)*section%core_area(i)
-            stiffness = stiffness + (tangent_core - tangent)*section%core_area(i)
-         end if
-         sums%n = sums%n + force
-         sums%m = sums%m - force*section%y(i)
-         sums%stiffness = sums%stiffness + stiffness
-      end do
+      associate (strips => section%strips)
+         do i = 1, size(strips%y)
+            if (i == cut) cycle
+            strain = eps0 - curvature*strips%y(i)
+            call concrete_both(laws%shell, strain, stress, tangent)
+            force = stress*strips%area(i)
+            stiffness = tangent*strips%area(i)
+            if (laws%confined .and. strips%core_area(i) > 0.0_wp) then
+               call concrete_both(laws%core, strain, stress_core, tangent_core)
+               force = force + (stress_core - stress)*strips%core_area(i)
+               stiffness = stiffness + (tangent_core - tangent)*strips%core_area(i)
+            end if
+            sums%n = sums%n + force
+            sums%m = sums%m - force*strips%y(i)
+            sums%stiffness = sums%stiffness + stiffness
+         end do
+      end associate
       if (cut > 0) call add_cut_strip(section, laws, eps0, curvature, cut, sums)
       call add_bars(section, laws, eps0, curvature, sums)
    end function resultants
@@ -87,8 +89,9 @@ contains
       cut_strip = 0
       if (laws%shell%tension == tension_zero .or. .not. abs(curvature) > 0.0_wp) return
       place = crack_tip(laws, eps0, curvature)
-      if (abs(place) < 0.5_wp*section%depth) then
-         cut_strip = min(size(section%y), 1 + int((place + 0.5_wp*section%depth)/section%dy))
+      if (abs(place) < 0.5_wp*section%shape%depth) then
+         cut_strip = 1 + int((place + 0.5_wp*section%shape%depth)/section%strips%dy)
+         cut_strip = min(size(section%strips%y), cut_strip)
       end if
    end function cut_strip
 
@@ -111,8 +114,10 @@ contains
       integer :: part
 
       tip = crack_tip(laws, eps0, curvature)
-      ends = [section%y(i) - 0.5_wp*section%dy, tip, section%y(i) + 0.5_wp*section%dy]
-      width = section%area(i)/section%dy
+      associate (strips => section%strips)
+         ends = [strips%y(i) - 0.5_wp*strips%dy, tip, strips%y(i) + 0.5_wp*strips%dy]
+         width = strips%area(i)/strips%dy
+      end associate
       do part = 1, 2
          y = 0.5_wp*(ends(part) + ends(part + 1))
          area = width*(ends(part + 1) - ends(part))
@@ -165,7 +170,7 @@ contains
       type(section_type), intent(in) :: section
       integer :: i
 
-      force_scale = section%plain%fc*sum(section%area)
+      force_scale = section%plain%fc*sum(section%strips%area)
       do i = 1, size(section%bar_y)
          force_scale = force_scale + section%steels(section%bar_steel(i))%fy*section%bar_area(i)
       end do

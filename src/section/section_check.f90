@@ -3,7 +3,8 @@ module rbs_section_section_check
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_section_cross_section, only: section_type, no_ties, gross_area, core_width, core_depth
+   use rbs_section_cross_section, only: section_type, no_ties
+   use rbs_section_shape, only: largest_size
    use rbs_section_steel_law, only: check_steel
    use rbs_base_check, only: check_finite, check_positive, check_not_negative
    implicit none
@@ -11,27 +12,18 @@ module rbs_section_section_check
 
    public :: check_section
 
-   !> No column is larger than this [m]: a larger number is one in millimetres.
-   real(wp), parameter :: largest = 50.0_wp
-
 contains
 
    !> Add a message for everything that is wrong but the concrete, which is checked by itself.
    subroutine check_section(section, messages)
       type(section_type), intent(in) :: section
       type(message_list), intent(inout) :: messages
-      logical :: ok(4)
+      logical :: ok(3)
       integer :: i
 
-      if (section%circular) then
-         call check_size(section%depth, 'section: diameter', messages, ok(1))
-         ok(2) = ok(1)
-      else
-         call check_size(section%width, 'section: width', messages, ok(1))
-         call check_size(section%depth, 'section: depth', messages, ok(2))
-      end if
-      call check_not_negative(section%cover, 'section: cover', 'm', messages, ok(3))
-      call check_not_negative(section%side_cover, 'section: side_cover', 'm', messages, ok(4))
+      call section%shape%check(messages, ok(1))
+      call check_not_negative(section%cover, 'section: cover', 'm', messages, ok(2))
+      call check_not_negative(section%side_cover, 'section: side_cover', 'm', messages, ok(3))
       do i = 1, size(section%steels)
          call check_steel(section%steels(i), 'section: steel', messages)
       end do
@@ -39,19 +31,6 @@ contains
       if (.not. all(ok)) return
       call check_bars(section, messages)
    end subroutine check_section
-
-   subroutine check_size(size_of, name, messages, ok)
-      real(wp), intent(in) :: size_of
-      character(len=*), intent(in) :: name
-      type(message_list), intent(inout) :: messages
-      logical, intent(out) :: ok
-
-      call check_positive(size_of, name, 'm', messages, ok)
-      if (.not. ok) return
-      ok = size_of <= largest
-      if (ok) return
-      call messages%add(name//' = '//to_text(size_of)//' m is larger than any column; 400 mm is 0.4')
-   end subroutine check_size
 
    subroutine check_bars(section, messages)
       type(section_type), intent(in) :: section
@@ -61,7 +40,7 @@ contains
       integer :: i
 
       all_ok = .true.
-      edge = 0.5_wp*section%depth
+      edge = 0.5_wp*section%shape%depth
       do i = 1, size(section%bar_y)
          call check_positive(section%bar_area(i), 'section: area of bar '//to_text(i), 'm2', messages, ok)
          all_ok = all_ok .and. ok
@@ -74,10 +53,10 @@ contains
                            to_text(edge)//' m; y is measured from mid-depth')
       end do
       if (.not. all_ok) return
-      if (sum(section%bar_area) > 0.2_wp*gross_area(section)) then
+      if (sum(section%bar_area) > 0.2_wp*section%shape%area()) then
          call messages%add('section: the bars have '//to_text(sum(section%bar_area))//' m2 of '// &
-                           to_text(gross_area(section))//' m2; they must have less than a fifth: 200 mm2 '// &
-                           'is an area of 200e-6')
+                           to_text(section%shape%area())//' m2; they must have less than a fifth: '// &
+                           '200 mm2 is an area of 200e-6')
       end if
       if (size(section%bar_y) == 0) return
       call check_positive(section%bar_diameter, 'section: bar_diameter', 'm', messages, ok)
@@ -101,10 +80,10 @@ contains
       call check_positive(section%transverse%legs_across, 'ties: legs_across', '', messages)
       call check_steel(section%transverse%steel, 'ties: steel', messages)
       if (.not. (all(ok) .and. sizes_ok)) return
-      if (section%transverse%spacing > largest) then
+      if (section%transverse%spacing > largest_size) then
          call messages%add('ties: spacing = '//to_text(section%transverse%spacing)//' m; 100 mm is 0.1')
       end if
-      if (min(core_depth(section), core_width(section)) > section%transverse%diameter) return
+      if (min(section%core_shape%depth, section%core_shape%width) > section%transverse%diameter) return
       call messages%add('section: cover = '//to_text(section%cover)//' m and ties of '// &
                         to_text(section%transverse%diameter)//' m leave no core; the cover is the clear '// &
                         'one to the outer edge of the ties')

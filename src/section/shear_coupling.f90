@@ -69,7 +69,8 @@ contains
       if (.not. found) return
       state%curvature = curvature
       state%eps0 = eps0
-      state%moment = -dot_product(concrete_force, flow%section%y) - dot_product(bar_force, flow%section%bar_y)
+      state%moment = -dot_product(concrete_force, flow%section%strips%y) &
+                     - dot_product(bar_force, flow%section%bar_y)
    end subroutine couple
 
    !> Longitudinal forces of the layers under given shear stresses, and of the bars less the concrete that
@@ -87,17 +88,17 @@ contains
       integer :: i, layer
 
       carried = .true.
-      associate (section => flow%section)
+      associate (section => flow%section, strips => flow%section%strips)
          do i = 1, size(layers)
-            call solve_layer(layers(i), curvature*section%y(i) - eps0, tau(i), layer_states(i), carried)
+            call solve_layer(layers(i), curvature*strips%y(i) - eps0, tau(i), layer_states(i), carried)
             if (.not. carried) return
             stress = stress_of_state(layers(i), layer_states(i))
-            concrete_force(i) = -stress%sigma_x*section%area(i)
+            concrete_force(i) = -stress%sigma_x*strips%area(i)
          end do
          do i = 1, size(bar_force)
             strain = eps0 - curvature*section%bar_y(i)
-            layer = min(size(layers), 1 + int((section%bar_y(i) + 0.5_wp*section%depth)/section%dy))
-            displaced = concrete_force(layer)/section%area(layer)
+            layer = min(size(layers), 1 + int((section%bar_y(i) + 0.5_wp*section%shape%depth)/strips%dy))
+            displaced = concrete_force(layer)/strips%area(layer)
             bar_force(i) = (steel_stress(section%steels(section%bar_steel(i)), strain) - displaced)* &
                            section%bar_area(i)
          end do

@@ -11,7 +11,7 @@ module rbs_section_shear_diagram
    use rbs_section_balance, only: state_type, begin, advance
    use rbs_section_mcft_layer, only: layer_type, layer_state, solve_layer
    use rbs_section_resultants, only: section_laws
-   use rbs_section_cross_section, only: section_type, slice, gross_area
+   use rbs_section_cross_section, only: section_type, slice
    use rbs_section_shear_coupling, only: couple
    use rbs_section_shear_flow, only: flow_type, begin_flow, shear_stresses, transverse_ratio
    use rbs_base_check, only: check_finite, check_positive
@@ -99,7 +99,7 @@ contains
       model%coupled = coupled
       call prepare(section, tension, confined, axial_load, span, layers, model, here, error)
       if (allocated(error)) return
-      knee_stiffness = knee_share*0.5_wp*section%plain%ec*gross_area(section)
+      knee_stiffness = knee_share*0.5_wp*section%plain%ec*section%shape%area()
       allocate (points(size(curvature)))
       count = 0
       do i = 1, size(curvature)
@@ -121,7 +121,7 @@ contains
       end do
       diagram%points = points(:count)
       diagram%last = here%point
-      diagram%y = model%flow%section%y
+      diagram%y = model%flow%section%strips%y
       diagram%eps_x = here%layers%eps_x
       diagram%tau = here%layers%tau
       diagram%gamma = here%layers%gamma
@@ -148,9 +148,9 @@ contains
       associate (cut => model%flow%section, laws => model%flow%laws)
          do i = 1, layers
             model%layers(i)%concrete = laws%shell
-            if (2.0_wp*cut%core_area(i) > cut%area(i)) model%layers(i)%concrete = laws%core
+            if (2.0_wp*cut%strips%core_area(i) > cut%strips%area(i)) model%layers(i)%concrete = laws%core
             model%layers(i)%stirrup = section%transverse%steel
-            model%layers(i)%rho_z = transverse_ratio(cut, cut%y(i), cut%area(i)/cut%dy)
+            model%layers(i)%rho_z = transverse_ratio(cut, cut%strips%y(i), cut%strips%area(i)/cut%strips%dy)
          end do
          call begin(cut, laws, axial_load, state%flexure, error)
       end associate
@@ -183,13 +183,13 @@ contains
          if (lost) return
          call shear_stresses(model%flow, state%flexure, tau)
          do i = 1, size(tau)
-            eps_x = curvature*model%flow%section%y(i) - state%flexure%eps0
+            eps_x = curvature*model%flow%section%strips%y(i) - state%flexure%eps0
             call solve_layer(model%layers(i), eps_x, tau(i), state%layers(i), carried)
             sheared = .not. carried
             if (sheared) return
          end do
       end if
-      associate (area => model%flow%section%area)
+      associate (area => model%flow%section%strips%area)
          state%point = shear_point(curvature, state%flexure%moment, state%flexure%moment/model%flow%span, &
                                    dot_product(state%layers%gamma, area)/sum(area))
       end associate

@@ -9,7 +9,7 @@ module rbs_section_shear_flow
    use rbs_section_balance, only: state_type
    use rbs_section_concrete_law, only: concrete_type, concrete_stress
    use rbs_section_resultants, only: laws_type
-   use rbs_section_cross_section, only: section_type, no_ties, core_depth, hoop_area
+   use rbs_section_cross_section, only: section_type, no_ties, hoop_area
    use rbs_section_steel_law, only: steel_stress
    implicit none
    private
@@ -61,17 +61,17 @@ contains
       real(wp) :: along, gained, share
       integer :: i, j
 
-      associate (section => flow%section)
+      associate (section => flow%section, strips => flow%section%strips)
          along = 0.0_wp
          do i = 1, size(tau)
             gained = concrete_force(i) - flow%concrete_force(i)
             tau(i) = along + 0.5_wp*gained
             along = along + gained
             do j = 1, size(bar_force)
-               share = (section%y(i) - section%bar_y(j))/section%dy + 0.5_wp
+               share = (strips%y(i) - section%bar_y(j))/strips%dy + 0.5_wp
                tau(i) = tau(i) + (bar_force(j) - flow%bar_force(j))*min(max(share, 0.0_wp), 1.0_wp)
             end do
-            tau(i) = tau(i)/flow%span*section%dy/section%area(i)
+            tau(i) = tau(i)/flow%span*strips%dy/strips%area(i)
          end do
       end associate
    end subroutine stresses_of_forces
@@ -84,13 +84,13 @@ contains
       real(wp) :: strain
       integer :: i
 
-      associate (section => flow%section, laws => flow%laws)
-         allocate (concrete_force(size(section%y)), bar_force(size(section%bar_y)))
-         do i = 1, size(section%y)
-            strain = state%eps0 - state%curvature*section%y(i)
-            concrete_force(i) = mean_stress(laws%shell, strain, state%curvature*section%dy)*section%area(i)
-            if (laws%confined .and. section%core_area(i) > 0.0_wp) then
-               concrete_force(i) = concrete_force(i) + section%core_area(i)* &
+      associate (section => flow%section, strips => flow%section%strips, laws => flow%laws)
+         allocate (concrete_force(size(strips%y)), bar_force(size(section%bar_y)))
+         do i = 1, size(strips%y)
+            strain = state%eps0 - state%curvature*strips%y(i)
+            concrete_force(i) = mean_stress(laws%shell, strain, state%curvature*strips%dy)*strips%area(i)
+            if (laws%confined .and. strips%core_area(i) > 0.0_wp) then
+               concrete_force(i) = concrete_force(i) + strips%core_area(i)* &
                                    (concrete_stress(laws%core, strain) - concrete_stress(laws%shell, strain))
             end if
          end do
@@ -127,25 +127,17 @@ contains
 
    !> Transverse reinforcement in the direction of the shear, smeared over width and spacing.
    !>
-   !> Ties: legs A/(b s) inside their outer edge. A spiral crosses a layer at y twice and pulls along it only
-   !> with sqrt(1 - (y/r)^2) of its force, r the radius of its centre line.
+   !> Legs A/(b s) inside the outer edge of the hoops, times the share with which they pull there: a round
+   !> hoop is inclined to the shear.
    elemental real(wp) function transverse_ratio(section, y, width) result(ratio)
       type(section_type), intent(in) :: section
       !> Place and width of the layer [m]
       real(wp), intent(in) :: y, width
-      real(wp) :: radius
 
       ratio = 0.0_wp
-      associate (ties => section%transverse)
-         if (ties%kind == no_ties) return
-         if (section%circular) then
-            radius = 0.5_wp*core_depth(section)
-            if (abs(y) < radius) then
-               ratio = 2.0_wp*hoop_area(ties)*sqrt(1.0_wp - (y/radius)**2)/(width*ties%spacing)
-            end if
-         else if (abs(y) <= 0.5_wp*section%depth - section%cover) then
-            ratio = ties%legs*hoop_area(ties)/(width*ties%spacing)
-         end if
+      associate (hoops => section%transverse)
+         if (hoops%kind == no_ties .or. abs(y) > 0.5_wp*section%shape%depth - section%cover) return
+         ratio = hoops%legs*hoop_area(hoops)*section%core_shape%leg_share(y)/(width*hoops%spacing)
       end associate
    end function transverse_ratio
 

@@ -8,12 +8,16 @@ module test_section
    use rbs_section_concrete_law, only: concrete_stress, concrete_tangent, concrete_type, confined_concrete, &
                                        plain_concrete, spalling_concrete, tension_bare, tension_ts, &
                                        tension_zero
-   use rbs_section_confinement, only: confine, volumetric_ratio
+   use rbs_section_confinement, only: volumetric_ratio
    use rbs_section_events, only: events_type, find_events, rule_type
    use rbs_section_flexural_spring, only: fit_flexural_spring, flexural_spring_type, hinge_type
    use rbs_section_resultants, only: laws_type, resultants, resultants_type, section_laws
-   use rbs_section_cross_section, only: gross_area, section_type, slice, spiral, ties
+   use rbs_section_cross_section, only: section_type, spiral, ties
+   use rbs_section_section_build, only: build_section
+   use rbs_section_shape, only: shape_type
+   use rbs_section_shapes, only: new_core, new_shape, shape_circle, shape_names, shape_rectangle
    use rbs_section_steel_law, only: steel_stress, steel_tangent, steel_type
+   use rbs_section_strips, only: cut_strips, strip_centroids, strips_type
    implicit none
    private
 
@@ -30,6 +34,8 @@ contains
                unit_test('concrete: Mander core, spalling cover', confined_law), &
                unit_test('steel: corners, symmetry, rupture', steel_law), &
                unit_test('strips: areas and moments of rectangle and circle', strip_sums), &
+               unit_test('shapes agree with sums of their width', shapes_agree), &
+               unit_test('a round core in a square', round_core), &
                unit_test('confinement: spiral and square ties by hand', confinement), &
                unit_test('uncracked: E_c I of the transformed section', uncracked), &
                unit_test('axial stiffness is the slope of the axial force', axial_slope), &
@@ -47,21 +53,17 @@ contains
       integer :: bars
 
       bars = merge(2, 0, with_bars)
-      section%width = 0.4_wp
-      section%depth = 0.5_wp
+      call new_shape(shape_rectangle, 0.4_wp, 0.5_wp, section%shape)
       section%cover = 0.03_wp
       section%side_cover = 0.03_wp
       section%bar_diameter = 0.02_wp
       section%plain = plain_concrete(30.0e6_wp, unset, unset, unset)
-      allocate (section%steels(1), section%bar_y(bars), section%bar_area(bars), section%bar_steel(bars), &
-                section%bar_in_core(bars))
+      allocate (section%steels(1), section%bar_y(bars), section%bar_area(bars), section%bar_steel(bars))
       section%steels(1) = steel_type(450.0e6_wp, 600.0e6_wp)
       if (with_bars) section%bar_y = [0.2_wp, -0.2_wp]
       section%bar_area = 1.0e-3_wp
       section%bar_steel = 1
-      section%bar_in_core = .true.
-      call confine(section, 0.006_wp)
-      call slice(section, strips)
+      call build_section(section, 0.006_wp, strips)
    end function beam
 
    subroutine concrete_law(error)
@@ -181,20 +183,79 @@ contains
       type(section_type) :: section
 
       section = beam(.false., 400)
-      call check_close(error, sum(section%area), 0.2_wp, 1.0e-13_wp, 0.0_wp, 'rectangle')
-      call check_close(error, sum(section%area*section%y**2), 0.4_wp*0.5_wp**3/12.0_wp, 1.0e-5_wp, 0.0_wp, &
-                       'its I')
-      section%circular = .true.
-      section%width = 0.5_wp
+      call check_close(error, sum(section%strips%area), 0.2_wp, 1.0e-13_wp, 0.0_wp, 'rectangle')
+      call check_close(error, sum(section%strips%area*section%strips%y**2), 0.4_wp*0.5_wp**3/12.0_wp, &
+                       1.0e-5_wp, 0.0_wp, 'its I')
+      call new_shape(shape_circle, 0.5_wp, 0.5_wp, section%shape)
       section%transverse%kind = spiral
       section%transverse%diameter = 0.01_wp
-      call slice(section, 400)
-      call check_close(error, sum(section%area), gross_area(section), 1.0e-13_wp, 0.0_wp, 'circle')
-      call check_close(error, sum(section%area), 0.25_wp*pi*0.25_wp, 1.0e-13_wp, 0.0_wp, 'pi d^2/4')
-      call check_close(error, sum(section%area*section%y**2), pi*0.5_wp**4/64.0_wp, 3.0e-5_wp, 0.0_wp, &
-                       'its I')
-      call check_close(error, sum(section%core_area), 0.25_wp*pi*0.43_wp**2, 1.0e-13_wp, 0.0_wp, 'core')
+      call build_section(section, 0.006_wp, 400)
+      call check_close(error, sum(section%strips%area), section%shape%area(), 1.0e-13_wp, 0.0_wp, 'circle')
+      call check_close(error, sum(section%strips%area), 0.25_wp*pi*0.25_wp, 1.0e-13_wp, 0.0_wp, 'pi d^2/4')
+      call check_close(error, sum(section%strips%area*section%strips%y**2), pi*0.5_wp**4/64.0_wp, &
+                       3.0e-5_wp, 0.0_wp, 'its I')
+      call check_close(error, sum(section%strips%core_area), 0.25_wp*pi*0.43_wp**2, 1.0e-13_wp, 0.0_wp, &
+                       'core')
    end subroutine strip_sums
+
+   !> What a shape says of itself, against sums of its width over 20 000 thin strips.
+   subroutine shapes_agree(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: many = 20000
+      class(shape_type), allocatable :: shape
+      real(wp) :: y(many), width(many), dy
+      integer :: place, i
+
+      do place = 1, size(shape_names)
+         call new_shape(place, 0.6_wp, 0.6_wp, shape)
+         dy = shape%depth/many
+         y = [(-0.5_wp*shape%depth + (i - 0.5_wp)*dy, i=1, many)]
+         width = shape%width_at(y)
+         associate (part => pack(width, y > -0.1_wp .and. y < 0.25_wp), &
+                    at => pack(y, y > -0.1_wp .and. y < 0.25_wp))
+            call check_close(error, shape%area_between(-0.1_wp, 0.25_wp), sum(part)*dy, 1.0e-4_wp, 0.0_wp, &
+                             trim(shape_names(place))//': part of the area')
+            call check_close(error, shape%moment_between(-0.1_wp, 0.25_wp), sum(part*at)*dy, 3.0e-4_wp, &
+                             0.0_wp, trim(shape_names(place))//': moment of a part')
+         end associate
+         call check_close(error, shape%area(), sum(width)*dy, 1.0e-5_wp, 0.0_wp, &
+                          trim(shape_names(place))//': area')
+         call check_close(error, shape%area_between(-1.0_wp, 1.0_wp), shape%area(), 1.0e-14_wp, 0.0_wp, &
+                          trim(shape_names(place))//': all of the area')
+         call check_close(error, shape%second_moment(), sum(width*y**2)*dy, 1.0e-5_wp, 0.0_wp, &
+                          trim(shape_names(place))//': second moment')
+         call check_close(error, shape%width_at(0.31_wp), 0.0_wp, 0.0_wp, 0.0_wp, &
+                          trim(shape_names(place))//': width outside')
+         call check_close(error, shape%leg_share(0.0_wp), 1.0_wp, 1.0e-14_wp, 0.0_wp, &
+                          trim(shape_names(place))//': legs at mid-depth')
+      end do
+      call check_close(error, shape%shear_area(), 0.9_wp*0.25_wp*pi*0.36_wp, 1.0e-14_wp, 0.0_wp, &
+                       'circle: shear area')
+      call check_close(error, shape%leg_share([0.18_wp, -0.24_wp, 0.4_wp]), [0.8_wp, 0.6_wp, 0.0_wp], &
+                       1.0e-13_wp, 1.0e-7_wp, 'circle: legs')
+   end subroutine shapes_agree
+
+   !> A square of 500 mm with a spiral: the core is a circle of 430 mm; half of it has its centroid at
+   !> 4 r/(3 pi), and core and cover balance about mid-depth in each half.
+   subroutine round_core(error)
+      type(error_type), allocatable, intent(inout) :: error
+      class(shape_type), allocatable :: outline, core
+      type(strips_type) :: strips
+      real(wp) :: core_y(2), cover_y(2)
+
+      call new_shape(shape_rectangle, 0.5_wp, 0.5_wp, outline)
+      call new_core(outline, .true., 0.07_wp, 0.07_wp, core)
+      call check_close(error, core%area(), 0.25_wp*pi*0.43_wp**2, 1.0e-14_wp, 0.0_wp, 'core')
+      call cut_strips(outline, core, 2, strips)
+      call strip_centroids(outline, core, strips, core_y, cover_y)
+      call check_close(error, strips%core_area, [0.5_wp, 0.5_wp]*core%area(), 1.0e-14_wp, 0.0_wp, 'halves')
+      call check_close(error, core_y(2), 4.0_wp*0.215_wp/(3.0_wp*pi), 1.0e-14_wp, 0.0_wp, 'half a circle')
+      call check_close(error, core_y(1) + core_y(2) + cover_y(1) + cover_y(2), 0.0_wp, 0.0_wp, 1.0e-15_wp, &
+                       'symmetry')
+      call check_close(error, core_y(2)*strips%core_area(2) + &
+                       cover_y(2)*(strips%area(2) - strips%core_area(2)), 0.125_wp*0.125_wp, &
+                       1.0e-14_wp, 0.0_wp, 'half of the square')
+   end subroutine round_core
 
    subroutine confinement(error)
       type(error_type), allocatable, intent(inout) :: error
@@ -208,7 +269,7 @@ contains
       section%transverse%legs = 2.0_wp
       section%transverse%legs_across = 3.0_wp
       section%transverse%steel = steel_type(400.0e6_wp, 600.0e6_wp)
-      call confine(section, 0.006_wp)
+      call build_section(section, 0.006_wp, 400)
       ! Core 330 x 430; clear between bars 330 - 30 - 20 = 280 (one gap), 400/2 - 20 = 180 (two).
       core = 0.33_wp*0.43_wp
       k_e = (1.0_wp - (2.0_wp*0.28_wp**2 + 4.0_wp*0.18_wp**2)/(6.0_wp*core))*(1.0_wp - 0.1_wp/0.66_wp)* &
@@ -219,10 +280,10 @@ contains
       call check_close(error, section%core%eps_cu, 0.004_wp + 1.4_wp*rho*400.0e6_wp*0.1_wp/section%core%fc, &
                        1.0e-12_wp, 0.0_wp, 'eps_cu')
 
-      section%circular = .true.
-      section%width = 0.5_wp
+      call new_shape(shape_circle, 0.5_wp, 0.5_wp, section%shape)
       section%transverse%kind = spiral
-      call confine(section, 0.006_wp)
+      section%transverse%legs_across = 2.0_wp
+      call build_section(section, 0.006_wp, 400)
       core = 0.25_wp*pi*0.43_wp**2
       call check_close(error, section%effectiveness, (1.0_wp - 0.1_wp/0.86_wp)/(1.0_wp - 2.0e-3_wp/core), &
                        1.0e-12_wp, 0.0_wp, 'spiral: k_e')

@@ -31,10 +31,10 @@ if TYPE_CHECKING:
 
 __all__ = ["Section"]
 
-#: Shapes in the Fortran part.
+#: Shapes in the Fortran part, from 1.
 _SHAPES = ("rectangle", "circle")
 
-#: Kinds of transverse reinforcement in the Fortran part.
+#: Kinds of transverse reinforcement in the Fortran part, from 0.
 _KINDS = ("none", "ties", "spiral", "hoops")
 
 _NO_STEEL = (1.0, 1.0, 1.0, 1.0, 1.0)
@@ -102,7 +102,7 @@ class Section(ABC):
         steels = list(dict.fromkeys(steel for _, _, steel in bars))
         kind, tie_numbers = _transverse_numbers(transverse)
         places = [steels.index(steel) + 1 for _, _, steel in bars]
-        codes = [_SHAPES.index(self.shape), kind, self.strips, len(steels), len(bars), *places]
+        codes = [_SHAPES.index(self.shape) + 1, kind, self.strips, len(steels), len(bars), *places]
         numbers = [width, depth, cover, side_cover, self.bar_diameter or 0.0]
         numbers += concrete.numbers() + tie_numbers
         for steel in steels:

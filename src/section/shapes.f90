@@ -1,0 +1,54 @@
+!> The list of shapes, and the only place that makes one.
+module rbs_section_shapes
+   use rbs_base_kinds, only: wp
+   use rbs_section_shape, only: shape_type
+   use rbs_section_shape_circle, only: circle_type
+   use rbs_section_shape_rectangle, only: rectangle_type
+   implicit none
+   private
+
+   public :: new_shape, new_core
+
+   character(len=9), parameter, public :: shape_names(2) = ['rectangle', 'circle   ']
+   integer, parameter, public :: shape_rectangle = 1, shape_circle = 2
+
+contains
+
+   !> Make the shape at a place among `shape_names`.
+   subroutine new_shape(place, width, depth, shape)
+      integer, intent(in) :: place
+      !> Sizes across and along the direction of loading [m]
+      real(wp), intent(in) :: width, depth
+      class(shape_type), allocatable, intent(inout) :: shape
+
+      if (allocated(shape)) deallocate (shape)
+      select case (place)
+      case (shape_circle)
+         allocate (circle_type :: shape)
+      case default
+         allocate (rectangle_type :: shape)
+      end select
+      shape%width = width
+      shape%depth = depth
+   end subroutine new_shape
+
+   !> Make the shape that the hoops of an outline enclose: a round hoop encloses a circle, ties enclose a
+   !> smaller figure of the same shape.
+   subroutine new_core(outline, round, width_by, depth_by, core)
+      class(shape_type), intent(in) :: outline
+      !> Whether the hoops are round
+      logical, intent(in) :: round
+      !> By how much width and depth between hoop centre lines are smaller than those of the outline [m]
+      real(wp), intent(in) :: width_by, depth_by
+      class(shape_type), allocatable, intent(inout) :: core
+
+      if (allocated(core)) deallocate (core)
+      if (round) then
+         call new_shape(shape_circle, outline%depth, outline%depth, core)
+      else
+         allocate (core, source=outline)
+      end if
+      call core%shrink(width_by, depth_by)
+   end subroutine new_core
+
+end module rbs_section_shapes
