@@ -4,10 +4,9 @@ import sys
 from pathlib import Path
 
 import rbsdem
-from rbsdem.accuracy import trade
 
 case = rbsdem.read_case(Path(__file__).with_name("case.nml"))
-found = trade(
+found = rbsdem.trade(
     case.column,
     case.time,
     ground_acceleration=case.ground_acceleration,

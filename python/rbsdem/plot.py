@@ -25,7 +25,17 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["RC", "Panel", "axes_or_new", "four_panels", "loop", "loops_over_test", "save", "style"]
+__all__ = [
+    "RC",
+    "Panel",
+    "axes_or_new",
+    "four_panels",
+    "line_of",
+    "loop",
+    "loops_over_test",
+    "save",
+    "style",
+]
 
 RC: dict[str, Any] = {
     "font.family": "STIXGeneral",
@@ -173,7 +183,7 @@ def loop(
     """
     d, f = _curve((curve, force) if force is not None else curve, "the loop")
     with axes_or_new(ax) as drawn:
-        drawn.plot(d, f, **_line(MODEL_LINE, line))
+        drawn.plot(d, f, **line_of(MODEL_LINE, line))
         _dress(drawn, height)
     return drawn
 
@@ -224,7 +234,7 @@ def loops_over_test(
     computed = _curve(model, "the model")
     with axes_or_new(ax) as drawn:
         drawn.plot(*measured, label="Test", **(TEST_POINTS if test_points else TEST_LINE))
-        drawn.plot(*computed, **_line({**MODEL_LINE, "label": "Model"}, line))
+        drawn.plot(*computed, **line_of({**MODEL_LINE, "label": "Model"}, line))
         _dress(drawn, height)
         if title:
             at = drawn.transAxes
@@ -327,7 +337,7 @@ def save(figure: Figure, path: str | os.PathLike[str], *, pdf: bool = False) -> 
     return files
 
 
-def _line(default: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
+def line_of(default: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
     """Return the properties of a line, those given in place of the defaults, aliases included."""
     from matplotlib.cbook import normalize_kwargs  # noqa: PLC0415
     from matplotlib.lines import Line2D  # noqa: PLC0415

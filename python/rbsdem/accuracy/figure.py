@@ -8,13 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rbsdem import plot
+from rbsdem._views import view_of
 from rbsdem.accuracy.ladder import LEVELS
+from rbsdem.accuracy.outcome import Trade
 from rbsdem.errors import InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from rbsdem.accuracy import Trade
     from rbsdem.accuracy.rows import Row
 
 #: Marker, filling and gray of each method; located events are filled.
@@ -40,6 +41,7 @@ DASHES = ("-", (0, (4, 1.5)), (0, (1, 1.5)))
 TOP = 10.0
 
 
+@view_of(Trade, "plot")
 def draw(trade: Trade, ax: Axes | None = None) -> Axes:
     """Draw error against wall time."""
     done = [row for row in trade.rows if math.isfinite(row.error)]

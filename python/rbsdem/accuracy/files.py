@@ -7,10 +7,9 @@ import math
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from rbsdem.accuracy import Trade
+from rbsdem._views import view_of
+from rbsdem.accuracy.outcome import Trade
 
 COLUMNS = (
     "method",
@@ -47,6 +46,7 @@ EFFECT_COLUMNS = (
 )
 
 
+@view_of(Trade, "to_csv")
 def write_settings(trade: Trade, path: str | os.PathLike[str]) -> None:
     """Write the settings as csv."""
     rows = [
@@ -68,6 +68,7 @@ def write_settings(trade: Trade, path: str | os.PathLike[str]) -> None:
     _write(path, COLUMNS, rows)
 
 
+@view_of(Trade, "physics_to_csv")
 def write_physics(trade: Trade, path: str | os.PathLike[str]) -> None:
     """Write the effects of the parts of the model as csv."""
     effects = trade.physics.effects if trade.physics else ()

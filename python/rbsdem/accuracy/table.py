@@ -3,47 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rbsdem._optional import escaped, need_rich
-from rbsdem.accuracy.ladder import Budget
+from rbsdem._views import view_of
+from rbsdem.accuracy.outcome import Trade
 from rbsdem.accuracy.rows import seconds_text
 from rbsdem.errors import InputError
 
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from rbsdem.accuracy import Trade
     from rbsdem.accuracy.rows import Row
 
 
-@contextmanager
-def telling(clock: Budget) -> Iterator[Callable[[str], None]]:
-    """Show on stderr what is being done and how much of the budget is used.
-
-    Drawn between runs only, so that no thread disturbs what is timed.
-    """
-    rich = need_rich()
-    from rich.console import Console  # noqa: PLC0415
-
-    bar = rich.progress.Progress(
-        rich.progress.BarColumn(bar_width=20),
-        rich.progress.TextColumn("{task.completed:.0f} of {task.total:.0f} s  {task.description}"),
-        console=Console(stderr=True),
-        auto_refresh=False,
-        transient=True,
-    )
-    with bar:
-        task = bar.add_task("", total=clock.seconds)
-
-        def told(text: str) -> None:
-            bar.update(task, completed=clock.used(), description=text, refresh=True)
-
-        yield told
-
-
+@view_of(Trade, "table")
 def settings_table(trade: Trade) -> Table:
     """Return the settings as a table of rich."""
     rich = need_rich()
@@ -130,6 +105,7 @@ def report(trade: Trade, title: str) -> None:
     say(f"\nDone in {trade.seconds:.1f} s of {trade.budget:g} s.")
 
 
+@view_of(Trade, "physics_table")
 def physics_table(trade: Trade) -> Table:
     """Return the effects of the parts of the model as a table of rich."""
     if trade.physics is None:

@@ -8,6 +8,9 @@ points come with rbsdem.
 from typing import TYPE_CHECKING
 
 from rbsdem import _moved
+from rbsdem.peer import contact_sheet as contact_sheet
+from rbsdem.peer import gallery as gallery
+from rbsdem.peer import tables as tables
 from rbsdem.peer.batch import predict, predict_one
 from rbsdem.peer.columns import column
 from rbsdem.peer.drawing import Drawing, DrawnBar, draw

@@ -24,6 +24,7 @@ from rbsdem.errors import InputError, RbsdemError, SolveError
 from rbsdem.peer.columns import column as column_of
 from rbsdem.peer.measured import MeasuredTest
 from rbsdem.peer.predictions import Prediction, Predictions
+from rbsdem.peer.progress import progress_bar
 from rbsdem.peer.specimen import Specimen
 from rbsdem.section.model import DEFAULT, model_name
 
@@ -89,7 +90,7 @@ def predict(
     run = _in_processes if jobs > 1 and len(tests) > 1 else _here
     interrupted = False
     with ExitStack() as stack:
-        told = stack.enter_context(_bar(len(tests))) if progress else None
+        told = stack.enter_context(progress_bar(len(tests))) if progress else None
         try:
             for number, row in run(tests, model, options, jobs):
                 rows[number] = row
@@ -273,9 +274,3 @@ def _name(model: Model, options: dict[str, Any]) -> str:
     if callable(model):
         return getattr(model, "__name__", repr(model))
     return model_name(model, options.get("version"), options.get("model_parameters"))
-
-
-def _bar(total: int) -> Any:
-    from rbsdem.peer.tables import progress_bar  # noqa: PLC0415
-
-    return progress_bar(total)

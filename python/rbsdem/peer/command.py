@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from fnmatch import fnmatch
 from pathlib import Path
 
+from rbsdem._optional import need_rich
 from rbsdem._parser import CommandParser
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.peer.batch import predict
@@ -88,8 +89,6 @@ def main(arguments: Sequence[str]) -> int:
 
 def _run(given: argparse.Namespace) -> int:
     # What may be missing or wrong, before the work.
-    from rbsdem._optional import need_rich  # noqa: PLC0415
-
     need_rich()
     tests = chosen(read_specimens(given.folder), given.section, given.failure, given.only)
     if not hasattr(tests[0], given.by):

@@ -10,10 +10,11 @@ import numpy as np
 
 from rbsdem import plot
 from rbsdem._optional import need_matplotlib
+from rbsdem._views import view_of
+from rbsdem.peer.predictions import Prediction, Predictions
 
 if TYPE_CHECKING:
     from rbsdem._core import Array
-    from rbsdem.peer.predictions import Prediction, Predictions
     from rbsdem.peer.specimen import Specimen
 
 __all__ = ["write_contact_sheet"]
@@ -23,6 +24,7 @@ _CELL = 1.15, 1.05  # inches
 _REACH = 0.46, 0.38
 
 
+@view_of(Predictions, "contact_sheet")
 def write_contact_sheet(predictions: Predictions, path: Path) -> Path:
     """Write the picture.
 

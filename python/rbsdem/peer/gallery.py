@@ -5,14 +5,12 @@ from __future__ import annotations
 import html
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rbsdem._core import Array
-
-if TYPE_CHECKING:
-    from rbsdem.peer.predictions import Group, Prediction, Predictions
+from rbsdem._views import view_of
+from rbsdem.peer.predictions import Group, Prediction, Predictions
 
 __all__ = ["svg_path", "write_gallery"]
 
@@ -70,6 +68,7 @@ def thinned(points: Array, tolerance: float = 1.0) -> Array:
     return points
 
 
+@view_of(Predictions, "gallery")
 def write_gallery(predictions: Predictions, path: Path) -> Path:
     """Write the page."""
     path.parent.mkdir(parents=True, exist_ok=True)

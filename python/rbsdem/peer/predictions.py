@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
+from rbsdem import _views
 from rbsdem.comparison import SCORES, Comparison
 from rbsdem.errors import InputError
 from rbsdem.peer.specimen import Specimen
@@ -223,9 +224,7 @@ class Predictions(Sequence[Prediction]):
 
     def table(self) -> Table:
         """Return a table of rich, a row for each test."""
-        from rbsdem.peer.tables import tests_table  # noqa: PLC0415
-
-        return tests_table(self)
+        return _views.view(self, "table")
 
     def summary_table(self, by: str = "failure_mode") -> Table:
         """Return `summary` as a table of rich.
@@ -235,9 +234,7 @@ class Predictions(Sequence[Prediction]):
         by : str, optional
             As for `summary`.
         """
-        from rbsdem.peer.tables import summary_table  # noqa: PLC0415
-
-        return summary_table(self.summary(by))
+        return _views.view(self, "summary_table", by)
 
     def records(self) -> list[dict[str, Any]]:
         """Return a dict for each test: properties that group tests, scores, times."""
@@ -319,9 +316,7 @@ class Predictions(Sequence[Prediction]):
         Path
             The file.
         """
-        from rbsdem.peer.gallery import write_gallery  # noqa: PLC0415
-
-        return write_gallery(self, Path(path))
+        return _views.view(self, "gallery", Path(path))
 
     def contact_sheet(self, path: str | os.PathLike[str]) -> Path:
         """Write one picture with all loops; needs matplotlib.
@@ -336,9 +331,7 @@ class Predictions(Sequence[Prediction]):
         Path
             The file.
         """
-        from rbsdem.peer.contact_sheet import write_contact_sheet  # noqa: PLC0415
-
-        return write_contact_sheet(self, Path(path))
+        return _views.view(self, "contact_sheet", Path(path))
 
     def _some(self, rows: Iterable[Prediction]) -> Predictions:
         return Predictions(

@@ -1,46 +1,22 @@
-"""Predictions on the terminal: tables of rich, and a bar."""
+"""Predictions as tables of rich."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from rbsdem._optional import escaped, need_rich
+from rbsdem._views import view_of
+from rbsdem.peer.predictions import Predictions, Quartiles
 
 if TYPE_CHECKING:
     from rich.table import Table
-
-    from rbsdem.peer.predictions import Group, Prediction, Predictions, Quartiles
 
 _RATIOS = ("peak_ratio", "energy_ratio", "stiffness_ratio", "end_ratio")
 _MARKS = {"stopped": "yellow", "failed": "red", "no history": "dim"}
 
 
-@contextmanager
-def progress_bar(total: int) -> Iterator[Callable[[Prediction], None]]:
-    """Show on stderr how many tests are done, and the last one."""
-    rich = need_rich()
-    from rich.console import Console  # noqa: PLC0415
-
-    bar = rich.progress.Progress(
-        rich.progress.BarColumn(bar_width=24),
-        rich.progress.MofNCompleteColumn(),
-        rich.progress.TimeElapsedColumn(),
-        rich.progress.TextColumn("{task.description}"),
-        console=Console(stderr=True),
-        transient=True,
-    )
-    with bar:
-        task = bar.add_task("", total=total)
-
-        def told(row: Prediction) -> None:
-            bar.update(task, advance=1, description=escaped(row.specimen.name))
-
-        yield told
-
-
+@view_of(Predictions, "table")
 def tests_table(predictions: Predictions) -> Table:
     """Return a row for each test."""
     rich = need_rich()
@@ -68,14 +44,15 @@ def tests_table(predictions: Predictions) -> Table:
     return table
 
 
-def summary_table(groups: Sequence[Group]) -> Table:
+@view_of(Predictions, "summary_table")
+def summary_table(predictions: Predictions, by: str) -> Table:
     """Return a row for each group: median, and in gray the quartiles."""
     rich = need_rich()
     table = rich.table.Table(box=rich.box.SIMPLE_HEAD, padding=(0, 1), show_edge=False)
     table.add_column("Median and quartiles", no_wrap=True)
     for name in ("Tests", "Early end", "Failed", "NRMSE", "Peak", "Energy", "K", "End", "Time ms"):
         table.add_column(name, justify="right", no_wrap=True)
-    for group in groups:
+    for group in predictions.summary(by):
         q = group.quartiles
         cells = [_three(q["nrmse"], 3), *(_three(q[name], 2) for name in _RATIOS)]
         table.add_row(

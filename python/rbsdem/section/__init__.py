@@ -5,6 +5,8 @@ Concrete, steel, bars and ties make a `RectangularSection` or a `CircularSection
 positive in compression, y is positive to the face that a positive curvature puts in tension.
 """
 
+from rbsdem.section import figure as figure
+from rbsdem.section import shear_figure as shear_figure
 from rbsdem.section.circular import CircularSection
 from rbsdem.section.diagram import Confinement, Diagram, Events, Point
 from rbsdem.section.materials import Concrete, Steel

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rbsdem import _core
+from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem.errors import InputError
 from rbsdem.section.materials import tension_place
@@ -132,22 +132,22 @@ class Diagram:
     end: Point
     lost: bool
 
-    def plot(self, ax: Axes | None = None) -> Axes:
+    def plot(self, ax: Axes | None = None, **line: Any) -> Axes:
         """Draw the diagram with its events, in kN m and mrad/m.
 
         Parameters
         ----------
         ax : matplotlib Axes, optional
             Where to draw; a new figure without it.
+        **line
+            Properties of the line, as for ``Axes.plot``.
 
         Returns
         -------
         matplotlib.axes.Axes
             The axes.
         """
-        from rbsdem.section.figure import draw_diagram  # noqa: PLC0415
-
-        return draw_diagram(self, ax)
+        return _views.view(self, "plot", ax, **line)
 
 
 def make_point(numbers: Array) -> Point | None:

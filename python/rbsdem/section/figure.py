@@ -11,17 +11,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rbsdem.plot import MODEL_LINE, TEST_LINE, style
+from rbsdem._optional import need_matplotlib
+from rbsdem._views import view_of
+from rbsdem.plot import MODEL_LINE, TEST_LINE, axes_or_new, line_of, style
+from rbsdem.section.diagram import Diagram, Events
+from rbsdem.section.section import Section
+from rbsdem.section.spring_fit import SectionSprings
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from rbsdem.section.diagram import Diagram, Events
-    from rbsdem.section.section import Section
-    from rbsdem.section.spring_fit import SectionSprings
-
-__all__ = ["EVENT_MARKS", "draw_diagram", "draw_section", "draw_springs", "new_axes"]
+__all__ = ["EVENT_MARKS", "draw_diagram", "draw_section", "draw_springs"]
 
 EVENT_MARKS: dict[str, dict[str, Any]] = {
     "cracking": {"marker": "o", "markerfacecolor": "white"},
@@ -37,24 +38,15 @@ _INSIDE = {"facecolor": "0.93", "linewidth": 0.0}
 _BAR = {"facecolor": "black", "edgecolor": "black", "linewidth": 0.0}
 
 
-def new_axes(ax: Axes | None, size: tuple[float, float]) -> Axes:
-    """Return the axes, or those of a new figure of a size in inches."""
-    if ax is not None:
-        return ax
-    import matplotlib.pyplot as plt  # noqa: PLC0415
-
-    return plt.subplots(figsize=size, layout="constrained")[1]
-
-
-def draw_diagram(diagram: Diagram, ax: Axes | None = None) -> Axes:
+@view_of(Diagram, "plot")
+def draw_diagram(diagram: Diagram, ax: Axes | None = None, **line: Any) -> Axes:
     """Draw moment against curvature and mark the events; see `Diagram.plot`."""
-    with style():
-        ax = new_axes(ax, (3.5, 2.8))
-        ax.plot(1e3 * diagram.curvature, diagram.moment / 1e3, **MODEL_LINE)
-        _draw_events(diagram.events, float(diagram.curvature[-1]), ax)
-        _dress(ax)
-        ax.set_ylim(bottom=min(0.0, float(np.min(diagram.moment)) / 1e3))
-    return ax
+    with axes_or_new(ax, (3.5, 2.8)) as drawn:
+        drawn.plot(1e3 * diagram.curvature, diagram.moment / 1e3, **line_of(MODEL_LINE, line))
+        _draw_events(diagram.events, float(diagram.curvature[-1]), drawn)
+        _dress(drawn)
+        drawn.set_ylim(bottom=min(0.0, float(np.min(diagram.moment)) / 1e3))
+    return drawn
 
 
 def _draw_events(
@@ -85,8 +77,10 @@ def _dress(ax: Axes) -> None:
     ax.legend(loc="lower right", handletextpad=0.3)
 
 
+@view_of(SectionSprings, "plot")
 def draw_springs(springs: SectionSprings) -> Figure:
     """Draw the diagrams and the lines fitted to them; see `SectionSprings.plot`."""
+    need_matplotlib()
     from matplotlib.figure import Figure  # noqa: PLC0415
 
     section, events = springs.section, springs.events
@@ -118,29 +112,32 @@ def draw_springs(springs: SectionSprings) -> Figure:
     return figure
 
 
+@view_of(Section, "plot")
 def draw_section(section: Section, ax: Axes | None = None) -> Axes:
     """Draw outline, ties and bars to scale, the tension face below; see `Section.plot`."""
+    need_matplotlib()
     from matplotlib.patches import Circle, Polygon  # noqa: PLC0415
 
-    with style():
-        ax = new_axes(ax, (2.6, 2.8))
+    with axes_or_new(ax, (2.6, 2.8)) as drawn:
         w, h = 1e3 * section.width, 1e3 * section.depth
-        ax.add_patch(Polygon(1e3 * section.outline(), **_CONCRETE))
+        drawn.add_patch(Polygon(1e3 * section.outline(), **_CONCRETE))
         if section.ties is not None:
-            _draw_ties(section, section.ties.diameter, ax)
+            _draw_ties(section, section.ties.diameter, drawn)
         for x, y, diameter in section.place_bars(_single_bars(section)):
-            ax.add_patch(Circle((1e3 * x, -1e3 * y), 0.5e3 * diameter, zorder=3, **_BAR))
+            drawn.add_patch(Circle((1e3 * x, -1e3 * y), 0.5e3 * diameter, zorder=3, **_BAR))
         reach_x, reach_y = 0.54 * w, 0.54 * h
-        ax.set_xlim(-reach_x, reach_x)
-        ax.set_ylim(-reach_y, reach_y)
-        ax.set_aspect("equal")
-        ax.set_xticks([-0.5 * w, 0.0, 0.5 * w])
-        ax.set_yticks([-0.5 * h, 0.0, 0.5 * h], [f"{0.5 * h:g}", "0", f"\N{MINUS SIGN}{0.5 * h:g}"])
-        ax.set_xlabel("Width (mm)")
-        ax.set_ylabel("$y$ (mm), tension below")
-        for spine in ax.spines.values():
+        drawn.set_xlim(-reach_x, reach_x)
+        drawn.set_ylim(-reach_y, reach_y)
+        drawn.set_aspect("equal")
+        drawn.set_xticks([-0.5 * w, 0.0, 0.5 * w])
+        drawn.set_yticks(
+            [-0.5 * h, 0.0, 0.5 * h], [f"{0.5 * h:g}", "0", f"\N{MINUS SIGN}{0.5 * h:g}"]
+        )
+        drawn.set_xlabel("Width (mm)")
+        drawn.set_ylabel("$y$ (mm), tension below")
+        for spine in drawn.spines.values():
             spine.set_visible(False)
-    return ax
+    return drawn
 
 
 def _draw_ties(section: Section, thickness: float, ax: Axes) -> None:

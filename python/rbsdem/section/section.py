@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _core
+from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem.errors import InputError
 from rbsdem.section.diagram import Confinement, Diagram, make_diagram
@@ -481,9 +481,7 @@ class Section(ABC):
         matplotlib.axes.Axes
             The axes, in mm, the tension face below.
         """
-        from rbsdem.section.figure import draw_section  # noqa: PLC0415
-
-        return draw_section(self, ax)
+        return _views.view(self, "plot", ax)
 
     def _load(self, axial_load: Any) -> float:
         value = _core.number(axial_load, "axial_load")

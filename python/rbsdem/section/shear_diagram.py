@@ -8,12 +8,12 @@ the secant has fallen to 0.48 of the uncracked stiffness (E_c/2) A.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _core
+from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem.errors import InputError
 from rbsdem.section.materials import tension_place
@@ -129,7 +129,9 @@ class ShearDiagram:
         """Shear force over strain of the uncracked concrete, (E_c/2) A [N]."""
         return 0.5 * self.section.concrete_law["ec"] * self.section.gross_area
 
-    def plot(self, ax: Axes | None = None, *, spring: ShearSpring | None = None) -> Axes:
+    def plot(
+        self, ax: Axes | None = None, *, spring: ShearSpring | None = None, **line: Any
+    ) -> Axes:
         """Draw the diagram with its knee, in kN and mm/m.
 
         Parameters
@@ -138,15 +140,15 @@ class ShearDiagram:
             Where to draw; a new figure without it.
         spring : ShearSpring, optional
             Draw the lines of this spring as well.
+        **line
+            Properties of the diagram's line, as for ``Axes.plot``.
 
         Returns
         -------
         matplotlib.axes.Axes
             The axes.
         """
-        from rbsdem.section.shear_figure import draw_shear  # noqa: PLC0415
-
-        return draw_shear(self, ax, spring)
+        return _views.view(self, "plot", ax, spring=spring, **line)
 
 
 def shear_diagram(

@@ -5,42 +5,49 @@ In the style of `rbsdem.plot`; kN and mm/m.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rbsdem.plot import MODEL_LINE, TEST_LINE, style
-from rbsdem.section.figure import EVENT_MARKS, new_axes
+from rbsdem._views import view_of
+from rbsdem.plot import MODEL_LINE, TEST_LINE, axes_or_new, line_of
+from rbsdem.section.figure import EVENT_MARKS
+from rbsdem.section.shear_diagram import ShearDiagram
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from rbsdem.section.shear_diagram import ShearDiagram
     from rbsdem.section.shear_spring import ShearSpring
 
 __all__ = ["draw_shear"]
 
 
-def draw_shear(diagram: ShearDiagram, ax: Axes | None, spring: ShearSpring | None) -> Axes:
+@view_of(ShearDiagram, "plot")
+def draw_shear(
+    diagram: ShearDiagram,
+    ax: Axes | None = None,
+    *,
+    spring: ShearSpring | None = None,
+    **line: Any,
+) -> Axes:
     """Draw shear force against shear strain; see `ShearDiagram.plot`."""
-    with style():
-        ax = new_axes(ax, (3.5, 2.8))
+    with axes_or_new(ax, (3.5, 2.8)) as drawn:
         strain = 1e3 * np.concatenate([[0.0], diagram.strain])
         force = np.concatenate([[0.0], diagram.force]) / 1e3
-        ax.plot(strain, force, **MODEL_LINE, label="Section")
+        drawn.plot(strain, force, **line_of({**MODEL_LINE, "label": "Section"}, line))
         marks = {"yielding": diagram.knee, "ultimate": diagram.end}
         if spring is not None:
             marks = {"yielding": spring.knee, "ultimate": spring.end}
             points = [(0.0, 0.0)] + [(p.strain, p.force) for p in (spring.knee, spring.end)]
             x, y = np.array(points).T
-            ax.plot(1e3 * x, y / 1e3, **TEST_LINE, label="Spring")
+            drawn.plot(1e3 * x, y / 1e3, **TEST_LINE, label="Spring")
             # A strength far above the diagram would only flatten it.
             if spring.strength < 1.3e3 * force.max():
-                ax.axhline(spring.strength / 1e3, color="0.75", linewidth=0.6, label="$V_n$")
+                drawn.axhline(spring.strength / 1e3, color="0.75", linewidth=0.6, label="$V_n$")
         for name, label in (("yielding", "Knee"), ("ultimate", "End")):
             point = marks[name]
             if point is not None:
-                ax.plot(
+                drawn.plot(
                     1e3 * point.strain,
                     point.force / 1e3,
                     linestyle="none",
@@ -51,10 +58,10 @@ def draw_shear(diagram: ShearDiagram, ax: Axes | None, spring: ShearSpring | Non
                     label=label,
                     **EVENT_MARKS[name],
                 )
-        ax.set_xlim(0.0, 1.08 * strain.max())
-        ax.set_ylim(bottom=0.0)
-        ax.set_xlabel("Shear strain (mm/m)")
-        ax.set_ylabel("Shear force (kN)")
-        ax.tick_params(right=True, top=True)
-        ax.legend(loc="lower right", handletextpad=0.5)
-    return ax
+        drawn.set_xlim(0.0, 1.08 * strain.max())
+        drawn.set_ylim(bottom=0.0)
+        drawn.set_xlabel("Shear strain (mm/m)")
+        drawn.set_ylabel("Shear force (kN)")
+        drawn.tick_params(right=True, top=True)
+        drawn.legend(loc="lower right", handletextpad=0.5)
+    return drawn

@@ -7,7 +7,7 @@ import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rbsdem import _core
+from rbsdem import _core, _views
 from rbsdem._core import UNSET
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.section.diagram import Events, make_point
@@ -80,9 +80,7 @@ class SectionSprings:
             Shear force against shear strain, where there is a shear diagram, and moment against
             curvature; `rbsdem.plot.save` writes it.
         """
-        from rbsdem.section.figure import draw_springs  # noqa: PLC0415
-
-        return draw_springs(self)
+        return _views.view(self, "plot")
 
 
 def fit_springs(

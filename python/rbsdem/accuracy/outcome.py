@@ -1,0 +1,84 @@
+"""What a trade found: the rows, the reference, the choice and the effects of parts of the model."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rbsdem import _views
+from rbsdem.accuracy.physics import Physics
+from rbsdem.accuracy.reference import Reference
+from rbsdem.accuracy.rows import Choice, Row, cheapest
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from rich.table import Table
+
+
+@dataclass(frozen=True)
+class Trade:
+    """What time and accuracy cost each other in one case.
+
+    Attributes
+    ----------
+    rows : tuple of Row
+        All settings, families together, coarse ones first.
+    reference : Reference or None
+        What errors are measured against; None if there is none, and `notes` say why.
+    choice : Choice or None
+        The cheapest setting that meets the user's tolerance, if one was given.
+    physics : Physics or None
+        Which part of the model changes the answer by how much.
+    response : str
+        What the response is: "displacement" or "force".
+    seconds, budget : float
+        Wall time that was used and allowed [s].
+    notes : tuple of str
+        What else is to be known.
+    """
+
+    rows: tuple[Row, ...]
+    reference: Reference | None
+    choice: Choice | None
+    physics: Physics | None
+    response: str
+    seconds: float
+    budget: float
+    notes: tuple[str, ...] = ()
+
+    def cheapest(self, tolerance: float) -> Row | None:
+        """Return the cheapest setting whose error is within a tolerance, or None.
+
+        All finer settings of its family must be within it too: one that is so by chance is not
+        taken.
+        """
+        return cheapest(self.rows, tolerance)
+
+    def table(self) -> Table:
+        """Return the settings as a table of rich, front marked."""
+        return _views.view(self, "table")
+
+    def physics_table(self) -> Table:
+        """Return the effects of the parts of the model as a table of rich."""
+        return _views.view(self, "physics_table")
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write the settings as csv."""
+        _views.view(self, "to_csv", path)
+
+    def physics_to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write the effects of the parts of the model as csv."""
+        _views.view(self, "physics_to_csv", path)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw error against wall time, both logarithmic, the Pareto front marked.
+
+        Raises
+        ------
+        InputError
+            If there is nothing to draw.
+        ImportError
+            If matplotlib is not installed.
+        """
+        return _views.view(self, "plot", ax)
