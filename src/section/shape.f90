@@ -39,6 +39,7 @@ module rbs_section_shape
    abstract interface
       elemental real(wp) function at_depth(self, y)
          import :: shape_type, wp
+         implicit none
          class(shape_type), intent(in) :: self
          !> Distance from mid-depth [m]
          real(wp), intent(in) :: y
@@ -46,6 +47,7 @@ module rbs_section_shape
 
       elemental real(wp) function between(self, lo, hi)
          import :: shape_type, wp
+         implicit none
          class(shape_type), intent(in) :: self
          !> Distances from mid-depth, lo <= hi [m]
          real(wp), intent(in) :: lo, hi
@@ -53,11 +55,13 @@ module rbs_section_shape
 
       elemental real(wp) function figure(self)
          import :: shape_type, wp
+         implicit none
          class(shape_type), intent(in) :: self
       end function figure
 
       pure subroutine reduce(self, width_by, depth_by)
          import :: shape_type, wp
+         implicit none
          class(shape_type), intent(inout) :: self
          !> [m]
          real(wp), intent(in) :: width_by, depth_by
@@ -65,6 +69,7 @@ module rbs_section_shape
 
       subroutine check_sizes(self, messages, ok)
          import :: message_list, shape_type
+         implicit none
          class(shape_type), intent(in) :: self
          type(message_list), intent(inout) :: messages
          logical, intent(out) :: ok
