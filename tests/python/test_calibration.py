@@ -18,6 +18,7 @@ from rbsdem.calibration import Parameter, free_names, misfit, paths, undetermine
 from rbsdem.calibration.determined import determine
 from rbsdem.calibration.misfit import POINTS, Misfit, Target
 from rbsdem.calibration.search import COARSE, Search
+from rbsdem.comparison.cycles import half_cycle_numbers
 from rbsdem.peer import find_history, read_peer
 from rbsdem.springs import ConcreteSpring, Layered, SteelSpring
 
@@ -72,14 +73,14 @@ def test_error_is_the_nrmse_of_compare(reached):
 
 def test_half_cycles_of_a_protocol():
     d = rbsdem.protocol([0.01, 0.02], cycles=2, points=8)
-    halves = misfit._half_cycles(d)
+    halves = half_cycle_numbers(d)
     # To the first peak, then peak to peak: 4 cycles have 8 peaks, and the way back to zero.
     assert halves[0] == 0
     assert halves[-1] == 8
     turns = d[np.flatnonzero(np.diff(halves)) + 1]
     assert turns == pytest.approx([0.01, -0.01, 0.01, -0.01, 0.02, -0.02, 0.02, -0.02])
     # Small turns do not count.
-    assert np.all(misfit._half_cycles(np.array([0, 1, 0.99, 2, 1.97, 3.0])) == 0)
+    assert np.all(half_cycle_numbers(np.array([0, 1, 0.99, 2, 1.97, 3.0])) == 0)
 
 
 # ---- known numbers come back ---------------------------------------------------------------------
@@ -211,7 +212,7 @@ def test_too_few_half_cycles_for_standard_errors():
 def test_standard_error_covers_the_truth():
     """Half cycles scaled at random: the value is within two standard errors about 95 % of times."""
     d = rbsdem.protocol([0.01, 0.015, 0.02], cycles=5, points=8)
-    halves = misfit._half_cycles(d)
+    halves = half_cycle_numbers(d)
     random = np.random.default_rng(5)
     inside = 0
     with warnings.catch_warnings():
@@ -440,8 +441,8 @@ def test_interrupt_keeps_the_best(made, monkeypatch):
         monkeypatch.setattr(Made, "stop_at", None)
         return found(places, *rest)
 
-    found = rbsdem.calibration.determine
-    monkeypatch.setattr(rbsdem.calibration, "determine", interrupted)
+    found = rbsdem.calibration.fit.determine
+    monkeypatch.setattr(rbsdem.calibration.fit, "determine", interrupted)
     monkeypatch.setattr(Made, "calls", 0)
     monkeypatch.setattr(Made, "stop_at", 60)
     fit = quiet(start, test, ["strength", "hinge"])

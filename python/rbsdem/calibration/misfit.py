@@ -13,11 +13,13 @@ from rbsdem import _core
 from rbsdem._core import Array
 from rbsdem.analysis import cyclic
 from rbsdem.column import Column
+from rbsdem.comparison.cycles import half_cycle_numbers
+from rbsdem.comparison.metrics import N_POINTS, PathPoints, work
 from rbsdem.errors import InputError, SolveError
 from rbsdem.parameter import Parameter
 
-#: Points along the path of displacement at which the error is taken.
-POINTS = 2000
+#: Points along the path of displacement at which the error is taken, as in a comparison.
+POINTS = N_POINTS
 
 #: Error of a column that is refused, in shares of the measured peak: worse than any that runs.
 REFUSED = 10.0
@@ -55,24 +57,14 @@ class Target:
         self.peak = float(np.max(np.abs(self.force)))
         if not self.peak > 0:
             raise InputError("calibrate: the force of the test is 0 in every row")
-        steps = np.abs(np.diff(self.displacement))
-        path = np.concatenate(([0.0], np.cumsum(steps)))
-        if not path[-1] > 0:
+        if not np.any(np.diff(self.displacement)):
             raise InputError(
                 f"calibrate: the displacement of the test is {self.displacement[0]:g} m in every "
                 "row; a loop needs one that changes"
             )
-        # Of rows without a step only the first counts; the way between two rows is straight.
-        rows = np.flatnonzero(np.concatenate(([True], np.diff(path) > 0)))
-        at = np.linspace(0.0, path[-1], POINTS)
-        interval = np.clip(np.searchsorted(path[rows], at, side="right") - 1, 0, rows.size - 2)
-        self._before, self._after = rows[interval], rows[interval + 1]
-        width = path[self._after] - path[self._before]
-        self._share = (at - path[self._before]) / width
-        self._at, self._path = at, path
+        self._points = PathPoints(self.displacement, POINTS, "displacement")
         self._test = self._points(self.force)
-        self._energy = _work(self.displacement, self.force)
-        self.half_cycle = _half_cycles(self.displacement)[self._before]
+        self.half_cycle = half_cycle_numbers(self.displacement)[self._points.before]
 
     def error(self, force: Array) -> Array:
         """Return (model - test)/peak at the points; 1 beyond the rows that were reached.
@@ -87,8 +79,7 @@ class Target:
             force = np.concatenate((force, np.zeros(self.force.size - reached)))
         error = (self._points(force) - self._test) / self.peak
         if reached < self.force.size:
-            last = self._path[reached - 1] * (1 + 1e-12) if reached else -1.0
-            error[self._at > last] = 1.0
+            error[~self._points.reached(reached)] = 1.0
         return error
 
     def ratios(self, force: Array) -> tuple[float, float]:
@@ -96,14 +87,10 @@ class Target:
         if force.size < 2:
             return 0.0, 0.0
         d, test = self.displacement[: force.size], self.force[: force.size]
-        work = _work(d, test)
-        energy = _work(d, force) / work if work > 0 else 1.0
+        done = work(d, test)[-1]
+        energy = float(work(d, force)[-1] / done) if done > 0 else 1.0
         largest = float(np.max(np.abs(test)))
         return (float(np.max(np.abs(force))) / largest if largest > 0 else 1.0), energy
-
-    def _points(self, force: Array) -> Array:
-        before, after = force[self._before], force[self._after]
-        return before + self._share * (after - before)
 
 
 class Misfit:
@@ -252,29 +239,3 @@ def _loop(test: Any) -> tuple[Array, Array]:
     if d.size < 3:
         raise InputError(f"calibrate: the test has {d.size} rows; a loop needs at least 3")
     return d, f
-
-
-def _work(d: Array, f: Array) -> float:
-    return float(np.sum(0.5 * (f[1:] + f[:-1]) * np.diff(d)))
-
-
-def _half_cycles(d: Array, threshold: float = 0.02) -> Array:
-    """Return the number of the half cycle of each row.
-
-    A turn counts if the path comes back by more than a share of its largest displacement.
-    """
-    limit = threshold * float(np.max(np.abs(d)))
-    number = np.zeros(d.size, dtype=int)
-    turn, sign, count = d[0], 0, 0
-    at = 0
-    for i, value in enumerate(d):
-        if sign * (value - turn) >= 0 and (sign or abs(value - turn) > limit):
-            sign = sign or int(np.sign(value - turn))
-            turn, at = value, i
-        elif sign and abs(value - turn) > limit:
-            # It turned at the extreme: what came since belongs to the next half cycle.
-            count += 1
-            number[at:] = count
-            sign, turn, at = -sign, value, i
-        number[i] = count
-    return number

@@ -1,23 +1,23 @@
-"""A calibration as report, table and figure, and its progress on the terminal."""
+"""A calibration as report, table and figure."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rbsdem import plot
 from rbsdem._optional import need_matplotlib, need_rich
+from rbsdem._views import view_of
+from rbsdem.calibration.outcome import Calibration, Fitted
 from rbsdem.errors import InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from rich.table import Table
 
-    from rbsdem.calibration import Calibration, Fitted
     from rbsdem.comparison import Comparison
 
 _HEAD = ("", "Unit", "Start", "Low", "High", "Fitted", "Std. error", "Effect", "Rise", "At")
@@ -26,6 +26,7 @@ _HEAD = ("", "Unit", "Start", "Low", "High", "Fitted", "Std. error", "Effect", "
 _NARROW = (0, 1, 2, 5, 6, 7, 8, 9)
 
 
+@view_of(Calibration, "report")
 def report(fit: Calibration) -> str:
     """Return the fit as plain text."""
     rows = [_HEAD, *(_cells(fitted) for fitted in fit.parameters)]
@@ -57,6 +58,7 @@ def report(fit: Calibration) -> str:
     return "\n".join(lines)
 
 
+@view_of(Calibration, "table")
 def table(fit: Calibration) -> Table:
     """Return the numbers as a table of rich."""
     rich = need_rich()
@@ -69,7 +71,8 @@ def table(fit: Calibration) -> Table:
     return found
 
 
-def draw(fit: Calibration, axes: Sequence[Axes] | None) -> Sequence[Axes]:
+@view_of(Calibration, "plot")
+def draw(fit: Calibration, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
     """Draw before and after over the test, both to one scale."""
     need_matplotlib()
     if axes is None:
@@ -92,28 +95,6 @@ def draw(fit: Calibration, axes: Sequence[Axes] | None) -> Sequence[Axes]:
     for ax in axes:
         ax.set_ylim(-highest, highest)
     return axes
-
-
-@contextmanager
-def telling(evaluations: int) -> Iterator[Callable[[int, float], None]]:
-    """Show on stderr how many analyses are done, and the best so far."""
-    rich = need_rich()
-    from rich.console import Console  # noqa: PLC0415
-
-    bar = rich.progress.Progress(
-        rich.progress.BarColumn(bar_width=20),
-        rich.progress.TextColumn("{task.completed:.0f} of at most {task.total:.0f} analyses"),
-        rich.progress.TextColumn("{task.description}"),
-        console=Console(stderr=True),
-        transient=True,
-    )
-    with bar:
-        task = bar.add_task("", total=evaluations)
-
-        def told(done: int, best: float) -> None:
-            bar.update(task, completed=min(done, evaluations), description=f"nrmse {best:.4f}")
-
-        yield told
 
 
 def _score(scores: Comparison, name: str) -> str:

@@ -25,6 +25,7 @@ __all__ = [
     "TURN",
     "HalfCycles",
     "envelope",
+    "half_cycle_numbers",
     "half_cycles",
     "strength_loss",
     "tip_rows",
@@ -119,6 +120,28 @@ def turning_points(displacement: ArrayLike, *, share: float = TURN) -> np.ndarra
             turns.append(extreme)
             direction, extreme = -direction, row
     return np.array(turns, dtype=np.intp)
+
+
+def half_cycle_numbers(displacement: ArrayLike) -> np.ndarray:
+    """Return the number of the half-cycle of each row, from 0; a tip begins the next one.
+
+    Parameters
+    ----------
+    displacement : array_like, shape (m,)
+        The displacement, in the order of the test [m].
+
+    Returns
+    -------
+    ndarray of int, shape (m,)
+        How many turning points were reached up to each row.
+
+    Raises
+    ------
+    InputError
+        If a number is not finite.
+    """
+    turns = turning_points(displacement)
+    return np.searchsorted(turns, np.arange(np.size(displacement)), side="right")
 
 
 def half_cycles(

@@ -1,0 +1,241 @@
+"""The function `calibrate`: search, refusals, and what the test determines."""
+
+from __future__ import annotations
+
+import math
+import time
+import warnings
+from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rbsdem import _core
+from rbsdem._core import Array
+from rbsdem.calibration.determined import (
+    Determined,
+    determine,
+    refuse,
+    warnings_of,
+    without_effect,
+)
+from rbsdem.calibration.misfit import LOSSES, Misfit, Target, forces
+from rbsdem.calibration.names import Numbers, free_numbers
+from rbsdem.calibration.outcome import Calibration, Fitted
+from rbsdem.calibration.progress import telling
+from rbsdem.calibration.search import Search, need_scipy
+from rbsdem.column import Column
+from rbsdem.comparison import Comparison, compare
+from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.parameter import Parameter
+
+__all__ = ["calibrate", "free_names", "undetermined"]
+
+#: Random points from which a number may show its effect, besides the start.
+_LOOKS = 3
+
+
+def free_names(column: Column) -> dict[str, Parameter | None]:
+    """Return what may be free in a column: names, and values with bounds from physics.
+
+    Parameters
+    ----------
+    column : Column
+        The column.
+
+    Returns
+    -------
+    dict of str to Parameter or None
+        None where a calibration has to be given the bounds, as for a stiffness of 0.
+    """
+    return Numbers(column).known()
+
+
+def undetermined(
+    column: Column,
+    test: Any,
+    free: Sequence[str],
+    bounds: Mapping[str, Sequence[float]] | None = None,
+) -> list[str]:
+    """Return the numbers that a calibration would refuse: those that change no force of the test.
+
+    Parameters
+    ----------
+    column : Column
+        The column.
+    test : MeasuredTest, PeerTest, or pair of array_like of shape (m,)
+        The measured loop.
+    free : sequence of str
+        Names of the numbers.
+    bounds : mapping of str to (low, high), optional
+        As for `calibrate`.
+
+    Returns
+    -------
+    list of str
+        Those that move no force between their bounds, from the start and from random others.
+
+    Raises
+    ------
+    InputError
+        For bad input.
+    """
+    target, numbers = Target(test), Numbers(column)
+    chosen = free_numbers(numbers, free, bounds)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        with Misfit(numbers.build, chosen, target, "nrmse", 1, lambda done, best: None) as misfit:
+            return without_effect(misfit, _looks(misfit.start_places(), 0))
+
+
+def calibrate(
+    column: Column,
+    test: Any,
+    free: Sequence[str],
+    bounds: Mapping[str, Sequence[float]] | None = None,
+    loss: str = "nrmse",
+    seed: int = 0,
+    progress: bool = False,
+    jobs: int = 1,
+    *,
+    evaluations: int = 800,
+    seconds: float | None = None,
+) -> Calibration:
+    """Fit numbers of a column to a measured loop.
+
+    The column is driven through the measured displacements. The error of the force is made least by
+    a Latin hypercube over the bounds and least squares from its best points (scipy); the same input
+    gives the same fit.
+
+    Parameters
+    ----------
+    column : Column
+        The column to begin with. One made from a recipe offers its numbers as `parameters` and
+        takes others by `with_parameters`; in any other the names are paths.
+    test : MeasuredTest, PeerTest, or pair of array_like of shape (m,)
+        The measured loop: displacement [m] and net horizontal force [N], as for `rbsdem.compare`.
+    free : sequence of str
+        Names of the numbers to fit, such as "flexure.k_y", "shear.k", "flexure[0].d_y" (of the
+        lowest joint), "flexure[*].k_y" (a factor on all joints); `free_names` lists them.
+    bounds : mapping of str to (low, high), optional
+        Bounds in place of those from physics: for a spring a factor of 5 up and down, as far as its
+        rule allows; lengths and loads 20 %.
+    loss : {"nrmse", "balanced"}, optional
+        What is made least: the error of the force, or that together with the errors of peak force
+        and energy.
+    seed : int, optional
+        Of the random points.
+    progress : bool, optional
+        Show on stderr how far the fit is; needs rich.
+    jobs : int, optional
+        Analyses at a time, in threads. The fit does not depend on it.
+    evaluations : int, optional
+        About how many analyses the search may make; a few more tell what the test determines.
+    seconds : float, optional
+        Wall time after which the search ends [s]; the fit then depends on the machine.
+
+    Returns
+    -------
+    Calibration
+        The fitted column, its numbers with standard errors and sensitivities, report and figure. A
+        keyboard interrupt ends the search, and what was best is returned.
+
+    Raises
+    ------
+    InputError
+        For bad input: names not known, or twice, bounds that exclude the start; and for a number
+        that changes no force of the test anywhere between its bounds.
+    ImportError
+        If scipy is not installed, or progress is asked for without rich.
+
+    Warns
+    -----
+    AccuracyWarning
+        If the test hardly determines a number, or does not tell two of them apart.
+    """
+    begin = time.perf_counter()
+    _check(loss, seed, jobs, evaluations, seconds)
+    target = Target(test)
+    numbers = Numbers(column)
+    chosen = free_numbers(numbers, free, bounds)
+    need_scipy()
+    progress = _core.switch(progress, "calibrate: progress")
+    showing = telling(evaluations) if progress else nullcontext(lambda done, best: None)
+    # The search goes through columns that nobody asked for: what is said of them helps no one.
+    with warnings.catch_warnings(), showing as told:
+        warnings.simplefilter("ignore", AccuracyWarning)
+        with Misfit(numbers.build, chosen, target, loss, jobs, told) as misfit:
+            start = misfit.start_places()
+            misfit.column(start)
+            refuse(misfit, without_effect(misfit, _looks(start, seed)))
+            status = Search(misfit, seed, evaluations, seconds).run()
+            places = misfit.best_places.copy()
+            found = determine(misfit, places)
+        fitted = misfit.column(places)
+        before, after = (_compared(tried, target, column) for tried in (column, fitted))
+    lines = tuple(warnings_of(list(chosen), found))
+    for line in lines:
+        warnings.warn(f"calibrate: {line}", AccuracyWarning, stacklevel=2)
+    return Calibration(
+        column=fitted,
+        start=column,
+        parameters=_fitted(misfit, places, found),
+        before=before,
+        after=after,
+        correlation=found.correlation,
+        status=status,
+        warnings=lines,
+        loss=loss,
+        seed=seed,
+        evaluations=misfit.evaluations,
+        failed=misfit.failed,
+        refused=misfit.refused,
+        seconds=time.perf_counter() - begin,
+    )
+
+
+def _check(loss: str, seed: int, jobs: int, evaluations: int, seconds: float | None) -> None:
+    if loss not in LOSSES:
+        raise InputError(f"calibrate: loss = {loss!r} is not known; it is {' or '.join(LOSSES)}")
+    for name, value in (("seed", seed), ("jobs", jobs), ("evaluations", evaluations)):
+        least = 0 if name == "seed" else 1
+        if _core.whole(value, f"calibrate: {name}") < least:
+            raise InputError(f"calibrate: {name} = {value} must be {least} or more")
+    if seconds is not None and not 0 < _core.number(seconds, "calibrate: seconds") < math.inf:
+        raise InputError(f"calibrate: seconds = {seconds} must be a positive number")
+
+
+def _looks(start: Array, seed: int) -> list[Array]:
+    """Return places from which numbers are tried one by one."""
+    return [start, *np.random.default_rng(seed).random((_LOOKS, start.size))]
+
+
+def _fitted(misfit: Misfit, places: ArrayLike, found: Determined) -> tuple[Fitted, ...]:
+    values = misfit.values(np.asarray(places))
+    return tuple(
+        Fitted(
+            name,
+            number.unit,
+            number.what,
+            number.value,
+            number.low,
+            number.high,
+            values[name],
+            float(found.standard_error[i]),
+            float(found.effect[i]),
+            float(found.rise[i]),
+            found.at_bound[i],
+        )
+        for i, (name, number) in enumerate(misfit.free.items())
+    )
+
+
+def _compared(column: Column, target: Target, start: Column) -> Comparison:
+    """Return the scores of a column; the force is not a number where an analysis ended."""
+    reached, _ = forces(column, target.displacement)
+    force = np.full(target.force.size, np.nan)
+    force[: reached.size] = reached
+    loop = target.displacement, force
+    return compare(loop, target, height=getattr(start, "height", None))

@@ -1,0 +1,135 @@
+"""What a calibration found: the fitted column, its parameters and what the test says about them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rbsdem import _views
+from rbsdem._core import Array
+from rbsdem.column import Column
+from rbsdem.comparison import Comparison
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from rich.table import Table
+
+__all__ = ["Calibration", "Fitted"]
+
+
+@dataclass(frozen=True, slots=True)
+class Fitted:
+    """One number after a calibration.
+
+    Attributes
+    ----------
+    name, unit, what : str
+        What it is.
+    start, low, high, value : float
+        Where it began, its bounds, and where it ended [unit].
+    standard_error : float
+        Of the value [unit], from the scatter between half cycles; infinite where the test does not
+        see the number, NaN where there are too few half cycles to tell.
+    effect : float
+        Root mean square change of the force over the measured peak, if the number alone changes by
+        10 % (of the distance between its bounds, if it may be 0 or negative).
+    rise : float
+        How much the loss grows by that; NaN if the column cannot be so.
+    at_bound : str
+        "low", "high", or "" within the bounds.
+    """
+
+    name: str
+    unit: str
+    what: str
+    start: float
+    low: float
+    high: float
+    value: float
+    standard_error: float
+    effect: float
+    rise: float
+    at_bound: str
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """A column fitted to a test.
+
+    Attributes
+    ----------
+    column, start : Column
+        The fitted column and the one it came from.
+    parameters : tuple of Fitted
+        The numbers that were free.
+    before, after : Comparison
+        Scores of the two columns against the test.
+    correlation : ndarray, shape (p, p)
+        Correlation of the estimates.
+    status : str
+        "converged", "evaluations used up", "time used up" or "interrupted".
+    warnings : tuple of str
+        What the test does not determine.
+    loss, seed : str, int
+        What was made least, and the seed of the search.
+    evaluations, failed, refused : int
+        Analyses, those that did not reach the end of the test, and columns that were refused
+        (K_y above K_c) and cost no analysis.
+    seconds : float
+        Wall time [s].
+    """
+
+    column: Column
+    start: Column
+    parameters: tuple[Fitted, ...]
+    before: Comparison
+    after: Comparison
+    correlation: Array
+    status: str
+    warnings: tuple[str, ...]
+    loss: str
+    seed: int
+    evaluations: int
+    failed: int
+    refused: int
+    seconds: float
+
+    @property
+    def nrmse(self) -> float:
+        """Root mean square error of the force over the measured peak, after the fit."""
+        return self.after.nrmse
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The fitted values by name."""
+        return {fitted.name: fitted.value for fitted in self.parameters}
+
+    @property
+    def report(self) -> str:
+        """The fit as plain text."""
+        return _views.view(self, "report")
+
+    def table(self) -> Table:
+        """Return the numbers as a table of rich."""
+        return _views.view(self, "table")
+
+    def plot(self, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
+        """Draw the loops before and after the fit over the test.
+
+        Parameters
+        ----------
+        axes : sequence of two matplotlib Axes, optional
+            Where to draw; a new figure without it.
+
+        Returns
+        -------
+        sequence of two matplotlib Axes
+            Before and after.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is not installed.
+        """
+        return _views.view(self, "plot", axes)
