@@ -371,6 +371,21 @@ def section_shear(
     return points[:, :kept].copy(), profile, (found, sheared, lost), ends
 
 
+def section_strips(
+    shape: str, sizes: list[float], round_core: bool, number: int
+) -> tuple[Array, Array, Array]:
+    """Return centroids and areas of core and of cover in strips, and figures of the whole section.
+
+    `sizes` are width, depth, and by how much those of the core are smaller; the figures are area,
+    second moment and shear area.
+    """
+    core, cover, figures, status, message = _rbsdem.rbs_section_strips(
+        word(shape), sizes, int(round_core), number
+    )
+    _raise(status, message)
+    return core, cover, figures
+
+
 def layer_response(
     concrete: list[float], tension: int, stirrup: list[float], path: Array
 ) -> tuple[Array, Array]:

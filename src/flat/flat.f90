@@ -567,6 +567,48 @@ subroutine rbs_layer_response(concrete, tension, stirrup, m, path, states, carri
    call layer_into_arrays(concrete, tension, stirrup, path, states, carried)
 end subroutine rbs_layer_response
 
+subroutine rbs_section_strips(shape, sizes, round_core, m, core, cover, figures, status, message)
+   ! sizes: width, depth, and by how much those of the core between hoop centre lines are smaller; a column of
+   ! `core` and `cover`: y of the centroid and area; figures: area, second moment, shear area of the whole.
+   use iso_c_binding, only: c_double, c_int
+   use rbs_base_check, only: check_name
+   use rbs_base_error, only: error_type, message_list
+   use rbs_flat_door, only: tell
+   use rbs_section_shape, only: shape_type
+   use rbs_section_shapes, only: new_core, new_shape, shape_names
+   use rbs_section_strips, only: cut_strips, strip_centroids, strips_type
+   implicit none
+   character(len=*), intent(in) :: shape
+   real(c_double), intent(in) :: sizes(4)
+   integer(c_int), intent(in) :: round_core, m
+   real(c_double), intent(out) :: core(2, m), cover(2, m), figures(3)
+   integer(c_int), intent(out) :: status
+   character(len=8192), intent(out) :: message
+   !f2py threadsafe
+   class(shape_type), allocatable :: outline, inside
+   type(strips_type) :: strips
+   type(message_list) :: messages
+   type(error_type), allocatable :: error
+   integer :: place
+   logical :: ok
+
+   core = 0.0_c_double
+   cover = 0.0_c_double
+   figures = 0.0_c_double
+   call check_name(shape, shape_names, 'section: shape', messages, place)
+   call new_shape(place, sizes(1), sizes(2), outline)
+   call outline%check(messages, ok)
+   call messages%raise(error)
+   call tell(error, status, message)
+   if (status /= 0) return
+   call new_core(outline, round_core /= 0, sizes(3), sizes(4), inside)
+   call cut_strips(outline, inside, int(m), strips)
+   call strip_centroids(outline, inside, strips, core(1, :), cover(1, :))
+   core(2, :) = strips%core_area
+   cover(2, :) = strips%area - strips%core_area
+   figures = [outline%area(), outline%second_moment(), outline%shear_area()]
+end subroutine rbs_section_strips
+
 subroutine rbs_concrete_response(numbers, tension, m, strain, stress, status, message)
    ! numbers: fc, ft, ec, eps0, eps_spall; without confinement, compression positive.
    use iso_c_binding, only: c_double, c_int

@@ -1,4 +1,8 @@
 !> Confinement of the core by hoops, ties or a spiral (Mander, Priestley, Park 1988, ASCE 114(8)).
+!>
+!> The lateral stress is the mean of both directions, with the arches between the bars of each face. The
+!> layered hinge (`python/rbsdem/section/strips.py`) takes the stress of the direction of loading alone and
+!> spreads the held bars evenly around the core: its parameters are fitted with that form, so it has its own.
 module rbs_section_confinement
    use rbs_base_kinds, only: wp
    use rbs_section_concrete_law, only: confined_concrete, spalling_concrete

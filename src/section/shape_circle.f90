@@ -40,7 +40,7 @@ contains
       if (.not. radius > 0.0_wp) return
       a = min(max(lo/radius, -1.0_wp), 1.0_wp)
       b = min(max(hi/radius, -1.0_wp), 1.0_wp)
-      area_between = radius**2*(b*sqrt(1.0_wp - b**2) + asin(b) - a*sqrt(1.0_wp - a**2) - asin(a))
+      area_between = radius**2*((b*sqrt(1.0_wp - b**2) + asin(b)) - (a*sqrt(1.0_wp - a**2) + asin(a)))
    end function area_between
 
    elemental real(wp) function moment_between(self, lo, hi)

@@ -51,19 +51,19 @@ contains
       where (cover_area > 0.0_wp) cover_y = (moment - core_moment)/cover_area
    end subroutine strip_centroids
 
-   !> Lower and upper edge and middle of each strip [m].
+   !> Lower and upper edge and middle of each strip [m]; those of mirrored strips differ by their sign alone.
    pure subroutine find_edges(outline, count, low, high, middle)
       class(shape_type), intent(in) :: outline
       integer, intent(in) :: count
       real(wp), intent(out) :: low(count), high(count), middle(count)
-      real(wp) :: dy
+      real(wp) :: half
       integer :: i
 
-      dy = outline%depth/count
+      half = 0.5_wp*outline%depth
       do i = 1, count
-         low(i) = -0.5_wp*outline%depth + (i - 1)*dy
-         high(i) = low(i) + dy
-         middle(i) = -0.5_wp*outline%depth + (i - 0.5_wp)*dy
+         low(i) = half*(real(2*i - 2 - count, wp)/count)
+         high(i) = half*(real(2*i - count, wp)/count)
+         middle(i) = half*(real(2*i - 1 - count, wp)/count)
       end do
    end subroutine find_edges
 

@@ -15,7 +15,6 @@ from rbsdem.errors import InputError
 from rbsdem.section.materials import Concrete
 from rbsdem.section.reinforcement import Bar, Layout, Spiral
 from rbsdem.section.section import Section
-from rbsdem.section.strips import Strips, core_diameter, disc, spiral_confinement
 
 __all__ = ["CircularSection"]
 
@@ -82,6 +81,11 @@ class CircularSection(Section):
         return self.diameter
 
     @property
+    def side_cover(self) -> float:
+        """The cover [m]."""
+        return self.cover
+
+    @property
     def ties(self) -> Spiral | None:
         """The spiral."""
         return self.spiral
@@ -95,35 +99,6 @@ class CircularSection(Section):
     def effective_depth(self) -> float:
         """0.8 of the diameter [m] (ACI 318-19, 22.5.2.2)."""
         return 0.8 * self.diameter
-
-    def cut(
-        self, number: int, *, restrained: int | None = None, round_core: bool = False
-    ) -> Strips:
-        """Cut the section into strips of equal thickness across the direction of loading.
-
-        Parameters
-        ----------
-        number : int
-            Number of strips.
-        restrained : int, optional
-            Not used: a spiral holds all bars.
-        round_core : bool, optional
-            Not used: the core is round.
-
-        Returns
-        -------
-        Strips
-            In order of y; in each strip core and cover have centroids of their own.
-        """
-        core = core_diameter(self)
-        return Strips.of(
-            disc(self.depth, self.depth, number),
-            disc(core, self.depth, number),
-            spiral_confinement(self, core),
-            area=self.gross_area,
-            inertia=math.pi / 64 * self.diameter**4,
-            shear_area=0.9 * self.gross_area,
-        )
 
     # ---- geometry for the figure -----------------------------------------------------------------
 

@@ -14,14 +14,6 @@ from rbsdem.errors import InputError
 from rbsdem.section.materials import Concrete
 from rbsdem.section.reinforcement import Bar, Layout, Ties
 from rbsdem.section.section import Section
-from rbsdem.section.strips import (
-    Strips,
-    box,
-    core_diameter,
-    disc,
-    hoop_confinement,
-    spiral_confinement,
-)
 
 __all__ = ["RectangularSection"]
 
@@ -115,45 +107,6 @@ class RectangularSection(Section):
         if not outer:
             return 0.8 * self.depth
         return 0.5 * self.depth + sum(y * a for y, a in outer) / sum(a for _, a in outer)
-
-    def cut(
-        self, number: int, *, restrained: int | None = None, round_core: bool = False
-    ) -> Strips:
-        """Cut the section into strips of equal thickness across the direction of loading.
-
-        Parameters
-        ----------
-        number : int
-            Number of strips.
-        restrained : int, optional
-            Longitudinal bars that are held in a corner of a hoop or by a tie. By default the four
-            corners, and four more for each leg beyond two, up to the number of bars.
-        round_core : bool, optional
-            Whether the ties stand for a spiral around a round core.
-
-        Returns
-        -------
-        Strips
-            In order of y; in each strip core and cover have centroids of their own.
-        """
-        width, depth = self.width, self.depth
-        if round_core:
-            diameter = core_diameter(self)
-            core, confinement = disc(diameter, depth, number), spiral_confinement(self, diameter)
-        else:
-            tie = self.ties.diameter if self.ties else 0.0
-            core_width = width - 2 * float(self.side_cover or 0.0) - tie
-            core_depth = depth - 2 * self.cover - tie
-            core = box(core_width, core_depth, depth, number)
-            confinement = hoop_confinement(self, core_width, core_depth, restrained)
-        return Strips.of(
-            box(width, depth, depth, number),
-            core,
-            confinement,
-            area=self.gross_area,
-            inertia=width * depth**3 / 12,
-            shear_area=5 / 6 * self.gross_area,
-        )
 
     # ---- geometry for the figure -----------------------------------------------------------------
 

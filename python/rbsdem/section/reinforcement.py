@@ -167,6 +167,8 @@ class Ties:
     """
 
     kind: ClassVar[str] = "ties"
+    #: Whether the hoops are round.
+    is_round: ClassVar[bool] = False
 
     diameter: float
     spacing: float
@@ -208,6 +210,8 @@ class Spiral:
     #: Bars that cross the section, along the depth and across it: both sides of a turn.
     legs: ClassVar[float] = 2.0
     legs_across: ClassVar[float] = 2.0
+    #: Whether the hoops are round.
+    is_round: ClassVar[bool] = True
 
     diameter: float
     spacing: float

@@ -21,13 +21,13 @@ from rbsdem.section.reinforcement import Bar, Layout, Spiral, Ties
 from rbsdem.section.shear_diagram import ShearDiagram, shear_diagram
 from rbsdem.section.spring_fit import SectionSprings, fit_springs
 from rbsdem.section.strength import shear_strength_mcft
+from rbsdem.section.strips import Strips, cut
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from rbsdem.column import Column
     from rbsdem.section.parameters import ModelParameters
-    from rbsdem.section.strips import Strips
 
 __all__ = ["Section"]
 
@@ -62,12 +62,6 @@ class Section(ABC):
     @abstractmethod
     def effective_depth(self) -> float:
         """From the compression face to the centre of the bars in the half in tension [m]."""
-
-    @abstractmethod
-    def cut(
-        self, number: int, *, restrained: int | None = None, round_core: bool = False
-    ) -> Strips:
-        """Cut the section into strips of core and cover; see the shapes."""
 
     @abstractmethod
     def outline(self) -> Array:
@@ -328,6 +322,28 @@ class Section(ABC):
             cracked by the axial load, lightly reinforced).
         """
         return fit_springs(self, length, self._load(axial_load), **options)
+
+    def cut(
+        self, number: int, *, restrained: int | None = None, round_core: bool = False
+    ) -> Strips:
+        """Cut the section into strips of equal thickness across the direction of loading.
+
+        Parameters
+        ----------
+        number : int
+            Number of strips.
+        restrained : int, optional
+            Longitudinal bars that are held in a corner of a hoop or by a tie. By default the four
+            corners, and four more for each leg beyond two, up to the number of bars.
+        round_core : bool, optional
+            Whether the ties stand for a spiral around a round core.
+
+        Returns
+        -------
+        Strips
+            In order of y; in each strip core and cover have centroids of their own.
+        """
+        return cut(self, number, restrained, round_core)
 
     def column(
         self,

@@ -1,28 +1,29 @@
 """A section cut into strips of core and of cover, with what confines the core.
 
-Rectangles in rectangular hoops, circles and squares in a spiral; the confinement is that of Mander,
-Priestley and Park (1988), ASCE Journal of Structural Engineering 114(8).
+The strips are those of the Fortran part (`src/section/strips.f90`), which the moment-curvature
+diagram uses as well.
+
+The confinement is that of Mander, Priestley and Park (1988), ASCE Journal of Structural Engineering
+114(8), as the layered hinge takes it: the confining stress of the direction of loading alone, and
+the bars that the legs hold spread evenly around the core. `src/section/confinement.f90`, which the
+moment-curvature diagram uses, takes the mean of both directions and the arches between the bars of
+each face. For a spiral the two differ only in the cap on the share of the bars (8 % here, 50 %
+there), and single round hoops count as a spiral here. They stay apart because the parameters of the
+hinge are fitted with the form used here.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import TYPE_CHECKING
+
+from rbsdem import _core
 
 if TYPE_CHECKING:
     from rbsdem.section.section import Section
 
-__all__ = [
-    "Strip",
-    "Strips",
-    "box",
-    "core_diameter",
-    "disc",
-    "hoop_confinement",
-    "spiral_confinement",
-]
+__all__ = ["Strip", "Strips", "cut"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,76 +71,35 @@ class Strips:
     confining_stress: float
     tie_ratio: float
 
-    @classmethod
-    def of(
-        cls,
-        whole: list[Strip],
-        core: list[Strip],
-        confinement: tuple[float, float],
-        *,
-        area: float,
-        inertia: float,
-        shear_area: float,
-    ) -> Strips:
-        """Return the strips of a section and of the core in it, cut at the same depths.
 
-        Parameters
-        ----------
-        whole, core : list of Strip
-            Of the same length.
-        confinement : (float, float)
-            Confining stress [Pa] and ratio of the transverse bars.
-        area, inertia, shear_area : float
-            Of the whole section [m2], [m4], [m2].
-        """
-        # Slivers along the rim of the core are round-off.
-        least = 1e-9 * area
-        rest = [_without(w, c) for w, c in zip(whole, core, strict=True)]
-        return cls(
-            core=tuple(strip for strip in core if strip.area > least),
-            cover=tuple(strip for strip in rest if strip.area > least),
-            area=area,
-            inertia=inertia,
-            shear_area=shear_area,
-            confining_stress=confinement[0],
-            tie_ratio=confinement[1],
-        )
+def cut(section: Section, number: int, restrained: int | None, round_core: bool) -> Strips:
+    """Return the strips of a section and what confines its core; see `Section.cut`."""
+    tie = section.ties.diameter if section.ties else 0.0
+    # By how much the core, between the centre lines of the hoops, is smaller than the outline.
+    less = [2 * float(section.side_cover or 0.0) + tie, 2 * section.cover + tie]
+    round_core = round_core or (section.ties is not None and section.ties.is_round)
+    core, cover, figures = _core.section_strips(
+        section.shape, [section.width, section.depth, *less], round_core, number
+    )
+    if round_core:
+        confinement = _spiral(section, section.depth - less[1])
+    else:
+        confinement = _hoops(section, section.width - less[0], section.depth - less[1], restrained)
+    area, inertia, shear_area = figures.tolist()
+    # Slivers along the rim of the core are round-off.
+    least = 1e-9 * area
+    return Strips(
+        core=tuple(Strip(y, part) for y, part in core.T.tolist() if part > least),
+        cover=tuple(Strip(y, part) for y, part in cover.T.tolist() if part > least),
+        area=area,
+        inertia=inertia,
+        shear_area=shear_area,
+        confining_stress=confinement[0],
+        tie_ratio=confinement[1],
+    )
 
 
-def _edges(depth: float, number: int) -> list[float]:
-    return [depth * (i / number - 0.5) for i in range(number + 1)]
-
-
-def box(width: float, own_depth: float, depth: float, number: int) -> list[Strip]:
-    """Return a rectangle's share in strips of a depth that it is in the middle of."""
-    ends = [min(max(y, -own_depth / 2), own_depth / 2) for y in _edges(depth, number)]
-    return [Strip((low + high) / 2, (high - low) * width) for low, high in pairwise(ends)]
-
-
-def disc(diameter: float, depth: float, number: int) -> list[Strip]:
-    """Return a circle's share in strips of a depth that it is in the middle of."""
-    r = diameter / 2
-    ends = [min(max(y, -r), r) for y in _edges(depth, number)]
-    # Integrals of the chord 2 sqrt(r^2 - y^2) and of y times it.
-    areas = [y * math.sqrt(r * r - y * y) + r * r * math.asin(y / r) for y in ends]
-    moments = [-2 / 3 * (r * r - y * y) ** 1.5 for y in ends]
-    strips = []
-    for i in range(number):
-        area = areas[i + 1] - areas[i]
-        middle = (ends[i] + ends[i + 1]) / 2
-        y = (moments[i + 1] - moments[i]) / area if area > 1e-12 * r * r else middle
-        strips.append(Strip(y, max(area, 0.0)))
-    return strips
-
-
-def _without(whole: Strip, part: Strip) -> Strip:
-    area = whole.area - part.area
-    if not area > 0:
-        return Strip(whole.y, 0.0)
-    return Strip((whole.y * whole.area - part.y * part.area) / area, area)
-
-
-def hoop_confinement(
+def _hoops(
     section: Section, core_width: float, core_depth: float, restrained: int | None
 ) -> tuple[float, float]:
     """Return the confining stress of rectangular hoops [Pa] and their volume ratio.
@@ -165,11 +125,6 @@ def hoop_confinement(
     return effective * ratio * ties.steel.fy, 2 * ratio
 
 
-def core_diameter(section: Section) -> float:
-    """Return the diameter of a round core, to the centre line of the spiral [m]."""
-    return section.depth - 2 * section.cover - (section.ties.diameter if section.ties else 0.0)
-
-
 def _restrained(section: Section) -> int:
     """Return how many bars the legs hold: the corners, and four for each leg beyond two."""
     if section.layout is not None:
@@ -180,7 +135,7 @@ def _restrained(section: Section) -> int:
     return min(number, 4 + 4 * round(section.ties.legs - 2))
 
 
-def spiral_confinement(section: Section, diameter: float) -> tuple[float, float]:
+def _spiral(section: Section, diameter: float) -> tuple[float, float]:
     """Return the confining stress of a spiral [Pa] and its volume ratio.
 
     Effectiveness by the parabola between two turns: (1 - s'/(2 d_s))/(1 - rho_cc).
