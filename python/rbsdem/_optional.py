@@ -29,6 +29,17 @@ def need_rich() -> Any:
     return rich
 
 
+def need_jinja2() -> Any:
+    """Return jinja2, or raise `ImportError` with the way to get it."""
+    try:
+        import jinja2  # noqa: PLC0415
+    except ImportError as error:
+        raise ImportError(
+            "the gallery needs jinja2, which is not installed: pip install rbsdem[gallery]"
+        ) from error
+    return jinja2
+
+
 def escaped(text: str) -> str:
     """Return a text in which rich finds no markup."""
     from rich.markup import escape  # noqa: PLC0415

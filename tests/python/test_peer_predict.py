@@ -21,7 +21,7 @@ import pytest
 import rbsdem
 from rbsdem import peer
 from rbsdem.errors import InputError
-from rbsdem.peer import command, gallery
+from rbsdem.peer import command, pictures
 
 HEADER = (
     "peer_id,file,name,author,year,section,L_mm,b_mm,h_mm,cover_mm,fc_MPa,axial_kN,n_long,"
@@ -272,32 +272,55 @@ def test_csv_files(table, tmp_path):
 
 
 def test_gallery_is_one_page_that_needs_nothing_else(table, tmp_path):
+    pytest.importorskip("jinja2")
     page = peer.predict(table, faulty).gallery(tmp_path / "new" / "page.html").read_text()
     assert page.count("<figure ") == 6
     assert page.count("<svg ") == 5
-    assert page.count("class=m") == 3
+    assert page.count('class="model"') == 3
     assert "section: no" in page
     assert not re.search(r"(?:src|href)=|https?://(?!www\.w3)|@import", page)
     # Every point is inside the picture or a model far beyond its test.
-    for data in re.findall(r'class=t d="M([^"]*)"', page):
+    for data in re.findall(r'class="test" d="M([^"]*)"', page):
         points = np.array([[int(x) for x in pair.split(",")] for pair in data.split()])
         assert points.min() >= 0
         assert (points.max(axis=0) <= (1200, 880)).all()
 
 
 def test_texts_in_the_gallery_are_escaped(tmp_path):
+    """Neither html nor words of the template."""
+    pytest.importorskip("jinja2")
     specimen = peer.Specimen("<b>&", "rectangular", 1.0, 1.0, 1.0, 3e7, 0.0, 4)
-    page = peer.Predictions([peer.Prediction(specimen, "m", "no history", error="<i>")])
+    page = peer.Predictions(
+        [peer.Prediction(specimen, "m", "no history", error="<i>{cards}{{ title }}")]
+    )
     text = page.gallery(tmp_path / "page.html").read_text()
     assert "&lt;b&gt;&amp;" in text
     assert "<b>&<" not in text
     assert "<i>" not in text.split("<main", 1)[1]
+    assert "&lt;i&gt;{cards}{{ title }}" in text
+
+
+def test_a_gallery_without_its_package_says_how_to_get_it(table, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "jinja2", None)
+    with pytest.raises(ImportError, match=r"pip install rbsdem\[gallery\]"):
+        peer.predict(table, good).gallery(tmp_path / "page.html")
+
+
+def test_gallery_and_contact_sheet_draw_the_same_lines(table):
+    found = peer.predict(table, good)
+    assert found.pictures is found.pictures
+    for row, drawn in zip(found, found.pictures, strict=True):
+        assert (drawn is None) == (row.comparison is None)
+        if drawn is not None:
+            assert np.max(np.abs(drawn.test)) <= 1.0
+            assert np.max(np.abs(drawn.model)) <= 1.08
+            assert drawn.displacement == np.max(np.abs(row.comparison.displacement))
 
 
 def test_thinned_lines_stay_where_they_were():
     t = np.linspace(0.0, 6.0, 3000)
     line = np.column_stack((600 + 500 * np.sin(t), 400 + 300 * np.sin(2.1 * t)))
-    thin = gallery.thinned(line)
+    thin = pictures.thinned(line, 1.0)
     assert len(thin) < len(line) / 10
     assert thin[0].tolist() == line[0].tolist()
     assert thin[-1].tolist() == line[-1].tolist()
@@ -311,7 +334,7 @@ def test_thinned_lines_stay_where_they_were():
 @pytest.mark.parametrize("m", [0, 1, 2, 3])
 def test_short_lines_are_not_thinned_away(m):
     line = np.arange(2.0 * m).reshape(m, 2) ** 2
-    assert len(gallery.thinned(line)) == m
+    assert len(pictures.thinned(line, 1.0)) == m
 
 
 def test_contact_sheet(table, tmp_path):

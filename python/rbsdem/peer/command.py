@@ -25,7 +25,8 @@ holds specimens.csv and the histories of the PEER Structural Performance Databas
 
 EPILOG = """\
 Files (--out): results.csv (a row for each test), summary.csv (medians and quartiles of
-groups), gallery.html (all loops, to sort and filter), loops.png (all loops; needs matplotlib).
+groups), gallery.html (all loops, to sort and filter; needs jinja2), loops.png (all loops; needs
+matplotlib).
 Exit codes: 0 every test was analysed to its end, 1 some were not, 2 the input is wrong,
 130 broken off by the keyboard (what was done is reported).
 """
@@ -170,14 +171,14 @@ def _report(found: Predictions, by: str, quiet: bool) -> None:
 
 def written(found: Predictions, folder: Path, by: str, loops: bool) -> list[Path]:
     """Write the files; return which."""
-    files = [folder / "results.csv", folder / "summary.csv", folder / "gallery.html"]
+    files = [folder / "results.csv", folder / "summary.csv"]
     found.to_csv(files[0])
     found.summary_to_csv(files[1], by)
-    found.gallery(files[2])
-    try:
-        files.append(found.contact_sheet(folder / "loops.png"))
-    except ImportError as error:
-        print(f"no loops.png: {error}")
+    for name, write in (("gallery.html", found.gallery), ("loops.png", found.contact_sheet)):
+        try:
+            files.append(write(folder / name))
+        except ImportError as error:
+            print(f"no {name}: {error}")
     if loops:
         found.loops_to_csv(folder / "loops")
         files.append(folder / "loops")

@@ -7,6 +7,7 @@ import math
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
@@ -15,6 +16,7 @@ import numpy as np
 from rbsdem import _views
 from rbsdem.comparison import SCORES, Comparison
 from rbsdem.errors import InputError
+from rbsdem.peer.pictures import Picture, picture
 from rbsdem.peer.specimen import Specimen
 
 if TYPE_CHECKING:
@@ -186,6 +188,13 @@ class Predictions(Sequence[Prediction]):
         """Whether every test was analysed to its end."""
         return not self.interrupted and all(row.status == "completed" for row in self._rows)
 
+    @cached_property
+    def pictures(self) -> tuple[Picture | None, ...]:
+        """The loops of each test as gallery and contact sheet draw them; None without a history."""
+        return tuple(
+            None if row.comparison is None else picture(row.comparison) for row in self._rows
+        )
+
     def worst(self, n: int = 10) -> Predictions:
         """Return the n tests of the largest error, the worst first.
 
@@ -304,7 +313,7 @@ class Predictions(Sequence[Prediction]):
                 )
 
     def gallery(self, path: str | os.PathLike[str]) -> Path:
-        """Write one page of html with all loops, to sort and to filter; it needs nothing else.
+        """Write one page of html with all loops, to sort and to filter; needs jinja2.
 
         Parameters
         ----------
@@ -314,7 +323,12 @@ class Predictions(Sequence[Prediction]):
         Returns
         -------
         Path
-            The file.
+            The file. It stands alone: styles, script and figures are in it.
+
+        Raises
+        ------
+        ImportError
+            If jinja2 is not installed.
         """
         return _views.view(self, "gallery", Path(path))
 
