@@ -27,6 +27,13 @@ export MPLBACKEND=Agg
 python -m pytest -q -n 2
 python scripts/check_docs.py
 
+say "editable install"
+install_rbsdem() { python -m pip install -q --disable-pip-version-check --no-build-isolation --no-deps \
+    -Cbuild-dir="$root/build/python" "$@"; }
+install_rbsdem --editable .
+(cd / && rbsdem --version && python -c 'import rbsdem; rbsdem.paper_columns()')
+install_rbsdem .
+
 say "all of it once more with bounds checks and floating-point traps"
 python -m pip install -q --disable-pip-version-check --no-build-isolation --no-deps --upgrade \
     --target build/checked-site -Cbuild-dir=build/checked -Csetup-args=-Dchecked=true .
