@@ -6,15 +6,12 @@ printed; here they are in SI.
 
 from __future__ import annotations
 
-import csv
-import io
 from dataclasses import dataclass, replace
-from importlib import resources
-from pathlib import Path
 from typing import Any
 
 from numpy.typing import ArrayLike
 
+from rbsdem import _data
 from rbsdem._core import Array
 from rbsdem.column import Column
 from rbsdem.errors import InputError
@@ -31,10 +28,8 @@ from rbsdem.section.model import CONCRETE_DENSITY
 from rbsdem.springs import Bilinear, Takeda
 
 __all__ = [
-    "CONCRETE_DENSITY",
     "KEYS",
     "PaperSection",
-    "data_text",
     "paper_columns",
     "paper_sections",
 ]
@@ -43,8 +38,8 @@ KEYS = ("soesianawati_1", "tanaka_park_1", "tanaka_park_5", "zahn_7")
 """The four columns of the paper, in its order."""
 
 # Whole numbers to divide or multiply by: 400 mm is then the same number as 0.4 m.
-_DIVIDE = {"-": 1, "mm": 1000, "mm2": 1000**2}
-_MULTIPLY = {"kN": 1000, "MPa": 1000**2}
+_DIVISOR = {"-": 1, "mm": 1000, "mm2": 1000**2}
+_FACTOR = {"kN": 1000, "MPa": 1000**2}
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +112,7 @@ class PaperSection:
 
     @property
     def mass(self) -> float:
-        """Mass of the column from its gross volume and `CONCRETE_DENSITY` [kg]."""
+        """Mass of the column from its gross volume and 2400 kg/m3 [kg]."""
         return self.gross_area * self.length * CONCRETE_DENSITY
 
     @property
@@ -247,21 +242,21 @@ def paper_sections() -> dict[str, PaperSection]:
     1010000.0
     """
     fields: dict[str, dict[str, Any]] = {key: {} for key in KEYS}
-    for row in _table("paper_table_2.csv"):
+    for row in _data.rows("paper_table_2.csv"):
         name = row["property"]
         if row["group"] != "column" and name != "shear_legs":
             name = f"{row['group']}_{name}"
         for key in KEYS:
-            fields[key][name] = _value(name, row[key], row["unit"])
+            fields[key][name] = _si(name, row[key], row["unit"])
     return {key: PaperSection(**fields[key]) for key in KEYS}
 
 
 def paper_columns(kinematics: str = "small", **changes: Any) -> dict[str, Column]:
     """Build the one-component columns of table 3 of the paper.
 
-    Height and axial load are those of table 2, the mass is the gross volume times
-    `CONCRETE_DENSITY`; the shear spring is bilinear, the flexural one trilinear Takeda. The paper
-    estimates B_1 as a ratio to the initial stiffness, so it multiplies K_c here (`inner="kc"`).
+    Height and axial load are those of table 2, the mass is the gross volume times 2400 kg/m3. The
+    shear spring is bilinear, the flexural one trilinear Takeda. The paper estimates B_1 as a ratio
+    to the initial stiffness, so it multiplies K_c here (`inner="kc"`).
 
     Parameters
     ----------
@@ -289,7 +284,7 @@ def paper_columns(kinematics: str = "small", **changes: Any) -> dict[str, Column
     1.65
     """
     springs: dict[str, dict[tuple[str, str], float]] = {key: {} for key in KEYS}
-    for row in _table("paper_table_3.csv"):
+    for row in _data.rows("paper_table_3.csv"):
         for key in KEYS:
             springs[key][row["spring"], row["parameter"]] = float(row[key])
     sections = paper_sections()
@@ -322,51 +317,11 @@ def _column(section: PaperSection, s: dict[tuple[str, str], float], kinematics: 
     )
 
 
-def data_text(name: str) -> str:
-    """Read a file of the project's `data` folder, from the package or from a checkout.
-
-    Parameters
-    ----------
-    name : str
-        File name inside the folder.
-
-    Returns
-    -------
-    str
-        The text of the file.
-
-    Raises
-    ------
-    InputError
-        If the file is in neither place.
-    """
-    try:
-        return resources.files("rbsdem").joinpath("data", name).read_text(encoding="utf-8")
-    except (OSError, ModuleNotFoundError):
-        pass
-    checkout = Path(__file__).resolve().parents[2] / "data" / name
-    try:
-        return checkout.read_text(encoding="utf-8")
-    except OSError as error:
-        raise InputError(
-            f"data file {name} is neither in the installed package nor in {checkout.parent}; "
-            f"install rbsdem again"
-        ) from error
-
-
-def _table(name: str) -> list[dict[str, str]]:
-    """Rows of a csv of the data folder; lines that begin with # are its source note."""
-    lines = [line for line in data_text(name).splitlines() if not line.startswith("#")]
-    return list(csv.DictReader(io.StringIO("\n".join(lines))))
-
-
-def _value(name: str, text: str, unit: str) -> float | int | str:
-    """One entry of table 2 in SI, of the type that `PaperSection` gives it."""
+def _si(name: str, text: str, unit: str) -> float | int | str:
+    """Return one entry of table 2 in SI, with the type of the attribute `name`."""
     kind = PaperSection.__annotations__[name]
     if kind == "str":
         return text
     if kind == "int":
         return int(text)
-    if unit in _DIVIDE:
-        return float(text) / _DIVIDE[unit]
-    return float(text) * _MULTIPLY[unit]
+    return float(text) / _DIVISOR[unit] if unit in _DIVISOR else float(text) * _FACTOR[unit]

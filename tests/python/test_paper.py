@@ -12,8 +12,10 @@ import pytest
 
 import rbsdem
 from rbsdem import comparison, peer
+from rbsdem._data import text as data_text
 from rbsdem.errors import InputError
-from rbsdem.paper import CONCRETE_DENSITY, KEYS, data_text, paper_columns, paper_sections
+from rbsdem.paper import KEYS, paper_columns, paper_sections
+from rbsdem.section.model import CONCRETE_DENSITY
 
 ROOT = Path(__file__).resolve().parents[2]
 HISTORIES = ROOT.parent / "shared" / "peer"

@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from rbsdem import _data
 from rbsdem.comparison import Loop
 from rbsdem.errors import InputError
-from rbsdem.paper import data_text
 
 __all__ = [
     "FOLDER_VARIABLE",
@@ -124,14 +124,16 @@ def shipped_reversals(key: str) -> Reversals:
     """
     if key not in HISTORY_FILES:
         raise InputError(f"no reversal points for {key!r}; there are {', '.join(HISTORY_FILES)}")
-    lines = data_text(f"reversals_{key}.csv").splitlines()
-    notes = [line.lstrip("# ") for line in lines if line.startswith("#")]
-    points = np.loadtxt([line for line in lines if not line.startswith("#")][1:], delimiter=",")
+    name = f"reversals_{key}.csv"
+    rows, notes = _data.rows(name), _data.notes(name)
+    displacement, force = (
+        np.array([float(row[column]) for row in rows]) for column in ("displacement_mm", "force_kN")
+    )
     return Reversals(
         key=key,
         name=notes[0].partition(":")[0],
-        displacement=points[:, 0] / 1000,
-        force=points[:, 1] * 1000,
+        displacement=displacement / 1000,
+        force=force * 1000,
         source="\n".join(notes),
     )
 
@@ -145,16 +147,13 @@ def measured_loops() -> dict[str, Loop]:
         Peak force, displacement at it, largest displacement, energy and stiffness of each
         test, SI units, in the definitions of `rbsdem.comparison`.
     """
-    lines = data_text("measured_loops.csv").splitlines()
-    rows = [line.split(",") for line in lines if not line.startswith("#")][1:]
-    loops = {}
-    for row in rows:
-        peak, at_peak, largest, energy, stiffness = (float(text) for text in row[-5:])
-        loops[row[0]] = Loop(
-            peak_force=peak * 1000,
-            displacement_at_peak=at_peak / 1000,
-            peak_displacement=largest / 1000,
-            energy=energy * 1000,
-            stiffness=stiffness * 1e6,
+    return {
+        row["key"]: Loop(
+            peak_force=float(row["peak_force_kN"]) * 1000,
+            displacement_at_peak=float(row["displacement_at_peak_mm"]) / 1000,
+            peak_displacement=float(row["peak_displacement_mm"]) / 1000,
+            energy=float(row["energy_kJ"]) * 1000,
+            stiffness=float(row["stiffness_kN_per_mm"]) * 1e6,
         )
-    return loops
+        for row in _data.rows("measured_loops.csv")
+    }

@@ -215,7 +215,7 @@ class Specimen:
 
     @property
     def mass(self) -> float:
-        """Mass from the gross volume and `rbsdem.paper.CONCRETE_DENSITY` [kg]."""
+        """Mass from the gross volume and `rbsdem.section.model.CONCRETE_DENSITY` [kg]."""
         return self.gross_area * self.length * CONCRETE_DENSITY
 
     @property
