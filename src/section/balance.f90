@@ -1,8 +1,8 @@
-!> The strain at mid-depth at which a section carries its axial load, curvature by curvature.
+!> The strain at mid-depth at which a section carries its axial load, for one curvature after the other.
 !>
-!> Past the peak there may be several such strains. The one taken is that which the section comes to from
-!> the last curvature when the unbalanced axial load pushes it: it is stable, and continuous as long as there
-!> is a continuous one.
+!> Past the peak several such strains may exist. The one taken is the first that the section reaches from the
+!> last curvature when the unbalanced axial load moves it: it is stable, and it follows the last one
+!> continuously as long as a continuous solution exists.
 module rbs_section_balance
    use rbs_base_constants, only: unbounded
    use rbs_base_error, only: error_type, fatal_error, bad_input, analysis_failed
@@ -23,15 +23,15 @@ module rbs_section_balance
       real(wp) :: trend = 0.0_wp
    end type state_type
 
-   !> Residual of the axial force, as a share of the forces at play.
+   !> Largest residual of the axial force, as a share of `force_scale`.
    real(wp), parameter :: tolerance = 1.0e-10_wp
    integer, parameter :: most_newton = 8, most_bisections = 200
 
-   !> Strain over the depth that one step may add [-], so that no branch is jumped over, and its share of
-   !> what is there already.
+   !> Largest change of the strain over the depth in one step, so that no branch is skipped: a constant, and
+   !> a share of the present strain.
    real(wp), parameter :: longest_step = 1.0e-3_wp, longest_growth = 0.05_wp
-   !> First step of a search for the strain, its growth and the longest one; share of the strain over the
-   !> depth that may be added to that.
+   !> Search for the strain: the first step, the growth of the steps and the longest one, to which a share of
+   !> the strain over the depth is added.
    real(wp), parameter :: first_search = 2.0e-6_wp, search_growth = 1.4_wp, longest_search = 1.0e-4_wp, &
                           search_share = 0.02_wp
    !> Strain in compression at which a section counts as crushed.
@@ -64,7 +64,7 @@ contains
       end if
    end subroutine begin
 
-   !> Bend the section to a curvature of the present sign and larger size, in steps of its own.
+   !> Bend the section to a curvature of the same sign and larger magnitude, in internal steps.
    subroutine advance(section, laws, axial_load, curvature, state, found)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
@@ -93,7 +93,7 @@ contains
       end do
    end subroutine advance
 
-   !> Moments for curvatures of one sign in rising size.
+   !> Moments for curvatures of one sign and increasing magnitude.
    subroutine follow(section, laws, axial_load, curvature, moment, eps0, error)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
@@ -101,7 +101,7 @@ contains
       real(wp), intent(in) :: axial_load
       !> [1/m]
       real(wp), intent(in) :: curvature(:)
-      !> About mid-depth [N m], and strain at mid-depth, compression positive; zero from a failure on
+      !> About mid-depth [N m], and strain at mid-depth, compression positive; zero after a failure
       real(wp), intent(out) :: moment(:), eps0(:)
       type(error_type), allocatable, intent(out) :: error
       type(state_type) :: state
@@ -126,8 +126,8 @@ contains
       end do
    end subroutine follow
 
-   !> Equilibrium at next%curvature, coming from `last`: Newton's method from the trend; the search if that
-   !> leads anywhere else than close by.
+   !> Equilibrium at next%curvature, starting from `last`: Newton's method from the extrapolated strain; if it
+   !> does not converge nearby, the search of `settle`.
    subroutine find_strain(section, laws, axial_load, last, next, found)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
@@ -164,7 +164,7 @@ contains
       if (found .and. abs(turn) > 0.0_wp) next%trend = (next%eps0 - last%eps0)/turn
    end subroutine find_strain
 
-   !> From state%eps0 go where the unbalanced axial load pushes, up to the first equilibrium.
+   !> Move from state%eps0 in the direction of the unbalanced axial load to the first equilibrium.
    subroutine settle(section, laws, axial_load, curvature, state, found)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
@@ -200,13 +200,14 @@ contains
       found = .false.
    end subroutine settle
 
-   !> Between two strains with residuals of opposite sign: regula falsi as of Illinois, every third step a
-   !> bisection. Where the force jumps (a bar breaks) the equilibrium is within the jump.
+   !> Equilibrium between two strains with residuals of opposite sign: the Illinois form of regula falsi, with
+   !> a bisection at every third step. Where the force jumps because a bar breaks, equilibrium lies within
+   !> the jump.
    subroutine close_in(section, laws, axial_load, curvature, first, at_first, second, at_second, state)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
       real(wp), intent(in) :: axial_load, curvature
-      !> The two strains and what they need
+      !> The two strains and the forces at them
       real(wp), intent(in) :: first, second
       type(resultants_type), intent(in) :: at_first, at_second
       type(state_type), intent(inout) :: state
@@ -251,7 +252,7 @@ contains
       state%moment = a_sums%m + share*(b_sums%m - a_sums%m)
    end subroutine close_in
 
-   !> Largest strain that a bar bears, 0.1 without bars.
+   !> Strain at which the last bar breaks; 0.1 without bars.
    pure real(wp) function largest_opening(section)
       type(section_type), intent(in) :: section
 

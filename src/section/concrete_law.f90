@@ -16,8 +16,8 @@ module rbs_section_concrete_law
    public :: concrete_type, plain_concrete, confined_concrete, spalling_concrete, check_concrete
    public :: concrete_stress, concrete_tangent, concrete_both
 
-   !> What is left of the tension beyond cracking: no tension at any strain; none beyond f_t; tension
-   !> stiffening f_t/(1 + sqrt(500 eps)) (Collins and Mitchell 1987).
+   !> Tension laws: no tension at any strain; none beyond f_t; tension stiffening f_t/(1 + sqrt(500 eps))
+   !> beyond f_t (Collins and Mitchell 1987).
    character(len=4), parameter, public :: tension_names(3) = ['zero', 'bare', 'ts  ']
    integer, parameter, public :: tension_zero = 1, tension_bare = 2, tension_ts = 3
 
@@ -28,7 +28,7 @@ module rbs_section_concrete_law
       real(wp) :: fc = 0.0_wp, ft = 0.0_wp, ec = 0.0_wp
       !> Strain at the peak of compression, exponent of Popovics' curve, factor of it past the peak
       real(wp) :: eps0 = 0.0_wp, n = 0.0_wp, decay = 1.0_wp
-      !> Strain from which a straight line leads to no stress, and where that is: spalling
+      !> Spalling: the strains at which a straight line to zero stress begins and ends
       real(wp) :: eps_line = unbounded, eps_spall = unbounded
       !> Strain at which the confinement is lost: first hoop fracture; unbounded without confinement
       real(wp) :: eps_cu = unbounded
@@ -38,7 +38,7 @@ module rbs_section_concrete_law
 
 contains
 
-   !> Concrete without confinement. What is not given follows from the strength:
+   !> Concrete without confinement. Values that are not given follow from the strength:
    !> E_c = 3320 sqrt(f'c) + 6900, f_t = 0.45 f'c^0.4, n = 0.8 + f'c/17 (MPa), eps_0 = f'c/E_c n/(n - 1).
    elemental type(concrete_type) function plain_concrete(fc, ft, ec, eps0) result(law)
       !> Cylinder strength [Pa]
@@ -75,8 +75,8 @@ contains
       law = plain
       share = lateral/plain%fc
       law%fc = plain%fc*(-1.254_wp + 2.254_wp*sqrt(1.0_wp + 7.94_wp*share) - 2.0_wp*share)
-      ! 0.002 as in the source; strong concrete (above about 50 MPa) peaks later, and with 0.002 its secant
-      ! would come to E_c, where the curve has no meaning.
+      ! 0.002 as in the source. Strong concrete (above about 50 MPa) peaks later; with 0.002 its secant would
+      ! approach E_c, for which the curve is not defined.
       eps_co = max(0.002_wp, 0.9_wp*plain%eps0, 1.1_wp*plain%fc/plain%ec)
       law%eps0 = eps_co*(1.0_wp + 5.0_wp*(law%fc/plain%fc - 1.0_wp))
       law%n = law%ec/(law%ec - law%fc/law%eps0)
@@ -84,7 +84,7 @@ contains
       law%eps_cu = eps_cu
    end function confined_concrete
 
-   !> The same concrete as cover that falls off: from 2 eps_0 on a straight line to no stress at eps_spall.
+   !> The same concrete as cover that spalls: from 2 eps_0 on a straight line to zero stress at eps_spall.
    elemental type(concrete_type) function spalling_concrete(plain, eps_spall) result(law)
       type(concrete_type), intent(in) :: plain
       real(wp), intent(in) :: eps_spall
@@ -112,7 +112,7 @@ contains
       call concrete_both(law, strain, stress, tangent)
    end function concrete_tangent
 
-   !> Stress and slope at once: they share the costly power.
+   !> Stress and slope together, as both need the same costly power.
    elemental subroutine concrete_both(law, strain, stress, tangent)
       type(concrete_type), intent(in) :: law
       !> Compression positive
@@ -170,7 +170,7 @@ contains
       end if
    end subroutine in_tension
 
-   !> Add a message for every number that is refused.
+   !> Add a message for every value that is refused.
    subroutine check_concrete(fc, ft, ec, eps0, eps_spall, messages)
       !> As for `plain_concrete`
       real(wp), intent(in) :: fc, ft, ec, eps0, eps_spall

@@ -17,7 +17,7 @@ contains
    !> Set the laws of core and cover, the lateral stress and its effectiveness.
    pure subroutine confine(section, eps_spall)
       type(section_type), intent(inout) :: section
-      !> Strain at which the cover has fallen off
+      !> Strain at which the cover has spalled
       real(wp), intent(in) :: eps_spall
       real(wp) :: ratio, eps_cu, yield
 
@@ -51,7 +51,7 @@ contains
       end associate
    end function volumetric_ratio
 
-   !> k_e: the effectively confined part of the core, halfway between two hoops.
+   !> k_e: the share of the core that is confined halfway between two hoops.
    pure real(wp) function effectiveness(section) result(k_e)
       type(section_type), intent(in) :: section
       real(wp) :: b_c, d_c, clear, part, core
@@ -73,8 +73,8 @@ contains
       k_e = min(1.0_wp, k_e/(1.0_wp - min(0.5_wp, steel_area(section)/core)))
    end function effectiveness
 
-   !> Sum of the squares of the clear distances between bars that a leg holds, around the core [m2].
-   !> A leg holds one bar at each of its ends; between two of them the concrete arches.
+   !> Sum of the squares of the clear distances, around the core, between the bars that legs hold [m2].
+   !> A leg holds one bar at each of its ends; between two such bars the concrete forms an arch.
    pure real(wp) function arches(section, b_c, d_c)
       type(section_type), intent(in) :: section
       !> Core between hoop centre lines [m]

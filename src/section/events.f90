@@ -1,4 +1,4 @@
-!> Points of a moment-curvature diagram that have a name: cracking, first yield, peak, ultimate.
+!> Named points of a moment-curvature diagram: cracking, first yield, peak, ultimate.
 module rbs_section_events
    use rbs_base_error, only: error_type, message_list
    use rbs_base_kinds, only: wp
@@ -26,9 +26,9 @@ module rbs_section_events
 
    !> Share of the peak moment at which a section counts as failed.
    real(wp), parameter :: failed_share = 0.8_wp
-   !> No diagram goes further: strain over the depth.
+   !> Strain over the depth at which every diagram ends.
    real(wp), parameter :: furthest = 0.5_wp
-   !> First step of the curvature, as strain over the depth; growth of it.
+   !> First step of the curvature, as strain over the depth; growth of the steps.
    real(wp), parameter :: first_step = 2.0e-5_wp, growth = 0.05_wp
 
    type :: rule_type
@@ -54,12 +54,12 @@ module rbs_section_events
       logical :: lost = .false.
    end type events_type
 
-   !> What is sought between two states: a quantity of the section passes zero upward.
+   !> Kinds of points between two states: a quantity of the section rises through zero.
    integer, parameter :: seek_cracking = 1, seek_yield = 2, seek_ultimate = 3, seek_drop = 4, seek_moment = 5
 
 contains
 
-   !> March along the diagram of positive curvature and catch its points.
+   !> Follow the diagram along positive curvatures and find its points.
    subroutine find_events(section, laws, axial_load, rule, events, error, only_cracking)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
@@ -68,7 +68,7 @@ contains
       type(rule_type), intent(in) :: rule
       type(events_type), intent(out) :: events
       type(error_type), allocatable, intent(out) :: error
-      !> Stop there; the other points are not looked for
+      !> Stop at cracking, without the other points
       logical, intent(in), optional :: only_cracking
       type(state_type) :: last, here, before_peak
       type(point_type) :: drop
@@ -102,7 +102,7 @@ contains
          if (short .and. events%cracking%found) return
          call catch(seek_yield, 0.0_wp, events%yield)
          if (rule%ultimate /= ultimate_drop) call catch(seek_ultimate, 0.0_wp, events%ultimate)
-         ! A lightly reinforced section drops at cracking already and comes back.
+         ! The moment of a lightly reinforced section drops as early as cracking, and recovers.
          if (events%peak%moment > 0.0_wp .and. &
              (events%yield%found .or. compressed(section, here) > section%plain%eps0)) then
             call catch(seek_drop, failed_share*events%peak%moment, drop)
@@ -161,7 +161,7 @@ contains
       step_of = first_step/section%shape%depth + growth*curvature
    end function step_of
 
-   !> Negative before, positive beyond what is sought; a pure number.
+   !> Negative before the point that is sought, positive beyond it; dimensionless.
    pure real(wp) function beyond(section, laws, rule, what, level, state)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
@@ -224,8 +224,8 @@ contains
       end do
    end function bar_ratio
 
-   !> The point between two states at which `beyond` passes zero: regula falsi as of Illinois, every third
-   !> step a bisection. Where a bar breaks the state jumps: the last one before it is taken.
+   !> The point between two states at which `beyond` passes zero: the Illinois form of regula falsi, with a
+   !> bisection at every third step. Where a bar breaks the state jumps; the last state before is taken.
    subroutine locate(section, laws, axial_load, rule, what, level, first, second, point)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
@@ -245,7 +245,7 @@ contains
       kept = 0
       below = beyond(section, laws, rule, what, level, low)
       above = beyond(section, laws, rule, what, level, high)
-      if (below >= 0.0_wp) high = low               ! so before it was bent
+      if (below >= 0.0_wp) high = low               ! true before it is bent
       do i = 1, 100
          if (high%curvature - low%curvature <= 1.0e-10_wp*high%curvature) exit
          at = 0.5_wp*(low%curvature + high%curvature)
@@ -272,7 +272,7 @@ contains
       point = as_point(low)
    end subroutine locate
 
-   !> Golden section: the diagram may have a corner at its peak.
+   !> Golden-section search, as the diagram may have a corner at its peak.
    subroutine refine_peak(section, laws, axial_load, first, end, peak)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
@@ -322,13 +322,13 @@ contains
       as_point = point_type(.true., state%curvature, state%moment, state%eps0)
    end function as_point
 
-   !> Read the names of the rules; add a message for each that is refused.
+   !> Find the rules by their names; add a message for every name and strain that is refused.
    subroutine check_rules(section, confined, yield, ultimate, rule, messages)
       type(section_type), intent(in) :: section
       logical, intent(in) :: confined
       !> One of `yield_names` and of `ultimate_names`
       character(len=*), intent(in) :: yield, ultimate
-      !> Its strains are checked, its places filled
+      !> Its strains are checked, its rules are set
       type(rule_type), intent(inout) :: rule
       type(message_list), intent(inout) :: messages
 

@@ -77,7 +77,7 @@ contains
       call draw_line(section, hinge, spring, error)
    end subroutine fit_flexural_spring
 
-   !> The three points must be there, in their order.
+   !> The three points must exist, in this order.
    subroutine check_points(section, spring, error)
       type(section_type), intent(in) :: section
       type(flexural_spring_type), intent(in) :: spring
@@ -173,7 +173,7 @@ contains
                      section%bar_diameter
    end function hinge_length
 
-   !> Add a message for every number that is refused.
+   !> Add a message for every value that is refused.
    subroutine check_hinge(hinge, messages)
       type(hinge_type), intent(in) :: hinge
       type(message_list), intent(inout) :: messages

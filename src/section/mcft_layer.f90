@@ -11,9 +11,9 @@
 !> f_1 and f_2 are the uniaxial law of the concrete; compression across cracks is softened by
 !> 1/(0.8 + 170 eps_1) <= 1. Poisson's ratio is zero: uncracked G = E_c/2. No check of slip at the crack.
 !>
-!> Newton's method in (eps_z, gamma) from the state before, in parts of the way to it where the whole is too
-!> much. Where no way leads on - the concrete loses stress at once when it cracks - the states are searched
-!> upward in eps_1, each with eps_2 from sigma_z = 0, for the first that carries tau.
+!> A state is found by Newton's method in (eps_z, gamma) from the previous one, in smaller steps where one
+!> step does not converge. Where no step does, as the concrete loses stress abruptly when it cracks, states
+!> of increasing eps_1, each with eps_2 from sigma_z = 0, are searched for the first that carries tau.
 module rbs_section_mcft_layer
    use rbs_base_kinds, only: wp
    use rbs_section_concrete_law, only: concrete_type, concrete_both
@@ -23,7 +23,7 @@ module rbs_section_mcft_layer
 
    public :: layer_type, layer_state, layer_stress, stress_of_state, solve_layer, crack_softening
 
-   !> What a layer is made of.
+   !> Materials of a layer.
    type :: layer_type
       type(concrete_type) :: concrete
       !> Stirrups, smeared: legs times area of a bar over width times spacing; 0 in the cover
@@ -31,8 +31,8 @@ module rbs_section_mcft_layer
       type(steel_type) :: stirrup
    end type layer_type
 
-   !> What is found of a layer, its transverse and shear strain, and what it was found for: longitudinal
-   !> strain and shear stress [Pa]. Tension is positive.
+   !> State of a layer: its transverse and shear strain under a longitudinal strain and a shear stress [Pa].
+   !> Tension is positive.
    type :: layer_state
       real(wp) :: eps_z = 0.0_wp, gamma = 0.0_wp
       real(wp) :: eps_x = 0.0_wp, tau = 0.0_wp
@@ -44,20 +44,20 @@ module rbs_section_mcft_layer
       real(wp) :: z_by_z = 0.0_wp, z_by_gamma = 0.0_wp, tau_by_z = 0.0_wp, tau_by_gamma = 0.0_wp
    end type layer_stress
 
-   !> A state is found when what is left of sigma_z and tau is below this share of f'c.
+   !> Largest residual of sigma_z and tau, as a share of f'c.
    real(wp), parameter :: tolerance = 1.0e-9_wp
 
    integer, parameter :: most_steps = 20, most_halvings = 5, most_bisections = 100
 
-   !> The smallest part of the way from one state to the next.
+   !> Smallest step, as a share of the way from one state to the next.
    real(wp), parameter :: smallest_part = 1.0_wp/128.0_wp
 
-   !> Search of eps_1: each trial is this much larger, up to strains without meaning.
+   !> Search for eps_1: growth from one trial to the next, and the strain at which the search ends.
    real(wp), parameter :: growth = 1.08_wp, largest_strain = 0.1_wp
 
 contains
 
-   !> What is left of the compressive strength across cracks (Vecchio and Collins 1986).
+   !> Factor of the compressive strength of cracked concrete (Vecchio and Collins 1986).
    elemental subroutine crack_softening(cracking, eps_1, factor, slope)
       !> Strain at cracking, and principal tensile strain
       real(wp), intent(in) :: cracking, eps_1
@@ -116,7 +116,7 @@ contains
       stress%sigma_z = f_1*share_1 + f_2*share_2 + layer%rho_z*f_sz
       stress%tau = 0.5_wp*(f_1 - f_2)*s
 
-      ! A turn of the strains turns the stresses with them: tau_12 = (f_1 - f_2)/(2 (eps_1 - eps_2)) gamma_12.
+      ! The stresses rotate with the strains: tau_12 = (f_1 - f_2)/(2 (eps_1 - eps_2)) gamma_12.
       if (radius > 1.0e-12_wp) then
          g = 0.25_wp*(f_1 - f_2)/radius
       else
@@ -135,9 +135,9 @@ contains
       real(wp), intent(in) :: eps_x
       !> Shear stress [Pa]
       real(wp), intent(in) :: tau
-      !> The state before, virgin at first; on return the present one
+      !> The previous state, at first that of the virgin layer; on return the present one
       type(layer_state), intent(inout) :: state
-      !> Whether the layer carries tau; if not the state is that of the largest stress found
+      !> Whether the layer carries tau; if not, the state is that with the largest stress found
       logical, intent(out) :: carried
       type(layer_state) :: trial
 
@@ -155,8 +155,8 @@ contains
       end if
    end subroutine solve_layer
 
-   !> Newton's method with halved steps. A state where less strain would carry more is not taken; without
-   !> success the state stays.
+   !> Newton's method; a step that does not reduce the residual is halved. A state at which the stress falls
+   !> with the strain is not accepted. Without success the state is unchanged.
    pure subroutine iterate(layer, eps_x, tau, state, found)
       type(layer_type), intent(in) :: layer
       real(wp), intent(in) :: eps_x, tau
@@ -197,7 +197,7 @@ contains
       end do
    end subroutine iterate
 
-   !> Newton's method in parts of the way from the state before, which is taken as straight.
+   !> Newton's method in several steps along a straight path from the previous state.
    pure subroutine go_in_parts(layer, eps_x, tau, state, arrived)
       type(layer_type), intent(in) :: layer
       real(wp), intent(in) :: eps_x, tau
@@ -225,7 +225,7 @@ contains
       end do
    end subroutine go_in_parts
 
-   !> The first state that carries tau, going up in eps_1 from the state without shear.
+   !> The first state that carries tau as eps_1 increases from the state without shear.
    pure subroutine search(layer, eps_x, tau, state, found)
       type(layer_type), intent(in) :: layer
       real(wp), intent(in) :: eps_x, tau
@@ -241,7 +241,7 @@ contains
       best = layer_state(eps_x=eps_x)
       do while (below < largest_strain)
          above = max(growth*below, below + 0.02_wp*cracking)
-         ! Both sides of cracking are trials of their own: the stress falls there at once.
+         ! Both sides of cracking are tried, as the stress drops there.
          if (below < cracking) above = min(above, cracking)
          if (.not. below < cracking .and. .not. below > cracking) above = nearest(cracking, 1.0_wp)
          call balance(layer, eps_x, above, eps_2, tau_here, balanced)
@@ -253,7 +253,7 @@ contains
       state = best
    end subroutine search
 
-   !> Halve the interval of eps_1 in which tau is passed; the last digits are Newton's.
+   !> Halve the interval of eps_1 in which tau is reached; Newton's method gives the last digits.
    pure subroutine close_in(layer, eps_x, tau, bottom, top, state, found)
       type(layer_type), intent(in) :: layer
       real(wp), intent(in) :: eps_x, tau, bottom, top
@@ -271,7 +271,7 @@ contains
          call balance(layer, eps_x, middle, eps_2, tau_here, balanced)
          near = state_of(eps_x, middle, eps_2, tau)
          call iterate(layer, eps_x, tau, near, found)
-         ! Newton may have gone to a state beyond: only one inside the interval is the first.
+         ! Newton's method may have left the interval: only a state inside it is the first.
          if (found) found = in_between(near, bottom, top)
          if (found) state = near
          if (found .or. .not. (middle > below .and. middle < above)) return
@@ -283,7 +283,7 @@ contains
       end do
    end subroutine close_in
 
-   !> Whether eps_1 of a state is in an interval, but for round-off.
+   !> Whether eps_1 of a state is in an interval, apart from round-off.
    elemental logical function in_between(state, bottom, top)
       type(layer_state), intent(in) :: state
       real(wp), intent(in) :: bottom, top
@@ -296,7 +296,7 @@ contains
    !> Given eps_1: eps_2 <= eps_x of the state with sigma_z = 0, and its shear stress.
    !>
    !> (1 - c)/2 = (eps_1 - eps_x)/(eps_1 - eps_2) and eps_z = eps_1 + eps_2 - eps_x: sigma_z, not negative at
-   !> eps_2 = eps_x, comes to zero as eps_2 falls.
+   !> eps_2 = eps_x, falls to zero as eps_2 decreases.
    pure subroutine balance(layer, eps_x, eps_1, eps_2, tau, balanced)
       type(layer_type), intent(in) :: layer
       real(wp), intent(in) :: eps_x, eps_1

@@ -1,4 +1,4 @@
-!> Axial force and moment of a section under a plane strain, and how the axial force changes with it.
+!> Axial force and moment of a section under a plane distribution of strain, and the axial stiffness.
 module rbs_section_resultants
    use rbs_base_kinds, only: wp
    use rbs_section_concrete_law, only: concrete_type, concrete_both, tension_zero
@@ -9,14 +9,14 @@ module rbs_section_resultants
 
    public :: laws_type, section_laws, resultants_type, resultants, edge_strain, force_scale
 
-   !> The laws of concrete in force: outside and inside the hoops.
+   !> The laws of the concrete outside and inside the hoops.
    type :: laws_type
       type(concrete_type) :: shell, core
       !> Whether the two differ
       logical :: confined = .false.
    end type laws_type
 
-   !> What a plane strain needs: compression positive; moment about mid-depth, positive with the curvature
+   !> Resultants of the stresses: compression positive; moment about mid-depth, positive with a curvature
    !> that puts y > 0 in tension.
    type :: resultants_type
       !> Axial force [N], moment [N m]
@@ -45,8 +45,8 @@ contains
       laws%core%tension = tension
    end function section_laws
 
-   !> Sum over strips and bars. A strip in which the crack ends is cut there: the axial force is then a
-   !> continuous function of the strain, though the stress falls at cracking.
+   !> Sum over strips and bars. The strip that contains the tip of the crack is cut there, so that the axial
+   !> force is a continuous function of the strain although the stress drops at cracking.
    pure type(resultants_type) function resultants(section, laws, eps0, curvature) result(sums)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
@@ -79,7 +79,7 @@ contains
       call add_bars(section, laws, eps0, curvature, sums)
    end function resultants
 
-   !> Place of the strip in which the strain of cracking lies; 0 if in none, or if nothing falls there.
+   !> Index of the strip that contains the tip of the crack; 0 if no strip does, or if the law has no tension.
    pure integer function cut_strip(section, laws, eps0, curvature)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
@@ -95,7 +95,7 @@ contains
       end if
    end function cut_strip
 
-   !> Where the strain of cracking is [m from mid-depth].
+   !> Distance of the tip of the crack, where the strain is that of cracking, from mid-depth [m].
    elemental real(wp) function crack_tip(laws, eps0, curvature)
       type(laws_type), intent(in) :: laws
       real(wp), intent(in) :: eps0, curvature
@@ -103,7 +103,7 @@ contains
       crack_tip = (eps0 + laws%shell%ft/laws%shell%ec)/curvature
    end function crack_tip
 
-   !> The two parts of a strip on both sides of the tip of the crack; tension is the same in core and cover.
+   !> The parts of a strip on both sides of the tip of the crack; core and cover have the same tension law.
    pure subroutine add_cut_strip(section, laws, eps0, curvature, i, sums)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
@@ -127,7 +127,7 @@ contains
          sums%m = sums%m - stress*area*y
          sums%stiffness = sums%stiffness + tangent*area
       end do
-      ! The tip moves by d(eps_0)/phi, and what it passes comes back to f_t.
+      ! The tip moves by d(eps_0)/phi, and the concrete that it passes returns to f_t.
       strain = laws%shell%ft/laws%shell%ec*(1.0_wp + 1.0e-9_wp)
       call concrete_both(laws%shell, -strain, after, tangent)
       sums%stiffness = sums%stiffness - (laws%shell%ft + after)*width/abs(curvature)
@@ -165,7 +165,7 @@ contains
       edge_strain = eps0 - curvature*y
    end function edge_strain
 
-   !> Size of the forces at play, to measure residuals with [N].
+   !> Scale of the forces, to which residuals are compared [N].
    pure real(wp) function force_scale(section)
       type(section_type), intent(in) :: section
       integer :: i

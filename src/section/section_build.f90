@@ -1,4 +1,4 @@
-!> What follows from the data of a section: the core, the bars in it, the laws of core and cover, the strips.
+!> Completes a section from its data: the core, the bars in it, the laws of core and cover, the strips.
 module rbs_section_section_build
    use rbs_base_kinds, only: wp
    use rbs_section_confinement, only: confine
@@ -10,10 +10,10 @@ module rbs_section_section_build
 
 contains
 
-   !> Complete a section whose shape, cover, hoops, bars and plain concrete are set and good.
+   !> Complete a section whose shape, cover, hoops, bars and plain concrete are set and checked.
    subroutine build_section(section, eps_spall, strips)
       type(section_type), intent(inout) :: section
-      !> Strain at which the cover has fallen off
+      !> Strain at which the cover has spalled
       real(wp), intent(in) :: eps_spall
       !> Number of strips
       integer, intent(in) :: strips

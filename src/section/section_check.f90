@@ -14,7 +14,7 @@ module rbs_section_section_check
 
 contains
 
-   !> Add a message for everything that is wrong but the concrete, which is checked by itself.
+   !> Add a message for every error of a section but those of its concrete, which `check_concrete` finds.
    subroutine check_section(section, messages)
       type(section_type), intent(in) :: section
       type(message_list), intent(inout) :: messages
@@ -54,9 +54,9 @@ contains
       end do
       if (.not. all_ok) return
       if (sum(section%bar_area) > 0.2_wp*section%shape%area()) then
-         call messages%add('section: the bars have '//to_text(sum(section%bar_area))//' m2 of '// &
-                           to_text(section%shape%area())//' m2; they must have less than a fifth: '// &
-                           '200 mm2 is an area of 200e-6')
+         call messages%add('section: the area of the bars, '//to_text(sum(section%bar_area))// &
+                           ' m2, must be below a fifth of the gross area, '// &
+                           to_text(section%shape%area())//' m2; 200 mm2 is 200e-6')
       end if
       if (size(section%bar_y) == 0) return
       call check_positive(section%bar_diameter, 'section: bar_diameter', 'm', messages, ok)
@@ -69,7 +69,7 @@ contains
 
    subroutine check_transverse(section, sizes_ok, messages)
       type(section_type), intent(in) :: section
-      !> Whether sizes and cover are good
+      !> Whether sizes and cover are valid
       logical, intent(in) :: sizes_ok
       type(message_list), intent(inout) :: messages
       logical :: ok(2)
@@ -81,12 +81,13 @@ contains
       call check_steel(section%transverse%steel, 'ties: steel', messages)
       if (.not. (all(ok) .and. sizes_ok)) return
       if (section%transverse%spacing > largest_size) then
-         call messages%add('ties: spacing = '//to_text(section%transverse%spacing)//' m; 100 mm is 0.1')
+         call messages%add('ties: spacing = '//to_text(section%transverse%spacing)//' m is larger '// &
+                           'than any column; 100 mm is 0.1')
       end if
       if (min(section%core_shape%depth, section%core_shape%width) > section%transverse%diameter) return
       call messages%add('section: cover = '//to_text(section%cover)//' m and ties of '// &
-                        to_text(section%transverse%diameter)//' m leave no core; the cover is the clear '// &
-                        'one to the outer edge of the ties')
+                        to_text(section%transverse%diameter)//' m leave no core; the cover is measured '// &
+                        'to the outer edge of the ties')
    end subroutine check_transverse
 
 end module rbs_section_section_check

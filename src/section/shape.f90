@@ -89,7 +89,7 @@ contains
       if (self%width > 0.0_wp) leg_share = self%width_at(min(abs(y), 0.5_wp*self%depth))/self%width
    end function leg_share
 
-   !> Add a message if a size is not one of a column.
+   !> Add a message if a size is not positive, or too large for a column.
    subroutine check_size(size_of, name, messages, ok)
       !> [m]
       real(wp), intent(in) :: size_of

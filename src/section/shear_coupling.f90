@@ -1,8 +1,9 @@
 !> Bending and shear of a section together: the longitudinal stress of a layer is that of its cracked
-!> membrane, which the diagonal compression of the shear changes, and the moment is what these stresses give.
+!> membrane, which the diagonal compression of the shear changes, and the moment follows from these stresses.
 !>
-!> For one curvature the strain at mid-depth and the shear stresses are found in turn: the strain by a step of
-!> Newton's method to the axial load, the stresses from the shear flow of the longitudinal forces, half way.
+!> For each curvature the strain at mid-depth and the shear stresses are found in turn: the strain by a step
+!> of Newton's method towards the axial load, the stresses as the mean of the old ones and those of the
+!> shear flow of the longitudinal forces.
 module rbs_section_shear_coupling
    use rbs_base_kinds, only: wp
    use rbs_section_balance, only: state_type
@@ -17,10 +18,10 @@ module rbs_section_shear_coupling
 
    integer, parameter :: most_turns = 200
 
-   !> Axial load as a share of the forces at play, shear stress as a share of f'c.
+   !> Largest residuals: axial load as a share of `force_scale`, shear stress as a share of f'c.
    real(wp), parameter :: close_load = 1.0e-6_wp, close_stress = 1.0e-5_wp
 
-   !> Change of the strain for its slope, and the largest step.
+   !> Change of the strain from which the slope is found, and the largest step.
    real(wp), parameter :: small_strain = 1.0e-7_wp, longest_step = 2.0e-5_wp
 
 contains
@@ -36,7 +37,7 @@ contains
       !> Strain at mid-depth and moment; on return those at `curvature`
       type(state_type), intent(inout) :: state
       type(layer_state), intent(inout) :: layer_states(:)
-      !> Whether there is one that all layers carry
+      !> Whether there is an equilibrium that all layers carry
       logical, intent(out) :: found
       type(layer_state) :: trial(size(layers))
       real(wp), dimension(size(layers)) :: tau, wanted, concrete_force, aside

@@ -1,9 +1,9 @@
 !> Shear force and shear strain of a section that bends under a constant axial load: V = M/a with the shear
 !> span a, layer by layer with the modified compression field theory.
 !>
-!> For each curvature the section in flexure gives the strain and the shear stress of each layer, which
-!> answers with its shear strain; gamma is their mean over the area, so that an uncracked section of concrete
-!> has V = (E_c/2) A gamma exactly.
+!> For each curvature the section in flexure gives the longitudinal strain and the shear stress of each layer,
+!> from which its shear strain follows; gamma is the mean of these over the area, so that an uncracked section
+!> of concrete has V = (E_c/2) A gamma exactly.
 module rbs_section_shear_diagram
    use rbs_base_error, only: error_type, message_list
    use rbs_base_kinds, only: wp
@@ -35,22 +35,22 @@ module rbs_section_shear_diagram
    end type shear_point
 
    type :: shear_diagram_type
-      !> The points asked for, as far as the section carries them
+      !> The points at the given curvatures, as far as the section carries them
       type(shear_point), allocatable :: points(:)
       !> Where the secant has fallen to the share of the knee
       type(shear_point) :: knee
       logical :: knee_found = .false.
-      !> The last point: the last one asked for, or where a layer or the section carries no more
+      !> The last point: at the last curvature, or where a layer or the section fails
       type(shear_point) :: last
-      !> A layer carries no more shear (coupled: there is no equilibrium any more); the section carries its
-      !> axial load no more
+      !> Whether a layer no longer carries the shear (if coupled: whether equilibrium is lost), and whether
+      !> the section no longer carries its axial load
       logical :: sheared = .false., lost = .false.
-      !> The layers at the last point [top of the section first]: y [m], longitudinal strain (tension
+      !> The layers at the last point, from the compression face on: y [m], longitudinal strain (tension
       !> positive), shear stress [Pa], shear strain and transverse strain
       real(wp), allocatable :: y(:), eps_x(:), tau(:), gamma(:), eps_z(:)
    end type shear_diagram_type
 
-   !> What does not change along the diagram.
+   !> Data that are constant along the diagram.
    type :: model_type
       type(flow_type) :: flow
       type(layer_type), allocatable :: layers(:)
@@ -60,7 +60,7 @@ module rbs_section_shear_diagram
       logical :: coupled = .false.
    end type model_type
 
-   !> What changes.
+   !> State at a point of the diagram.
    type :: shear_state
       type(state_type) :: flexure
       type(layer_state), allocatable :: layers(:)
@@ -69,7 +69,7 @@ module rbs_section_shear_diagram
 
 contains
 
-   !> Follow the diagram along rising curvatures.
+   !> Follow the diagram along increasing curvatures.
    subroutine follow_shear(section, tension, confined, coupled, axial_load, span, layers, knee_share, &
                            curvature, diagram, error)
       type(section_type), intent(in) :: section
@@ -85,7 +85,7 @@ contains
       integer, intent(in) :: layers
       !> Share of (E_c/2) A at the knee
       real(wp), intent(in) :: knee_share
-      !> Positive and rising [1/m]
+      !> Positive and increasing [1/m]
       real(wp), intent(in) :: curvature(:)
       type(shear_diagram_type), intent(out) :: diagram
       type(error_type), allocatable, intent(out) :: error
@@ -128,7 +128,7 @@ contains
       diagram%eps_z = here%layers%eps_z
    end subroutine follow_shear
 
-   !> Cut the section into layers and put it under its axial load.
+   !> Cut the section into layers and apply its axial load.
    subroutine prepare(section, tension, confined, axial_load, span, layers, model, state, error)
       type(section_type), intent(in) :: section
       integer, intent(in) :: tension, layers
@@ -163,7 +163,7 @@ contains
       type(model_type), intent(in) :: model
       real(wp), intent(in) :: curvature
       type(shear_state), intent(inout) :: state
-      !> Some layer carries no more shear; the section carries its axial load no more
+      !> Whether a layer no longer carries the shear; whether the section no longer carries its axial load
       logical, intent(out) :: sheared, lost
       real(wp) :: tau(size(state%layers)), eps_x
       logical :: carried
@@ -255,7 +255,7 @@ contains
       end do
    end subroutine find_end
 
-   !> Add a message for every number that is refused.
+   !> Add a message for every value that is refused.
    subroutine check_shear(axial_load, span, layers, knee_share, curvature, messages)
       !> As for `follow_shear`
       real(wp), intent(in) :: axial_load, span, knee_share, curvature(:)

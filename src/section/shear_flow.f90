@@ -50,8 +50,8 @@ contains
       call stresses_of_forces(flow, concrete_force, bar_force, tau)
    end subroutine shear_stresses
 
-   !> Shear stress in the middle of each layer from the longitudinal forces of layers and bars; a bar hands
-   !> over its force along the height of a layer.
+   !> Shear stress in the middle of each layer from the longitudinal forces of layers and bars; the force of a
+   !> bar is spread over the height of a layer.
    pure subroutine stresses_of_forces(flow, concrete_force, bar_force, tau)
       type(flow_type), intent(in) :: flow
       !> [N]
@@ -107,10 +107,11 @@ contains
       end associate
    end subroutine longitudinal_forces
 
-   !> Stress of a layer. One in which the crack ends has two parts, as in the axial force of the section.
+   !> Mean stress of a layer. The layer that contains the tip of the crack has two parts, as in the axial
+   !> force of the section.
    elemental real(wp) function mean_stress(law, strain, fall) result(stress)
       type(concrete_type), intent(in) :: law
-      !> Strain in the middle of the layer, and how much it falls over its height
+      !> Strain in the middle of the layer, and its decrease over the height of the layer
       real(wp), intent(in) :: strain, fall
       !> Share of the layer that is not cracked
       real(wp) :: whole

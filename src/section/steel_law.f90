@@ -1,7 +1,8 @@
 !> Stress of reinforcing steel under a monotonic strain, the same in tension and compression.
 !>
-!> E_s up to f_y; flat to eps_sh; f_u - (f_u - f_y)((eps_u - eps)/(eps_u - eps_sh))^2 up to eps_u; broken,
-!> without stress, beyond (Response-2000, manual table 2-2: quadratic with no slope at its maximum).
+!> E_s up to f_y; constant to eps_sh; f_u - (f_u - f_y)((eps_u - eps)/(eps_u - eps_sh))^2 up to eps_u; no
+!> stress beyond, as the bar is broken (Response-2000, manual table 2-2: quadratic with zero slope at its
+!> maximum).
 module rbs_section_steel_law
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
@@ -68,7 +69,7 @@ contains
       end if
    end subroutine steel_both
 
-   !> Add a message for every number that is refused.
+   !> Add a message for every value that is refused.
    subroutine check_steel(law, name, messages)
       type(steel_type), intent(in) :: law
       !> Which steel: 'steel of bar 3'

@@ -26,9 +26,9 @@ class CircularSection(Section):
     Parameters
     ----------
     diameter : float
-        Of the concrete [m].
+        Diameter of the concrete [m].
     concrete : Concrete
-        Its laws.
+        The concrete.
     bars : sequence of (y, area, steel), optional
         As for `RectangularSection`.
     layout : Layout, optional
@@ -40,12 +40,12 @@ class CircularSection(Section):
     bar_diameter : float, optional
         As for `RectangularSection`.
     strips : int, optional
-        Strips of concrete over the depth.
+        Number of strips over the depth.
 
     Raises
     ------
     InputError
-        With a line for everything that is wrong.
+        With a line for every error.
     """
 
     shape: ClassVar[str] = "circle"

@@ -22,7 +22,7 @@ __all__ = ["Confinement", "Diagram", "Events", "Point", "make_diagram", "make_po
 
 @dataclass(frozen=True, slots=True)
 class Confinement:
-    """The core inside the ties (Mander, Priestley, Park 1988).
+    """The confined core inside the ties (Mander, Priestley, Park 1988).
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class Confinement:
     ratio : float
         Volume of the transverse bars over that of the core, rho_s.
     width, depth : float
-        Core between hoop centre lines [m].
+        Sizes of the core between the centre lines of the hoops [m].
     """
 
     fcc: float
@@ -83,11 +83,11 @@ class Events:
     cracking : Point or None
         The extreme fibre in tension is at f_t/E_c.
     yielding : Point or None
-        Yield by the rule that was asked for.
+        Yield by the chosen rule.
     peak : Point or None
         The largest moment.
     ultimate : Point or None
-        By the rule that was asked for.
+        The ultimate point by the chosen rule.
     """
 
     cracking: Point | None
@@ -111,12 +111,13 @@ class Diagram:
     confined : bool
         Whether the core is taken as confined.
     curvature, moment, strain : ndarray, shape (n,)
-        Rising curvatures [1/m], moments about mid-depth [N m], strains at mid-depth (compression
-        positive). The events are among them.
+        Increasing curvatures [1/m], moments about mid-depth [N m], strains at mid-depth
+        (compression positive). The events are among these points.
     events : Events
         Cracking, yielding, peak, ultimate.
     end : Point
-        Where the moment has fallen by 20 per cent of its peak, or the axial load is lost.
+        Where the moment has fallen by 20 per cent of its peak, or the axial load is no longer
+        carried.
     lost : bool
         Whether the diagram ends because the axial load is no longer carried.
     """

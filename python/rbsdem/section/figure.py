@@ -1,4 +1,4 @@
-"""Figures of a section: as drawn, and its moment-curvature diagram with the events.
+"""Figures of a section: its drawing, and its moment-curvature diagram with the events.
 
 In the style of `rbsdem.plot`; mm, kN m and mrad/m.
 """
@@ -30,7 +30,7 @@ EVENT_MARKS: dict[str, dict[str, Any]] = {
     "peak": {"marker": "^", "markerfacecolor": "black"},
     "ultimate": {"marker": "D", "markerfacecolor": "black"},
 }
-"""Marks of the events."""
+"""Markers of the events."""
 
 _CONCRETE = {"facecolor": "0.93", "edgecolor": "black", "linewidth": 0.8}
 _TIE = {"facecolor": "0.35", "linewidth": 0.0}

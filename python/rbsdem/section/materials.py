@@ -14,7 +14,7 @@ from rbsdem.errors import InputError
 __all__ = ["TENSION", "Concrete", "Steel", "tension_place"]
 
 TENSION = ("zero", "bare", "ts")
-"""Tension laws of concrete: none; up to f_t only; with tension stiffening beyond f_t."""
+"""Tension laws of concrete: no tension; up to f_t only; with tension stiffening beyond f_t."""
 
 
 def tension_place(tension: str) -> int:
@@ -26,7 +26,7 @@ def tension_place(tension: str) -> int:
 
 @dataclass(frozen=True)
 class Concrete:
-    """Concrete; what is not given follows from the strength.
+    """Concrete; values that are not given follow from the strength.
 
     Compression follows Popovics' curve with n = 0.8 + f'c/17 and the faster decay of strong
     concrete past its peak (Collins and Mitchell 1991, the default of Response-2000).
@@ -43,7 +43,7 @@ class Concrete:
         Strain at the peak; f'c/E_c n/(n - 1). If given, n follows from it, so that E_c stays the
         initial slope.
     eps_spall : float, optional
-        Strain at which a cover has fallen off; only where the core is taken as confined.
+        Strain at which the cover has spalled; used only with a confined core.
 
     Raises
     ------
@@ -99,7 +99,7 @@ class Concrete:
 
 @dataclass(frozen=True)
 class Steel:
-    """Reinforcing steel: elastic, a yield plateau, a parabola to the largest stress, rupture.
+    """Reinforcing steel: elastic, then a yield plateau, a parabola to the largest stress, rupture.
 
     The same in tension and compression (Response-2000, manual table 2-2).
 
@@ -108,7 +108,7 @@ class Steel:
     fy : float
         Yield stress [Pa].
     fu : float, optional
-        Largest stress [Pa]; 1.5 `fy` if it is not known.
+        Largest stress [Pa]; by default 1.5 `fy`.
     es : float, optional
         Modulus of elasticity [Pa].
     eps_sh : float, optional

@@ -25,30 +25,30 @@ class RectangularSection(Section):
     Parameters
     ----------
     width, depth : float
-        Depth is in the direction of loading [m].
+        Width and depth; the depth is in the direction of loading [m].
     concrete : Concrete
-        Its laws.
+        The concrete.
     bars : sequence of (y, area, steel), optional
         Bars one by one: distance from mid-depth, positive to the tension face [m], area [m2],
         `Steel`. A row of bars may be one entry if `bar_diameter` is given.
     layout : Layout, optional
         Bars by number and diameter, in place of `bars`.
     ties : Ties, optional
-        Transverse bars; they confine the core where it is asked for, and carry shear.
+        Transverse bars; they carry shear, and confine the core in analyses with `confined=True`.
     cover : float, optional
         Clear cover to the outer edge of the ties [m].
     side_cover : float, optional
-        The same at the faces along the depth, if it is another one [m].
+        Clear cover at the faces along the depth, if it differs [m].
     bar_diameter : float, optional
-        Of the main bars [m], for the length of the hinge and the confinement. By default that of
-        the layout, or of a round bar with the area of the outermost one in tension.
+        Diameter of the main bars [m], for the length of the hinge and the confinement. By default
+        that of the layout, or of a round bar with the area of the outermost one in tension.
     strips : int, optional
-        Strips of concrete over the depth.
+        Number of strips over the depth.
 
     Raises
     ------
     InputError
-        With a line for everything that is wrong.
+        With a line for every error.
 
     Examples
     --------

@@ -31,12 +31,12 @@ class Layout:
     steel : Steel
         Their steel.
     face : int, optional
-        Bars on the tension face, its corners included, and as many on the opposite one; the rest
+        Bars on the tension face, its corners included, and as many on the opposite face; the rest
         is on the two sides. The default is number/4 + 1: the same on all four. Rectangles only.
     between_diameter : float, optional
-        Diameter of the bars between the corners, if it is another one [m]. Rectangles only.
+        Diameter of the bars between the corners, if it differs [m]. Rectangles only.
     between_steel : Steel, optional
-        Their steel, if it is another one. Rectangles only.
+        Steel of the bars between the corners, if it differs. Rectangles only.
 
     Raises
     ------
@@ -82,7 +82,7 @@ class Layout:
         Returns
         -------
         list of (y, area, steel)
-            The bars, row by row from the tension face on.
+            The bars in rows, from the tension face on.
         """
         face = self.face
         if face is None:

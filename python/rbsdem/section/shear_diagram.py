@@ -36,7 +36,7 @@ KNEE = 0.48
 """Share of (E_c/2) A of the secant at the knee: calibrated on the four columns of table 3 of the
 paper, whose shear springs have 0.41 to 0.53."""
 
-#: A section curvature is taken this far if none is given: strain over the depth.
+#: Last curvature of a diagram by default, as strain over the depth.
 _FURTHEST = 0.012
 
 
@@ -64,7 +64,7 @@ class ShearPoint:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShearLayers:
-    """The layers of the section at the last point of a diagram, from the compression face on.
+    """State of the layers at the last point of a diagram, from the compression face on.
 
     Attributes
     ----------
@@ -100,11 +100,11 @@ class ShearDiagram:
     curvature, moment, force, strain : ndarray, shape (n,)
         The points: curvature [1/m], moment [N m], shear force [N], shear strain.
     knee : ShearPoint or None
-        Where the secant has fallen to the share of the knee; None if it stays above.
+        Where the secant has fallen to the given share; None if it stays above.
     end : ShearPoint
         The last point.
     sheared : bool
-        Whether the diagram ends because a layer carries no more shear.
+        Whether the diagram ends because a layer no longer carries the shear.
     lost : bool
         Whether it ends because the section no longer carries the axial load.
     layers : ShearLayers
@@ -176,19 +176,19 @@ def shear_diagram(
     axial_load : float
         Compression positive [N].
     curvature : array_like, shape (n,), optional
-        Positive curvatures, rising [1/m]. By default `points` of them up to `furthest`, closer
-        together at the beginning.
+        Positive, increasing curvatures [1/m]. By default `points` curvatures up to `furthest`,
+        closer together at the beginning.
     furthest : float, optional
-        Last curvature [1/m]; 0.012 over the depth if not given.
+        Last curvature [1/m]; by default 0.012 over the depth.
     points : int, optional
-        How many.
+        Number of points if no curvatures are given.
     tension : {"ts", "bare", "zero"}, optional
         Tension law of the concrete.
     confined : bool, optional
-        Whether the core is taken as confined.
+        Whether the core is confined.
     coupled : bool, optional
         Whether the shear changes the longitudinal stresses and so the moment: layers, axial load
-        and shear are solved together. Without, the moment is that of the section in flexure.
+        and shear are then solved together. Otherwise the moment is that of the section in flexure.
     layers : int, optional
         Layers over the depth.
     knee : float, optional
@@ -197,7 +197,7 @@ def shear_diagram(
     Returns
     -------
     ShearDiagram
-        As far as the section carries on.
+        The diagram, as far as the section carries axial load and shear.
 
     Raises
     ------

@@ -32,14 +32,14 @@ _FALLEN = 0.95
 
 @dataclass(frozen=True)
 class ShearSpring:
-    """The bilinear shear spring of a column, and where it comes from.
+    """The bilinear shear spring of a column, with the points that it was fitted to.
 
     Attributes
     ----------
     spring : Bilinear
         Stiffness [N/m], yield slip [m], stiffness after yield [N/m].
     knee, end : ShearPoint
-        The two points of the diagram that its lines go through.
+        The two points of the diagram through which its lines pass.
     strength : float
         Shear strength V_n by the simplified modified compression field theory [N].
     k_post_found : float
@@ -47,7 +47,7 @@ class ShearSpring:
     governs : bool
         Whether shear fails before the end point in flexure.
     warnings : tuple of str
-        What to know before using it.
+        Remarks that a user should know.
     """
 
     spring: Bilinear
@@ -68,10 +68,10 @@ def fit_shear_spring(
 ) -> ShearSpring:
     """Fit the bilinear shear spring of a column with V = M/length.
 
-    Slip is shear strain times length. The line goes through the knee of the diagram and through
+    Slip is shear strain times length. The line passes through the knee of the diagram and through
     its point at the ultimate curvature, or at the shear strength if that is reached before, or at
-    the peak if the moment has fallen by more than 5 per cent of it: past that the shear flow of
-    the layers means little.
+    the peak if the moment has fallen by more than 5 per cent: beyond that the shear flow of the
+    layers is no longer meaningful.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def fit_shear_spring(
     axial_load : float
         Compression positive [N].
     ultimate_curvature : float
-        Where the flexural spring has its ultimate point [1/m].
+        Curvature of the ultimate point of the flexural spring [1/m].
     **options
         As for `shear_diagram`: points, tension, confined, coupled, layers, knee.
 
@@ -94,7 +94,7 @@ def fit_shear_spring(
     Raises
     ------
     InputError
-        If a value is refused, or the section does not carry shear at all.
+        If a value is refused, or the section carries no shear.
     """
     diagram = shear_diagram(section, length, axial_load, furthest=ultimate_curvature, **options)
     strength = shear_strength_mcft(section, length, axial_load)
@@ -139,10 +139,10 @@ def fit_shear_spring(
 def closed_form_shear(
     section: Section, length: float, cracking_moment: float, knee: float = KNEE
 ) -> tuple[float, float]:
-    """Return stiffness and yield slip of the shear spring without analysis of the shear.
+    """Return stiffness and yield slip of the shear spring without an analysis in shear.
 
     K_y = knee E_c A/(2 L), V_y = 1.86 M_c/L; both constants are calibrated on the four columns of
-    the paper only. There is no such form of the stiffness after yield.
+    the paper only. The stiffness after yield has no such closed form.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ def closed_form_shear(
     Raises
     ------
     InputError
-        If a number is not positive.
+        If a value is not positive.
     """
     for name, value in (("length", length), ("cracking_moment", cracking_moment), ("knee", knee)):
         if not (math.isfinite(value) and value > 0.0):

@@ -25,37 +25,38 @@ YIELD_RULES = ("A", "B", "first")
 """How the yield rotation is read from the diagrams."""
 
 SHEAR = ("mcft", "closed", "none")
-"""How the shear spring is found."""
+"""Sources of the shear spring."""
 
 
 @dataclass(frozen=True)
 class SectionSprings:
-    """Springs of a column and how they were found.
+    """Springs of a column, with the points that they were fitted to.
 
     Attributes
     ----------
     section : Section
         The section.
     confined : bool
-        Whether its core is taken as confined.
+        Whether its core is confined.
     flexure : rbsdem.Takeda
         Trilinear spring of the hinge.
     shear : rbsdem.Bilinear or None
-        Shear spring over the length of the column.
+        Shear spring of the whole length of the column.
     shear_fit : ShearSpring or None
-        Points, strength and warnings of the shear spring, where it comes from a shear diagram.
+        Points, strength and warnings of the shear spring, if it was read from a shear diagram.
     events : Events
-        Cracking (with tension stiffening), yielding, peak and ultimate (without).
+        Cracking (from the diagram with tension stiffening); yielding, peak and ultimate (from that
+        without).
     hinge_length : float
-        Curvature times this is the rotation [m].
+        Length that turns a curvature into a rotation [m].
     length, axial_load : float
         Of the column [m], [N].
     d_m : float
         Rotation at which eq 7 of the paper was taken for B_1 [rad].
     notes : tuple of str
-        What to know before the springs are used.
+        Remarks that a user should know.
     report : str
-        All of this as a table, in mm, kN and MPa.
+        These values as a table, in mm, kN and MPa.
     """
 
     section: Section
@@ -111,8 +112,8 @@ def fit_springs(
     axial_load : float
         Compression positive [N].
     hinge_length : float, optional
-        Length of the hinge [m]; 0.08 L + 0.022 f_y d_b (MPa; Paulay and Priestley 1992, without
-        its lower bound).
+        Length of the hinge [m]; by default 0.08 L + 0.022 f_y d_b (MPa; Paulay and Priestley 1992,
+        without their lower bound).
     yield_rule : {"A", "B", "first"}, optional
         Yield where the first bar in tension yields, without tension stiffening ("A"); with that
         moment, but the curvature at which the diagram with tension stiffening reaches it ("B");
@@ -123,10 +124,10 @@ def fit_springs(
     eps_yield, eps_cover : float, optional
         Strains of the extreme fibre, compression positive.
     confined : bool, optional
-        Whether the core is taken as confined and the cover falls off.
+        Whether the core is confined and the cover spalls.
     moment_factor : float, optional
-        Factor of M_y and M_u for the shear that acts with the moment; 0.95 is what a coupled
-        analysis of the paper's columns gives.
+        Factor of M_y and M_u for the shear that acts with the moment; a coupled analysis of the
+        paper's columns gives 0.95.
     b0 : float, optional
         Exponent B_0 of the unloading stiffness.
     b1 : float, optional
@@ -226,7 +227,7 @@ def fit_springs(
 
 
 def _report(section: Section, springs: SectionSprings) -> str:
-    """Return the springs, the events and what they rest on, one to a line."""
+    """Return the table of the springs, of their points and of the data behind them."""
     law = section.concrete_law
     load, f = springs.axial_load, springs.flexure
     share = load / (law["fc"] * section.gross_area)

@@ -32,7 +32,7 @@ _ES = 200.0e9
 
 @dataclass(frozen=True, slots=True)
 class ShearSizes:
-    """What the relations take from a section.
+    """Sizes of a section that the relations use.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class ShearSizes:
 
 
 def shear_sizes(section: Section) -> ShearSizes:
-    """Return what the relations take from a section.
+    """Return the sizes of a section that the relations use.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def shear_strength_mcft(
     axial_load : float
         Compression positive [N].
     aggregate : float, optional
-        Largest grain of the concrete [m]; counts only with fewer ties than the least.
+        Largest grain of the concrete [m]; it matters only with fewer ties than the minimum.
 
     Returns
     -------
@@ -197,7 +197,7 @@ def shear_strength_sezen(
     length : float
         Shear span a [m].
     axial_load : float
-        Compression positive [N]; tension counts up to the root of zero.
+        Compression positive [N]; in large tension the root is zero.
     ductility : float, optional
         Displacement over yield displacement.
 
@@ -230,7 +230,7 @@ def shear_strength_sezen(
 def shear_strength_aci(section: Section, axial_load: float) -> float:
     """Return the nominal shear strength of ACI 318-19, normal-weight concrete.
 
-    V_c = (0.17 sqrt(f'c) + N/(6 A_g)) b d with the least ties, else
+    V_c = (0.17 sqrt(f'c) + N/(6 A_g)) b d with at least the minimum of ties, else
     V_c = (0.66 lambda_s rho_w^(1/3) sqrt(f'c) + N/(6 A_g)) b d; V_s = A_v f_yt d/s.
 
     Parameters
@@ -289,8 +289,8 @@ def shear_failure_drift(section: Section, shear_force: float, axial_load: float)
 
     Notes
     -----
-    Elwood, Moehle 2005 (Earthquake Spectra 21(1)); from columns that yield in flexure and then fail
-    in shear, rectangular, with light ties.
+    Elwood, Moehle 2005 (Earthquake Spectra 21(1)); fitted to rectangular columns with light ties
+    that yield in flexure and then fail in shear.
     """
     sizes = shear_sizes(section)
     stress = abs(shear_force) / (sizes.width * sizes.d)
@@ -316,7 +316,7 @@ def axial_failure_drift(section: Section, axial_load: float, angle: float = 65.0
     axial_load : float
         Compression positive [N]; tension counts as zero.
     angle : float, optional
-        Of the crack from the horizontal [degrees].
+        Inclination of the crack to the horizontal [degrees].
 
     Returns
     -------
