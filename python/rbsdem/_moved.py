@@ -17,6 +17,8 @@ MOVED = {
     "rbsdem.peer.layers": "rbsdem.section.hinge",
     "rbsdem.peer.shear": "rbsdem.section.shear_model",
     "rbsdem.peer.strips": "rbsdem.section.strips",
+    "rbsdem.section.shapes": "rbsdem.section",
+    "rbsdem.section.shear": "rbsdem.section.shear_diagram and rbsdem.section.shear_spring",
     "rbsdem.peer.Hinge": "rbsdem.section.HingeParameters",
     "rbsdem.peer.LayeredColumn": "rbsdem.section.LayeredColumn",
     "rbsdem.peer.MODELS": "rbsdem.section.MODELS",
