@@ -2,9 +2,9 @@
 
     python studies/calibration_search.py [DIR]
 
-Six numbers of the Takeda spring of the paper's columns, fitted to the loops of columns whose
-numbers were drawn at random, and to the measured loops if DIR has them; three seeds each. Printed:
-analyses, and nrmse above the best that any search found.
+Six parameters of the Takeda spring of the paper's columns, fitted to the loops of columns whose
+parameters were drawn at random, and to the measured loops if DIR has them; three seeds each.
+Printed: analyses, and nrmse above the best that any search found.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from scipy.optimize import differential_evolution, dual_annealing, minimize
 import rbsdem
 from rbsdem.calibration import search
 from rbsdem.calibration.misfit import Misfit, Target, forces, rms
-from rbsdem.calibration.names import Numbers, free_numbers
+from rbsdem.calibration.names import Parameters, free_parameters
 from rbsdem.calibration.search import Ended, Search
 from rbsdem.peer import find_history, read_peer
 
@@ -102,14 +102,14 @@ def main() -> None:
 
 
 def _drawn(column: rbsdem.Column, d: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    """Return the force of a column with numbers from the inner half of their bounds."""
-    numbers = Numbers(column)
-    free = free_numbers(numbers, FREE, None)
+    """Return the force of a column with parameters from the inner half of their bounds."""
+    parameters = Parameters(column)
+    free = free_parameters(parameters, FREE, None)
     while True:
         places = random.uniform(0.25, 0.75, len(FREE))
         values = {n: p.at(at) for (n, p), at in zip(free.items(), places, strict=True)}
-        if numbers.accepts(values):
-            return forces(numbers.build(values), d)[0]
+        if parameters.accepts(values):
+            return forces(parameters.build(values), d)[0]
 
 
 def _table(title: str, tests: dict[str, tuple[rbsdem.Column, object]]) -> None:
@@ -117,10 +117,12 @@ def _table(title: str, tests: dict[str, tuple[rbsdem.Column, object]]) -> None:
     analyses = np.empty_like(found)
     for i, run in enumerate(SEARCHES.values()):
         for j, (column, test) in enumerate(tests.values()):
-            numbers, target = Numbers(column), Target(test)
-            free = free_numbers(numbers, FREE, None)
+            parameters, target = Parameters(column), Target(test)
+            free = free_parameters(parameters, FREE, None)
             for seed in range(SEEDS):
-                misfit = Limited(numbers.build, free, target, "nrmse", 1, lambda done, best: None)
+                misfit = Limited(
+                    parameters.build, free, target, "nrmse", 1, lambda done, best: None
+                )
                 run(misfit, seed)
                 found[i, j, seed], analyses[i, j, seed] = misfit.best, misfit.evaluations
     above = found - found.min(axis=(0, 2))[None, :, None]

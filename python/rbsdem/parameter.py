@@ -1,4 +1,4 @@
-"""A number that a calibration may change: its value, its bounds, what it is."""
+"""A parameter that a calibration may change: its value, its bounds, what it is."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ __all__ = ["Parameter", "Recipe", "is_recipe"]
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A number with the range in which it has a meaning.
+    """A parameter with the range in which it has a meaning.
 
-    Where both bounds are positive, the number is searched on a logarithmic scale: half and twice
+    Where both bounds are positive, the parameter is searched on a logarithmic scale: half and twice
     are then equally far away, as is fit for stiffnesses, strengths and lengths.
 
     Parameters
@@ -65,7 +65,7 @@ class Parameter:
 
     @property
     def logarithmic(self) -> bool:
-        """Whether the number is searched on a logarithmic scale."""
+        """Whether the parameter is searched on a logarithmic scale."""
         return self.low > 0
 
     def place(self, value: float) -> float:
@@ -93,11 +93,11 @@ class Parameter:
 
 @runtime_checkable
 class Recipe(Protocol):
-    """A column made from few numbers, such as material strengths, that a calibration may change."""
+    """A column made from few parameters, such as strengths, that a calibration may change."""
 
     @property
     def parameters(self) -> Mapping[str, Parameter]:
-        """The numbers, by name."""
+        """The parameters, by name."""
 
     def with_parameters(self, **values: float) -> Column:
         """Return the column that other values of them make; the values not named stay."""

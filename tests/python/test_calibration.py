@@ -88,7 +88,7 @@ def test_half_cycles_of_a_protocol():
 
 @pytest.mark.parametrize("seed", [0, 1])
 @pytest.mark.parametrize("key", KEYS)
-def test_numbers_of_a_synthetic_test_come_back(key, seed):
+def test_parameters_of_a_synthetic_test_come_back(key, seed):
     start = COLUMNS[key]
     random = np.random.default_rng((seed, KEYS.index(key)))
     factors = dict(zip(TAKEDA, 2.0 ** random.uniform(-1, 1, 5), strict=True))
@@ -427,7 +427,7 @@ def test_recipe(made):
 
 def test_recipe_has_its_own_names_only(made):
     with pytest.raises(
-        InputError, match=r"'hing' is no number .* did you mean 'hinge'\? It has str"
+        InputError, match=r"'hing' is no parameter .* did you mean 'hinge'\? It has str"
     ):
         quiet(made.of(), response(made.of(), path(made.of())), ["hing"])
 
@@ -527,7 +527,7 @@ ZERO = replace(COLUMNS["zahn_7"], flexure=replace(COLUMNS["zahn_7"].flexure, k_u
         ({"free": 3}, "must be a list of names"),
         ({"free": ["flexure.ky"]}, r"'flexure.ky' .* did you mean 'flexure.k_y'\?"),
         ({"free": ["flexure[0].k_y"]}, r"did you mean 'flexure.k_y'\?"),
-        ({"free": [None]}, "None is no number"),
+        ({"free": [None]}, "None is no parameter"),
         ({"free": ["shear.k", "shear.k"]}, "'shear.k' comes twice"),
         ({"bounds": {"shear.k": (1e8, 1e9)}}, r"'shear.k' is not in free \(flexure.k_y\)"),
         ({"bounds": {"flexure.k_y": (2e8, 1e8)}}, "must be a lower and a higher one"),

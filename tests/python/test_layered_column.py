@@ -319,6 +319,17 @@ def test_other_parameters_keep_what_was_replaced(name):
     assert changed != column
 
 
+def test_a_calibrated_column_keeps_what_was_replaced():
+    pytest.importorskip("scipy")
+    column = replace(LAYERED, top_mass=2e4, damping=0.05)
+    result = rbsdem.cyclic(LAYERED.with_parameters(steel_strength=1.0), displacement=LOOP)
+    test = LOOP, result.force
+    fit = rbsdem.calibrate(column, test, ["steel_strength"], evaluations=40)
+    assert fit.values["steel_strength"] == pytest.approx(1.0, rel=1e-3)
+    assert (fit.column.top_mass, fit.column.damping) == (2e4, column.damping)
+    assert fit.column.version == "2026.1 changed"
+
+
 @pytest.mark.parametrize(("springs", "name"), [("shear", "shear_strength"), ("flexure", "wear")])
 def test_parameters_of_springs_that_were_replaced_are_refused(springs, name):
     column = replace(LAYERED, **KEPT[springs])

@@ -1,7 +1,7 @@
-"""Numbers of a column fitted to a measured loop, and what the test says about them.
+"""Parameters of a column fitted to a measured loop, and what the test says about them.
 
-The numbers are paths into the column, such as ``flexure.k_y``, or those that a column made from a
-recipe offers by itself. Needs scipy (``pip install rbsdem[calibrate]``).
+The parameters are paths into the column, such as ``flexure.k_y``, or those that a column made from
+a recipe offers by itself. Needs scipy (``pip install rbsdem[calibrate]``).
 """
 
 from rbsdem.calibration import view as view

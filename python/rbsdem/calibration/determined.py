@@ -1,6 +1,6 @@
-"""What a test says about the numbers that were fitted to it, and what it does not.
+"""What a test says about the parameters that were fitted to it, and what it does not.
 
-J holds how the error vector changes with the place of each number, at the fit. Numbers whose
+J holds how the error vector changes with the place of each parameter, at the fit. Parameters whose
 columns of J point the same way cannot be told apart: their correlation is that of (J'J)^-1.
 
 The errors of a model at neighbouring points of a path are one and the same error, so s^2 (J'J)^-1,
@@ -21,17 +21,17 @@ from rbsdem.calibration.misfit import Misfit, rms
 from rbsdem.calibration.search import AT_BOUND, refused
 from rbsdem.errors import InputError
 
-#: Change of a number for which its sensitivity is told.
+#: Change of a parameter for which its sensitivity is told.
 CHANGE = 0.1
 
-#: Share of the peak force that a number has to move anywhere, or it is refused.
+#: Share of the peak force that a parameter has to move anywhere, or it is refused.
 NO_EFFECT = 1e-6
 
-#: Root mean square of the change of force over the peak, for CHANGE, below which a number is hardly
-#: determined.
+#: Root mean square of the change of force over the peak, for CHANGE, below which a parameter is
+#: hardly determined.
 LITTLE_EFFECT = 1e-3
 
-#: Correlation above which two numbers cannot be told apart.
+#: Correlation above which two parameters cannot be told apart.
 TOO_ALIKE = 0.95
 
 #: Steps for a derivative, in shares of the distance between the bounds: the first, unless nothing
@@ -41,19 +41,21 @@ _STEPS = 0.005, 0.05
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Determined:
-    """How well the test determines each number, in their order.
+    """How well the test determines each parameter, in their order.
 
     Attributes
     ----------
     standard_error : ndarray, shape (p,)
         Of the value, in its unit; infinite where the test does not see it, NaN if there are not
-        more half cycles than numbers.
+        more half cycles than parameters.
     effect : ndarray, shape (p,)
-        Root mean square change of the force over the measured peak, if the number changes by 10 %.
+        Root mean square change of the force over the measured peak, if the parameter changes by
+        10 %.
     rise : ndarray, shape (p,)
-        How much the loss grows if the number alone changes by 10 %, the larger of both directions.
+        How much the loss grows if the parameter alone changes by 10 %, the larger of both
+        directions.
     correlation : ndarray, shape (p, p)
-        Of the estimates; NaN beside a number that the test does not see.
+        Of the estimates; NaN beside a parameter that the test does not see.
     at_bound : tuple of str
         "low", "high" or "".
     """
@@ -66,14 +68,14 @@ class Determined:
 
 
 def without_effect(misfit: Misfit, places: list[Array]) -> list[str]:
-    """Return the names of the numbers that move no force between their bounds.
+    """Return the names of the parameters that move no force between their bounds.
 
     Parameters
     ----------
     misfit : Misfit
         The misfit.
     places : list of ndarray, shape (p,)
-        From where each number is taken to its bounds alone.
+        From where each parameter is taken to its bounds alone.
     """
     idle = list(range(len(misfit.free)))
     for base in places:
@@ -92,7 +94,7 @@ def without_effect(misfit: Misfit, places: list[Array]) -> list[str]:
 
 
 def refuse(misfit: Misfit, names: list[str]) -> None:
-    """Raise `InputError` for numbers without effect."""
+    """Raise `InputError` for parameters without effect."""
     if not names:
         return
     ranges = ", ".join(
@@ -107,15 +109,15 @@ def refuse(misfit: Misfit, names: list[str]) -> None:
 
 
 def determine(misfit: Misfit, places: Array) -> Determined:
-    """Return what the test says about the numbers at a fit, shape (p,)."""
+    """Return what the test says about the parameters at a fit, shape (p,)."""
     free = list(misfit.free.values())
     size = len(free)
     vector = misfit.vector(places)
     jacobian = _derivatives(misfit, places, vector)
     per_place = np.array(
-        [number.per_place(number.at(place)) for number, place in zip(free, places, strict=True)]
+        [one.per_place(one.at(place)) for one, place in zip(free, places, strict=True)]
     )
-    values = np.array([number.at(place) for number, place in zip(free, places, strict=True)])
+    values = np.array([one.at(place) for one, place in zip(free, places, strict=True)])
     seen = np.sqrt(np.mean(jacobian**2, axis=0)) > NO_EFFECT
     covariance = np.full((size, size), np.nan)
     correlation = np.full((size, size), np.nan)
@@ -217,17 +219,17 @@ def _clustered(jacobian: Array, error: Array, inverse: Array, groups: Array) -> 
 def _sensitivity(
     misfit: Misfit, places: Array, values: Array, vector: Array
 ) -> tuple[Array, Array]:
-    """Return change of force and growth of the loss for 10 % more or less of each number.
+    """Return change of force and growth of the loss for 10 % more or less of each parameter.
 
-    Of a number that may be zero or negative, 10 % of the distance between its bounds.
+    Of a parameter that may be zero or negative, 10 % of the distance between its bounds.
     """
     effect, rise = np.zeros(places.size), np.full(places.size, np.nan)
     base = rms(vector)
-    for i, number in enumerate(misfit.free.values()):
-        whole = values[i] if number.logarithmic else number.high - number.low
+    for i, one in enumerate(misfit.free.values()):
+        whole = values[i] if one.logarithmic else one.high - one.low
         step = CHANGE * whole
         for value in (values[i] - step, values[i] + step):
-            moved = _moved(places, i, number.place(min(max(value, number.low), number.high)))
+            moved = _moved(places, i, one.place(min(max(value, one.low), one.high)))
             if moved[i] == places[i]:
                 continue
             other = misfit.vector(moved)

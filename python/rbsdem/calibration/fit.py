@@ -22,7 +22,7 @@ from rbsdem.calibration.determined import (
     without_effect,
 )
 from rbsdem.calibration.misfit import LOSSES, Misfit, Target, forces
-from rbsdem.calibration.names import Numbers, free_numbers
+from rbsdem.calibration.names import Parameters, free_parameters
 from rbsdem.calibration.outcome import Calibration, Fitted
 from rbsdem.calibration.progress import telling
 from rbsdem.calibration.search import Search, need_scipy
@@ -33,7 +33,7 @@ from rbsdem.parameter import Parameter
 
 __all__ = ["calibrate", "free_names", "undetermined"]
 
-#: Random points from which a number may show its effect, besides the start.
+#: Random points from which a parameter may show its effect, besides the start.
 _LOOKS = 3
 
 
@@ -50,7 +50,7 @@ def free_names(column: Column) -> dict[str, Parameter | None]:
     dict of str to Parameter or None
         None where a calibration has to be given the bounds, as for a stiffness of 0.
     """
-    return Numbers(column).known()
+    return Parameters(column).known()
 
 
 def undetermined(
@@ -59,7 +59,7 @@ def undetermined(
     free: Sequence[str],
     bounds: Mapping[str, Sequence[float]] | None = None,
 ) -> list[str]:
-    """Return the numbers that a calibration would refuse: those that change no force of the test.
+    """Return the parameters that a calibration would refuse: they change no force of the test.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def undetermined(
     test : MeasuredTest, PeerTest, or pair of array_like of shape (m,)
         The measured loop.
     free : sequence of str
-        Names of the numbers.
+        Names of the parameters.
     bounds : mapping of str to (low, high), optional
         As for `calibrate`.
 
@@ -82,11 +82,13 @@ def undetermined(
     InputError
         For bad input.
     """
-    target, numbers = Target(test), Numbers(column)
-    chosen = free_numbers(numbers, free, bounds)
+    target, parameters = Target(test), Parameters(column)
+    chosen = free_parameters(parameters, free, bounds)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
-        with Misfit(numbers.build, chosen, target, "nrmse", 1, lambda done, best: None) as misfit:
+        with Misfit(
+            parameters.build, chosen, target, "nrmse", 1, lambda done, best: None
+        ) as misfit:
             return without_effect(misfit, _looks(misfit.start_places(), 0))
 
 
@@ -103,7 +105,7 @@ def calibrate(
     evaluations: int = 800,
     seconds: float | None = None,
 ) -> Calibration:
-    """Fit numbers of a column to a measured loop.
+    """Fit parameters of a column to a measured loop.
 
     The column is driven through the measured displacements. The error of the force is made least by
     a Latin hypercube over the bounds and least squares from its best points (scipy); the same input
@@ -112,12 +114,12 @@ def calibrate(
     Parameters
     ----------
     column : Column
-        The column to begin with. One made from a recipe offers its numbers as `parameters` and
+        The column to begin with. One made from a recipe offers its parameters as `parameters` and
         takes others by `with_parameters`; in any other the names are paths.
     test : MeasuredTest, PeerTest, or pair of array_like of shape (m,)
         The measured loop: displacement [m] and net horizontal force [N], as for `rbsdem.compare`.
     free : sequence of str
-        Names of the numbers to fit, such as "flexure.k_y", "shear.k", "flexure[0].d_y" (of the
+        Names of the parameters to fit, such as "flexure.k_y", "shear.k", "flexure[0].d_y" (of the
         lowest joint), "flexure[*].k_y" (a factor on all joints); `free_names` lists them.
     bounds : mapping of str to (low, high), optional
         Bounds in place of those from physics: for a spring a factor of 5 up and down, as far as its
@@ -139,13 +141,13 @@ def calibrate(
     Returns
     -------
     Calibration
-        The fitted column, its numbers with standard errors and sensitivities, report and figure. A
-        keyboard interrupt ends the search, and what was best is returned.
+        The fitted column, its parameters with standard errors and sensitivities, report and figure.
+        A keyboard interrupt ends the search, and what was best is returned.
 
     Raises
     ------
     InputError
-        For bad input: names not known, or twice, bounds that exclude the start; and for a number
+        For bad input: names not known, or twice, bounds that exclude the start; and for a parameter
         that changes no force of the test anywhere between its bounds.
     ImportError
         If scipy is not installed, or progress is asked for without rich.
@@ -153,20 +155,20 @@ def calibrate(
     Warns
     -----
     AccuracyWarning
-        If the test hardly determines a number, or does not tell two of them apart.
+        If the test hardly determines a parameter, or does not tell two of them apart.
     """
     begin = time.perf_counter()
     _check(loss, seed, jobs, evaluations, seconds)
     target = Target(test)
-    numbers = Numbers(column)
-    chosen = free_numbers(numbers, free, bounds)
+    parameters = Parameters(column)
+    chosen = free_parameters(parameters, free, bounds)
     need_scipy()
     progress = _core.switch(progress, "calibrate: progress")
     showing = telling(evaluations) if progress else nullcontext(lambda done, best: None)
     # The search goes through columns that nobody asked for: what is said of them helps no one.
     with warnings.catch_warnings(), showing as told:
         warnings.simplefilter("ignore", AccuracyWarning)
-        with Misfit(numbers.build, chosen, target, loss, jobs, told) as misfit:
+        with Misfit(parameters.build, chosen, target, loss, jobs, told) as misfit:
             start = misfit.start_places()
             misfit.column(start)
             refuse(misfit, without_effect(misfit, _looks(start, seed)))
@@ -208,7 +210,7 @@ def _check(loss: str, seed: int, jobs: int, evaluations: int, seconds: float | N
 
 
 def _looks(start: Array, seed: int) -> list[Array]:
-    """Return places from which numbers are tried one by one."""
+    """Return places from which parameters are tried one by one."""
     return [start, *np.random.default_rng(seed).random((_LOOKS, start.size))]
 
 
@@ -217,18 +219,18 @@ def _fitted(misfit: Misfit, places: ArrayLike, found: Determined) -> tuple[Fitte
     return tuple(
         Fitted(
             name,
-            number.unit,
-            number.what,
-            number.value,
-            number.low,
-            number.high,
+            one.unit,
+            one.what,
+            one.value,
+            one.low,
+            one.high,
             values[name],
             float(found.standard_error[i]),
             float(found.effect[i]),
             float(found.rise[i]),
             found.at_bound[i],
         )
-        for i, (name, number) in enumerate(misfit.free.items())
+        for i, (name, one) in enumerate(misfit.free.items())
     )
 
 

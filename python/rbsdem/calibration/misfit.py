@@ -94,7 +94,7 @@ class Target:
 
 
 class Misfit:
-    """The error of a column as a function of the places of its free numbers, each from 0 to 1.
+    """The error of a column as a function of the places of its free parameters, each from 0 to 1.
 
     Keeps count, and the best that was seen.
 
@@ -103,7 +103,7 @@ class Misfit:
     build : callable
         Makes the column of values by name, or raises `InputError`.
     free : mapping of str to Parameter
-        The numbers that are free, in order.
+        The parameters that are free, in order.
     target : Target
         The test.
     loss : str
@@ -146,13 +146,13 @@ class Misfit:
 
     def start_places(self) -> Array:
         """Return the places of the values that the column came with."""
-        return np.array([number.place(number.value) for number in self.free.values()])
+        return np.array([one.place(one.value) for one in self.free.values()])
 
     def values(self, places: Array) -> dict[str, float]:
         """Return the values by name."""
         return {
-            name: number.at(float(place))
-            for (name, number), place in zip(self.free.items(), places, strict=True)
+            name: one.at(float(place))
+            for (name, one), place in zip(self.free.items(), places, strict=True)
         }
 
     def column(self, places: Array) -> Column:

@@ -17,8 +17,8 @@ from rbsdem.parameter import Parameter, is_recipe
 _MANY = 30
 
 
-class Numbers:
-    """The numbers of one column: those its recipe offers, or else the paths in it."""
+class Parameters:
+    """The parameters of one column: those its recipe offers, or else the paths in it."""
 
     def __init__(self, column: Column) -> None:
         self.recipe = is_recipe(column)
@@ -29,17 +29,17 @@ class Numbers:
 
     @property
     def names(self) -> list[str]:
-        """Names of all numbers."""
+        """Names of all parameters."""
         return list(self.column.parameters) if self.recipe else list(self.ways)
 
     def known(self) -> dict[str, Parameter | None]:
-        """Return all numbers; None where bounds have to be given."""
+        """Return all parameters; None where bounds have to be given."""
         if self.recipe:
             return dict(self.column.parameters)
         return {name: paths.parameter(self.column, name, way) for name, way in self.ways.items()}
 
     def start(self, name: str) -> float:
-        """Return the value of a number in the column."""
+        """Return the value of a parameter in the column."""
         if self.recipe:
             return self.column.parameters[name].value
         return paths.value_at(self.column, self.ways[name])
@@ -59,57 +59,57 @@ class Numbers:
         return True
 
 
-def free_numbers(
-    numbers: Numbers, free: Sequence[str], bounds: Mapping[str, Sequence[float]] | None
+def free_parameters(
+    parameters: Parameters, free: Sequence[str], bounds: Mapping[str, Sequence[float]] | None
 ) -> dict[str, Parameter]:
-    """Return the numbers to fit, in the order of `free`, with their bounds.
+    """Return the parameters to fit, in the order of `free`, with their bounds.
 
     Raises
     ------
     InputError
         If names are not known, or come twice, or bounds are wrong.
     """
-    names = _names(numbers, free)
+    names = _names(parameters, free)
     given = {name: _pair(name, pair) for name, pair in _mapping(bounds).items()}
     for name in given:
         if name not in names:
             raise InputError(f"calibrate: bounds: {name!r} is not in free ({', '.join(names)})")
-    known = numbers.known()
+    known = parameters.known()
     chosen = {}
     for name in names:
-        number = known[name]
+        one = known[name]
         if name in given:
-            number = _within(numbers, name, number, given[name])
-        if number is None:
+            one = _within(parameters, name, one, given[name])
+        if one is None:
             raise InputError(
-                f"calibrate: {name} = {numbers.start(name):g} tells no range to look in; give "
+                f"calibrate: {name} = {parameters.start(name):g} tells no range to look in; give "
                 f"bounds={{{name!r}: (low, high)}}"
             )
-        chosen[name] = number
-    return chosen if numbers.recipe else paths.settle(chosen, given, numbers.accepts)
+        chosen[name] = one
+    return chosen if parameters.recipe else paths.settle(chosen, given, parameters.accepts)
 
 
-def _names(numbers: Numbers, free: Any) -> list[str]:
+def _names(parameters: Parameters, free: Any) -> list[str]:
     if isinstance(free, str) or not isinstance(free, Sequence | Mapping | set):
         raise InputError(f"calibrate: free = {free!r} must be a list of names")
     names = list(free)
     if not names:
-        raise InputError(f"calibrate: free is empty; it names {_list(numbers.names)}")
+        raise InputError(f"calibrate: free is empty; it names {_list(parameters.names)}")
     for name in names:
-        if name not in numbers.names:
-            raise _unknown(name, numbers)
+        if name not in parameters.names:
+            raise _unknown(name, parameters)
         if names.count(name) > 1:
             raise InputError(f"calibrate: free: {name!r} comes twice")
     return names
 
 
-def _unknown(name: Any, numbers: Numbers) -> InputError:
-    near = get_close_matches(str(name), numbers.names, n=1, cutoff=0.0)
+def _unknown(name: Any, parameters: Parameters) -> InputError:
+    near = get_close_matches(str(name), parameters.names, n=1, cutoff=0.0)
     if not near:
-        return InputError(f"calibrate: free: {name!r}: this column has no numbers to fit")
+        return InputError(f"calibrate: free: {name!r}: this column has no parameters to fit")
     return InputError(
-        f"calibrate: free: {name!r} is no number of this column; did you mean {near[0]!r}? It has "
-        f"{_list(numbers.names)}"
+        f"calibrate: free: {name!r} is no parameter of this column; did you mean {near[0]!r}? "
+        f"It has {_list(parameters.names)}"
     )
 
 
@@ -139,17 +139,17 @@ def _pair(name: str, pair: Any) -> tuple[float, float]:
 
 
 def _within(
-    numbers: Numbers, name: str, number: Parameter | None, ends: tuple[float, float]
+    parameters: Parameters, name: str, one: Parameter | None, ends: tuple[float, float]
 ) -> Parameter:
-    start = numbers.start(name)
+    start = parameters.start(name)
     if ends[0] < ends[1] and not ends[0] <= start <= ends[1]:
         raise InputError(
             f"calibrate: bounds of {name}: {ends[0]:g} to {ends[1]:g} leave out the start "
             f"{start:g}; move the bounds, or start from another column"
         )
     try:
-        if number is None:
-            return Parameter(start, *ends, paths.unit_of(numbers.ways[name]), name)
-        return replace(number, low=ends[0], high=ends[1])
+        if one is None:
+            return Parameter(start, *ends, paths.unit_of(parameters.ways[name]), name)
+        return replace(one, low=ends[0], high=ends[1])
     except InputError as error:
         raise InputError(f"calibrate: bounds of {name}: {error}") from None

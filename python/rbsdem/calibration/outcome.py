@@ -20,7 +20,7 @@ __all__ = ["Calibration", "Fitted"]
 
 @dataclass(frozen=True, slots=True)
 class Fitted:
-    """One number after a calibration.
+    """One parameter after a calibration.
 
     Attributes
     ----------
@@ -30,10 +30,10 @@ class Fitted:
         Where it began, its bounds, and where it ended [unit].
     standard_error : float
         Of the value [unit], from the scatter between half cycles; infinite where the test does not
-        see the number, NaN where there are too few half cycles to tell.
+        see the parameter, NaN where there are too few half cycles to tell.
     effect : float
-        Root mean square change of the force over the measured peak, if the number alone changes by
-        10 % (of the distance between its bounds, if it may be 0 or negative).
+        Root mean square change of the force over the measured peak, if the parameter alone changes
+        by 10 % (of the distance between its bounds, if it may be 0 or negative).
     rise : float
         How much the loss grows by that; NaN if the column cannot be so.
     at_bound : str
@@ -62,7 +62,7 @@ class Calibration:
     column, start : Column
         The fitted column and the one it came from.
     parameters : tuple of Fitted
-        The numbers that were free.
+        The parameters that were free.
     before, after : Comparison
         Scores of the two columns against the test.
     correlation : ndarray, shape (p, p)
@@ -111,7 +111,7 @@ class Calibration:
         return _views.view(self, "report")
 
     def table(self) -> Table:
-        """Return the numbers as a table of rich."""
+        """Return the parameters as a table of rich."""
         return _views.view(self, "table")
 
     def plot(self, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:

@@ -1,7 +1,7 @@
-"""Names of the numbers in a column, such as ``flexure.k_y`` or ``flexure[0].d_y``.
+"""Names of the parameters in a column, such as ``flexure.k_y`` or ``flexure[0].d_y``.
 
-A name is the path to a number through the frozen dataclasses of a column: only what a static path
-depends on. Where there are several springs, ``flexure[*].k_y`` is a factor on all of them, as
+A name is the path to a parameter through the frozen dataclasses of a column: only what a static
+path depends on. Where there are several springs, ``flexure[*].k_y`` is a factor on all of them, as
 ``flexure.layers[*].f_y`` on all layers of a joint that have an ``f_y``.
 """
 
@@ -29,7 +29,7 @@ MEASURED = 0.2
 LIMITS = {
     "b0": (0.0, 1.0),
     "b1": (0.02, 1.0),
-    "c": (0.5, 2.0),
+    "c": (1.0, 2.0),
     "kappa_f": (0.02, 1.0),
     "kappa_d": (0.02, 1.0),
 }
@@ -44,15 +44,15 @@ _UNITS = {
     "axial": {"k": "N/m", "d": "m", "f": "N"},
 }
 
-#: Way to a number: names of fields and places in tuples; ``None`` stands for all places.
+#: Way to a parameter: names of fields and places in tuples; ``None`` stands for all places.
 Way = tuple[str | int | None, ...]
 
-#: Values of the other numbers with which a bound is tried, and how often the way to it is halved.
+#: Values of the other parameters with which a bound is tried, and how often the way is halved.
 _TRIES, _HALVINGS = 16, 16
 
 
 def paths(column: Column) -> dict[str, Way]:
-    """Return the names of all numbers of a column that its static path may depend on."""
+    """Return the names of all parameters of a column that its static path may depend on."""
     found: dict[str, Way] = {name: (name,) for name in _PLAIN}
     for kind in _UNITS:
         springs = getattr(column, kind)
@@ -62,14 +62,14 @@ def paths(column: Column) -> dict[str, Way]:
 
 
 def parameter(column: Column, name: str, way: Way) -> Parameter | None:
-    """Return the number at a path with bounds from physics; None if they have to be given."""
+    """Return the parameter at a path with bounds from physics; None if they have to be given."""
     value = value_at(column, way)
     bounds = default_bounds("" if None in way else str(way[-1]), value, len(way) == 1)
     return None if bounds is None else Parameter(value, *bounds, unit_of(way), name)
 
 
 def unit_of(way: Way) -> str:
-    """Return the unit of the number at a path, told by the first letter of its name."""
+    """Return the unit of the parameter at a path, told by the first letter of its name."""
     if None in way or way[-1] in LIMITS:
         return ""
     name = str(way[-1])
@@ -81,7 +81,7 @@ def unit_of(way: Way) -> str:
 
 
 def default_bounds(name: str, value: float, measured: bool) -> tuple[float, float] | None:
-    """Return the range in which a number is looked for; None if there is no saying."""
+    """Return the range in which a parameter is looked for; None if nothing tells it."""
     if name in LIMITS:
         low, high = LIMITS[name]
         return min(low, value), max(high, value)
@@ -95,19 +95,19 @@ def default_bounds(name: str, value: float, measured: bool) -> tuple[float, floa
 
 
 def value_at(column: Column, way: Way) -> float:
-    """Return the number at a path; 1 for a factor on several."""
+    """Return the parameter at a path; 1 for a factor on several."""
     return 1.0 if None in way else _get(column, way)
 
 
 def with_values(column: Column, ways: Mapping[str, Way], values: Mapping[str, float]) -> Column:
-    """Return the column with other numbers at some paths.
+    """Return the column with other parameters at some paths.
 
     Raises
     ------
     InputError
         If the column refuses them.
     """
-    # Springs check what belongs together: all numbers of one object change at a time.
+    # Springs check what belongs together: all parameters of one object change at a time.
     return _changed(column, {ways[name]: value for name, value in values.items()})
 
 
@@ -122,12 +122,12 @@ def settle(
     between it and the start. A bound that only some of them forbid stays. Bounds that were given
     stay.
     """
-    start = {name: number.value for name, number in free.items()}
+    start = {name: one.value for name, one in free.items()}
     random = np.random.default_rng(0).random((_TRIES, len(free)))
     tries = [start]
-    tries += [{n: number.at(end) for n, number in free.items()} for end in (0.0, 1.0)]
+    tries += [{n: one.at(end) for n, one in free.items()} for end in (0.0, 1.0)]
     tries += [
-        {n: number.at(place) for (n, number), place in zip(free.items(), places, strict=True)}
+        {n: one.at(place) for (n, one), place in zip(free.items(), places, strict=True)}
         for places in random
     ]
 
@@ -135,38 +135,38 @@ def settle(
         return any(accepts(others | {name: value}) for others in tries)
 
     settled = {}
-    for name, number in free.items():
-        ends = [number.low, number.high]
+    for name, one in free.items():
+        ends = [one.low, one.high]
         if name not in given:
-            ends = [_edge(number, end, partial(allowed, name)) for end in ends]
-        settled[name] = replace(number, low=ends[0], high=ends[1]) if ends[0] < ends[1] else number
+            ends = [_edge(one, end, partial(allowed, name)) for end in ends]
+        settled[name] = replace(one, low=ends[0], high=ends[1]) if ends[0] < ends[1] else one
     return settled
 
 
-def _edge(number: Parameter, end: float, allowed: Callable[[float], bool]) -> float:
+def _edge(one: Parameter, end: float, allowed: Callable[[float], bool]) -> float:
     """Return the end if it is allowed, else the last value on the way there that is."""
     if allowed(end):
         return end
-    inside, outside = number.place(number.value), number.place(end)
+    inside, outside = one.place(one.value), one.place(end)
     for _ in range(_HALVINGS):
         middle = 0.5 * (inside + outside)
-        if allowed(number.at(middle)):
+        if allowed(one.at(middle)):
             inside = middle
         else:
             outside = middle
-    return number.at(inside)
+    return one.at(inside)
 
 
 def _below(part: Any) -> Iterator[tuple[str, Way]]:
-    """Yield names and ways of all numbers in a spring, or in several, with what joins them before.
+    """Yield names and ways of all parameters in a spring, or in several, with what joins them.
 
     ``.k_y`` in one; ``[0].k_y`` in one of several, and ``[*].k_y`` in all of them that have it.
     """
     if isinstance(part, tuple):
         several = [list(_below(_spring(item))) for item in part]
-        for place, numbers in enumerate(several):
-            yield from ((f"[{place}]{name}", (place, *way)) for name, way in numbers)
-        every = {name: way for numbers in several for name, way in numbers}
+        for place, parameters in enumerate(several):
+            yield from ((f"[{place}]{name}", (place, *way)) for name, way in parameters)
+        every = {name: way for parameters in several for name, way in parameters}
         yield from ((f"[*]{name}", (None, *way)) for name, way in every.items())
     elif is_dataclass(part):
         for field in fields(part):
@@ -191,7 +191,7 @@ def _get(part: Any, way: Way) -> Any:
 
 
 def _changed(part: Any, changes: Mapping[Way, float]) -> Any:
-    """Return a copy of a spring, or of several, with the numbers at some ways replaced."""
+    """Return a copy of a spring, or of several, with the parameters at some ways replaced."""
     if () in changes:
         return changes[()]
     if isinstance(part, tuple):
@@ -205,7 +205,7 @@ def _changed(part: Any, changes: Mapping[Way, float]) -> Any:
 
 
 def _changed_item(item: Any, place: int, changes: Mapping[Way, float]) -> Any:
-    """Change one of several springs: by its own numbers, then by factors on all of them."""
+    """Change one of several springs: by its own parameters, then by factors on all of them."""
     spring = _spring(item)
     own = {way[1:]: value for way, value in changes.items() if way[0] == place}
     for way, factor in changes.items():

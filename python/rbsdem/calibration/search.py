@@ -1,4 +1,4 @@
-"""The search for the numbers that fit best.
+"""The search for the parameters that fit best.
 
 The force of a chain of straight lines is continuous in its parameters nearly everywhere, with kinks
 where a spring takes another line, and the error has several minima. So: a Latin hypercube over the
@@ -18,7 +18,7 @@ import numpy as np
 from rbsdem._core import Array
 from rbsdem.calibration.misfit import REFUSED, Misfit, rms
 
-#: Points of the hypercube for each free number, and at least.
+#: Points of the hypercube for each free parameter, and at least.
 SAMPLES_EACH, SAMPLES_LEAST = 10, 40
 
 #: Draws for each point that the rule of the springs allows.
@@ -111,7 +111,7 @@ class Search:
         hypercube = qmc.LatinHypercube(size, rng=self._random)
         points = [self.misfit.start_places(), *hypercube.random(wanted)]
         losses = [rms(vector) for vector in self._batches(points)]
-        # Those refused are drawn again: limits between free numbers are no box.
+        # Those refused are drawn again: limits between free parameters are no box.
         for _ in range(DRAWS):
             missing = wanted + 1 - sum(loss < REFUSED for loss in losses)
             if missing <= 0:

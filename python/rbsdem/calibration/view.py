@@ -48,7 +48,7 @@ def report(fit: Calibration) -> str:
         lines.append(f"{first}  {'  '.join(rest)}".rstrip())
     lines += [
         "",
-        "Effect: rms change of the force over the peak, if the number changes by 10 % (of",
+        "Effect: rms change of the force over the peak, if the parameter changes by 10 % (of",
     ]
     lines += ["the distance between its bounds, if it may be 0). Rise: growth of the loss by that."]
     if len(fit.parameters) > 1:
@@ -60,7 +60,7 @@ def report(fit: Calibration) -> str:
 
 @view_of(Calibration, "table")
 def table(fit: Calibration) -> Table:
-    """Return the numbers as a table of rich."""
+    """Return the parameters as a table of rich."""
     rich = need_rich()
     found = rich.table.Table(box=rich.box.SIMPLE_HEAD, padding=(0, 1, 0, 0), show_edge=False)
     for i in _NARROW:
