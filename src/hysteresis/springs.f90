@@ -1,6 +1,7 @@
 !> The springs of a column: rules off the hot path, their present lines as plain arrays on it.
 module rbs_hysteresis_springs
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+   use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_factory, only: new_rule
@@ -114,16 +115,32 @@ contains
       class(spring_array), intent(in) :: self
       integer, intent(in) :: i, direction
 
-      if (self%one_way(i) /= 0 .and. self%one_way(i) /= direction) then
+      if (self%one_way(i) == -direction) then
          end_toward = self%d(i)
       else if (direction > 0) then
-         end_toward = self%last(i)
-         if (.not. self%hi_closed(i) .and. end_toward < unbounded) end_toward = nearest(end_toward, 1.0_wp)
+         end_toward = upper_end(self%last(i), self%hi_closed(i))
       else
-         end_toward = self%first(i)
-         if (.not. self%lo_closed(i) .and. end_toward > -unbounded) end_toward = nearest(end_toward, -1.0_wp)
+         end_toward = lower_end(self%first(i), self%lo_closed(i))
       end if
    end function end_toward
+
+   !> The upper end of a line from the last deformation that belongs to it.
+   elemental real(wp) function upper_end(last, closed)
+      real(wp), intent(in) :: last
+      logical, intent(in) :: closed
+
+      upper_end = last
+      if (.not. closed .and. last < unbounded) upper_end = next_above(last)
+   end function upper_end
+
+   !> The lower end of a line from the first deformation that belongs to it.
+   elemental real(wp) function lower_end(first, closed)
+      real(wp), intent(in) :: first
+      logical, intent(in) :: closed
+
+      lower_end = first
+      if (.not. closed .and. first > -unbounded) lower_end = -next_above(-first)
+   end function lower_end
 
    !> Move every spring to a new deformation.
    subroutine move_all(self, d)
@@ -361,8 +378,8 @@ contains
       type(segment) :: line
 
       if (self%journal%open) call keep(self, i)
-      if (self%one_way(i) /= -direction) call walk(self, i, self%end_toward(i, direction))
       line = line_of(self, i)
+      if (self%one_way(i) /= -direction) call walk(self, i, merge(line%hi, line%lo, direction > 0))
       call self%slot(i)%rule%next(line, direction)
       self%events = self%events + 1
       self%version = modulo(self%version + 1, huge(1))
@@ -377,8 +394,10 @@ contains
       line%d0 = self%d0(i)
       line%f0 = self%f0(i)
       line%k = self%k(i)
-      line%lo = self%end_toward(i, -1)
-      line%hi = self%end_toward(i, 1)
+      line%lo = lower_end(self%first(i), self%lo_closed(i))
+      line%hi = upper_end(self%last(i), self%hi_closed(i))
+      if (self%one_way(i) > 0) line%lo = self%d(i)
+      if (self%one_way(i) < 0) line%hi = self%d(i)
       line%lo_closed = self%lo_closed(i)
       line%hi_closed = self%hi_closed(i)
       line%one_way = self%one_way(i)
@@ -398,9 +417,23 @@ contains
       self%one_way(i) = line%one_way
       self%first(i) = line%lo
       self%last(i) = line%hi
-      if (.not. line%lo_closed .and. line%lo > -unbounded) self%first(i) = nearest(line%lo, 1.0_wp)
-      if (.not. line%hi_closed .and. line%hi < unbounded) self%last(i) = nearest(line%hi, -1.0_wp)
+      if (.not. line%lo_closed .and. line%lo > -unbounded) self%first(i) = next_above(line%lo)
+      if (.not. line%hi_closed .and. line%hi < unbounded) self%last(i) = -next_above(-line%hi)
    end subroutine put_line
+
+   !> The next larger number, as `nearest(x, 1.0)` for finite numbers. The latter is a call of the C library,
+   !> and an event needs up to five of them.
+   elemental real(wp) function next_above(x)
+      real(wp), intent(in) :: x
+
+      if (x > 0.0_wp) then
+         next_above = transfer(transfer(x, 0_int64) + 1_int64, x)
+      else if (x < 0.0_wp) then
+         next_above = transfer(transfer(x, 0_int64) - 1_int64, x)
+      else
+         next_above = transfer(1_int64, x)
+      end if
+   end function next_above
 
    !> A spring stands at an end of its line and is about to go on beyond it.
    subroutine leave(self, i, direction)

@@ -8,6 +8,7 @@ module runs
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
    use rbs_loading_signal, only: signal_type
+   use rbs_column_energy, only: kinetic_energy, potential_energy
    use rbs_output_recorder, only: array_recorder
    use rbs_output_row, only: row_size, row_joints
    use rbs_output_summary, only: summary_type
@@ -135,8 +136,8 @@ contains
    real(wp) function energy_of(state) result(energy)
       type(state_type), intent(in) :: state
 
-      energy = state%motion%kinetic_energy(state%q, state%v) + sum(state%springs%work) &
-               + state%motion%potential(state%q)
+      energy = kinetic_energy(state%motion%column, state%q, state%v) + sum(state%springs%work) &
+               + potential_energy(state%motion%column, state%q)
    end function energy_of
 
    !> What is left of the balance of energy [J].
@@ -166,7 +167,7 @@ contains
       else
          allocate (rk4_scheme :: stepper%scheme)
       end if
-      call stepper%scheme%create(column%unknowns)
+      call stepper%scheme%create(column)
       stepper%tolerance = tolerance
       stepper%next_step = step
       stepper%shortest = 1.0e-6_wp*step

@@ -9,10 +9,13 @@ module test_chain
    use rbs_column_band, only: from_joints, to_joints
    use rbs_column_chain, only: body_velocities, kinetic_of
    use rbs_column_column, only: column_type
+   use rbs_column_energy, only: kinetic_energy, potential_energy
    use rbs_column_mass, only: symmetric_mass
+   use rbs_column_top, only: top_position
    use rbs_loading_signal, only: signal_type
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_solve_time_loads, only: loads_type, lateral, horizontal, vertical, axial
+   use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_rk4, only: rk4_scheme
    use rbs_solve_time_state, only: state_type
    use rbs_spec_column, only: column_spec
@@ -165,7 +168,8 @@ contains
       type(random_type) :: random
       type(column_spec) :: spec
       type(state_type) :: state
-      real(wp), allocatable :: mass(:, :), expected(:), a(:)
+      type(motion_result) :: now
+      real(wp), allocatable :: mass(:, :), expected(:)
       integer :: kind, n
       logical :: positive
 
@@ -176,11 +180,10 @@ contains
             call equation_of_motion(spec, state, mass, expected)
             call factor_positive(mass, positive)
             call solve_positive(mass, expected)
-            if (allocated(a)) deallocate (a)
-            allocate (a(size(expected)))
-            call state%motion%acceleration(state%springs, state%q, state%v, state%load, a)
+            call now%create(state%motion%column)
+            call state%motion%acceleration(state%springs, state%q, state%v, state%load, now)
             ! Round-off of the dense solution grows with the condition of M.
-            call check_close(error, a, expected, 0.0_wp, 1.0e-11_wp*maxval(abs(expected)), &
+            call check_close(error, now%a, expected, 0.0_wp, 1.0e-11_wp*maxval(abs(expected)), &
                              'n = '//to_text(n)//', variant '//to_text(kind)//', acceleration')
             if (allocated(error)) return
          end do
@@ -195,7 +198,8 @@ contains
       type(state_type) :: state
       type(column_type) :: column
       type(loads_type) :: loads
-      real(wp) :: a(3), q(3), v(3), load(4), m, l
+      type(motion_result) :: now
+      real(wp) :: q(3), v(3), load(4), m, l
 
       spec = rich_column(1, 'pdelta', .true., random)
       spec%self_weight = .false.
@@ -210,20 +214,21 @@ contains
       loads%vertical = constant(1.0_wp)
       loads%axial = constant(1.0_wp)
       call new_state(state, column, loads, q, v)
+      call now%create(column)
 
       load = [12.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
-      call state%motion%acceleration(state%springs, q, v, load, a)
-      call check_close(error, a(2)*column%inertia(1), 6.0_wp*l, 1.0e-14_wp, 0.0_wp, 'force turns')
-      call check_close(error, a(1) + 0.5_wp*l*a(2), 12.0_wp/m, 1.0e-14_wp, 0.0_wp, 'force pushes')
+      call state%motion%acceleration(state%springs, q, v, load, now)
+      call check_close(error, now%a(2)*column%inertia(1), 6.0_wp*l, 1.0e-14_wp, 0.0_wp, 'force turns')
+      call check_close(error, now%a(1) + 0.5_wp*l*now%a(2), 12.0_wp/m, 1.0e-14_wp, 0.0_wp, 'force pushes')
       load = [0.0_wp, 3.0_wp, 0.0_wp, 0.0_wp]
-      call state%motion%acceleration(state%springs, q, v, load, a)
-      call check_close(error, a, [-3.0_wp, 0.0_wp, 0.0_wp], 1.0e-15_wp, 0.0_wp, 'ground')
+      call state%motion%acceleration(state%springs, q, v, load, now)
+      call check_close(error, now%a, [-3.0_wp, 0.0_wp, 0.0_wp], 1.0e-15_wp, 0.0_wp, 'ground')
       load = [0.0_wp, 0.0_wp, 3.0_wp, 0.0_wp]
-      call state%motion%acceleration(state%springs, q, v, load, a)
-      call check_close(error, a, [0.0_wp, 0.0_wp, -3.0_wp], 1.0e-15_wp, 0.0_wp, 'vertical')
+      call state%motion%acceleration(state%springs, q, v, load, now)
+      call check_close(error, now%a, [0.0_wp, 0.0_wp, -3.0_wp], 1.0e-15_wp, 0.0_wp, 'vertical')
       load = [0.0_wp, 0.0_wp, 0.0_wp, 3.0_wp*m]
-      call state%motion%acceleration(state%springs, q, v, load, a)
-      call check_close(error, a, [0.0_wp, 0.0_wp, -3.0_wp], 1.0e-15_wp, 0.0_wp, 'axial')
+      call state%motion%acceleration(state%springs, q, v, load, now)
+      call check_close(error, now%a, [0.0_wp, 0.0_wp, -3.0_wp], 1.0e-15_wp, 0.0_wp, 'axial')
    end subroutine one_load
 
    !> d(kinetic energy + potential)/dt + power of the springs = power of loads - power of damping. Both
@@ -232,6 +237,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
       type(state_type) :: state
+      type(motion_result) :: now
       real(wp), allocatable :: a(:)
       real(wp) :: of_motion, of_potential, of_springs, of_loads, of_damping
       integer :: i, kind, n
@@ -239,15 +245,16 @@ contains
       do n = 1, 6
          do kind = 0, 127
             call random_state(variant(n, kind, random), random, state)
-            if (allocated(a)) deallocate (a)
-            allocate (a(size(state%q)))
-            associate (motion => state%motion, q => state%q, v => state%v)
-               call motion%acceleration(state%springs, q, v, state%load, a)
-               call motion%power(state%springs, q, v, state%load, of_loads, of_damping)
+            call now%create(state%motion%column)
+            associate (motion => state%motion, column => state%motion%column, q => state%q, v => state%v)
+               call motion%acceleration(state%springs, q, v, state%load, now)
+               of_loads = motion%load_power(q, v, state%load, now)
+               of_damping = motion%damping_power(state%springs, q, v)
                ! Steps of the size of q and v lose no digits.
-               a = 1.0e-5_wp*a
-               of_motion = 0.5e5_wp*(motion%kinetic_energy(q, v + a) - motion%kinetic_energy(q, v - a))
-               of_potential = 50.0_wp*(motion%potential(q + 0.01_wp*v) - motion%potential(q - 0.01_wp*v))
+               a = 1.0e-5_wp*now%a
+               of_motion = 0.5e5_wp*(kinetic_energy(column, q, v + a) - kinetic_energy(column, q, v - a))
+               of_potential = 50.0_wp*(potential_energy(column, q + 0.01_wp*v) &
+                                       - potential_energy(column, q - 0.01_wp*v))
                of_springs = sum([(state%springs%force(i)*v(i), i=1, size(v))])
             end associate
             call check_close(error, of_motion + of_potential + of_springs, of_loads - of_damping, 0.0_wp, &
@@ -311,9 +318,10 @@ contains
             spec = variant(n, kind, random)
             spec%self_weight = .false.
             call random_state(spec, random, state)
-            top = state%motion%top(state%q)
-            call check_close(error, spec%axial_load*(top(2) - spec%height), state%motion%potential(state%q), &
-                             1.0e-9_wp, 0.0_wp, 'n = '//to_text(n)//', variant '//to_text(kind)//', height')
+            top = top_position(state%motion%column, state%q)
+            call check_close(error, spec%axial_load*(top(2) - spec%height), &
+                             potential_energy(state%motion%column, state%q), 1.0e-9_wp, 0.0_wp, &
+                             'n = '//to_text(n)//', variant '//to_text(kind)//', height')
             call check_close(error, top(1), dot_product(state%motion%column%arm, state%q), 0.0_wp, &
                              1.0e-15_wp, 'displacement')
          end do
@@ -332,12 +340,12 @@ contains
       real(wp) :: q(2), v(2)
       integer :: trial
 
-      call fast%create(2)
-      call slow%create(2)
       do trial = 1, 200
          spec = rich_column(1, merge('pdelta', 'small ', mod(trial, 2) == 0), .false., random)
          if (mod(trial, 3) == 0) spec%top_mass = random%uniform(100.0_wp, 2000.0_wp)
          column = made(spec)
+         call fast%create(column)
+         call slow%create(column)
          loads = loads_type()
          if (mod(trial, 5) /= 0) then
             loads%force = signal_of([0.0_wp, 1.0_wp], [random%uniform(-1.0e6_wp, 1.0e6_wp), 0.0_wp])
@@ -388,8 +396,8 @@ contains
             call new_state(none, column, loads_type(), q, v)
             a = rk4_scheme()
             b = rk4_scheme()
-            call a%create(column%unknowns)
-            call b%create(column%unknowns)
+            call a%create(column)
+            call b%create(column)
             call a%attempt(idle, 1.0e-5_wp)
             call b%attempt(none, 1.0e-5_wp)
             call check_close(error, a%v, b%v, 0.0_wp, 1.0e-13_wp*maxval(abs(b%v)), 'velocity')

@@ -7,6 +7,7 @@ module test_history
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
+   use rbs_column_energy, only: kinetic_energy, potential_energy
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_output_observer, only: observer_type
    use rbs_output_recorder, only: array_recorder, recorder_type
@@ -17,7 +18,7 @@ module test_history
    use rbs_solve_static_run_static, only: run_static
    use rbs_solve_time_loads, only: loads_type
    use rbs_solve_time_march, only: initial_state, march
-   use rbs_solve_time_motion, only: motion_type
+   use rbs_solve_time_motion, only: motion_type, motion_result
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_rk4, only: rk4_stepper
    use rbs_solve_time_run_dynamic, only: plan_dynamic, run_dynamic
@@ -323,7 +324,7 @@ contains
             recorder%rows => kept
             recorder%count = 0
             stepper = rk4_stepper()
-            call stepper%scheme%create(column%unknowns)
+            call stepper%scheme%create(column)
             call march(column, plan, stepper, [0.0_wp, plan%finish], none, start, unset, steps, recorder, &
                        summary, outcome)
             call check_passed(error, outcome, 'march')
@@ -415,7 +416,8 @@ contains
       type(column_spec) :: spec
       type(motion_type) :: small, finite
       type(spring_array) :: springs
-      real(wp) :: q(2), v(2), a(2), b(2)
+      type(motion_result) :: a, b
+      real(wp) :: q(2), v(2)
       real(wp), parameter :: load(4) = [30.0_wp, 0.1_wp, 0.2_wp, 400.0_wp]
       integer :: i
 
@@ -430,15 +432,18 @@ contains
       call finite%create(made(spec), spread(.true., 1, 4), outcome)
       call check_passed(error, outcome, 'finite')
       call springs%create(small%column%spring)
+      call a%create(small%column)
+      call b%create(finite%column)
       do i = 1, 50
          q = 1.0e-7_wp*[random%uniform(-1.0_wp, 1.0_wp), random%uniform(-1.0_wp, 1.0_wp)]
          v = 1.0e-6_wp*[random%uniform(-1.0_wp, 1.0_wp), random%uniform(-1.0_wp, 1.0_wp)]
          call small%acceleration(springs, q, v, load, a)
          call finite%acceleration(springs, q, v, load, b)
-         call check_close(error, a, b, 1.0e-10_wp, 1.0e-10_wp, 'acceleration')
-         call check_close(error, small%kinetic_energy(q, v), finite%kinetic_energy(q, v), 1.0e-10_wp, &
-                          0.0_wp, 'kinetic energy')
-         call check_close(error, small%potential(q), finite%potential(q), 1.0e-10_wp, 0.0_wp, 'potential')
+         call check_close(error, a%a, b%a, 1.0e-10_wp, 1.0e-10_wp, 'acceleration')
+         call check_close(error, kinetic_energy(small%column, q, v), kinetic_energy(finite%column, q, v), &
+                          1.0e-10_wp, 0.0_wp, 'kinetic energy')
+         call check_close(error, potential_energy(small%column, q), potential_energy(finite%column, q), &
+                          1.0e-10_wp, 0.0_wp, 'potential')
       end do
    end subroutine finite_small
 

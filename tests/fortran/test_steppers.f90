@@ -160,7 +160,7 @@ contains
          call play_located(scene, 0.0_wp, 2048, located, outcome)
          call check_passed(error, outcome, 'located')
          stepper = rk4_stepper()
-         call stepper%scheme%create(m)
+         call stepper%scheme%create(scene%column)
          call play(scene, stepper, 2048, plain, outcome)
          call check_passed(error, outcome, 'step')
          call check_same(error, located%q, plain%q, 'deformation')
@@ -236,7 +236,7 @@ contains
          call find_reference(scene, reference, error)
          do i = 1, 6
             stepper = rk4_stepper()
-            call stepper%scheme%create(scene%column%unknowns)
+            call stepper%scheme%create(scene%column)
             call play(scene, stepper, coarse(scene)*2**(i - 1), state, outcome)
             call check_passed(error, outcome, 'scene '//to_text(number))
             wrong(i) = distance(state, reference)
@@ -313,7 +313,7 @@ contains
       do i = 1, 4
          steps = 10*2**i
          scheme = pair45_scheme()
-         call scheme%create(4)
+         call scheme%create(column)
          call check_equal(error, scheme%order, 5, 'order')
          call new_state(state, column, loads_type(), modes%shapes(:, 4), 0.0_wp*modes%shapes(:, 4))
          do step = 1, steps
@@ -518,7 +518,7 @@ contains
       call check_passed(error, outcome, 'located')
       call check_close(error, state%q(3), expected, 1.0e-10_wp, 0.0_wp, 'located')
       ! Without location the first step is on the wrong line, and only that.
-      call stepper%scheme%create(3)
+      call stepper%scheme%create(scene%column)
       call play(scene, stepper, 100, state, outcome)
       call check_passed(error, outcome, 'step')
       call check_close(error, state%q(3), expected, 1.0e-3_wp, 0.0_wp, 'step')
@@ -616,7 +616,7 @@ contains
       call new_mass(scene, bilinear(800.0_wp, 0.05_wp, 80.0_wp), 2.0_wp, 0.0_wp, 2.0_wp)
       ! Past the turn, before the other yield
       scene%finish = 0.14_wp
-      call stepper%scheme%create(3)
+      call stepper%scheme%create(scene%column)
       call play(scene, stepper, 1000, state, outcome)
       call check_passed(error, outcome, 'step')
       call check_equal(error, state%springs%events, 2, 'step: events')

@@ -18,7 +18,7 @@ module rbs_solve_time_implicit
    use rbs_column_chain, only: body_velocities
    use rbs_column_column, only: joint_name
    use rbs_solve_time_loads, only: lateral, horizontal, vertical, axial
-   use rbs_solve_time_motion, only: motion_type
+   use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_state, only: state_type, stepper_type, in_bounds, out_of_bounds
    implicit none
    private
@@ -43,6 +43,8 @@ module rbs_solve_time_implicit
       !> second
       real(wp) :: wanted = 1.0e-12_wp, acceptable = 1.0e-7_wp
       logical, private :: ready = .false.
+      !> Forces on the bodies at the present trial
+      type(motion_result), private :: now
       !> Velocities, accelerations and forces of the bodies at the begin of a step, and at its end
       !> (unknowns), in the order x_1, th_1, x_2, ... [, y_1, ...]
       real(wp), allocatable, private :: v0(:), a0(:), g0(:), v1(:), a1(:), g1(:)
@@ -132,33 +134,34 @@ contains
          self%mass(2*i) = state%motion%column%inertia(i)
          if (state%motion%column%opens) self%mass(2*n + i) = state%motion%column%mass(i)
       end do
+      call self%now%create(state%motion%column)
       call body_velocities(state%motion%column, state%v, self%v0)
-      call find_forces(self, state, state%q, state%v, self%v0, state%load, self%g0)
+      call find_forces(state, self%mass, state%q, state%v, self%v0, state%load, self%now, self%g0)
       self%a0 = self%g0/self%mass
-      call find_scale(n, m, self%mass, self%a0, self%g0, state%motion%f, state%load(lateral), &
+      call find_scale(n, m, self%mass, self%a0, self%g0, self%now%f, state%load(lateral), &
                       state%motion%column%upper(n), self%largest)
       self%ready = .true.
    end subroutine start
 
    !> Forces on the bodies, inertia of the ground and damping included.
-   subroutine find_forces(self, state, q, w, v, load, g)
-      type(implicit_stepper), intent(in) :: self
-      type(state_type), intent(inout) :: state
-      !> Deformations and velocities of the joints, velocities of the bodies (unknowns)
-      real(wp), intent(in), contiguous :: q(:), w(:), v(:)
+   subroutine find_forces(state, mass, q, w, v, load, now, g)
+      type(state_type), intent(in) :: state
+      !> Mass, deformations and velocities of the joints, velocities of the bodies (unknowns)
+      real(wp), intent(in), contiguous :: mass(:), q(:), w(:), v(:)
       real(wp), intent(in) :: load(4)
+      type(motion_result), intent(inout) :: now
       real(wp), intent(out), contiguous :: g(:)
       integer :: i, n
 
       n = state%motion%column%n
       associate (motion => state%motion)
-         call motion%find_body_forces(state%springs, q, w, load)
+         call motion%forces_on_bodies(state%springs, q, w, load, now)
          do i = 1, n
-            g(2*i - 1) = motion%force(i) - motion%column%mass(i)*load(horizontal)
-            g(2*i) = motion%torque(i)
+            g(2*i - 1) = now%force(i) - motion%column%mass(i)*load(horizontal)
+            g(2*i) = now%torque(i)
          end do
-         if (motion%column%opens) g(2*n + 1:) = motion%lift - motion%column%mass*load(vertical)
-         if (motion%column%mass_damping > 0.0_wp) g = g - motion%column%mass_damping*self%mass*v
+         if (motion%column%opens) g(2*n + 1:) = now%lift - motion%column%mass*load(vertical)
+         if (motion%column%mass_damping > 0.0_wp) g = g - motion%column%mass_damping*mass*v
       end associate
    end subroutine find_forces
 
@@ -475,9 +478,9 @@ contains
       n = state%motion%column%n
       call end_of_step(m, h, self%beta, self%gamma, self%moved, self%v0, self%a0, self%v1, self%a1)
       if (state%motion%damped) call to_joints(state%motion%column, self%v1, self%w1)
-      call find_forces(self, state, self%q1, self%w1, self%v1, load, self%g1)
+      call find_forces(state, self%mass, self%q1, self%w1, self%v1, load, self%now, self%g1)
       call balance(m, self%alpha_m, self%alpha_f, self%mass, self%a0, self%a1, self%g0, self%g1, self%r)
-      call find_scale(n, m, self%mass, self%a1, self%g1, state%motion%f, load(lateral), &
+      call find_scale(n, m, self%mass, self%a1, self%g1, self%now%f, load(lateral), &
                       state%motion%column%upper(n), self%scale)
       relative = size_of(n, m, self%r, max(self%scale, self%largest))
    end subroutine find_residual
@@ -592,8 +595,8 @@ contains
          self%factor = 0.0_wp
          call add_spring_band(motion%column, self%k(:2*n), self%factor)
          if (motion%second_order) then
-            call add_geometric_band(motion%column, (1.0_wp - self%alpha_f)*motion%axial_body, &
-                                    (1.0_wp - self%alpha_f)*motion%axial_joint, self%factor)
+            call add_geometric_band(motion%column, (1.0_wp - self%alpha_f)*self%now%axial_body, &
+                                    (1.0_wp - self%alpha_f)*self%now%axial_joint, self%factor)
          end if
          self%factor(1, :) = self%factor(1, :) + of_mass*self%mass(:2*n)
          if (motion%column%opens) then
@@ -641,7 +644,7 @@ contains
       type(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
       real(wp), intent(in) :: h, load(4)
-      real(wp) :: before, after, of_damping
+      real(wp) :: before, after
       integer :: n, i
 
       n = state%motion%column%n
@@ -657,16 +660,13 @@ contains
          end if
          call to_joints(motion%column, self%v1, self%w1)
          if (motion%acts(vertical) .or. motion%acts(axial)) then
-            call motion%power(state%springs, state%q, state%v, &
-                              [0.0_wp, 0.0_wp, state%load(vertical), state%load(axial)], before, of_damping)
-            call motion%power(state%springs, self%q1, self%w1, &
-                              [0.0_wp, 0.0_wp, load(vertical), load(axial)], after, of_damping)
+            before = motion%lifting_power(state%q, state%v, state%load)
+            after = motion%lifting_power(self%q1, self%w1, load)
             state%of_loads = state%of_loads + 0.5_wp*h*(before + after)
          end if
          if (motion%damped) then
-            call motion%power(state%springs, self%q1, 0.5_wp*(state%v + self%w1), &
-                              [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], before, of_damping)
-            state%of_damping = state%of_damping + h*of_damping
+            state%of_damping = state%of_damping &
+                               + h*motion%damping_power(state%springs, self%q1, 0.5_wp*(state%v + self%w1))
          end if
       end associate
       call state%springs%carry_to(self%q1)

@@ -8,6 +8,7 @@ module rbs_solve_time_located
    use rbs_base_text, only: to_text
    use rbs_column_chain, only: kinetic_of
    use rbs_column_column, only: joint_name
+   use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type, stepper_type, out_of_bounds, in_bounds
    implicit none
@@ -38,8 +39,8 @@ module rbs_solve_time_located
       real(wp) :: next_step = 0.0_wp, shortest = 0.0_wp, longest = huge(1.0_wp)
       !> Largest energy so far, as the measure of errors [J]
       real(wp), private :: largest = 0.0_wp
-      !> Acceleration, for springs that stand still (unknowns)
-      real(wp), allocatable, private :: a(:)
+      !> The equation of motion where springs stand still, and where one turns back
+      type(motion_result), private :: now
    contains
       procedure :: advance
    end type located_stepper
@@ -57,7 +58,7 @@ contains
       integer :: tries, idle
 
       if (allocated(error)) return
-      if (.not. allocated(self%a)) allocate (self%a(size(state%q)))
+      if (.not. allocated(self%now%a)) call self%now%create(state%motion%column)
       finish = state%time + h
       left = h
       idle = 0
@@ -190,10 +191,10 @@ contains
                way = direction_of(state%v(i))
                if (way == 0) then
                   if (.not. known) then
-                     call state%motion%acceleration(springs, state%q, state%v, state%load, self%a)
+                     call state%motion%acceleration(springs, state%q, state%v, state%load, self%now)
                      known = .true.
                   end if
-                  way = direction_of(self%a(i))
+                  way = direction_of(self%now%a(i))
                end if
                if (way == 0) cycle
                if (springs%one_way(i) == -way) exit
@@ -347,8 +348,8 @@ contains
             wrong = event%way*self%scheme%v(i)
             small = 4.0_wp*epsilon(1.0_wp)*abs(state%v(i))
             call state%motion%acceleration(state%springs, self%scheme%q, self%scheme%v, self%scheme%load, &
-                                           self%a)
-            slope = event%way*self%a(i)
+                                           self%now)
+            slope = event%way*self%now%a(i)
          else
             wrong = event%way*(self%scheme%q(i) - target)
             small = 2.0_wp*spacing(max(abs(target), abs(state%q(i))))

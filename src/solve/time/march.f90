@@ -5,6 +5,8 @@ module rbs_solve_time_march
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, joint_name
+   use rbs_column_energy, only: kinetic_energy, potential_energy
+   use rbs_column_top, only: top_position, top_displacement
    use rbs_output_observer, only: observer_type
    use rbs_output_recorder, only: recorder_type
    use rbs_output_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
@@ -64,7 +66,7 @@ contains
       summary%time_step = plan%dt
       next_row = huge(1)
       if (every /= unset_integer) next_row = min(every, plan%steps)
-      displacement = state%motion%top_displacement(state%q)
+      displacement = top_displacement(state%motion%column, state%q)
       call summary%see_peak(displacement, state%load(lateral))
       call keep(state, row, recorder, summary, error)
       if (allocated(error)) return
@@ -91,7 +93,7 @@ contains
             state%clock = begin + part*h
             if (part == parts) state%clock = finish
             state%time = state%clock - plan%begin
-            displacement = state%motion%top_displacement(state%q)
+            displacement = top_displacement(state%motion%column, state%q)
             call summary%see_peak(displacement, state%load(lateral))
             summary%collapsed = abs(displacement) >= furthest
             if (summary%collapsed .or. step == next_row .or. &
@@ -155,8 +157,8 @@ contains
          if (allocated(error)) return
       end if
       call state%springs%move_all(state%q)
-      state%at_begin = state%motion%kinetic_energy(state%q, state%v) + sum(state%springs%work) &
-                       + state%motion%potential(state%q)
+      state%at_begin = kinetic_energy(state%motion%column, state%q, state%v) + sum(state%springs%work) &
+                       + potential_energy(state%motion%column, state%q)
    end subroutine start_state
 
    !> Openings in equilibrium with axial load and weight.
@@ -224,15 +226,15 @@ contains
       integer :: m
 
       m = state%springs%count
-      top = state%motion%top(state%q)
+      top = top_position(state%motion%column, state%q)
       row(row_time) = state%clock
       row(row_displacement) = top(1)
       row(row_force) = state%load(lateral)
       row(row_input) = state%of_loads
-      row(row_kinetic) = state%motion%kinetic_energy(state%q, state%v)
+      row(row_kinetic) = kinetic_energy(state%motion%column, state%q, state%v)
       row(row_spring) = sum(state%springs%work)
       row(row_damping) = state%of_damping
-      row(row_axial) = state%motion%potential(state%q)
+      row(row_axial) = potential_energy(state%motion%column, state%q)
       row(row_residual) = state%of_loads + state%at_begin - row(row_kinetic) - row(row_spring) &
                           - row(row_damping) - row(row_axial)
       row(row_top) = top(2)

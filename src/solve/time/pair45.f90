@@ -1,6 +1,7 @@
 !> The embedded pair of order 5(4) of Dormand and Prince (1980), with the estimate of its error.
 module rbs_solve_time_pair45
    use rbs_base_kinds, only: wp
+   use rbs_column_column, only: column_type
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type
    implicit none
@@ -33,6 +34,8 @@ module rbs_solve_time_pair45
    type, extends(scheme_type) :: pair45_scheme
       !> Velocities and accelerations of the stages (unknowns, stages)
       real(wp), allocatable, private :: rate_q(:, :), rate_v(:, :)
+      !> Power of loads and damping at the begin of the step [W]
+      real(wp), private :: load_power = 0.0_wp, damping_power = 0.0_wp
    contains
       procedure :: create
       procedure :: attempt
@@ -40,14 +43,16 @@ module rbs_solve_time_pair45
 
 contains
 
-   subroutine create(self, m)
-      class(pair45_scheme), intent(inout) :: self
-      !> Number of unknowns
-      integer, intent(in) :: m
+   subroutine create(self, column)
+      class(pair45_scheme), intent(out) :: self
+      type(column_type), intent(in) :: column
+      integer :: m
 
+      m = column%unknowns
       self%order = 5
       allocate (self%q(m), self%v(m), self%error_q(m), self%error_v(m))
       allocate (self%rate_q(m, stages), self%rate_v(m, stages))
+      call self%now%create(column)
    end subroutine create
 
    !> A step of h from the state. The last stage stands at the end of the step; works of loads and damping
@@ -56,19 +61,25 @@ contains
       class(pair45_scheme), intent(inout) :: self
       type(state_type), intent(inout) :: state
       real(wp), intent(in) :: h
-      real(wp) :: load(4), of_loads, of_damping
+      real(wp) :: load(4)
       integer :: stage
 
-      self%of_loads = 0.0_wp
-      self%of_damping = 0.0_wp
-      do stage = 1, stages - 1
-         load = state%load
-         if (stage > 1) call state%loads%at_time(state%time + place(stage)*h, load)
+      if (.not. self%begun) then
+         call reach_stage(self, state, 1, h, state%load)
+         self%load_power = state%motion%load_power(self%q, self%v, state%load, self%now)
+         self%damping_power = state%motion%damping_power(state%springs, self%q, self%v)
+      end if
+      self%of_loads = h*row(1, stages)*self%load_power
+      self%of_damping = h*row(1, stages)*self%damping_power
+      do stage = 2, stages - 1
+         call state%loads%at_time(state%time + place(stage)*h, load)
          call reach_stage(self, state, stage, h, load)
-         call state%motion%power(state%springs, self%q, self%v, load, of_loads, of_damping)
-         self%of_loads = self%of_loads + h*row(stage, stages)*of_loads
-         self%of_damping = self%of_damping + h*row(stage, stages)*of_damping
+         self%of_loads = self%of_loads &
+                         + h*row(stage, stages)*state%motion%load_power(self%q, self%v, load, self%now)
+         self%of_damping = self%of_damping &
+                           + h*row(stage, stages)*state%motion%damping_power(state%springs, self%q, self%v)
       end do
+      ! The last two stages stand at the same time.
       call reach_stage(self, state, stages, h, load)
       self%begun = .true.
       self%load = load
@@ -91,8 +102,8 @@ contains
          self%v = self%v + (h*row(i, stage))*self%rate_v(:, i)
       end do
       self%rate_q(:, stage) = self%v
-      if (stage == 1 .and. self%begun) return
-      call state%motion%acceleration(state%springs, self%q, self%v, load, self%rate_v(:, stage))
+      call state%motion%acceleration(state%springs, self%q, self%v, load, self%now)
+      self%rate_v(:, stage) = self%now%a
    end subroutine reach_stage
 
 end module rbs_solve_time_pair45

@@ -2,6 +2,7 @@
 module rbs_solve_time_rk4
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
+   use rbs_column_column, only: column_type
    use rbs_solve_time_loads, only: lateral, horizontal
    use rbs_solve_time_rk4_one_body, only: advance_one_body, step_of_one_body
    use rbs_solve_time_scheme, only: scheme_type
@@ -17,8 +18,8 @@ module rbs_solve_time_rk4
    integer, parameter :: at(4) = [1, 2, 2, 3]
 
    type, extends(scheme_type) :: rk4_scheme
-      !> Stage and acceleration (unknowns)
-      real(wp), allocatable, private :: stage_q(:), stage_v(:), a(:)
+      !> Stage (unknowns)
+      real(wp), allocatable, private :: stage_q(:), stage_v(:)
    contains
       procedure :: create
       procedure :: attempt
@@ -33,13 +34,14 @@ module rbs_solve_time_rk4
 
 contains
 
-   subroutine create(self, m)
-      class(rk4_scheme), intent(inout) :: self
-      !> Number of unknowns
-      integer, intent(in) :: m
+   subroutine create(self, column)
+      class(rk4_scheme), intent(out) :: self
+      type(column_type), intent(in) :: column
 
       self%order = 4
-      allocate (self%q(m), self%v(m), self%stage_q(m), self%stage_v(m), self%a(m))
+      allocate (self%q(column%unknowns), self%v(column%unknowns), self%stage_q(column%unknowns), &
+                self%stage_v(column%unknowns))
+      call self%now%create(column)
    end subroutine create
 
    !> A step of h from the state, which stays as it is. Works of loads and damping are integrated with the
@@ -75,13 +77,13 @@ contains
       real(wp), intent(in) :: h
       !> Loads at begin, middle and end
       real(wp), intent(in) :: load(4, 3)
-      real(wp) :: of_loads, of_damping, top, momentum, speed(2)
+      real(wp) :: top, momentum, speed(2)
       integer :: stage, m, n
 
       m = size(state%q)
       self%of_loads = 0.0_wp
       self%of_damping = 0.0_wp
-      associate (motion => state%motion)
+      associate (motion => state%motion, result => self%now)
          n = motion%column%n
          top = 0.0_wp
          momentum = 0.0_wp
@@ -91,25 +93,28 @@ contains
          call begin_step(m, state%q, state%v, self%stage_q, self%stage_v, self%q, self%v)
          do stage = 1, 4
             associate (now => load(:, at(stage)))
-               call motion%acceleration(state%springs, self%stage_q, self%stage_v, now, self%a)
+               call motion%acceleration(state%springs, self%stage_q, self%stage_v, now, result)
                if (motion%plain) then
                   self%of_loads = self%of_loads + h*weight(stage)*(speed(1)*now(lateral) &
                                                                    - speed(2)*now(horizontal))
                   ! Velocity of the top and momentum are linear in v: they step as it does.
-                  speed(1) = top + h*reach(stage)*(motion%force(n) + motion%column%upper(n)*motion%torque(n))
-                  speed(2) = momentum + h*reach(stage)*(now(lateral) - motion%f(1) &
+                  speed(1) = top + h*reach(stage)*(result%along(n) &
+                                                     + motion%column%upper(n)*result%turning(n))
+                  speed(2) = momentum + h*reach(stage)*(now(lateral) - result%f(1) &
                                                         - motion%column%mass_above(1)*now(horizontal))
                else
-                  call motion%power(state%springs, self%stage_q, self%stage_v, now, of_loads, of_damping)
-                  self%of_loads = self%of_loads + h*weight(stage)*of_loads
-                  self%of_damping = self%of_damping + h*weight(stage)*of_damping
+                  self%of_loads = self%of_loads &
+                                  + h*weight(stage)*motion%load_power(self%stage_q, self%stage_v, now, result)
+                  self%of_damping = self%of_damping &
+                                    + h*weight(stage)*motion%damping_power(state%springs, self%stage_q, &
+                                                                           self%stage_v)
                end if
             end associate
             if (stage < 4) then
-               call next_stage(m, h*weight(stage), h*reach(stage), state%q, state%v, self%a, self%stage_q, &
+               call next_stage(m, h*weight(stage), h*reach(stage), state%q, state%v, result%a, self%stage_q, &
                                self%stage_v, self%q, self%v)
             else
-               call end_step(m, h*weight(stage), self%a, self%stage_v, self%q, self%v)
+               call end_step(m, h*weight(stage), result%a, self%stage_v, self%q, self%v)
             end if
          end do
       end associate

@@ -218,7 +218,7 @@ contains
       case ('rk45')
          allocate (located)
          allocate (pair45_scheme :: located%scheme)
-         call located%scheme%create(column%unknowns)
+         call located%scheme%create(column)
          located%tolerance = usual_tolerance
          if (is_given(analysis%tolerance)) located%tolerance = analysis%tolerance
          located%next_step = auto_share*plan%limit
@@ -229,11 +229,11 @@ contains
          if (analysis%events == 'located' .or. plan%located) then
             allocate (located)
             allocate (rk4_scheme :: located%scheme)
-            call located%scheme%create(column%unknowns)
+            call located%scheme%create(column)
             call move_alloc(located, stepper)
          else
             allocate (fixed)
-            call fixed%scheme%create(column%unknowns)
+            call fixed%scheme%create(column)
             call move_alloc(fixed, stepper)
          end if
       end select

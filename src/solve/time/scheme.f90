@@ -1,6 +1,8 @@
 !> What an explicit scheme is: one step from a state, tried without moving it.
 module rbs_solve_time_scheme
    use rbs_base_kinds, only: wp
+   use rbs_column_column, only: column_type
+   use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_state, only: state_type
    implicit none
    private
@@ -18,6 +20,8 @@ module rbs_solve_time_scheme
       real(wp) :: of_loads = 0.0_wp, of_damping = 0.0_wp
       !> Loads at its end
       real(wp) :: load(4) = 0.0_wp
+      !> The equation of motion at the stage that was looked at last
+      type(motion_result) :: now
       !> Whether the acceleration at the begin is known from the last attempt
       logical :: begun = .false.
    contains
@@ -27,12 +31,12 @@ module rbs_solve_time_scheme
    end type scheme_type
 
    abstract interface
-      subroutine create_interface(self, m)
-         import :: scheme_type
+      !> Allocate what the steps of a column need.
+      subroutine create_interface(self, column)
+         import :: scheme_type, column_type
          implicit none
-         class(scheme_type), intent(inout) :: self
-         !> Number of unknowns
-         integer, intent(in) :: m
+         class(scheme_type), intent(out) :: self
+         type(column_type), intent(in) :: column
       end subroutine create_interface
 
       !> A step of h on the present lines of the springs; deformations and velocities of the state stay.
