@@ -1,10 +1,10 @@
-"""Why the search of a calibration is what it is: it against others, with about as many analyses.
+"""The search of a calibration against other searches with about as many analyses.
 
     python studies/calibration_search.py [DIR]
 
 Six parameters of the Takeda spring of the paper's columns, fitted to the loops of columns whose
-parameters were drawn at random, and to the measured loops if DIR has them; three seeds each.
-Printed: analyses, and nrmse above the best that any search found.
+parameters were drawn at random, and to the measured loops if DIR has them; three seeds each. It
+prints the number of analyses, and the nrmse above the best that any search found.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ MOST, SEEDS, DRAWN = 800, 3, 2
 
 
 class Limited(Misfit):
-    """A misfit that ends any search after as many analyses."""
+    """A misfit that ends any search after `MOST` analyses."""
 
     def loss_at(self, places: np.ndarray) -> float:
         """Return the loss; a place that is refused has a large one."""
@@ -46,7 +46,7 @@ def used(misfit: Limited, seed: int, kicks: int = search.KICKS) -> None:
 
 
 def by_scipy(run: Callable[..., object]) -> Callable[[Limited, int], None]:
-    """Return a search that scipy has, ended by the number of analyses."""
+    """Return a search of scipy, ended by the number of analyses."""
 
     def searched(misfit: Limited, seed: int) -> None:
         with suppress(Ended):

@@ -5,10 +5,10 @@
         [--jobs N] [--out FILE]
 
 DIR has the histories and the table `specimens.csv`. Model "lumped" is one Takeda spring that starts
-from the gross section; all others are those of `rbsdem.peer.column`, whose numbers start from the
-properties of the specimen. Without --free all numbers that the model offers are free, up to six;
-those that change no force of a test are left out there.
-Printed: the scores of each test, and the medians with quartiles before and after.
+from the gross section. The other models are those of `rbsdem.peer.column`, whose parameters start
+from the properties of the specimen. Without --free, all parameters that the model offers are free,
+up to six; those that change no force of a test are left out for that test. It prints the scores of
+each test, and medians with quartiles before and after.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from rbsdem.peer import Specimen, read_specimens
 TAKEDA = ("k_c", "k_y", "d_y", "k_u", "b0", "b1")
 SCORES = ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio")
 
-# Modulus of concrete from its strength (ACI 318, MPa), as far as a start needs it.
+# Modulus of concrete over the root of its strength (ACI 318, MPa), good enough for a start.
 MODULUS = 4700.0
 
 
@@ -78,7 +78,7 @@ def one(
     evaluations: int,
     seconds: float,
 ) -> dict[str, Any]:
-    """Calibrate one test; what goes wrong is told in the row."""
+    """Calibrate one test; an error is put into the row."""
     row: dict[str, Any] = {"name": specimen.name, "failure_mode": specimen.failure_mode}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)

@@ -25,7 +25,7 @@ class Drawing:
         self.parts: list[str] = []
 
     def add(self, element: str) -> None:
-        """Put in one element."""
+        """Add one element."""
         self.parts.append(element)
 
     def line(
@@ -61,7 +61,7 @@ class Drawing:
     def text(
         self, at: Point, words: str, color: str = INK, anchor: str = "middle", size: float = 16
     ) -> None:
-        """Write a label; `_i` makes a subscript of what follows up to a blank, `*..*` italics."""
+        """Write a label; `_` makes a subscript of the letters up to a blank, `*..*` italics."""
         out, italic = [], False
         for piece in words.split("*"):
             style = ' font-style="italic"' if italic else ""

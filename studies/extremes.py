@@ -22,7 +22,7 @@ Row = tuple[str, str, str]
 
 def main() -> None:
     """Print one Markdown table."""
-    # Large rotations and loads next to the critical one are what some rows are about.
+    # Some rows are about large rotations and loads close to the critical one.
     warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
     print("| extreme | how | observed |")
     print("| --- | --- | --- |")
@@ -97,7 +97,7 @@ def above_the_limit() -> Row:
 
 
 def stiffness_ratios() -> Row:
-    """Load springs that are far apart."""
+    """Load columns whose springs differ by many orders of magnitude."""
     worst = 0.0
     for power in range(-9, 10, 3):
         column = rbsdem.Column(
@@ -143,7 +143,7 @@ def many_bodies() -> Row:
 
 
 def full_turns() -> Row:
-    """Let a chain turn over and over."""
+    """Let a chain rotate through many full turns."""
     column = rbsdem.Column(
         1.0, 100.0, rbsdem.Elastic(1e5), rbsdem.Elastic(50.0), n=3, kinematics="finite"
     )

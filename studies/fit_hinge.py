@@ -78,7 +78,7 @@ PEAK, ENERGY = 0.3, 0.08
 PRIOR = 1e-3
 # Classes of the printed scores.
 AXIAL_LOAD_RATIOS = (-1.0, 0.05, 0.15, 0.3, 0.45, 1.0)
-# Every so many of the points along the path.
+# One of this many points along the path is used.
 EVERY = 5
 
 
@@ -107,7 +107,7 @@ def at(places: np.ndarray) -> ModelParameters:
 
 
 class Case:
-    """A test and what of its column does not change.
+    """A test, and the parts of its column that do not change.
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ def load(folder: str) -> list[Case]:
 
 
 def fit(pool: ProcessPoolExecutor, numbers: list[int], evaluations: int) -> np.ndarray:
-    """Return the places that suit some of the tests best."""
+    """Return the places that fit the given tests best."""
     weight, prior = 1 / math.sqrt(len(numbers)), math.sqrt(PRIOR)
 
     def residual(places: np.ndarray) -> np.ndarray:
@@ -193,7 +193,7 @@ def scores(cases: list[Case], given: ModelParameters) -> dict[str, list[float]]:
 
 
 def show(what: str, found: dict[str, list[float]]) -> None:
-    """Print medians."""
+    """Print medians of the scores."""
     rows = np.array(list(found.values()))
     quarter, median, three = np.percentile(rows[:, 0], [25, 50, 75])
     print(

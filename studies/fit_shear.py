@@ -39,7 +39,7 @@ LOW, HIGH = (np.log(side) for side in zip(*BOUNDS.values(), strict=True))
 # A flexural test may come into the fit if its column reaches this share of its shear strength.
 NEAR = 0.6
 
-# Weight of the harm done to those against the nrmse of the others.
+# Weight of a rise of their nrmse against the nrmse of the shear failures.
 HARM = 1.0
 
 
@@ -90,7 +90,7 @@ def place_of(given: ShearParameters) -> np.ndarray:
 
 
 def fit(cases: list[Case], evaluations: int) -> ShearParameters:
-    """Return the parameters that suit the cases best, by the simplex of Nelder and Mead."""
+    """Return the parameters that fit the cases best, by the simplex of Nelder and Mead."""
     shear = [case for case in cases if case.failed]
     other = [case for case in cases if not case.failed and case.near]
 
@@ -134,7 +134,7 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=2)
     given = parser.parse_args()
 
-    # Of rotations above 0.1 at the end of some tests.
+    # The warnings are of rotations above 0.1 at the end of some tests.
     warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
     cases = load(given.folder)
     names = sorted({case.specimen.series for case in cases})

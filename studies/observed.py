@@ -25,7 +25,7 @@ KEY = "soesianawati_1"
 
 def main() -> None:
     """Print one Markdown table."""
-    # Large rotations and loads next to the critical one are what some rows are about.
+    # Some rows are about large rotations and loads close to the critical one.
     warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
     print("| what | how | observed | theory |")
     print("| --- | --- | --- | --- |")
@@ -262,7 +262,7 @@ def rk4_energy_nonlinear() -> tuple[str, str, str, str]:
 
 
 def highest_mode() -> tuple[str, str, str, str]:
-    """Take the energy that RK4 loses in the highest mode with the automatic step."""
+    """Energy that RK4 loses in the highest mode with the automatic step."""
     column = rbsdem.paper_columns()[KEY]
     modes = rbsdem.modes(column)
     start = 1e-4 * modes.shapes[:, 1] / np.max(np.abs(modes.shapes[:, 1]))
@@ -410,7 +410,7 @@ def finite_to_small() -> tuple[str, str, str, str]:
 
 
 def chain(n: int, rng: np.random.Generator, *, nonlinear: bool = False) -> rbsdem.Column:
-    """Return a random chain of n bodies, none like another."""
+    """Return a random chain of n bodies, all different."""
     lengths, masses = rng.uniform(0.3, 1.2, n), rng.uniform(100, 500, n)
     shear: list[rbsdem.Elastic | rbsdem.Bilinear] = []
     flexure: list[rbsdem.Elastic | rbsdem.Takeda] = []

@@ -142,7 +142,7 @@ def one_body_of_many() -> Row:
 
 
 def spread_frequencies() -> Row:
-    """Frequencies of one body with springs far apart, against eq 6."""
+    """Frequencies of one body whose springs differ by orders of magnitude, against eq 6."""
     worst = 0.0
     for power in range(-9, 10, 3):
         kappa, k_m, length, mass = 10.0**power, 2.5e8, 1.6, 614.4

@@ -94,6 +94,6 @@ def sensitivity() -> None:
 
 if __name__ == "__main__":
     with warnings.catch_warnings():
-        # A spring whose moment falls has K_u = 0, which the table shows.
+        # A spring whose moment falls after yield gets K_u = 0, which the table shows.
         warnings.simplefilter("ignore", AccuracyWarning)
         sensitivity() if "--sensitivity" in sys.argv else table()

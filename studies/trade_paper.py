@@ -111,7 +111,7 @@ def physics_table(found: dict[str, Trade]) -> None:
         cells = []
         for effect in effects:
             changes = (effect.peak, effect.moment, effect.energy)
-            # No sign for nothing.
+            # Zero has no sign.
             text = ", ".join(f"{round(100 * change, 1) + 0.0:+.1f}" for change in changes)
             text = text.replace("+0.0", "0")
             cells.append(text if effect.matters is not None else effect.status)
@@ -151,7 +151,7 @@ def same_settings(found: dict[str, Trade]) -> dict[tuple[str, str], list[Row]]:
 
 
 def costs_table(families: dict[tuple[str, str], list[Row]]) -> None:
-    """Print what settings cost and how they err, least and largest of the four columns."""
+    """Print wall times and errors of settings, least and largest of the four columns."""
     print("| method | setting | wall time | error |")
     print("| --- | --- | --- | --- |")
     for (method, value), rows in families.items():
@@ -161,7 +161,7 @@ def costs_table(families: dict[tuple[str, str], list[Row]]) -> None:
 
 
 def sentences(title: str, families: dict[tuple[str, str], list[Row]]) -> None:
-    """Print some of it in words."""
+    """Print a summary in words."""
     print(f"{title}:")
     for (method, value), rows in families.items():
         if value in SHOWN.get(method, ()):

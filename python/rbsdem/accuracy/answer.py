@@ -1,4 +1,4 @@
-"""A setting, its answer, and how far an answer is from another."""
+"""A setting, its answer, and the difference between two answers."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ class Setting:
     parts : int or None
         Static: equal parts of each increment of the path; 0 where only its reversals are driven.
     rho_infinity : float or None
-        Spectral radius of "hht" and "generalised_alpha", where it is not the usual one.
+        Spectral radius of "hht" and "generalised_alpha"; None for the default.
     own : bool
-        Whether the user gave it.
+        Whether the user gave this setting.
     """
 
     method: str
@@ -42,7 +42,7 @@ class Setting:
 
     @property
     def family(self) -> tuple[str, str | None, str, float | None, bool]:
-        """What settings share that differ in step, tolerance or parts only."""
+        """What settings have in common that differ only in step, tolerance or parts."""
         return self.method, self.events, self.kinematics, self.rho_infinity, self.own
 
     @property
@@ -69,7 +69,7 @@ class Setting:
 
 @dataclass(frozen=True)
 class Answer:
-    """What is compared of a run.
+    """The part of a result that is compared.
 
     Attributes
     ----------
@@ -77,12 +77,12 @@ class Answer:
         Times of the loading [s], top displacement [m] there (lateral force [N] if the displacement
         is driven), and moment of the lowest joint [N m].
     taken : ndarray, shape (m,)
-        Energy that springs and damping have taken by then [J]: what is dissipated, and what the
-        springs still store.
+        Energy that springs and damping have taken by then [J]: the energy dissipated and the energy
+        that the springs still store.
     status : str
         "completed" or "collapsed".
     reason : str
-        The method that the program chose, and why, if it was left to it.
+        The method that the program chose, and why, if it was "auto".
     """
 
     time: Array
@@ -94,12 +94,12 @@ class Answer:
 
     @property
     def energy(self) -> float:
-        """What springs and damping have taken by the end [J]."""
+        """Energy that springs and damping have taken by the end [J]."""
         return float(self.taken[-1])
 
     @property
     def largest_energy(self) -> float:
-        """The largest value of it on the way [J]."""
+        """Largest absolute value of that energy on the way [J]."""
         return float(np.abs(self.taken).max())
 
     @property
@@ -120,7 +120,7 @@ class Answer:
 
 @dataclass(frozen=True)
 class Errors:
-    """How far an answer is from another, relative to the other's peaks.
+    """Differences of an answer from another one, relative to the peaks of the other.
 
     Attributes
     ----------
@@ -147,7 +147,7 @@ class Errors:
 
 
 def errors_of(answer: Answer, other: Answer) -> Errors:
-    """Return how far an answer is from another, over the rows that both have."""
+    """Return the differences of an answer from another, over the rows that both have."""
     rows = min(answer.response.size, other.response.size)
     response = answer.response[:rows] - other.response[:rows]
     moment = answer.moment[:rows] - other.moment[:rows]
@@ -170,9 +170,9 @@ class Run:
     Attributes
     ----------
     setting : Setting
-        What was tried.
+        The setting.
     answer : Answer or None
-        What came out.
+        Its answer, if there is one.
     seconds : float
         Median of the wall times of `repeats` runs [s].
     status : str

@@ -15,9 +15,8 @@ from rbsdem.case import Case, read_case
 from rbsdem.errors import InputError, RbsdemError
 
 DESCRIPTION = """\
-What accuracy costs in a case, and which parts of the model it needs: runs it over methods, steps
-and
-tolerances against a reference on which two methods agree.
+What accuracy costs in a case, and which parts of the model it needs: the case is run over methods,
+steps and tolerances, against a reference on which two methods agree.
 """
 
 EPILOG = """\

@@ -1,4 +1,4 @@
-"""Settings to try, from coarse to fine, within a time budget."""
+"""The settings to try, from coarse to fine, within a budget of wall time."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ IMPLICIT = ("newmark", "hht", "generalised_alpha")
 #: Rungs of a ladder: steps are halved, tolerances divided by ten.
 RK4_RUNGS, IMPLICIT_RUNGS, TOLERANCES = 7, 8, range(4, 11)
 
-#: A step of rk45 costs this many of rk4. It is at most this share of the limit of rk4 (where the
-#: pair is stable), and shorter for tolerances below about the last.
+#: Cost of a step of rk45 in steps of rk4; its longest stable step as a share of that of rk4; and
+#: the tolerance below which accuracy, not stability, limits the step.
 PAIR_COST, PAIR_SHARE, PAIR_TOLERANCE = 7 / 4, 0.35, 1e-8
 
 
@@ -37,7 +37,7 @@ class Budget:
     Parameters
     ----------
     seconds : float
-        All of it [s].
+        The whole budget [s].
     """
 
     def __init__(self, seconds: float) -> None:
@@ -49,24 +49,24 @@ class Budget:
         return clock.perf_counter() - self.begin
 
     def left(self, share: float = 1.0) -> float:
-        """Return what is left of a share of the time, counted from the begin [s]."""
+        """Return what is left of a share of the budget, counted from the start [s]."""
         return share * self.seconds - self.used()
 
 
 @dataclass(frozen=True)
 class Probe:
-    """What a first look at a scene in time tells.
+    """Costs and limits of a scene in time, from a first look at it.
 
     Attributes
     ----------
     duration, interval : float
-        From the first to the last time of the loading, and between two of them [s].
+        Time from the first to the last row of the loading, and between two rows [s].
     regular : bool
-        Whether the interval divides all of them.
+        Whether the interval divides all intervals of the loading.
     limit : float
         Longest stable step of rk4 [s].
     explicit, implicit : float
-        Wall time of a step of rk4, and of an implicit one [s]; infinite if there are none.
+        Wall time of a step of rk4 and of an implicit step [s]; infinite if the method fails.
     """
 
     duration: float
@@ -77,7 +77,7 @@ class Probe:
     implicit: float
 
     def seconds(self, setting: Setting) -> float:
-        """Return about how long a setting takes [s]."""
+        """Return an estimate of the wall time of a setting [s]."""
         rows = self.duration / self.interval
         if setting.method == "auto" and setting.kinematics != "finite":
             return self.implicit * rows
@@ -109,7 +109,7 @@ def probe(scene: Scene) -> Probe:
     rows = min(100, time.size - 1)
     short = _beginning(scene, float(time[rows] - time[0]))
     if level == "finite":
-        # Implicit methods do not know finite rotations; where they are tried, they have fewer.
+        # Implicit methods know no finite rotations; they are tried with the level below.
         level = "pdelta"
     try:
         implicit = _seconds(short, Setting("newmark", level, dt=interval)) / rows
@@ -124,7 +124,7 @@ def _stable_step(scene: Scene, keywords: dict[str, Any]) -> float:
 
 
 def _beginning(scene: Scene, duration: float) -> Scene:
-    """Return the scene up to a time after its begin."""
+    """Return the first part of the scene, up to a duration [s]."""
     end = min(scene.time[0] + duration, scene.time[-1])
     kept = np.append(scene.time[scene.time < end], end)
     loads = {name: np.interp(kept, scene.time, load) for name, load in scene.loads.items()}
@@ -140,7 +140,7 @@ def _seconds(scene: Scene, setting: Setting) -> float:
 def dividing_steps(look: Probe, longest: float) -> Iterator[float]:
     """Yield steps that divide the interval of the loading, each half of the one before.
 
-    Where nothing divides its intervals, steps of any length.
+    If no interval divides all of the loading, the steps begin at the longest.
     """
     if look.regular:
         parts = max(math.ceil(look.interval / longest * (1 - 1e-12)), 1)
@@ -156,7 +156,7 @@ def dividing_steps(look: Probe, longest: float) -> Iterator[float]:
 def ladders(scene: Scene, look: Probe | None, methods: Sequence[str]) -> list[list[Setting]]:
     """Return the settings to try, a list for each family from coarse to fine.
 
-    Levels of kinematics below that of the column get a few settings each.
+    Levels of kinematics below that of the column have a few settings each.
     """
     level = scene.column.kinematics
     found = []
@@ -170,7 +170,7 @@ def ladders(scene: Scene, look: Probe | None, methods: Sequence[str]) -> list[li
         for family in _families(look, methods, lower_level):
             if family[0].events == "located" or family[0].method in ("hht", "generalised_alpha"):
                 continue
-            # Every second of the coarser rungs: the error is soon that of the kinematics.
+            # Every second of the coarse rungs: the error is soon that of the kinematics.
             stable = [s for s in family if s.method != "rk4" or s.dt <= look.limit]
             found.append(stable[1:6:2] if family[0].tolerance else stable[:5:2])
     return found
@@ -185,7 +185,7 @@ def _families(look: Probe, methods: Sequence[str], level: str) -> list[list[Sett
                 Setting("rk4", level, dt=next(steps), events=events) for _ in range(RK4_RUNGS)
             ]
             if events == "step" and look.regular and look.interval > family[0].dt:
-                # A longer one, to show what becomes of it.
+                # A step beyond the limit, to show what happens.
                 parts = int(0.8 * round(look.interval / family[0].dt))
                 family.insert(0, dataclasses.replace(family[0], dt=look.interval / max(parts, 1)))
             found.append(family)
@@ -201,12 +201,12 @@ def _families(look: Probe, methods: Sequence[str], level: str) -> list[list[Sett
 
 
 def own_setting(column: Column, given: Mapping[str, Any]) -> Setting:
-    """Return the setting that a user gives by keywords of `time_history`.
+    """Return the setting that a user gives by the keywords of `time_history`.
 
     Raises
     ------
     InputError
-        If a keyword is none of a setting.
+        If a keyword does not belong to a setting.
     """
     known = ("method", "dt", "tolerance", "events", "rho_infinity")
     for name in given:
@@ -221,12 +221,12 @@ def own_setting(column: Column, given: Mapping[str, Any]) -> Setting:
 
 
 def checked_methods(methods: Sequence[str] | None) -> tuple[str, ...]:
-    """Return the methods that are wanted, all of them if none are named.
+    """Return the methods to try; all of them if none is named.
 
     Raises
     ------
     InputError
-        If one is not known.
+        If a method is not known.
     """
     if methods is None:
         return METHODS
@@ -242,7 +242,7 @@ def checked_methods(methods: Sequence[str] | None) -> tuple[str, ...]:
 
 
 def predicted(last: Run | None, setting: Setting, look: Probe | None) -> float:
-    """Return about how long a setting takes [s], from the coarser one if there is one."""
+    """Return an estimate of the wall time of a setting [s], if possible from a coarser run."""
     if last is None or not last.seconds > 0:
         return 0.0 if look is None else look.seconds(setting)
     if setting.dt and last.setting.dt:
@@ -255,7 +255,7 @@ def predicted(last: Run | None, setting: Setting, look: Probe | None) -> float:
 
 
 def too_expensive(cost: float, left: float) -> str:
-    """Return why something is not run."""
+    """Return the reason for not running a setting."""
     return f"would take about {cost:.2g} s; {max(left, 0):.2g} s of the budget are left for it"
 
 
@@ -268,10 +268,10 @@ def climb(
     repeats: int,
     told: Callable[[str], None],
 ) -> list[Run]:
-    """Run all families rung by rung, coarse ones first, as far as the budget goes.
+    """Run all families rung by rung, coarse settings first, as far as the budget allows.
 
-    The first setting of a family that is too expensive is in the list with its reason; finer ones
-    are not.
+    The first setting of a family that is too expensive stands in the list with its reason; the
+    finer ones do not.
     """
     runs: dict[Setting, Run] = {}
     last: dict[int, Run | None] = dict.fromkeys(range(len(families)))
@@ -292,7 +292,8 @@ def climb(
             run = scene.run(setting, repeats, seconds=patience)
             runs[setting] = run
             if run.status == "refused":
-                # A step of rk4 beyond the limit is; any other reason holds for the finer ones too.
+                # The first step of rk4 may be beyond the limit. Any other reason holds for finer
+                # steps too.
                 if setting.method != "rk4" or rung > 0:
                     ended.add(place)
             else:

@@ -49,9 +49,9 @@ def trade(
 ) -> Trade:
     """Measure what accuracy costs in a case, and which physics it needs.
 
-    The case is run over methods, steps or tolerances, ways of changing lines and the levels of
-    kinematics up to that of the column. Each answer is compared with a reference, which two methods
-    have to agree on. Then single parts of the model are taken off, or on. All runs are made in this
+    The case is run over methods, steps or tolerances, ways of locating events and the levels of
+    kinematics up to that of the column. Each answer is compared with a reference on which two
+    methods agree. Then single parts of the model are switched off, or on. All runs are made in this
     process, one after the other.
 
     Parameters
@@ -65,34 +65,34 @@ def trade(
     ground_acceleration, vertical_acceleration : array_like, shape (m,), optional
         Accelerations of the ground [m/s2].
     axial_load : array_like, shape (m,), optional
-        Axial load besides that of the column [N].
+        Axial load, in addition to that of the column [N].
     initial : mapping, optional
-        State at the begin, as for `rbsdem.time_history`.
+        State at the start, as for `rbsdem.time_history`.
     displacement : array_like, shape (m,), optional
-        Static: displacement of the top that is driven [m]; the response is then the force.
+        Displacement of the top that drives a static path [m]; the response is then the force.
     methods : sequence of str, optional
-        The methods in time to try; all of them without it.
+        The methods in time to try; by default all of them.
     setting : mapping, optional
-        A setting to measure besides: "method", "dt", "tolerance", "events", "rho_infinity" as for
+        A further setting to measure: "method", "dt", "tolerance", "events", "rho_infinity" as for
         `rbsdem.time_history`.
     tolerance : float, optional
-        Relative error that is allowed: the cheapest setting within it is looked for, and parts of
-        the model matter that change the answer by more.
+        Relative error allowed. The cheapest setting within it is named, and a part of the model
+        matters if it changes the answer by more.
     budget : float, optional
-        Wall time [s]. What would not fit is left out, and the table says so; a run that has begun
-        is not broken off.
+        Wall time [s]. A run that would not fit is left out, and the table says so; a run that has
+        begun is finished.
     digits : float, optional
         Digits to which the two methods of the reference should agree.
     axial : Spring, optional
-        Axial spring of the joints with which to try whether their opening matters, where those of
-        the column do not open.
+        Axial spring of the joints. If the joints of the column do not open, it shows whether
+        their opening matters.
     collapse_drift : float, optional
         As for `rbsdem.time_history`.
     repeats : int, optional
-        Runs of each setting, of whose wall times the median counts; more where they are very short,
-        fewer where they are long.
+        Runs of each setting; the median of their wall times counts. Very short runs are repeated
+        more often, long ones less.
     progress : bool, optional
-        Show on stderr what is being done; needs rich.
+        Show the progress on stderr; needs rich.
 
     Returns
     -------
@@ -164,7 +164,7 @@ def _telling(progress: bool, clock: Budget) -> AbstractContextManager[Callable[[
 
 
 def _need_one(runs: Sequence[Run]) -> None:
-    """Raise what was wrong if no setting has an answer."""
+    """Raise the error of the last run if no setting has an answer."""
     if any(run.answer is not None for run in runs):
         return
     for status, error in (("failed", SolveError), ("refused", InputError)):
@@ -175,7 +175,7 @@ def _need_one(runs: Sequence[Run]) -> None:
 
 
 def _notes(scene: Scene, rows: Sequence[Row], reference: Reference | None) -> list[str]:
-    """Say what the table does not show by itself."""
+    """Return remarks that the table does not show."""
     notes = []
     third = third_method(rows, reference)
     if third is not None:
@@ -184,9 +184,7 @@ def _notes(scene: Scene, rows: Sequence[Row], reference: Reference | None) -> li
             "reference"
         )
     if any(row.status == "skipped" for row in rows):
-        notes.append("some settings did not fit into the budget; more of it tries them")
+        notes.append("some settings did not fit into the budget; a larger one tries them")
     if scene.static and scene.column.kinematics != "finite":
-        notes.append(
-            "the static path is exact: what is lost is what lies between the points that are kept"
-        )
+        notes.append("the static path is exact; errors come from the points that are left out")
     return notes

@@ -18,24 +18,24 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Trade:
-    """What time and accuracy cost each other in one case.
+    """Wall time against accuracy in one case.
 
     Attributes
     ----------
     rows : tuple of Row
         All settings, families together, coarse ones first.
     reference : Reference or None
-        What errors are measured against; None if there is none, and `notes` say why.
+        The solution that errors are measured against; None if there is none, as `notes` says.
     choice : Choice or None
         The cheapest setting that meets the user's tolerance, if one was given.
     physics : Physics or None
-        Which part of the model changes the answer by how much.
+        The change of the answer by each part of the model.
     response : str
-        What the response is: "displacement" or "force".
+        Kind of response: "displacement" or "force".
     seconds, budget : float
-        Wall time that was used and allowed [s].
+        Wall time used and wall time allowed [s].
     notes : tuple of str
-        What else is to be known.
+        Further remarks.
     """
 
     rows: tuple[Row, ...]
@@ -50,13 +50,13 @@ class Trade:
     def cheapest(self, tolerance: float) -> Row | None:
         """Return the cheapest setting whose error is within a tolerance, or None.
 
-        All finer settings of its family must be within it too: one that is so by chance is not
-        taken.
+        All finer settings of its family must be within it too, so that a setting which is accurate
+        by chance is not taken.
         """
         return cheapest(self.rows, tolerance)
 
     def table(self) -> Table:
-        """Return the settings as a table of rich, front marked."""
+        """Return the settings as a table of rich, with the Pareto front marked."""
         return _views.view(self, "table")
 
     def physics_table(self) -> Table:

@@ -1,4 +1,4 @@
-"""Times and paths: what divides them, where they turn, values in between."""
+"""Times and paths: common interval, reversals, interpolation."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from rbsdem._core import Array
 
 
 def common_interval(time: Array) -> tuple[float, bool]:
-    """Return an interval that divides all between the times, and whether there is one.
+    """Return an interval that divides all intervals between the times, and whether one exists.
 
-    Without one it is the median interval.
+    If none exists, the median interval is returned.
     """
     intervals = np.diff(time)
     for parts in range(1, 21):
         base = float(intervals.min()) / parts
-        # From all of the length, for more digits than one interval has.
+        # Taken from the whole length, which has more correct digits than one interval.
         base = float(time[-1] - time[0]) / max(round(float(time[-1] - time[0]) / base), 1)
         counts = intervals / base
         if np.all(np.abs(counts - np.round(counts)) <= 1e-9 * np.maximum(counts, 1.0)):
@@ -27,7 +27,7 @@ def common_interval(time: Array) -> tuple[float, bool]:
 
 
 def at_times(wanted: Array, time: Array, values: Array) -> Array:
-    """Return values between rows by the cubic through the four nearest ones."""
+    """Return values between rows, by the cubic through the four nearest rows."""
     if time.size < 4:
         return np.interp(wanted, time, values)
     first = np.clip(np.searchsorted(time, wanted) - 2, 0, time.size - 4)
@@ -43,7 +43,7 @@ def at_times(wanted: Array, time: Array, values: Array) -> Array:
 
 
 def reversals(path: Array) -> NDArray[np.intp]:
-    """Return the places of the first and last points of a path and of those where it turns."""
+    """Return the rows of the first and last points of a path and of those where it turns."""
     moves = np.flatnonzero(np.diff(path))
     signs = np.sign(np.diff(path)[moves])
     turns = moves[1:][signs[1:] != signs[:-1]]
@@ -51,7 +51,7 @@ def reversals(path: Array) -> NDArray[np.intp]:
 
 
 def along(path: Array, kept: NDArray[np.intp]) -> Array:
-    """Return where the points of a path lie among the points kept: 1.5 between second and third."""
+    """Return where the points of a path lie among those kept; 1.5 is between second and third."""
     place = np.empty(path.size)
     for leg, (first, last) in enumerate(pairwise(kept)):
         length = path[last] - path[first]

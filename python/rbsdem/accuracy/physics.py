@@ -1,4 +1,4 @@
-"""Which physics matters: the answer with one part of the model on or off."""
+"""Which parts of the model matter: the answer with one part switched on or off."""
 
 from __future__ import annotations
 
@@ -17,16 +17,17 @@ from rbsdem.damping import Damping
 from rbsdem.errors import InputError
 from rbsdem.springs import Spring
 
-#: What rotary inertia that is taken off leaves: a body without any has no equation of motion.
+#: Share of the rotary inertia that stays when it is taken off: a body without any has no equation
+#: of motion.
 LITTLE_INERTIA = 0.01
 
-#: Changes larger than this count, if the user gives no tolerance.
+#: Changes larger than this matter if the user gives no tolerance.
 USUAL_TOLERANCE = 0.01
 
-#: What twice the bodies cost: twice the work of a step, and about half of it is stable.
+#: Cost of twice the bodies: twice the work of a step, and a stable step of less than half.
 TWICE_THE_BODIES = 6
 
-#: Short runs are repeated for their times.
+#: How often short runs are repeated for their wall times.
 REPEATS = 3
 
 #: Tolerance of rk45 for the comparisons.
@@ -35,12 +36,12 @@ FINE = 1e-8
 
 @dataclass(frozen=True)
 class Effect:
-    """What one part of the model changes.
+    """The change of the answer by one part of the model.
 
     Attributes
     ----------
     part : str
-        What was changed.
+        The part that was changed.
     peak, moment, energy : float
         Relative change of the peak response, of the peak base moment and of the energy that springs
         and damping have taken by the end (the last relative to its largest value).
@@ -51,7 +52,7 @@ class Effect:
     time_ratio : float
         Wall time over that of the model as given.
     status, reason : str
-        As of a setting.
+        As for a setting.
     matters : bool or None
         Whether peak, moment, energy or residual changes by more than the tolerance; None if the
         comparison could not be made.
@@ -76,18 +77,18 @@ class Effect:
 
 @dataclass(frozen=True)
 class Physics:
-    """All effects, and what they were measured with.
+    """All effects, and the setting they were computed with.
 
     Attributes
     ----------
     effects : tuple of Effect
         One for each part of the model.
     setting : str
-        How all of them were solved.
+        The setting of all runs.
     resolution : float
-        Error of that setting: smaller changes say nothing.
+        Error of that setting; smaller changes mean nothing.
     tolerance : float
-        Changes beyond it matter.
+        Changes larger than this matter.
     """
 
     effects: tuple[Effect, ...]
@@ -97,7 +98,7 @@ class Physics:
 
 
 class Variant(NamedTuple):
-    """A model that differs in one thing: its name, how to make it, a load that is left out."""
+    """A model with one part changed: its name, how to make it, a load that is left out."""
 
     name: str
     make: Callable[[], Column]
@@ -108,9 +109,9 @@ def split_bodies(column: Column) -> Column:
     """Return the column with every body cut in two and the same flexibility.
 
     The flexibility of each joint is shared by the joint at the bottom of its body and a new one at
-    half of the body's height: each has springs of twice the stiffness and half the deformations,
-    so that both together slip, turn and open under a given force as the one did. What changes is
-    where along the height the column turns.
+    half of the body's height. Each has springs of twice the stiffness and half the deformations, so
+    that both together slip, rotate and open under a given force as the one did. What changes is the
+    place along the height where the column rotates.
     """
 
     def twice(values: object) -> list | None:
@@ -146,14 +147,14 @@ def half_spring(spring: Spring) -> Spring:
 
 
 def _halves_inertia(column: Column) -> list[float] | None:
-    """Return rotary inertias of half bodies about their own centroids, together those given."""
+    """Return rotary inertias of the half bodies about their centroids; two make the given one."""
     if column.rotary_inertia is None:
         return None
     n = column.n
     lengths, masses = bodies(column)
     given = list(column.rotary_inertia)
     given = given * n if len(given) == 1 else given
-    # Two masses m/2, each l/4 away from the middle; very compact bodies keep the share of a rod.
+    # Two masses m/2, each l/4 from the middle; very compact bodies keep the share of a rod.
     halves = [
         max(0.5 * inertia - m * length**2 / 32, inertia / 8)
         for inertia, m, length in zip(given, masses, lengths, strict=True)
@@ -180,7 +181,7 @@ def _little_inertia(column: Column) -> Column:
 
 
 def variants(scene: Scene, axial: Spring | None) -> Iterator[Variant]:
-    """Yield the models to compare with: one thing is different in each."""
+    """Yield the models to compare with; each has one part changed."""
     column, moving = scene.column, not scene.static
     undamped = {"damping": None, "mass_damping": 0.0, "stiffness_damping": 0.0}
     damped = any(getattr(column, name) for name in undamped)
@@ -229,7 +230,7 @@ def find_physics(
     axial: Spring | None,
     told: Callable[[str], None],
 ) -> Physics | str:
-    """Return what each part of the model changes, or why that is not known."""
+    """Return the effect of each part of the model, or the reason why it is not known."""
     several = list(variants(scene, axial))
     weight = len(several) + TWICE_THE_BODIES + 1
     base = _base(scene, look, reference, runs, budget.left() / weight)
@@ -249,10 +250,10 @@ def find_physics(
 def _base(
     scene: Scene, look: Probe | None, reference: Reference | None, runs: list[Run], seconds: float
 ) -> Run | str:
-    """Return the run of the model as given that others are compared with.
+    """Return the run of the model as given, with which the others are compared.
 
-    Fine enough if that can be afforded, else the most accurate one that can; rk45 rather than
-    methods whose step the variants might not stand.
+    A fine run if the budget allows it, else the most accurate one that it allows. A method that
+    chooses its step is preferred: a fixed step may be too long for a variant.
     """
     level = scene.column.kinematics
     if scene.static:
@@ -265,14 +266,14 @@ def _base(
             return run
     done = [run for run in runs if run.answer is not None and run.setting.kinematics == level]
     done = [run for run in done if run.seconds < seconds]
-    # An implicit step stands any variant; a fixed explicit one may be beyond the limit.
+    # An implicit step suits any variant; a fixed explicit step may be beyond the limit.
     for methods in (("rk45",), IMPLICIT, ("rk4", "static", "auto")):
         able = [run for run in done if run.setting.method in methods]
         if able and reference is not None:
             return min(able, key=lambda run: errors_of(run.answer, reference.answer).largest)
         if able:
             return able[-1]
-    return "no setting is cheap enough for the comparisons; give more budget"
+    return "the budget allows no setting for the comparisons; give more of it"
 
 
 def _effect(
@@ -283,7 +284,7 @@ def _effect(
     budget: Budget,
     tolerance: float,
 ) -> Effect:
-    """Return what one change of the model changes in the answer."""
+    """Return the effect of one change of the model."""
     try:
         column = variant.make()
     except InputError as error:
@@ -300,7 +301,7 @@ def _effect(
         return Effect(variant.name, status="skipped", reason=too_expensive(cost, budget.left()))
     run = other.run(setting, REPEATS, column, base.seconds)
     while run.status == "refused" and setting.method == "rk4" and setting.dt > base.setting.dt / 64:
-        # Beyond the limit of stability of this model.
+        # The step is beyond the stability limit of this model.
         setting = dataclasses.replace(setting, dt=setting.dt / 2)
         run = other.run(setting, REPEATS, column, base.seconds)
     if run.answer is None:

@@ -13,12 +13,12 @@ from rbsdem.accuracy.ladder import IMPLICIT, Budget, Probe, predicted
 from rbsdem.accuracy.scene import Scene
 from rbsdem.errors import RbsdemError
 
-#: Where methods begin that were not run before: tolerance of rk45, share of the limit for rk4. Next
-#: ones are a hundredth, to the least that rk45 takes, and a half.
+#: First refinement of a method that was not run before: tolerance of rk45, and the part of the
+#: stable step of rk4. Then the tolerance is divided by 100, down to the least, or the step by 2.
 FIRST_TOLERANCE, LEAST_TOLERANCE, FIRST_SHARE = 1e-8, 1e-13, 16
 
-#: A refinement that does not bring the two closer by this factor has made no way.
-WAY = 0.7
+#: A refinement has made progress if it reduces the difference of the two by this factor.
+PROGRESS = 0.7
 
 
 @dataclass(frozen=True)
@@ -33,15 +33,15 @@ class Reference:
         Digits to which their responses agree: -log10 of the largest difference at any time of the
         loading over the peak.
     moment_digits, energy_digits, peak_digits : float
-        The same of base moment (rms), energy at the end and peak.
+        The same for base moment (rms), energy at the end and peak.
     wanted : float
-        Digits that were asked for.
+        Digits asked for.
     seconds : float
-        Wall time of the finest run of the first [s].
+        Wall time of the reference [s].
     note : str
-        What is to be known of it.
+        Remarks on it.
     explicit : bool or None
-        Whether it is of explicit methods; None if static, or of both kinds.
+        Whether both methods are explicit; None if the path is static or the kinds differ.
     answer : Answer
         The solution.
     """
@@ -60,18 +60,18 @@ class Reference:
 
     @property
     def reached(self) -> bool:
-        """Whether the two agree as was asked for."""
+        """Whether the two agree to the digits asked for."""
         return self.digits >= self.wanted
 
     @property
     def resolution(self) -> float:
-        """Errors below this say nothing: the two methods differ by as much."""
+        """Difference of the two methods: smaller errors cannot be measured."""
         worst = min(self.digits, self.moment_digits, self.energy_digits, self.peak_digits)
         return 10.0**-worst
 
 
 class _Ladder:
-    """One method of the reference, refined step by step from what was run already."""
+    """One method of the reference, refined step by step from the runs so far."""
 
     def __init__(self, first: Setting, done: list[Run], look: Probe) -> None:
         self.look = look
@@ -85,13 +85,13 @@ class _Ladder:
         self.trouble = ""
 
     def cost(self) -> float:
-        """Return what the next rung takes [s]; infinite if there is none."""
+        """Return the estimated wall time of the next refinement [s]; infinite if there is none."""
         if self.next is None or self.trouble:
             return math.inf
         return predicted(self.run, self.next, self.look)
 
     def refine(self, scene: Scene, told: Callable[[str], None]) -> None:
-        """Take the next rung."""
+        """Run the next finer setting."""
         told(f"reference: {self.next}")
         run = scene.run(self.next)
         if run.answer is None:
@@ -104,7 +104,7 @@ class _Ladder:
 
 
 def finer(setting: Setting) -> Setting | None:
-    """Return the next finer setting; None if there is none that the arithmetic can tell."""
+    """Return the next finer setting; None beyond the precision of the arithmetic."""
     if setting.tolerance is None:
         return replace(setting, dt=setting.dt / 2)
     if setting.tolerance <= LEAST_TOLERANCE:
@@ -113,7 +113,7 @@ def finer(setting: Setting) -> Setting | None:
 
 
 def digits(difference: float) -> float:
-    """Return the digits that a relative difference leaves, at most those of the arithmetic."""
+    """Return the digits of agreement of a relative difference, 16 at most."""
     return -math.log10(max(difference, 1e-16)) if math.isfinite(difference) else 0.0
 
 
@@ -132,24 +132,24 @@ def find_reference(
     candidates = _candidates(scene, look, runs)
     refined = 0
     for ladder in candidates:
-        # Finer than all settings, and twice if it is new, if that leaves time to go on.
+        # Finer than all settings; a method that was not run before needs two runs.
         for _ in range(1 if math.isfinite(ladder.moved) else 2):
             if refined < 2 and ladder.cost() < 0.25 * budget.left(share):
                 ladder.refine(scene, told)
         refined += math.isfinite(ladder.moved) and not ladder.trouble
-    # Those that are closest to their limits.
+    # The two that their last refinement moved least.
     pair = sorted((one for one in candidates if one.run is not None), key=lambda one: one.moved)[:2]
     if len(pair) < 2:
         reasons = [ladder.trouble for ladder in candidates if ladder.trouble]
         return reasons[0] if reasons else "the budget does not allow two methods; give more of it"
     _bring_together(scene, pair, budget, share, wanted, told)
-    # The one that its last refinement moved less.
+    # The reference is the one that its last refinement moved less.
     first, second = sorted(pair, key=lambda ladder: ladder.moved)
     return compare(first.run, second.run, wanted, "")
 
 
 def _candidates(scene: Scene, look: Probe, runs: list[Run]) -> list[_Ladder]:
-    """Return the methods that a reference can be made of, most accurate ones first."""
+    """Return the methods that may make a reference, the most accurate first."""
     level = scene.column.kinematics
     parts = max(math.ceil(look.interval / look.limit), 1) * FIRST_SHARE
     first = [
@@ -171,18 +171,18 @@ def _bring_together(
     wanted: float,
     told: Callable[[str], None],
 ) -> None:
-    """Refine both methods in turn until they agree or make no way."""
+    """Refine both methods in turn until they agree or make no progress."""
     apart = errors_of(pair[0].run.answer, pair[1].run.answer).response_max
     idle = 0
     while digits(apart) < wanted and idle < 4:
-        # The one that is further from its own limit, as far as is known; else the cheaper one.
+        # The one that its last refinement moved more; of equals the cheaper one.
         ready = [ladder for ladder in pair if ladder.cost() < budget.left(share)]
         if not ready:
             return
         ladder = max(ready, key=lambda one: (one.moved, -one.cost()))
         ladder.refine(scene, told)
         now = errors_of(pair[0].run.answer, pair[1].run.answer).response_max
-        idle = idle + 1 if now > WAY * apart else 0
+        idle = idle + 1 if now > PROGRESS * apart else 0
         apart = min(apart, now)
 
 
@@ -193,7 +193,7 @@ def compare(first: Run, second: Run, wanted: float, note: str) -> Reference:
     if digits(apart.response_max) < wanted:
         parts.append(
             f"the two agree to {digits(apart.response_max):.1f} digits only, "
-            f"{wanted:g} were wanted: errors below {apart.largest:.0e} say nothing"
+            f"{wanted:g} were wanted: errors below {apart.largest:.0e} cannot be measured"
         )
     kind = None
     implicit = [run.setting.method in IMPLICIT for run in (first, second)]
@@ -219,11 +219,11 @@ def compare(first: Run, second: Run, wanted: float, note: str) -> Reference:
 
 
 def _static_reference(scene: Scene, wanted: float, told: Callable[[str], None]) -> Reference | str:
-    """Return the path by small increments, and what the inverse drive makes of it.
+    """Return the path by small increments, checked by driving it the other way round.
 
-    The forces that driven displacements give are put in as driven forces, or the other way round:
-    another solution of the same equations, which must give back what was driven. Where the force
-    falls it cannot be driven; then the path is compared with that of longer increments.
+    The response is driven in turn: forces that driven displacements give are driven as forces, or
+    the reverse. This solves the same equations in another way and must give back what was driven
+    first. A force that falls cannot be driven; the path is then compared with longer increments.
     """
     level = scene.column.kinematics
     told("reference: static")
@@ -248,7 +248,7 @@ def _inverse(scene: Scene, answer: Answer, parts: int) -> Run | None:
     other = "force" if name == "displacement" else "displacement"
     rows = answer.response.size
     if np.any(np.diff(answer.response) * np.diff(path[:rows]) < 0):
-        # The force falls, or the displacement goes back: driven by it, the column goes elsewhere.
+        # The force falls, or the displacement goes back: driven, it would lead elsewhere.
         return None
     inverse = Scene(scene.column, None, {other: answer.response})
     try:
@@ -257,7 +257,7 @@ def _inverse(scene: Scene, answer: Answer, parts: int) -> Run | None:
         return None
     if back.answer is None or back.answer.response.size != rows:
         return None
-    # What came back against what was driven, on the scale of the response.
+    # The difference from what was driven, on the scale of the response.
     lost = (back.answer.response - path[:rows]) / max(np.abs(path).max(), 1e-300)
     response = answer.response + lost * answer.peak
     setting = Setting(f"static driven by {other}", scene.column.kinematics, parts=parts)

@@ -36,8 +36,8 @@ class Row:
     error : float
         The largest of response_rms, moment, energy and peak.
     move : float
-        `error` of this setting against the next finer one of its family: what a user sees who has
-        no reference; nan if there is none.
+        `error` of this setting against the next finer one of its family, which a user without a
+        reference would see; nan if there is no finer one.
     status : str
         "completed", "collapsed", "failed", "refused" or "skipped".
     reason : str
@@ -68,13 +68,14 @@ class Choice:
     Attributes
     ----------
     tolerance : float
-        Error that is allowed.
+        The error allowed.
     row : Row or None
-        The cheapest setting that meets it, as do all finer ones of its family; None if none does.
+        The cheapest setting within it, all finer ones of its family within it too; None if there
+        is no such setting.
     finer : Row or None
-        The next finer one of its family.
+        The next finer setting of its family.
     move : Errors or None
-        How far the answer moves from the one to the other.
+        The difference of the answers of the two.
     """
 
     tolerance: float
@@ -135,7 +136,7 @@ def make_rows(runs: Sequence[Run], reference: Reference | None) -> tuple[Row, ..
     front = set()
     measured = [row for row in rows if math.isfinite(row.error)]
     for row in sorted(measured, key=lambda row: (row.seconds, row.error)):
-        # Below the agreement of the reference no error is smaller than another.
+        # Errors below the agreement of the reference cannot be told apart.
         error = max(row.error, reference.resolution)
         if error < best:
             best = error
@@ -144,7 +145,7 @@ def make_rows(runs: Sequence[Run], reference: Reference | None) -> tuple[Row, ..
 
 
 def _error(errors: Errors, run: Run, reference: Reference) -> float:
-    """Return the error that counts; one that ends at another time has none that says anything."""
+    """Return the error that counts; it is infinite if the run ends at another time."""
     if abs(run.answer.response.size - reference.answer.response.size) > 1:
         return math.inf
     return errors.largest
@@ -161,7 +162,7 @@ def _finer(runs: Sequence[Run], place: int) -> Run | None:
 
 
 def cheapest(rows: Sequence[Row], tolerance: float) -> Row | None:
-    """Return the cheapest row within a tolerance whose finer ones are so too, or None."""
+    """Return the cheapest row within a tolerance whose finer rows are within it too, or None."""
     best = None
     for place, row in enumerate(rows):
         if not row.error <= tolerance:
@@ -188,7 +189,7 @@ def choose(rows: Sequence[Row], runs: Sequence[Run], tolerance: float) -> Choice
 
 
 def third_method(rows: Sequence[Row], reference: Reference | None) -> Row | None:
-    """Return the best setting of the kind that the reference is not of: implicit or explicit."""
+    """Return the most accurate implicit setting if the reference is explicit, and vice versa."""
     if reference is None or reference.explicit is None:
         return None
     others = [

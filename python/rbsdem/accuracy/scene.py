@@ -1,4 +1,4 @@
-"""What a trade runs: one column under one loading, by many settings."""
+"""The case of a trade: one column under one loading, solved by many settings."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from rbsdem.column import Column
 from rbsdem.errors import AccuracyWarning, InputError, SolveError
 from rbsdem.results import Result
 
-#: Histories are compared at this number of times or more; a loading of fewer gets some in between.
+#: Least number of times at which histories are compared; a loading with fewer is interpolated.
 LEAST_ROWS = 200
 
-#: Runs shorter than this are repeated until they are as long together [s].
+#: Runs shorter than this are repeated until they take as long together [s].
 SHORT = 0.05
 
 #: Loads that only act on columns with second-order work, or whose joints open.
@@ -40,11 +40,11 @@ class Scene:
     column : Column
         The column.
     time : ndarray, shape (m,), or None
-        Times of the loading [s]; None: static.
+        Times of the loading [s]; None for a static path.
     loads : dict of ndarray, shape (m,)
-        The loads by name; of a static path one, "force" or "displacement".
+        The loads by name. A static path has one of them, "force" or "displacement".
     initial : mapping or None
-        State at the begin, as for `time_history`.
+        State at the start, as for `time_history`.
     collapse_drift : float or None
         As for `time_history`.
     """
@@ -57,7 +57,7 @@ class Scene:
 
     @property
     def static(self) -> bool:
-        """Whether there is no time."""
+        """Whether the path is static."""
         return self.time is None
 
     @property
@@ -81,7 +81,7 @@ class Scene:
         """Return the arguments of `time_history` for a setting."""
         loads: dict[str, Any] = dict(self.loads)
         if column.kinematics == "small" and column.axial is None:
-            # They would have nothing to act on, and are refused.
+            # These loads would have nothing to act on and would be refused.
             loads = {name: load for name, load in loads.items() if name not in VERTICAL}
         names = ("dt", "tolerance", "events", "rho_infinity")
         chosen = {name: getattr(setting, name) for name in names}
@@ -94,7 +94,7 @@ class Scene:
         }
 
     def _initial(self, n: int) -> Mapping[str, ArrayLike] | None:
-        """Return the state at the begin; where bodies are cut in two, the halves share it."""
+        """Return the state at the start; where bodies are cut in two, the halves share it."""
         if self.initial is None or n == self.column.n:
             return self.initial
         parts = n // self.column.n
@@ -104,7 +104,7 @@ class Scene:
         }
 
     def _answer(self, result: Result) -> Answer:
-        """Return what is compared, at the times of the loading."""
+        """Return the answer at the times of the loading."""
         taken = result.energy["spring"] + result.energy["damping"]
         moment = result.moment[:, 0]
         response = result.displacement
@@ -115,8 +115,8 @@ class Scene:
         histories = [np.array(values) for values in (response, moment, taken)]
         wanted = self.time[self.time <= time[-1]]
         if time.size != wanted.size or time[-1] != wanted[-1]:
-            # Rows were kept after each step, as it divides no interval; or the last one is that of
-            # a collapse, between two times.
+            # Rows were kept after each step because the step divides no interval, or the last row
+            # is that of a collapse between two times.
             histories = [at_times(wanted, time, values) for values in histories]
         return Answer(wanted, *histories, status, chosen)
 
@@ -127,11 +127,11 @@ class Scene:
         if parts == 0:
             kept = reversals(path)
             result = cyclic(column, **{name: path[kept]}, collapse_drift=self.collapse_drift)
-            # Points in between are where the driven value is, on the straight line of the leg.
+            # A point in between lies on the straight line of its leg, at its driven value.
             place = along(path, kept)
         elif parts and parts > 1:
             fine = np.interp(np.arange(parts * (path.size - 1) + 1) / parts, place, path)
-            # To the last digit the points that were given.
+            # The points that were given, to the last digit.
             fine[::parts] = path
             result = cyclic(column, **{name: fine}, every=parts, collapse_drift=self.collapse_drift)
         else:
@@ -148,7 +148,7 @@ class Scene:
     def run(
         self, setting: Setting, repeats: int = 1, column: Column | None = None, seconds: float = 1e9
     ) -> Run:
-        """Return a setting's answer and the median of its wall times, or why it has none.
+        """Return the answer of a setting and the median of its wall times, or why it has no answer.
 
         Parameters
         ----------
@@ -159,7 +159,7 @@ class Scene:
         column : Column, optional
             Another column in place of the scene's.
         seconds : float
-            Repeats end when they have taken this time [s].
+            Wall time after which the runs are not repeated any more [s].
         """
         times = []
         begin = clock.perf_counter()
@@ -180,9 +180,9 @@ class Scene:
         return Run(setting, answer, seconds, len(times), answer.status, answer.reason)
 
 
-def times_or(times: list[float], begin: float) -> float:
-    """Return the median of times, or the time since the begin if there are none."""
-    return float(np.median(times)) if times else clock.perf_counter() - begin
+def times_or(times: list[float], start: float) -> float:
+    """Return the median of the times; without any, the time since the start."""
+    return float(np.median(times)) if times else clock.perf_counter() - start
 
 
 def make_scene(
@@ -197,7 +197,7 @@ def make_scene(
     Raises
     ------
     InputError
-        If loads do not go together.
+        If the loads do not go together.
     """
     if not isinstance(column, Column):
         raise InputError(f"trade: column = {column!r} must be a Column")

@@ -52,7 +52,7 @@ def settings_table(trade: Trade) -> Table:
 
 
 def reasons(rows: Sequence[Row]) -> list[str]:
-    """Return a line for each setting that has no answer, those of the same reason together."""
+    """Return lines on the settings without an answer, one for each reason."""
     found: dict[str, list[Row]] = {}
     for row in rows:
         if row.status not in ("completed", "collapsed"):
@@ -61,7 +61,7 @@ def reasons(rows: Sequence[Row]) -> list[str]:
 
 
 def report(trade: Trade, title: str) -> None:
-    """Print everything."""
+    """Print the whole trade."""
     need_rich()
     from rich.console import Console  # noqa: PLC0415
 
@@ -93,7 +93,7 @@ def report(trade: Trade, title: str) -> None:
         say(f"\n{str(trade.choice).capitalize()}.")
     if trade.physics is not None:
         physics = trade.physics
-        say("\nWhat parts of the model change, all of it else as given:\n")
+        say("\nWhat each part of the model changes, the others as given:\n")
         out.print(trade.physics_table())
         say(f"\nSolved by {physics.setting}, error {physics.resolution:.1e}. What changes peak,")
         say(f"base moment, energy or residual by more than {physics.tolerance:g} matters.")

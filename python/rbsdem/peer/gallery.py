@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from importlib import resources
 from pathlib import Path
 
 import numpy as np
@@ -46,15 +47,13 @@ class _Card:
 def write_gallery(predictions: Predictions, path: Path) -> Path:
     """Write the page; `rbsdem.peer.Predictions.gallery` says more."""
     jinja2 = need_jinja2()
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("rbsdem.peer", "."),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-    )
+    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
+    # The loader of packages in jinja2 does not find files of an editable install.
+    template = resources.files("rbsdem.peer").joinpath("gallery.html.jinja")
     cards = [
         _card(row, drawn) for row, drawn in zip(predictions, predictions.pictures, strict=True)
     ]
-    page = environment.get_template("gallery.html.jinja").render(
+    page = environment.from_string(template.read_text(encoding="utf-8")).render(
         title=f"Loops of {len(predictions)} tests, model {predictions.model}",
         groups=predictions.summary(),
         scores=_SCORES,
