@@ -99,7 +99,7 @@ def test_an_octagon_is_a_circle_and_a_square_spiral_is_square():
         ({"transverse_diameter": None}, "legs", 0.0, "no transverse"),
         ({"shear_legs": None}, "legs", 2.0, ""),
         ({"longitudinal_ultimate_stress": None}, "bars", 450e6, "1.5 times"),
-        ({"intermediate_perpendicular": None}, "bars", 450e6, "as many on each"),
+        ({"intermediate_perpendicular": None}, "bars", 450e6, "as equal as possible"),
     ],
 )
 def test_what_the_table_leaves_open(change, name, value, said):

@@ -1,4 +1,4 @@
-"""Blind prediction of tests: properties in, loop out, scores of all of them."""
+"""Prediction of tests from their properties: a loop and scores for each."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ __all__ = ["predict", "predict_one"]
 
 Model: TypeAlias = str | Callable[[Specimen], Column]
 
-# Tests that a process gets at once: few enough that all are busy to the end and the bar moves.
+# Tests that a process gets at once: few enough to keep all processes busy to the end.
 _CHUNK = 6
 
-# What a process of the pool was given at its begin.
+# What a process of the pool was given when it started.
 _shared: dict[str, Event] = {}
 
 
@@ -49,28 +49,28 @@ def predict(
 ) -> Predictions:
     """Predict tests from their properties, and compare with what was measured.
 
-    Each column is driven through the measured displacements; its lateral force stands against the
+    Each column is driven through the measured displacements; its lateral force is compared with the
     net horizontal force of the test.
 
     Parameters
     ----------
     specimens : iterable of Specimen
-        The tests, as of `rbsdem.peer.read_specimens`.
+        The tests, as from `rbsdem.peer.read_specimens`.
     model : str or callable, optional
-        A name that `rbsdem.peer.column` knows, or a function that makes a `Column` of a `Specimen`;
-        with `jobs` above 1 it must be one that can be imported.
+        A model of `rbsdem.peer.column`, or a function that makes a `Column` from a `Specimen`; with
+        `jobs` above 1 the function must be importable.
     jobs : int, optional
         Processes to use. Above 1 a script needs ``if __name__ == "__main__":``.
     progress : bool, optional
         Show a bar on stderr; needs rich.
     **options
-        Handed over to `rbsdem.peer.column`, as ``n=4``.
+        Passed to `rbsdem.peer.column`, such as ``n=4``.
 
     Returns
     -------
     Predictions
-        A row for each test, in their order. What goes wrong with a test is a row with the text of
-        the error. Broken off by the keyboard, the rows are those that were done.
+        A row for each test, in their order. A test that goes wrong has a row with the text of the
+        error. After a keyboard interrupt the rows are those that were finished.
 
     Raises
     ------
@@ -107,7 +107,7 @@ def predict(
 
 
 def predict_one(specimen: Specimen, model: Model = DEFAULT, **options: Any) -> Prediction:
-    """Predict one test; what goes wrong is told in the row that is returned.
+    """Predict one test; an error is reported in the row that is returned.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def predict_one(specimen: Specimen, model: Model = DEFAULT, **options: Any) -> P
     name = _name(model, options)
     try:
         test = specimen.test()
-        # A test that says nothing, before the work.
+        # A test without a usable history is found before the work.
         compare((test.displacement, test.force), test)
     except RbsdemError as error:
         return Prediction(specimen, name, "no history", error=str(error))
@@ -151,7 +151,7 @@ def predict_one(specimen: Specimen, model: Model = DEFAULT, **options: Any) -> P
 def _analyse(
     specimen: Specimen, test: MeasuredTest, model: Model, options: dict[str, Any]
 ) -> tuple[str, str, Any, tuple[float, float]]:
-    """Return status, error, result and wall times; of no analysis the result is not a number."""
+    """Return status, error, result and wall times; without an analysis the result is NaN."""
     nothing = test.displacement, np.full(test.displacement.size, np.nan)
     begin = built = time.perf_counter()
     try:
@@ -168,7 +168,7 @@ def _analyse(
     except RbsdemError as fault:
         status, error, result = "failed", str(fault), nothing
     except Exception as fault:
-        # A fault of one model is a row of the table, not the end of all others.
+        # A fault in one model is a row of the table and does not end the others.
         status, error, result = "failed", f"{type(fault).__name__}: {fault}", nothing
     end = time.perf_counter()
     built = max(built, begin)
@@ -186,7 +186,7 @@ def _here(
 def _in_processes(
     tests: list[Specimen], model: Model, options: dict[str, Any], jobs: int
 ) -> Iterator[tuple[int, Prediction]]:
-    """Yield the rows as they come."""
+    """Yield the rows as they are finished."""
     chunks = [range(i, min(i + _CHUNK, len(tests))) for i in range(0, len(tests), _CHUNK)]
     lost: list[int] = []
     stop = _context().Event()
@@ -212,7 +212,7 @@ def _in_processes(
 def _one_by_one(
     numbers: list[int], tests: list[Specimen], model: Model, options: dict[str, Any]
 ) -> Iterator[tuple[int, Prediction]]:
-    """Yield the rows of tests whose process died: it took others along, and the next ones too."""
+    """Yield the rows of tests whose process died, each in a process of its own."""
     pool = None
     try:
         for number in numbers:
@@ -235,7 +235,7 @@ def _pool(jobs: int, stop: Event) -> ProcessPoolExecutor:
 
 
 def _begin(stop: Event) -> None:
-    """Prepare a process: the interrupt of the keyboard goes to all, and the first one decides."""
+    """Prepare a process: a keyboard interrupt reaches all of them, the main one handles it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     _shared["stop"] = stop
 
@@ -250,7 +250,7 @@ def _chunk(tests: list[Specimen], model: Model, options: dict[str, Any]) -> list
 
 
 def _context() -> Any:
-    """Return how processes are started: not by fork, as libraries of this one may run threads."""
+    """Return how processes are started: not by fork, since libraries may have started threads."""
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
@@ -259,12 +259,12 @@ def _context() -> Any:
 
 
 def _check_sent(model: Model, options: dict[str, Any]) -> None:
-    """Raise `InputError` for what cannot be handed to another process."""
+    """Raise `InputError` for what cannot be sent to another process."""
     try:
         pickle.dumps((model, options))
     except Exception as error:
         raise InputError(
-            f"model = {model!r} cannot be handed to another process ({error}); take jobs = 1, or "
+            f"model = {model!r} cannot be sent to another process ({error}); take jobs = 1, or "
             "put the function into a module of its own"
         ) from error
 

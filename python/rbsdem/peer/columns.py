@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal, overload
 
 from rbsdem.column import Column
 from rbsdem.errors import InputError
 from rbsdem.peer.drawing import draw
 from rbsdem.peer.specimen import Specimen
-from rbsdem.section.model import DEFAULT, Model, check_model
+from rbsdem.section.model import DEFAULT, LayeredColumn, Model, check_model
 
 __all__ = ["column"]
 
@@ -19,6 +19,12 @@ _OLD = {
 }
 
 
+@overload
+def column(
+    specimen: Specimen, model: Literal["layered"] = "layered", **options: Any
+) -> LayeredColumn: ...
+@overload
+def column(specimen: Specimen, model: Literal["paper"], **options: Any) -> Column: ...
 def column(specimen: Specimen, model: Model = DEFAULT, **options: Any) -> Column:
     """Make the column of a specimen.
 

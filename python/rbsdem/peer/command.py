@@ -28,7 +28,7 @@ Files (--out): results.csv (a row for each test), summary.csv (medians and quart
 groups), gallery.html (all loops, to sort and filter; needs jinja2), loops.png (all loops; needs
 matplotlib).
 Exit codes: 0 every test was analysed to its end, 1 some were not, 2 the input is wrong,
-130 broken off by the keyboard (what was done is reported).
+130 interrupted by the keyboard (what was finished is reported).
 """
 
 INTERRUPTED = 130
@@ -89,7 +89,7 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def _run(given: argparse.Namespace) -> int:
-    # What may be missing or wrong, before the work.
+    # What may be missing or wrong is reported before the work.
     need_rich()
     tests = chosen(read_specimens(given.folder), given.section, given.failure, given.only)
     if not hasattr(tests[0], given.by):
@@ -122,14 +122,13 @@ def chosen(
 ) -> Specimens:
     """Return the tests that are asked for.
 
-    By name, those of any section and failure mode, also without a history; else those that have
-    one.
+    Tests asked for by name need not have a history.
     """
     if only:
         found: dict[str, Specimen] = {}
         for name in only:
             several = [row for row in table if _is_meant(row, name)]
-            # Not one is an error that names the nearest.
+            # If there is none, this raises an error that names the nearest.
             found |= {row.name: row for row in several or [table[name]]}
         return Specimens(row for row in table if row.name in found)
     tests = table.with_history()

@@ -1,13 +1,13 @@
-"""From a row of the table to the section as it would be drawn.
+"""The section of a specimen, as it would be drawn.
 
-What the table leaves open is filled in by rules, each named in `Drawing.assumed`:
+What the table does not report is filled in by rules, each named in `Drawing.assumed`:
 
 - bars of a face stand at equal distances between the corner bars; if the faces do not add up to the
   number of bars, the areas of the intermediate bars make up for it (bundled bars);
 - bars of a round section stand at equal angles, one on the axis of loading; an odd number stands
   half as drawn and half mirrored, so that both directions of loading are equal;
 - an octagon is taken as the circle of its depth (5 % less concrete, the same core);
-- ultimate stress not reported: 1.5 times the yield stress; of a spiral the table gives none;
+- ultimate stress not reported: 1.5 times the yield stress (the table has none for spirals);
 - yield stress not reported: 420 MPa (Grade 60) of longitudinal bars, theirs for transverse bars;
 - cover not reported: 0.05 times the depth; across the loading: that along it;
 - transverse bars without diameter or spacing: there are none.
@@ -64,7 +64,7 @@ class DrawnBar:
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """A section with all that an analysis needs, SI units.
+    """A section with all that an analysis needs, in SI units.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class Drawing:
     bars : tuple of DrawnBar
         Longitudinal bars.
     bar_diameter : float
-        Of the bars that count for bond and buckling: the corner bars [m].
+        Of the corner bars, which stand for all in bond and buckling [m].
     cover, side_cover : float
         Clear, to the outer edge of the transverse bars, along and across the direction of loading
         [m].
@@ -86,12 +86,12 @@ class Drawing:
     tie_yield_stress, tie_ultimate_stress : float
         Of the transverse bars [Pa].
     legs, side_legs : float
-        Transverse bars that cross the section along and across the direction of loading; the latter
-        as along it, as the table has no more.
+        Transverse bars that cross the section along and across the direction of loading. The table
+        has only the former; the latter is taken as the same.
     restrained : int
         Longitudinal bars that are held in a corner or by a tie, of those around the perimeter.
     assumed : tuple of str
-        What the table left open.
+        What the table did not report.
     """
 
     shape: str
@@ -162,7 +162,7 @@ class Drawing:
 
 @dataclass
 class _Sheet:
-    """What is known while a section is drawn."""
+    """A specimen and the assumptions made while its section is drawn."""
 
     specimen: Specimen
     assumed: list[str] = field(default_factory=list)
@@ -192,8 +192,8 @@ def draw(specimen: Specimen) -> Drawing:
     Raises
     ------
     InputError
-        If the shape is not known, if a number cannot be one of a column in SI units, if the bars
-        have no diameter, or if they do not fit.
+        If the shape is not known, a value is not plausible in SI units, the bars have no diameter,
+        or they do not fit.
     """
     _check(specimen)
     sheet = _Sheet(specimen)
@@ -214,7 +214,7 @@ def draw(specimen: Specimen) -> Drawing:
     cover = sheet.known("cover", _COVER_SHARE * specimen.depth, "0.05 of the depth")
     side_cover = specimen.cover_perpendicular or cover
     if shape != "rectangular":
-        # The table goes to the centre of a spiral.
+        # For a spiral the table gives the cover to its centre.
         cover = side_cover = max(cover - (tie or 0.0) / 2, 0.0)
     diameter = specimen.corner_diameter or specimen.intermediate_diameter
     if diameter is None:
@@ -246,7 +246,7 @@ def draw(specimen: Specimen) -> Drawing:
     )
 
 
-# What a column can have, in SI units, and how a number in other units would look.
+# Plausible ranges in SI units, with a hint for values in other units.
 _RANGES = {
     "length": (0.05, 100.0, "m", "1600 mm is 1.6"),
     "width": (0.02, 20.0, "m", "400 mm is 0.4"),
@@ -264,7 +264,7 @@ _RANGES = {
 
 
 def _check(specimen: Specimen) -> None:
-    """Refuse what is no number of a column, all of it at once."""
+    """Refuse values outside their plausible ranges, all of them at once."""
     faults = []
     for name, (low, high, unit, remedy) in _RANGES.items():
         value = getattr(specimen, name)
@@ -278,7 +278,7 @@ def _check(specimen: Specimen) -> None:
 
 
 def _steel(yield_stress: float, ultimate_stress: float) -> Steel:
-    """Return a steel; one so strong that its plateau would end before it begins has none."""
+    """Return a steel; a very strong one has no plateau."""
     plain = Steel.__dataclass_fields__
     es, hardening = plain["es"].default, plain["eps_sh"].default
     return Steel(yield_stress, ultimate_stress, eps_sh=max(hardening, 1.001 * yield_stress / es))
@@ -293,7 +293,7 @@ def _steels(sheet: _Sheet) -> tuple[tuple[float, float], tuple[float, float]]:
     if ultimate is None or ultimate <= corner:
         sheet.assumed.append("longitudinal_ultimate_stress: 1.5 times the yield stress")
         ultimate = ULTIMATE_OVER_YIELD * corner
-    # The table has one ultimate stress, that of the corner bars.
+    # The table has only the ultimate stress of the corner bars.
     return (corner, ultimate), (intermediate, max(ultimate * intermediate / corner, intermediate))
 
 
@@ -307,7 +307,7 @@ def _rectangle(
     specimen = sheet.specimen
     across, along = specimen.intermediate_perpendicular, specimen.intermediate_parallel
     if across is None or along is None:
-        sheet.assumed.append("bars of the faces: as many on each as go")
+        sheet.assumed.append("bars of the faces: as equal as possible")
         along = max(specimen.longitudinal_number - 4, 0) // 4
         across = max(specimen.longitudinal_number - 4 - 2 * along, 0) // 2
     inner = specimen.intermediate_diameter or diameter
@@ -350,7 +350,7 @@ def _round(
 
 
 def _restrained(specimen: Specimen) -> int:
-    """Return how many bars are held: all of a spiral; corners, and those of more legs than two."""
+    """Return how many bars are held: all in a spiral; else corners and those at inner legs."""
     n = specimen.longitudinal_number
     if specimen.section != "rectangular" or not specimen.shear_legs:
         return n if specimen.section != "rectangular" else min(4, n)

@@ -20,7 +20,7 @@ class PeerTest:
     displacement : ndarray, shape (m,)
         Displacement of the top of the equivalent cantilever [m].
     force : ndarray, shape (m,)
-        Force column of the file [N]; what it means is told by the test's P-Delta code.
+        Force column of the file [N]; the P-Delta code of the test says what it means.
     """
 
     name: str

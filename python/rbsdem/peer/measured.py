@@ -1,4 +1,4 @@
-"""A test as a model is held against it: displacement, and the net horizontal force."""
+"""A test to compare a model with: its displacement and its net horizontal force."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ PDELTA_CODES = {
     3: "rotation of the axial ram decreases the shear",
     4: "rotation of the axial ram increases the shear",
 }
-"""What the force column of a test is, by the P-Delta code of the database (manual, 3.3)."""
+"""What the force column of a test means, by the P-Delta code of the database (manual, 3.3)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MeasuredTest:
-    """A measured history with what its force means worked out.
+    """A measured history with its net horizontal force.
 
     Attributes
     ----------
     name : str
         Name of the test.
     displacement : ndarray, shape (m,)
-        Displacement of the top of the equivalent cantilever, where the lateral force acts [m]: what
-        drives a column. Where it was measured at another height, in proportion to the height.
+        Displacement of the top of the equivalent cantilever, where the lateral force acts [m]; it
+        drives a column. One that was measured at another height is scaled by the heights.
     force : ndarray, shape (m,)
-        Net horizontal force F_H [N]: what the lateral force of a model with P-Delta stands for.
+        Net horizontal force F_H [N], the lateral force of a model with P-Delta.
     measured_displacement, measured_force : ndarray, shape (m,)
         Columns of the file [m, N].
     length : float
@@ -42,7 +42,7 @@ class MeasuredTest:
     axial_load : float
         Axial load, compression positive [N].
     pdelta_code : int or None
-        Code by which `force` was found; None, as the report does not tell, is taken as 2.
+        Code by which `force` was found; None, where the report does not give it, is taken as 2.
     axial_height : float
         Height at which the axial load acts, at the hinge of its ram [m].
     """
@@ -59,7 +59,7 @@ class MeasuredTest:
 
     @property
     def height(self) -> float:
-        """The length, by the name that `rbsdem.Column` has for it [m]."""
+        """The length, under the name it has in `rbsdem.Column` [m]."""
         return self.length
 
     @property
@@ -80,7 +80,7 @@ class MeasuredTest:
 def top_displacement(
     displacement: ArrayLike, *, length: float, measured_length: float | None = None
 ) -> Array:
-    """Turn the displacement where it was measured into that of the top.
+    """Return the displacement of the top from the measured one.
 
     Parameters
     ----------
@@ -89,13 +89,13 @@ def top_displacement(
     length : float
         Of the equivalent cantilever [m].
     measured_length : float, optional
-        Height at which the displacement was measured [m]; the length without it.
+        Height at which the displacement was measured [m]; by default the length.
 
     Returns
     -------
     ndarray, shape (m,)
-        d L/L_meas [m], as the manual's rules for P-Delta have it: the column stays straight above
-        its hinge.
+        d L/L_meas [m], as in the manual's rules for P-Delta: the column stays straight above its
+        hinge.
     """
     d = _core.finite_vector(displacement, "displacement")
     return d * (length / (measured_length or length))
@@ -112,22 +112,22 @@ def net_force(
     top_length: float | None = None,
     bottom_length: float | None = None,
 ) -> Array:
-    """Turn the force column of a test into the net horizontal force.
+    """Return the net horizontal force from the force column of a test.
 
     Parameters
     ----------
     displacement, force : array_like, shape (m,)
         The history as in its file [m, N], the displacement where it was measured.
     code : {1, 2, 3, 4} or None
-        P-Delta code of the test; None, as the report does not tell, is taken as 2.
+        P-Delta code of the test; None, where the report does not give it, is taken as 2.
     axial_load : float
         Compression positive [N].
     length : float
         Of the equivalent cantilever [m].
     measured_length : float, optional
-        Height at which `displacement` was measured [m]; the length without it.
+        Height at which `displacement` was measured [m]; by default the length.
     top_length, bottom_length : float, optional
-        From the column's ends to the hinges of the axial ram [m]; 0 without them.
+        From the column's ends to the hinges of the axial ram [m]; by default 0.
 
     Returns
     -------

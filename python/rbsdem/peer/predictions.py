@@ -32,7 +32,7 @@ _NOT_RUN = ("failed", "no history")
 
 @dataclass(frozen=True, slots=True)
 class Prediction:
-    """One test and what the model made of it.
+    """One test with the scores of its prediction.
 
     Attributes
     ----------
@@ -41,10 +41,10 @@ class Prediction:
     model : str
         Name of the model with the version of its parameters, as "layered 2026.1".
     status : str
-        "completed", "stopped" (the analysis came to an end before the test did), "failed" (there is
-        no analysis), or "no history" (there is nothing to compare with; not counted).
+        "completed", "stopped" (the analysis ended before the test did), "failed" (there is no
+        analysis), or "no history" (there is nothing to compare with; not counted).
     error : str
-        What went wrong, in the words of the exception.
+        Text of the exception.
     note : str
         Warnings.
     seconds_model : float
@@ -52,8 +52,8 @@ class Prediction:
     seconds_analysis : float
         Wall time of the analysis [s].
     comparison : Comparison or None
-        Scores; None without a history, and where the process died. A test that failed has an nrmse
-        of 1.
+        Scores; None without a history or where the process died. A test that failed has an nrmse of
+        1.
     """
 
     specimen: Specimen
@@ -105,7 +105,7 @@ class Quartiles:
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """Tests that have something in common, in numbers.
+    """Statistics of tests that have something in common.
 
     Attributes
     ----------
@@ -114,7 +114,7 @@ class Group:
     tests : int
         Tests with a history.
     stopped, failed : int
-        How many of them came to an early end, and how many could not be analysed.
+        How many of them ended early, and how many could not be analysed.
     quartiles : dict of str to Quartiles
         For each of `SUMMARY_SCORES`.
     seconds : Quartiles
@@ -144,7 +144,7 @@ class Predictions(Sequence[Prediction]):
     seconds : float, optional
         Wall time of everything [s].
     interrupted : bool, optional
-        Whether the user broke it off: the rows are those that were done.
+        Whether the user interrupted it: the rows are those that were finished.
     """
 
     def __init__(
@@ -298,7 +298,7 @@ class Predictions(Sequence[Prediction]):
         Parameters
         ----------
         folder : path
-            Where to; it is made. The measured forces are in the files too: mind whose they are.
+            Folder, which is made. The files hold the measured forces, which belong to the database.
         """
         where = Path(folder)
         where.mkdir(parents=True, exist_ok=True)

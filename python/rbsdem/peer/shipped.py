@@ -2,7 +2,7 @@
 
 The full histories belong to the PEER Structural Performance Database and are no part of rbsdem; a
 user gets them there (https://nisee.berkeley.edu/spd/) and names the folder. Without them, the
-reversal points of `data/reversals_<key>.csv` stand in.
+reversal points of `data/reversals_<key>.csv` are used.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ HISTORY_FILES = {
     "tanaka_park_5": ("Tanaka_and_Park_1990_No5.csv", "tana90u5.txt"),
     "zahn_7": ("Zahn_et_al_1986_No7.csv", "zahn86u7.txt"),
 }
-"""For each column the names that its history goes by: a csv, and the database's own text file."""
+"""File names of the history of each column: a csv, and the database's own text file."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,7 +74,7 @@ def find_history(
     key : str or path
         Key of a column (soesianawati_1, tanaka_park_1, tanaka_park_5, zahn_7) or a file name.
     folder : path, optional
-        Where to look. Without it, the folder that the environment variable RBSDEM_PEER_DIR names.
+        Folder to search; by default that of the environment variable RBSDEM_PEER_DIR.
 
     Returns
     -------
@@ -139,7 +139,7 @@ def shipped_reversals(key: str) -> Reversals:
 
 
 def measured_loops() -> dict[str, Loop]:
-    """Read what the full histories of the four tests amount to.
+    """Read key values of the full histories of the four tests.
 
     Returns
     -------

@@ -20,7 +20,7 @@ _AUTHORS = {"Petrovsky": "Petrovski"}
 
 @dataclass(frozen=True, slots=True)
 class Observed:
-    """What a test gave, as far as the table tells; no blind model may look here.
+    """What was measured, as far as the table reports it; no prediction may use it.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class Observed:
 class Specimen:
     """A tested column: its properties before the test, and where its history is.
 
-    What was not reported is None. Steel, bars and lengths as in the notation of the database.
+    What was not reported is None. Steel, bars and lengths follow the notation of the database.
 
     Attributes
     ----------
@@ -87,9 +87,9 @@ class Specimen:
     file : str or None
         File of the history; None if the folder has none for this test.
     folder : Path or None
-        Where the table was read.
+        Folder of the table.
     author, year : str or None
-        Of the report; the year also if the name tells it only.
+        Of the report; the year is that in the name if there is no other.
     config : str or None
         C cantilever, DC double curvature, DE double ended, CFB flexible base, HH hammer head.
     measured_length : float or None
@@ -122,7 +122,7 @@ class Specimen:
     failure_mode : str or None
         "Flexure", "Flexure-Shear" or "Shear".
     pdelta_code : int or None
-        1 to 4, what the force column is; None if the report does not tell.
+        1 to 4, what the force column means; None if the report does not give it.
     top_length, bottom_length : float or None
         From the ends of the column to the hinges of the axial ram [m].
     beam_length, splice_length : float or None
@@ -130,9 +130,9 @@ class Specimen:
     notes : str
         Remarks of the table.
     duplicate_of : int or None
-        Number of the test whose history this one repeats: an error of the database.
+        Number of the test whose history is repeated here, which is an error of the database.
     observed : Observed
-        What the test gave.
+        What was measured.
     """
 
     name: str
@@ -201,10 +201,9 @@ class Specimen:
 
     @property
     def second_order_load(self) -> float:
-        """Axial load at the top that has the second-order moment of the one at its height [N].
+        """Load at the top that has the second-order moment of the axial load at its height [N].
 
-        P (L + L_top)/L: what a `rbsdem.Column` of this length takes for `axial_load`; its sections
-        carry P.
+        P (L + L_top)/L. The sections carry P.
         """
         return self.axial_load * (self.axial_height / self.length)
 
@@ -222,17 +221,17 @@ class Specimen:
     def series(self) -> str:
         """First author and year: tests that one laboratory made together.
 
-        The key by which to split tests when a relation is fitted to some and tried on others.
+        Split tests by this key when a relation is fitted to some and tried on others.
         """
         author = self.author or self.name
         first = re.split(r"\s+et\s+al\b|\s+and\s+|,|&", author.strip())[0].strip()
         first = _AUTHORS.get(first, first)
-        # A name in place of the author tells the year itself.
+        # A name in place of the author has the year in it.
         return f"{first} {self.year}" if self.year and self.year not in first else first
 
     @property
     def kind(self) -> str:
-        """Form of the section and failure mode, as "rectangular, Flexure".
+        """Form of the section and failure mode, such as "rectangular, Flexure".
 
         Octagons and spirals in a square count as round.
         """
@@ -263,7 +262,7 @@ class Specimen:
         return None
 
     def history(self) -> PeerTest:
-        """Read the history as it stands in its file.
+        """Read the history as it is in its file.
 
         Returns
         -------
@@ -283,7 +282,7 @@ class Specimen:
         return read_peer(path)
 
     def test(self) -> MeasuredTest:
-        """Read the history and work out the net horizontal force.
+        """Read the history and find the net horizontal force.
 
         Returns
         -------

@@ -20,13 +20,13 @@ __all__ = ["TABLE", "Specimens", "read_specimens"]
 TABLE = "specimens.csv"
 """Name of the table in its folder."""
 
-# Ways to say "not reported". A zero says it too where zero has no meaning.
+# Texts that mean "not reported". So does a zero where zero has no meaning.
 _NOT_REPORTED = ("", "-", "--", "n/a", "na", "nan", "none", "not reported")
 
 
 @dataclass(frozen=True, slots=True)
 class _Column:
-    """Where an attribute comes from: its column, the factor to SI, what its zero means."""
+    """Where an attribute comes from: its column, the factor to SI, whether zero is a value."""
 
     column: str
     kind: type = float
@@ -183,7 +183,7 @@ class Specimens(Sequence[Specimen]):
         ----------
         **conditions
             Attributes of `Specimen` with what they must be: a value, a list, tuple or set of
-            values, or a function that says yes or no.
+            values, or a function that returns whether a value is wanted.
 
         Returns
         -------
@@ -193,7 +193,7 @@ class Specimens(Sequence[Specimen]):
         Raises
         ------
         InputError
-            If there is no such attribute; the message names the nearest.
+            If there is no such attribute; the message names the nearest ones.
 
         Examples
         --------
@@ -243,7 +243,7 @@ def read_specimens(path: str | os.PathLike[str]) -> Specimens:
     ----------
     path : path
         The folder with `specimens.csv` and the histories, or the table itself. Columns may be
-        fewer, more, and in another order.
+        fewer or more, and in any order.
 
     Returns
     -------
@@ -259,7 +259,7 @@ def read_specimens(path: str | os.PathLike[str]) -> Specimens:
     Notes
     -----
     Columns and units: `docs/peer.md`. The properties come from the PEER Structural Performance
-    Database (Berry, Parrish and Eberhard 2004), which comes not with rbsdem.
+    Database (Berry, Parrish and Eberhard 2004), which does not come with rbsdem.
     """
     given = Path(path).expanduser()
     table = given / TABLE if given.is_dir() else given
@@ -327,4 +327,4 @@ def _condition(wanted: Any) -> Callable[[Any], bool]:
 
 def _nearest(name: str, known: Sequence[str]) -> str:
     close = get_close_matches(name, known, n=3, cutoff=0.4)
-    return f"did you mean {', '.join(close)}?" if close else "see the table for what there is"
+    return f"did you mean {', '.join(close)}?" if close else "see the table for the names"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,7 +15,7 @@ from rbsdem.errors import InputError
 from rbsdem.section.diagram import Diagram, make_diagram
 from rbsdem.section.drawn import DrawnSection
 from rbsdem.section.materials import tension_place
-from rbsdem.section.model import DEFAULT, Model, make_column
+from rbsdem.section.model import DEFAULT, LayeredColumn, Model, make_column
 from rbsdem.section.shear_diagram import ShearDiagram, shear_diagram
 from rbsdem.section.spring_fit import SectionSprings, fit_springs
 from rbsdem.section.strength import shear_strength_mcft
@@ -198,6 +198,32 @@ class Section(DrawnSection):
         """
         return fit_springs(self, length, self._load(axial_load), **options)
 
+    @overload
+    def column(
+        self,
+        height: float,
+        *,
+        axial_load: float,
+        mass: float | None = None,
+        n: int | None = None,
+        model: Literal["layered"] = "layered",
+        version: str | None = None,
+        model_parameters: ModelParameters | None = None,
+        axial_height: float | None = None,
+        restrained: int | None = None,
+        round_core: bool = False,
+    ) -> LayeredColumn: ...
+    @overload
+    def column(
+        self,
+        height: float,
+        *,
+        axial_load: float,
+        mass: float | None = None,
+        n: int | None = None,
+        model: Literal["paper"],
+        axial_height: float | None = None,
+    ) -> Column: ...
     def column(
         self,
         height: float,
