@@ -12,6 +12,9 @@ from conftest import REPOSITORY
 
 PACKAGE = REPOSITORY / "python" / "rbsdem"
 
+# Packages that need not be installed: only they are imported inside functions.
+OPTIONAL = {"jinja2", "matplotlib", "pandas", "rich", "scipy"}
+
 # Modules that draw, tabulate or write records. Packages, commands and other views import them.
 VIEWS = {"contact_sheet", "figure", "files", "gallery", "plot", "shear_figure", "table", "tables"}
 VIEWS |= {"view"}
@@ -81,6 +84,22 @@ def test_no_record_imports_its_views():
         for other in sorted(others)
         if files[other].stem in VIEWS
     ]
+    assert not faults
+
+
+def test_functions_import_nothing_but_optional_packages():
+    faults = []
+    for name, path in modules(PACKAGE).items():
+        if path.stem == "__main__":  # Its commands are imported only when they are run.
+            continue
+        for function in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(function, ast.FunctionDef):
+                inside = set(imported(function, set()))
+                faults += [
+                    f"{name}, {function.name}: {other}"
+                    for other in sorted(inside)
+                    if other.split(".")[0] not in OPTIONAL
+                ]
     assert not faults
 
 

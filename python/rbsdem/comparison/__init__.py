@@ -20,15 +20,15 @@ energy
     end at zero force also holds a little energy that the column would give back.
 stiffness
     Secant from the origin to the first crossing of 70 % of the curve's own peak force, interpolated
-    between two rows. It is the effective stiffness to yield. Standards take the secant of the
-    envelope at 60 % of the yield strength (FEMA 356 section 3.3.3.2.4, ASCE 41-17 section
-    7.4.3.2.4) or at 75 % of the peak (Park 1989); Sezen and Moehle (2004, J. Struct. Eng. 130(11))
-    take 70 % of the peak for columns of this database. Two other choices were not made. A tangent
-    at the origin, or a secant at a low level, mostly measures the noise of the first digitised
-    rows: one specimen of the paper shows 1.8 times its gross elastic stiffness there, two show a
-    force at no displacement. A level that is a share of the other curve's peak would give one curve
-    as many stiffnesses as it has partners. The price is that a model which hardens without limit
-    is measured after its yield; its peak ratio, well above 1, says so.
+    between two rows. It is the effective stiffness to yield. The field takes the secant of an
+    envelope at a similar level: 60 % of the yield strength (FEMA 356 section 3.3.3.2.4, ASCE 41-17
+    section 7.4.3.2.4), 70 % of the peak (Sezen and Moehle 2004, J. Struct. Eng. 130(11), for
+    columns), 75 % of the peak (Park 1989). A tangent at the origin, or a secant at a low level,
+    would mostly measure the noise of the first digitised rows: one specimen of the paper shows 1.8
+    times its gross elastic stiffness there, two show a force at no displacement. A share of the
+    test's peak for both curves would give the model another stiffness in every comparison. The
+    price is that a model which hardens without limit is measured after its yield; its peak ratio,
+    well above 1, shows that.
 cycles
     A half-cycle belongs to a turning point, where the displacement turns back by more than 2 % of
     its largest absolute value (`turning_points`). It lasts from zero force to zero force; what is
