@@ -78,6 +78,12 @@ def version() -> str:
     return _text(_rbsdem.rbs_version_text())
 
 
+def methods() -> list[dict[str, str]]:
+    """Return the facts of the methods of analysis, a mapping from names to texts for each."""
+    names, *rows = (line.split() for line in _text(_rbsdem.rbs_methods_text()).splitlines())
+    return [dict(zip(names, row, strict=True)) for row in rows]
+
+
 def number(value: Any, name: str) -> float:
     """Return `value` as a float, or raise `InputError` naming it."""
     try:

@@ -13,10 +13,11 @@ from rbsdem import _core
 from rbsdem._core import Array
 from rbsdem.column import Column
 from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.methods import IN_TIME
 from rbsdem.results import Result, result_from_rows
 
-#: Methods in time, as in the Fortran part (`method_names`).
-METHODS = ("auto", "rk4", "rk45", "newmark", "hht", "generalised_alpha")
+#: Names of the methods in time.
+METHODS = IN_TIME
 
 _DEFORMATIONS = ("slip", "rotation", "opening")
 _NONE = np.empty(0)

@@ -12,6 +12,17 @@ subroutine rbs_version_text(text)
    text = version
 end subroutine rbs_version_text
 
+subroutine rbs_methods_text(text)
+   use rbs_case_methods, only: method_rows
+   implicit none
+   character(len=2048), intent(out) :: text
+   !f2py threadsafe
+   character(len=:), allocatable :: rows
+
+   call method_rows(rows)
+   text = rows
+end subroutine rbs_methods_text
+
 subroutine rbs_check_spring(rule, nn, numbers, inner, status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list

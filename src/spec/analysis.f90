@@ -5,14 +5,11 @@ module rbs_spec_analysis
    use rbs_base_error, only: message_list
    use rbs_base_text, only: to_text
    use rbs_base_check, only: is_given, check_positive, check_finite, check_name
+   use rbs_case_methods, only: method_type, methods, method_named, quoted_names
    implicit none
    private
 
-   public :: analysis_spec, output_spec, method_names, event_names
-
-   character(len=17), parameter :: method_names(7) = [ &
-      'static           ', 'auto             ', 'rk4              ', 'rk45             ', &
-      'newmark          ', 'hht              ', 'generalised_alpha']
+   public :: analysis_spec, output_spec, event_names
 
    character(len=7), parameter :: event_names(2) = ['step   ', 'located']
 
@@ -21,7 +18,7 @@ module rbs_spec_analysis
 
    !> How the case is solved.
    type :: analysis_spec
-      !> One of `method_names`
+      !> One of `methods`, see `rbs_case_methods`
       character(len=20) :: method = 'static'
       !> Time step [s]; `unset`: chosen by the method
       real(wp) :: dt = unset
@@ -60,15 +57,20 @@ contains
    pure logical function dynamic(self)
       class(analysis_spec), intent(in) :: self
 
-      dynamic = self%method /= 'static'
+      type(method_type) :: method
+
+      method = method_named(self%method)
+      dynamic = method%in_time
    end function dynamic
 
    subroutine validate_analysis(self, messages)
       class(analysis_spec), intent(in) :: self
       type(message_list), intent(inout) :: messages
+      type(method_type) :: method
       integer :: place
 
-      call check_name(self%method, method_names, 'analysis: method', messages, place)
+      method = method_named(self%method)
+      call check_name(self%method, methods%name, 'analysis: method', messages, place)
       if (is_given(self%dt)) call check_positive(self%dt, 'analysis: dt', 's', messages)
       if (is_given(self%duration)) then
          call check_positive(self%duration, 'analysis: duration', 's', messages)
@@ -79,9 +81,9 @@ contains
       if (self%events /= '') call check_name(self%events, event_names, 'analysis: events', messages, place)
       call check_range(self%tolerance, 'analysis: tolerance', least_tolerance, most_tolerance, messages)
       call check_range(self%rho_infinity, 'analysis: rho_infinity', 0.0_wp, 1.0_wp, messages)
-      if (self%method == 'hht') then
-         call check_range(self%rho_infinity, "analysis: rho_infinity of method = 'hht'", 0.5_wp, 1.0_wp, &
-                          messages)
+      if (method%least_rho_infinity > 0.0_wp) then
+         call check_range(self%rho_infinity, "analysis: rho_infinity of method = '"//trim(method%name)//"'", &
+                          method%least_rho_infinity, 1.0_wp, messages)
       end if
       call refuse_unused(self, messages)
    end subroutine validate_analysis
@@ -101,35 +103,39 @@ contains
       end if
    end subroutine check_range
 
-   !> A setting that the method does not use is a misunderstanding.
+   !> Refuse settings that the method does not take: the user expects something of them.
    subroutine refuse_unused(self, messages)
       class(analysis_spec), intent(in) :: self
       type(message_list), intent(inout) :: messages
-      character(len=*), parameter :: remedy = "; remove it or set method = '"
+      type(method_type) :: method
 
-      if (.not. self%dynamic() .and. is_given(self%dt)) then
-         call messages%add("analysis: dt has no meaning for method = 'static'"//remedy//"rk4'")
-      end if
-      if (.not. self%dynamic() .and. is_given(self%duration)) then
-         call messages%add("analysis: duration has no meaning for method = 'static'"//remedy//"rk4'")
-      end if
-      if (self%events /= '' .and. self%method /= 'rk4') then
-         call messages%add("analysis: events has no meaning for method = '"//trim(self%method)//"'"// &
-                           remedy//"rk4'")
-      end if
-      if (is_given(self%tolerance) .and. self%method /= 'rk45' .and. self%method /= 'auto') then
-         call messages%add("analysis: tolerance has no meaning for method = '"//trim(self%method)//"'"// &
-                           remedy//"rk45'")
-      end if
-      if (is_given(self%rho_infinity) .and. self%method /= 'hht' .and. &
-          self%method /= 'generalised_alpha') then
-         call messages%add("analysis: rho_infinity has no meaning for method = '"//trim(self%method)//"'"// &
-                           remedy//"generalised_alpha'")
-      end if
-      if (self%allow_unstable .and. self%method /= 'rk4') then
-         call messages%add("analysis: allow_unstable has no meaning for method = '"//trim(self%method)// &
-                           "'"//remedy//"rk4'")
-      end if
+      method = method_named(self%method)
+      ! A name that is not known has been reported already.
+      if (method%name == '') return
+      call refuse(is_given(self%dt) .and. .not. method%dt, 'dt', methods%dt)
+      call refuse(is_given(self%duration) .and. .not. method%in_time, 'duration', methods%in_time)
+      call refuse(self%events /= '' .and. .not. method%events, 'events', methods%events)
+      call refuse(is_given(self%tolerance) .and. .not. method%tolerance, 'tolerance', methods%tolerance)
+      call refuse(is_given(self%rho_infinity) .and. .not. method%rho_infinity, 'rho_infinity', &
+                  methods%rho_infinity)
+      call refuse(self%allow_unstable .and. .not. method%allow_unstable, 'allow_unstable', &
+                  methods%allow_unstable)
+
+   contains
+
+      subroutine refuse(unused, key, takes)
+         logical, intent(in) :: unused
+         character(len=*), intent(in) :: key
+         !> Which of the methods take the setting
+         logical, intent(in) :: takes(:)
+         character(len=:), allocatable :: names
+
+         if (.not. unused) return
+         call quoted_names(takes, names)
+         call messages%add('analysis: '//key//" has no meaning for method = '"//trim(method%name)// &
+                           "'; remove it or set method = "//names)
+      end subroutine refuse
+
    end subroutine refuse_unused
 
    subroutine validate_output(self, messages)

@@ -389,7 +389,7 @@ contains
          call run(data, made(chain(2, 'finite')))
          call check_failed(error, data%outcome, bad_input, &
                            "method = '"//trim(method_name(method))//"' is for")
-         call check_failed(error, data%outcome, bad_input, "use 'rk45' or 'rk4' with 'finite'")
+         call check_failed(error, data%outcome, bad_input, "use 'rk4' or 'rk45' with 'finite'")
       end do
       do method = 1, methods
          data = run_data()

@@ -6,9 +6,10 @@ module test_spec
    use rbs_base_constants, only: unset, standard_gravity
    use rbs_base_error, only: error_type, message_list, bad_input
    use rbs_base_kinds, only: wp
+   use rbs_case_methods, only: methods
    use rbs_column_column, only: column_type
    use rbs_solve_make_column, only: make_column
-   use rbs_spec_analysis, only: analysis_spec, method_names
+   use rbs_spec_analysis, only: analysis_spec
    use rbs_spec_case, only: case_spec
    use rbs_base_check, only: is_given
    use rbs_spec_column, only: column_spec, most_bodies, most_dense
@@ -575,8 +576,8 @@ contains
       integer :: i
 
       nan = ieee_value(1.0_wp, ieee_quiet_nan)
-      do i = 1, size(method_names)
-         spec%method = method_names(i)
+      do i = 1, size(methods)
+         spec%method = methods(i)%name
          spec%collapse_drift = 0.1_wp
          call expect_analysis(error, spec, '')
       end do
@@ -613,8 +614,8 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer :: i
 
-      do i = 1, size(method_names)
-         associate (method => method_names(i))
+      do i = 1, size(methods)
+         associate (method => methods(i)%name)
             if (method /= 'rk4') then
                call expect_analysis(error, analysis_spec(method=method, events='step'), &
                                     "events has no meaning for method = '"//trim(method)//"'")

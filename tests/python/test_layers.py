@@ -19,6 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 #: Rooms of src/ by floor: a room may use those on lower floors, not its neighbours.
 FLOORS = (
     ("base",),
+    ("case",),
     ("spec",),
     ("hysteresis",),
     ("column", "section"),

@@ -17,18 +17,18 @@ from rbsdem.accuracy.scene import Scene
 from rbsdem.analysis import METHODS, time_history
 from rbsdem.column import Column
 from rbsdem.errors import InputError, RbsdemError
+from rbsdem.methods import IMPLICIT
+from rbsdem.methods import METHODS as FACTS
 
 #: Levels of kinematics, each with more physics than the one before.
 LEVELS = ("small", "pdelta", "finite")
-
-IMPLICIT = ("newmark", "hht", "generalised_alpha")
 
 #: Rungs of a ladder: steps are halved, tolerances divided by ten.
 RK4_RUNGS, IMPLICIT_RUNGS, TOLERANCES = 7, 8, range(4, 11)
 
 #: Cost of a step of rk45 in steps of rk4; its longest stable step as a share of that of rk4; and
 #: the tolerance below which accuracy, not stability, limits the step.
-PAIR_COST, PAIR_SHARE, PAIR_TOLERANCE = 7 / 4, 0.35, 1e-8
+PAIR_COST, PAIR_SHARE, PAIR_TOLERANCE = 7 / 4, FACTS["rk45"].limit_share, 1e-8
 
 
 class Budget:

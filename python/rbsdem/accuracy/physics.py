@@ -9,12 +9,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from rbsdem.accuracy.answer import Answer, Run, Setting, errors_of
-from rbsdem.accuracy.ladder import IMPLICIT, LEVELS, Budget, Probe, predicted, too_expensive
+from rbsdem.accuracy.ladder import LEVELS, Budget, Probe, predicted, too_expensive
 from rbsdem.accuracy.reference import Reference
 from rbsdem.accuracy.scene import VERTICAL, Scene
 from rbsdem.column import Column
 from rbsdem.damping import Damping
 from rbsdem.errors import InputError
+from rbsdem.methods import IMPLICIT, METHODS
 from rbsdem.springs import Spring
 
 #: Share of the rotary inertia that stays when it is taken off: a body without any has no equation
@@ -292,7 +293,7 @@ def _effect(
     loads = {load: values for load, values in scene.loads.items() if load != variant.without}
     other = dataclasses.replace(scene, loads=loads)
     setting = dataclasses.replace(base.setting, kinematics=column.kinematics)
-    if column.kinematics == "finite" and setting.method in IMPLICIT:
+    if column.kinematics == "finite" and not METHODS[setting.method].finite:
         setting = Setting("rk45", "finite", tolerance=1e-6)
     cost = base.seconds if setting.method == base.setting.method else look.seconds(setting)
     if column.n > scene.column.n:

@@ -9,9 +9,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from rbsdem.accuracy.answer import Answer, Run, Setting, errors_of
-from rbsdem.accuracy.ladder import IMPLICIT, Budget, Probe, predicted
+from rbsdem.accuracy.ladder import Budget, Probe, predicted
 from rbsdem.accuracy.scene import Scene
 from rbsdem.errors import RbsdemError
+from rbsdem.methods import IMPLICIT
 
 #: First refinement of a method that was not run before: tolerance of rk45, and the part of the
 #: stable step of rk4. Then the tolerance is divided by 100, down to the least, or the step by 2.

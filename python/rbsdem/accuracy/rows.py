@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from rbsdem.accuracy.answer import Errors, Run, Setting, errors_of
-from rbsdem.accuracy.ladder import IMPLICIT
 from rbsdem.accuracy.reference import Reference
+from rbsdem.methods import IMPLICIT
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,8 @@ module rbs_solve_time_run_dynamic
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
+   use rbs_case_methods, only: method_type, methods, method_named, quoted_names, usual_tolerance, &
+                               usual_rho_infinity
    use rbs_column_axial, only: check_stable
    use rbs_column_column, only: column_type, small, finite
    use rbs_loading_signal, only: signal_type
@@ -27,20 +29,11 @@ module rbs_solve_time_run_dynamic
 
    public :: plan_dynamic, run_dynamic
 
-   !> Where the user gives no step: share of the stability limit for rk4, share of the longest natural
-   !> period for the implicit methods.
-   real(wp), parameter :: auto_share = 0.2_wp, implicit_share = 0.02_wp
+   !> What `auto` assumes: an implicit step costs as much as this number of explicit ones.
+   real(wp), parameter :: implicit_step_cost = 5.0_wp
 
-   !> The pair 5(4) is stable for undamped motion up to h omega = 0.9968, rk4 up to 2 sqrt(2). Beyond, the
-   !> stiffest mode would grow until its error is above the tolerance, shaking the springs on the way.
-   real(wp), parameter :: pair_share = 0.35_wp
-
-   !> Where the user gives none: error of a step of rk45, spectral radius at infinite frequency.
-   real(wp), parameter :: usual_tolerance = 1.0e-6_wp, usual_rho = 0.8_wp
-
-   !> `auto`: an implicit step costs as much as this number of explicit ones; so many explicit body-steps take
-   !> hundredths of a second, and so many minutes.
-   real(wp), parameter :: few_times = 5.0_wp, cheap = 1.0e6_wp, dear = 3.0e9_wp
+   !> Explicit steps times bodies that take hundredths of a second, and minutes.
+   real(wp), parameter :: negligible_work = 1.0e6_wp, bearable_work = 3.0e9_wp
 
 contains
 
@@ -54,6 +47,8 @@ contains
       type(loads_type), intent(in) :: loads
       type(time_plan), intent(out) :: plan
       type(error_type), allocatable, intent(out) :: error
+      type(method_type) :: method
+      character(len=:), allocatable :: others
 
       call check_times(time, error)
       if (allocated(error)) return
@@ -64,9 +59,11 @@ contains
          call choose_method(column, analysis, time, plan, error)
          if (allocated(error)) return
       end if
-      if (is_implicit(plan%method) .and. column%kinematics == finite) then
+      method = method_named(plan%method)
+      if (column%kinematics == finite .and. .not. method%finite) then
+         call quoted_names(methods%finite .and. methods%explicit, others)
          call fatal_error(error, bad_input, "analysis: method = '"//trim(plan%method)//"' is for "// &
-                          "kinematics = 'small' and 'pdelta'; use 'rk45' or 'rk4' with 'finite'")
+                          "kinematics = 'small' and 'pdelta'; use "//others//" with 'finite'")
          return
       end if
       call plan_steps(column, analysis, time, loads, plan, error)
@@ -80,23 +77,25 @@ contains
       type(loads_type), intent(in) :: loads
       type(time_plan), intent(inout) :: plan
       type(error_type), allocatable, intent(out) :: error
+      type(method_type) :: method
       real(wp) :: lowest, highest, longest, bound
 
+      method = method_named(plan%method)
       longest = time(size(time)) - time(1)
       bound = huge(1.0_wp)
-      if (is_implicit(plan%method)) then
+      if (method%implicit) then
          call frequency_bounds(column, lowest, highest, error)
          if (allocated(error)) return
-         longest = min(longest, implicit_share*2.0_wp*pi/max(lowest, tiny(1.0_wp)*1.0e3_wp))
+         longest = min(longest, method%period_share*longest_period(lowest))
       else
          call stability_limit(column, plan%limit, error)
          if (allocated(error)) return
-         if (plan%method == 'rk45') then
-            ! Explicit all the same: its steps cannot be much longer than the limit of rk4.
+         if (method%adaptive) then
+            ! It is explicit too: its steps cannot be much longer than the limit of rk4.
             call check_length((time(size(time)) - time(1))/plan%limit, plan%limit, error)
             if (allocated(error)) return
-         else if (plan%method == 'rk4') then
-            longest = auto_share*plan%limit
+         else
+            longest = method%limit_share*plan%limit
             if (.not. analysis%allow_unstable) bound = plan%limit
          end if
       end if
@@ -113,43 +112,49 @@ contains
       end if
    end subroutine plan_steps
 
-   pure logical function is_implicit(method)
-      character(len=*), intent(in) :: method
+   !> The longest natural period [s]; a long time where there is no restoring force.
+   pure real(wp) function longest_period(lowest)
+      !> Lowest circular frequency [rad/s]
+      real(wp), intent(in) :: lowest
 
-      is_implicit = any(method == [character(len=20) :: 'newmark', 'hht', 'generalised_alpha'])
-   end function is_implicit
+      longest_period = 2.0_wp*pi/max(lowest, tiny(1.0_wp)*1.0e3_wp)
+   end function longest_period
 
-   !> The method for a case whose user leaves it to the program: the most accurate that costs no time worth
-   !> speaking of, else the cheapest.
+   !> The method for a case whose user leaves it to the program: the most accurate one if it takes hardly any
+   !> time, else the cheapest. It is chosen by counts of steps, never by a clock.
    subroutine choose_method(column, analysis, time, plan, error)
       type(column_type), intent(in) :: column
       type(analysis_spec), intent(in) :: analysis
       real(wp), intent(in) :: time(:)
       type(time_plan), intent(inout) :: plan
       type(error_type), allocatable, intent(out) :: error
+      type(method_type) :: explicit_choice, implicit_choice
       real(wp) :: lowest, highest, explicit_steps, implicit_steps, longest
       logical :: affordable
 
+      explicit_choice = method_named('rk4')
+      implicit_choice = method_named('generalised_alpha')
       call stability_limit(column, plan%limit, error)
       if (allocated(error)) return
       call frequency_bounds(column, lowest, highest, error)
       if (allocated(error)) return
-      longest = implicit_share*2.0_wp*pi/max(lowest, tiny(1.0_wp)*1.0e3_wp)
+      longest = implicit_choice%period_share*longest_period(lowest)
       associate (duration => time(size(time)) - time(1))
-         explicit_steps = real(size(time) - 1, wp) + duration/(auto_share*plan%limit)
+         explicit_steps = real(size(time) - 1, wp) + duration/(explicit_choice%limit_share*plan%limit)
          implicit_steps = real(size(time) - 1, wp) + duration/longest
       end associate
-      affordable = explicit_steps*column%n <= cheap .or. explicit_steps <= few_times*implicit_steps
-      if (column%kinematics == finite) affordable = .true.
-      if (is_given(analysis%tolerance) .and. (affordable .or. explicit_steps*column%n <= dear)) then
+      affordable = explicit_steps*column%n <= negligible_work .or. &
+                   explicit_steps <= implicit_step_cost*implicit_steps
+      if (column%kinematics == finite .and. .not. implicit_choice%finite) affordable = .true.
+      if (is_given(analysis%tolerance) .and. (affordable .or. explicit_steps*column%n <= bearable_work)) then
          plan%method = 'rk45'
          plan%reason = 'a tolerance of '//to_text(analysis%tolerance)//' asks for controlled errors'
       else if (.not. affordable) then
-         plan%method = 'generalised_alpha'
+         plan%method = implicit_choice%name
          plan%reason = 'stiff: rk4 would take '//to_text(anint(explicit_steps))//' steps for its '// &
                        'stability, this method takes about '//to_text(anint(implicit_steps))
       else
-         plan%method = 'rk4'
+         plan%method = explicit_choice%name
          plan%located = any(column%spring%rule /= 'elastic')
          plan%reason = to_text(anint(explicit_steps))//' steps are no burden'
          if (column%kinematics == finite) plan%reason = 'finite rotations: explicit'
@@ -204,9 +209,11 @@ contains
       type(time_plan), intent(in) :: plan
       type(rk4_stepper), allocatable :: fixed
       type(located_stepper), allocatable :: located
+      type(method_type) :: method, first
       real(wp) :: rho
 
-      rho = usual_rho
+      method = method_named(plan%method)
+      rho = usual_rho_infinity
       if (is_given(analysis%rho_infinity)) rho = analysis%rho_infinity
       select case (plan%method)
       case ('newmark')
@@ -221,8 +228,10 @@ contains
          call located%scheme%create(column)
          located%tolerance = usual_tolerance
          if (is_given(analysis%tolerance)) located%tolerance = analysis%tolerance
-         located%next_step = auto_share*plan%limit
-         located%longest = pair_share*plan%limit
+         ! The first step is that of rk4.
+         first = method_named('rk4')
+         located%next_step = first%limit_share*plan%limit
+         located%longest = method%limit_share*plan%limit
          located%shortest = 1.0e-6_wp*plan%limit
          call move_alloc(located, stepper)
       case default

@@ -1,0 +1,62 @@
+"""Facts of the methods of analysis, from the table of the Fortran part."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rbsdem import _core
+
+
+@dataclass(frozen=True)
+class Method:
+    """What is known of a method.
+
+    Attributes
+    ----------
+    name : str
+        As in `time_history(method=...)` and in a case file.
+    order : int
+        Order of accuracy; 0 for "static" and "auto".
+    kind : {"static", "choice", "explicit", "implicit"}
+        "choice" is "auto", which stands for one of the others.
+    adaptive : bool
+        Whether the length of its steps follows from a tolerance.
+    settings : frozenset of str
+        Which of dt, events, tolerance, rho_infinity and allow_unstable it takes.
+    finite : bool
+        Whether it takes `kinematics="finite"`.
+    limit_share, period_share : float
+        Its own step in shares of the stability limit of "rk4" and of the longest natural period; 0
+        if it does not depend on that. That of "rk45" is its longest one.
+    """
+
+    name: str
+    order: int
+    kind: str
+    adaptive: bool
+    settings: frozenset[str]
+    finite: bool
+    limit_share: float
+    period_share: float
+
+
+_SETTINGS = ("dt", "events", "tolerance", "rho_infinity", "allow_unstable")
+
+#: All methods by name.
+METHODS = {
+    row["method"]: Method(
+        name=row["method"],
+        order=int(row["order"]),
+        kind=row["kind"],
+        adaptive=row["adaptive"] == "yes",
+        settings=frozenset(name for name in _SETTINGS if row[name] == "yes"),
+        finite=row["finite"] == "yes",
+        limit_share=float(row["limit_share"]),
+        period_share=float(row["period_share"]),
+    )
+    for row in _core.methods()
+}
+
+#: Names of the methods in time, and of those among them whose steps are implicit.
+IN_TIME = tuple(name for name, method in METHODS.items() if method.kind != "static")
+IMPLICIT = tuple(name for name, method in METHODS.items() if method.kind == "implicit")

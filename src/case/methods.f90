@@ -1,0 +1,118 @@
+!> Facts of the methods of analysis, in one table. The choice of `auto`, the plan of the steps, validation,
+!> messages, the Python package and the docs read them here.
+module rbs_case_methods
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   implicit none
+   private
+
+   public :: method_type, methods, method_named, quoted_names, method_rows
+   public :: usual_tolerance, usual_rho_infinity, methods_columns
+
+   !> Where the user gives none: error of a step of rk45, spectral radius at infinite frequency.
+   real(wp), parameter :: usual_tolerance = 1.0e-6_wp, usual_rho_infinity = 0.8_wp
+
+   !> What is to be known of a method.
+   type :: method_type
+      character(len=17) :: name = ''
+      !> Order of accuracy; 0: not of an order of its own
+      integer :: order = 0
+      !> Whether it is an analysis in time
+      logical :: in_time = .true.
+      !> Whether a step follows from the state at its begin, or from an equation with the state at its end.
+      !> `auto` is neither: it stands for one of the others.
+      logical :: explicit = .false., implicit = .false.
+      !> Whether the length of its steps follows from a tolerance
+      logical :: adaptive = .false.
+      !> Settings of the analysis that it takes
+      logical :: dt = .true., events = .false., tolerance = .false., rho_infinity = .false.
+      logical :: allow_unstable = .false.
+      !> Whether it takes `kinematics = 'finite'`
+      logical :: finite = .true.
+      !> Its step where the user gives none, in shares of the stability limit of rk4 or of the longest natural
+      !> period; that of rk45 is the longest one. 0: it does not depend on that
+      real(wp) :: limit_share = 0.0_wp, period_share = 0.0_wp
+      !> Least spectral radius at infinite frequency
+      real(wp) :: least_rho_infinity = 0.0_wp
+   end type method_type
+
+   !> The pair 5(4) of rk45 is stable for undamped motion up to h omega = 0.9968, rk4 up to 2 sqrt(2): 0.3524
+   !> of the limit of rk4. Beyond, the stiffest mode would grow until its error is above the tolerance, and
+   !> shake the springs on the way.
+   type(method_type), parameter :: methods(7) = [ &
+      method_type('static', in_time=.false., dt=.false.), &
+      method_type('auto', tolerance=.true.), &
+      method_type('rk4', order=4, explicit=.true., events=.true., allow_unstable=.true., &
+                  limit_share=0.2_wp), &
+      method_type('rk45', order=5, explicit=.true., adaptive=.true., tolerance=.true., &
+                  limit_share=0.35_wp), &
+      method_type('newmark', order=2, implicit=.true., finite=.false., period_share=0.02_wp), &
+      method_type('hht', order=2, implicit=.true., rho_infinity=.true., finite=.false., &
+                  period_share=0.02_wp, least_rho_infinity=0.5_wp), &
+      method_type('generalised_alpha', order=2, implicit=.true., rho_infinity=.true., finite=.false., &
+                  period_share=0.02_wp)]
+
+   !> Names of what `method_rows` tells.
+   character(len=*), parameter :: methods_columns = 'method order kind adaptive dt events tolerance '// &
+                                  'rho_infinity allow_unstable finite limit_share period_share'
+
+contains
+
+   !> The facts of one method; of a name that is not known, those of a method without a name.
+   pure type(method_type) function method_named(name) result(method)
+      character(len=*), intent(in) :: name
+      integer :: i
+
+      do i = 1, size(methods)
+         if (methods(i)%name == name) method = methods(i)
+      end do
+   end function method_named
+
+   !> Names in quotes of some of the methods: "'rk4' or 'rk45'".
+   subroutine quoted_names(wanted, text)
+      !> Which of them, in the order of `methods`
+      logical, intent(in) :: wanted(:)
+      character(len=:), allocatable, intent(out) :: text
+      integer :: i, left
+
+      text = ''
+      left = count(wanted)
+      do i = 1, size(methods)
+         if (.not. wanted(i)) cycle
+         left = left - 1
+         text = text//"'"//trim(methods(i)%name)//"'"
+         if (left == 1) text = text//' or '
+         if (left > 1) text = text//', '
+      end do
+   end subroutine quoted_names
+
+   !> The table as text: a line of `methods_columns`, then a line for each method, with blanks between.
+   subroutine method_rows(text)
+      character(len=:), allocatable, intent(out) :: text
+      type(method_type) :: method
+      character(len=8) :: kind
+      integer :: i
+
+      text = methods_columns
+      do i = 1, size(methods)
+         method = methods(i)
+         kind = 'choice'
+         if (method%explicit) kind = 'explicit'
+         if (method%implicit) kind = 'implicit'
+         if (.not. method%in_time) kind = 'static'
+         text = text//new_line('a')//trim(method%name)//' '//to_text(method%order)//' '//trim(kind)// &
+                yes_or_no(method%adaptive)//yes_or_no(method%dt)//yes_or_no(method%events)// &
+                yes_or_no(method%tolerance)//yes_or_no(method%rho_infinity)// &
+                yes_or_no(method%allow_unstable)//yes_or_no(method%finite)//' '// &
+                to_text(method%limit_share)//' '//to_text(method%period_share)
+      end do
+   end subroutine method_rows
+
+   pure function yes_or_no(fact) result(text)
+      logical, intent(in) :: fact
+      character(len=merge(4, 3, fact)) :: text
+
+      text = merge(' yes', ' no ', fact)
+   end function yes_or_no
+
+end module rbs_case_methods

@@ -1,0 +1,91 @@
+"""Facts of the methods of analysis: what the docs say is what the program has and does."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rbsdem
+from rbsdem import _core
+from rbsdem.methods import IMPLICIT, IN_TIME, METHODS
+
+ROOT = Path(__file__).resolve().parents[2]
+VALUES = {
+    "dt": 1e-3,
+    "events": "located",
+    "tolerance": 1e-6,
+    "rho_infinity": 0.9,
+    "allow_unstable": True,
+}
+
+
+def cells(line: str) -> list[str]:
+    return [cell.strip().strip("`'") for cell in line.strip().strip("|").split("|")]
+
+
+def test_the_docs_have_the_table_of_the_program() -> None:
+    lines = (ROOT / "docs/input.md").read_text(encoding="utf-8").splitlines()
+    head = next(i for i, line in enumerate(lines) if cells(line)[:2] == ["method", "order"])
+    body = lines[head + 2 : head + 2 + len(METHODS)]
+    assert not lines[head + 2 + len(METHODS)].startswith("|")
+    written = [dict(zip(cells(lines[head]), cells(line), strict=True)) for line in body]
+    assert written == _core.methods()
+
+
+def test_names_in_time() -> None:
+    assert set(METHODS) == {"static", *IN_TIME}
+    assert set(IMPLICIT) == {"newmark", "hht", "generalised_alpha"}
+    assert rbsdem.analysis.METHODS == IN_TIME
+
+
+def column(kinematics: str) -> rbsdem.Column:
+    return rbsdem.Column(
+        1.0, 100.0, rbsdem.Elastic(1e6), rbsdem.Elastic(1e6), kinematics=kinematics
+    )
+
+
+@pytest.mark.parametrize("method", IN_TIME)
+@pytest.mark.parametrize("setting", sorted(VALUES))
+def test_a_method_takes_the_settings_of_its_row(method: str, setting: str) -> None:
+    def run() -> None:
+        rbsdem.time_history(
+            column("small"),
+            time=[0.0, 0.01],
+            force=np.array([0.0, 1.0]),
+            method=method,
+            **{setting: VALUES[setting]},
+        )
+
+    if setting in METHODS[method].settings:
+        run()
+    else:
+        with pytest.raises(rbsdem.InputError, match=f"{setting} has no meaning for method"):
+            run()
+
+
+@pytest.mark.parametrize("method", IN_TIME)
+def test_a_method_takes_finite_rotations_if_its_row_says_so(method: str) -> None:
+    def run() -> None:
+        rbsdem.time_history(
+            column("finite"), time=[0.0, 0.01], force=np.array([0.0, 1.0]), method=method
+        )
+
+    if METHODS[method].finite:
+        run()
+    else:
+        with pytest.raises(rbsdem.InputError, match="use 'rk4' or 'rk45' with 'finite'"):
+            run()
+
+
+@pytest.mark.parametrize("method", ["rk4", *IMPLICIT])
+def test_a_method_takes_the_step_of_its_row(method: str) -> None:
+    row = METHODS[method]
+    modes = rbsdem.modes(column("small"))
+    own = row.limit_share * modes.stable_step + row.period_share / modes.frequency[0]
+    duration = 1000.5 * own
+    result = rbsdem.time_history(
+        column("small"), time=[0.0, duration], force=np.array([0.0, 1.0]), method=method
+    )
+    assert result.summary["steps"] == 1001
