@@ -5,7 +5,7 @@ module rbs_hysteresis_springs
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_factory, only: new_rule
-   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_journal, only: journal_type, rule_slot
    use rbs_hysteresis_segment, only: segment
    use rbs_spec_spring, only: spring_spec
    implicit none
@@ -16,25 +16,6 @@ module rbs_hysteresis_springs
    !> More lines than this within one move mean that a rule leads in a circle of lines without length, which
    !> is a fault of the rule. The longest correct move closes all the open inner loops that a rule remembers.
    integer, parameter :: most_lines = 10000
-
-   !> Holds one rule. Arrays of a polymorphic type are kept out of the program; arrays of this are fine.
-   type :: rule_slot
-      class(rule_type), allocatable :: rule
-   end type rule_slot
-
-   !> Springs as they were before they changed their lines.
-   type :: journal_type
-      logical :: open = .false.
-      !> Deformations and works at the begin (count)
-      real(wp), allocatable :: d(:), work(:)
-      integer :: events = 0
-      !> Springs that have changed their lines since, with what they had (changed)
-      integer :: changed = 0
-      integer, allocatable :: spring(:)
-      logical, allocatable :: is_kept(:)
-      type(segment), allocatable :: line(:)
-      type(rule_slot), allocatable :: slot(:)
-   end type journal_type
 
    !> `count` springs in their present state. Assignment copies everything, memory of the rules too.
    type :: spring_array
@@ -269,28 +250,14 @@ contains
    subroutine mark(self)
       class(spring_array), intent(inout) :: self
 
-      associate (journal => self%journal)
-         if (.not. allocated(journal%is_kept)) then
-            allocate (journal%is_kept(self%count), source=.false.)
-            allocate (journal%spring(self%count), journal%line(self%count), journal%slot(self%count))
-         end if
-         call self%forget_mark()
-         journal%open = .true.
-         journal%d = self%d
-         journal%work = self%work
-         journal%events = self%events
-      end associate
+      call self%journal%start(self%d, self%work, self%events)
    end subroutine mark
 
    !> Go on without the way back.
    subroutine forget_mark(self)
       class(spring_array), intent(inout) :: self
 
-      associate (journal => self%journal)
-         journal%is_kept(journal%spring(:journal%changed)) = .false.
-         journal%changed = 0
-         journal%open = .false.
-      end associate
+      call self%journal%forget()
    end subroutine forget_mark
 
    !> Bring back the state that was marked, to the last bit. The mark stays.
@@ -315,21 +282,6 @@ contains
          where (self%one_way < 0) self%last = self%d
       end associate
    end subroutine restore
-
-   !> Keep a spring that is about to change its line for the first time since the mark.
-   subroutine keep(self, i)
-      type(spring_array), intent(inout) :: self
-      integer, intent(in) :: i
-
-      associate (journal => self%journal)
-         if (journal%is_kept(i)) return
-         journal%is_kept(i) = .true.
-         journal%changed = journal%changed + 1
-         journal%spring(journal%changed) = i
-         journal%line(journal%changed) = line_of(self, i)
-         journal%slot(journal%changed) = self%slot(i)
-      end associate
-   end subroutine keep
 
    !> Move one spring monotonically to a new deformation, along as many lines as lie between.
    subroutine move(self, i, d)
@@ -377,8 +329,8 @@ contains
       integer, intent(in) :: i, direction
       type(segment) :: line
 
-      if (self%journal%open) call keep(self, i)
       line = line_of(self, i)
+      if (self%journal%open) call self%journal%keep(i, line, self%slot(i))
       if (self%one_way(i) /= -direction) call walk(self, i, merge(line%hi, line%lo, direction > 0))
       call self%slot(i)%rule%next(line, direction)
       self%events = self%events + 1

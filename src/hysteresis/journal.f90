@@ -1,0 +1,83 @@
+!> What springs had before they changed their lines, so that a trial can be taken back.
+module rbs_hysteresis_journal
+   use rbs_base_kinds, only: wp
+   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_segment, only: segment
+   implicit none
+   private
+
+   public :: journal_type, rule_slot
+
+   !> Holds one rule. Arrays of a polymorphic type are kept out of the program; arrays of this are fine.
+   type :: rule_slot
+      class(rule_type), allocatable :: rule
+   end type rule_slot
+
+   type :: journal_type
+      !> Whether changes are being kept
+      logical :: open = .false.
+      !> Deformations and works at the begin (count) [m or rad, J]
+      real(wp), allocatable :: d(:), work(:)
+      !> Number of lines left at the begin
+      integer :: events = 0
+      !> Number of springs that have changed their lines since, and which (changed)
+      integer :: changed = 0
+      integer, allocatable :: spring(:)
+      !> Whether a spring is among them (count)
+      logical, allocatable :: is_kept(:)
+      !> The lines that they had, and their rules with what these remember (changed)
+      type(segment), allocatable :: line(:)
+      type(rule_slot), allocatable :: slot(:)
+   contains
+      procedure :: start
+      procedure :: keep
+      procedure :: forget
+   end type journal_type
+
+contains
+
+   !> Begin to keep changes.
+   subroutine start(self, d, work, events)
+      class(journal_type), intent(inout) :: self
+      !> Present deformations and works (count)
+      real(wp), intent(in) :: d(:), work(:)
+      integer, intent(in) :: events
+      integer :: n
+
+      n = size(d)
+      if (.not. allocated(self%is_kept)) then
+         allocate (self%is_kept(n), source=.false.)
+         allocate (self%spring(n), self%line(n), self%slot(n), self%d(n), self%work(n))
+      end if
+      call self%forget()
+      self%open = .true.
+      self%d(:) = d
+      self%work(:) = work
+      self%events = events
+   end subroutine start
+
+   !> Keep a spring that is about to change its line, if it is the first time.
+   subroutine keep(self, i, line, slot)
+      class(journal_type), intent(inout) :: self
+      integer, intent(in) :: i
+      type(segment), intent(in) :: line
+      type(rule_slot), intent(in) :: slot
+
+      if (self%is_kept(i)) return
+      self%is_kept(i) = .true.
+      self%changed = self%changed + 1
+      self%spring(self%changed) = i
+      self%line(self%changed) = line
+      self%slot(self%changed) = slot
+   end subroutine keep
+
+   !> Forget what has been kept, and keep no more.
+   subroutine forget(self)
+      class(journal_type), intent(inout) :: self
+
+      self%is_kept(self%spring(:self%changed)) = .false.
+      self%changed = 0
+      self%open = .false.
+   end subroutine forget
+
+end module rbs_hysteresis_journal
