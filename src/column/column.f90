@@ -58,7 +58,7 @@ module rbs_column_column
       !> or that of the present line
       real(wp) :: mass_damping = 0.0_wp, stiffness_damping = 0.0_wp
       logical :: tangent_damping = .false.
-      !> Damping ratios of the modes (first modes, or one for all); not allocated: none
+      !> Damping ratios of the modes (first modes, or one for all); not allocated without modal damping
       real(wp), allocatable :: modal_damping(:)
       !> Numbers of the springs (unknowns), shear first, and their initial stiffness
       type(spring_spec), allocatable :: spring(:)
@@ -124,7 +124,7 @@ contains
          column%joint_height(i + 1) = column%joint_height(i) + column%length(i)
       end do
       column%arm(:n) = 1.0_wp
-      ! Summed from the top down: the lever arm of an upper joint is no difference of large heights.
+      ! Summed from the top down: the lever arm of an upper joint is not a difference of large heights.
       column%arm(2*n) = column%length(n)
       do i = n - 1, 1, -1
          column%arm(n + i) = column%arm(n + i + 1) + column%length(i)

@@ -13,7 +13,7 @@
 !>     t_{i-1} . (b_i'' - T_{i-1}'') = u'' + 2 w' om + w om' - u om^2
 !>     e_{i-1} . (b_i'' - T_{i-1}'') = w'' - 2 u' om - u om' - w om^2    (om of body i - 1)
 !>
-!> all reckoned in the directions of the two bodies, so that only sine and cosine of phi_i are needed. A
+!> all in the directions of the two bodies, so that only sine and cosine of phi_i are needed. A
 !> field of acceleration that all bodies share (ground, weight) is felt by the first joint alone. No mass
 !> matrix is built and none is factored.
 module rbs_column_finite

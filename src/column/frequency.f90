@@ -211,15 +211,15 @@ contains
          k = column%initial_stiffness(2*column%n + i)
          t = t + s*column%mass(i)
          pivot = k - t
-         ! A pivot of nothing is as good as a small one.
+         ! A small pivot in place of zero changes nothing but round-off.
          if (.not. abs(pivot) > 0.0_wp) pivot = epsilon(1.0_wp)*k
          if (pivot < 0.0_wp) number = number + 1
          t = t*(k/pivot)
       end do
    end function slower_openings
 
-   !> A number between two positive bounds, by magnitude while they are far apart; none when they are
-   !> neighbours.
+   !> A number between two positive bounds, the geometric mean while they are far apart. `more` is false when
+   !> there is no number between them.
    pure subroutine split(below, above, between, more)
       real(wp), intent(in) :: below, above
       real(wp), intent(out) :: between

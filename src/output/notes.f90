@@ -1,4 +1,4 @@
-!> What a run allows and the user perhaps does not mean.
+!> Notes on a run: what is allowed but perhaps not intended.
 module rbs_output_notes
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -9,17 +9,17 @@ module rbs_output_notes
 
    public :: rotation_note
 
-   !> Rotations beyond this are no small ones [rad].
+   !> Rotations larger than this are not small [rad].
    real(wp), parameter :: largest_small = 0.1_wp
 
 contains
 
-   !> Small rotations that grew large. The first term that is left out of sin(th) is th^3/6: an error of
-   !> th^2/6, and of th^2/2 in cos(th), which lever arms contain.
+   !> Rotations that are taken as small but have grown large. The first term that is left out of sin(th) is
+   !> th^3/6, an error of th^2/6; in cos(th), which lever arms contain, the error is th^2/2.
    subroutine rotation_note(column, summary, text)
       type(column_type), intent(in) :: column
       type(summary_type), intent(in) :: summary
-      !> Empty if there is nothing to say
+      !> Empty if there is no note
       character(len=:), allocatable, intent(out) :: text
       character(len=6) :: kinematics
       real(wp) :: percent

@@ -1,4 +1,4 @@
-!> Told by a long run how far it is.
+!> An observer of a long run, which is told now and then what share has been completed.
 module rbs_output_observer
    use rbs_base_kinds, only: wp
    implicit none
@@ -16,7 +16,7 @@ module rbs_output_observer
          import :: observer_type, wp
          implicit none
          class(observer_type), intent(inout) :: self
-         !> Share of the run that is done, 0 to 1
+         !> Share of the run that has been completed, 0 to 1
          real(wp), intent(in) :: share
       end subroutine update_interface
    end interface

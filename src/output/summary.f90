@@ -1,4 +1,4 @@
-!> What is told of a run besides its rows.
+!> What is reported of a run besides its rows.
 module rbs_output_summary
    use rbs_base_kinds, only: wp
    use rbs_output_row, only: row_input, row_kinetic, row_spring, row_damping, row_residual
@@ -9,7 +9,7 @@ module rbs_output_summary
 
    integer, parameter :: summary_size = 16
 
-   !> Names of the numbers of `as_array`.
+   !> Names of the values of `as_array`.
    character(len=28), parameter :: summary_names(summary_size) = [ &
       'steps                       ', 'rows                        ', 'events                      ', &
       'time_step_s                 ', 'stable_step_s               ', 'peak_displacement_m         ', &
@@ -19,7 +19,7 @@ module rbs_output_summary
       'collapsed                   ']
 
    type :: summary_type
-      !> Steps or increments taken, rows offered to the recorder, lines of springs left
+      !> Steps or increments taken, rows offered to the recorder, lines that springs have left
       integer :: steps = 0, rows = 0, events = 0
       !> Time step and stability limit of the scheme [s]; 0 in a static analysis
       real(wp) :: time_step = 0.0_wp, stable_step = 0.0_wp
@@ -74,7 +74,7 @@ contains
       self%largest = max(self%largest, abs(row(row_input)), row(row_kinetic) + row(row_spring))
    end subroutine see
 
-   !> The numbers in the order of `summary_names`.
+   !> The values in the order of `summary_names`.
    pure function as_array(self) result(values)
       class(summary_type), intent(in) :: self
       real(wp) :: values(summary_size)

@@ -1,4 +1,4 @@
-!> Values of a loading must be numbers that can be reckoned with.
+!> Values of a loading must be finite and within the range of the arithmetic.
 module rbs_solve_check_values
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use rbs_base_constants, only: beyond_meaning
@@ -12,7 +12,7 @@ module rbs_solve_check_values
 
 contains
 
-   !> Values must be finite, and so must what is made of them.
+   !> Refuse values that are not finite, or whose products would not be finite.
    subroutine check_values(values, name, error)
       real(wp), intent(in) :: values(:)
       character(len=*), intent(in) :: name

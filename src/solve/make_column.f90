@@ -1,4 +1,4 @@
-!> A column from what the user asked for.
+!> The column that the user has described.
 module rbs_solve_make_column
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_text, only: to_text

@@ -299,7 +299,7 @@ contains
             if (method == 3) data%analysis%tolerance = 1.0e-4_wp
             call run(data, made(spec))
             if (method < 4) then
-               call check_failed(error, data%outcome, analysis_failed, 'the motion has no bounds any more at')
+               call check_failed(error, data%outcome, analysis_failed, 'the motion grows without bounds at')
             else
                call check_failed(error, data%outcome, analysis_failed, 'Rows up to there are kept')
             end if

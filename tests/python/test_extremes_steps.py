@@ -82,7 +82,7 @@ def measure_above_the_limit(n: int, share: float, events: str = "step"):
     column = chain(n)
     initial, omega = all_modes(column)
     dt = share * 2 * np.sqrt(2) / omega[-1]
-    with pytest.raises(rbsdem.SolveError, match="no bounds any more") as caught:
+    with pytest.raises(rbsdem.SolveError, match="grows without bounds") as caught:
         rbsdem.time_history(
             column, [0.0, 1e6 * dt], dt=dt, every=10, initial=initial, events=events,
             allow_unstable=True,
@@ -117,7 +117,7 @@ def test_above_the_limit_springs_that_harden_without_end_let_it_grow_too(n):
     spring = rbsdem.Bilinear(5e8, 1e-3, 4e8)
     column = rbsdem.Column(2.0, 500.0, spring, spring, n=n)
     limit = rbsdem.modes(column).stable_step
-    with pytest.raises(rbsdem.SolveError, match="no bounds any more at time"):
+    with pytest.raises(rbsdem.SolveError, match="grows without bounds at time"):
         rbsdem.time_history(
             column, [0.0, 1e6 * limit], dt=1.5 * limit, initial={"slip": np.full(n, 2e-3)},
             allow_unstable=True, every=1000,

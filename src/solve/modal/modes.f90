@@ -67,7 +67,7 @@ contains
                           'A dynamic analysis does not need them, it finds its stable step for any n')
          return
       end if
-      ! Refuses too a column that buckles by itself.
+      ! This also refuses a column that buckles under its axial load alone.
       call stability_limit(column, modes%stable_step, error)
       if (allocated(error)) return
       call set_condition(column, modes)
@@ -158,7 +158,7 @@ contains
       !> (m) and (m, m)
       real(wp), intent(out) :: omega(:), shapes(:, :)
       type(error_type), allocatable, intent(out) :: error
-      !> (m, m), one if not there
+      !> (m, m); the identity if it is absent
       real(wp), intent(in), contiguous, optional :: root(:, :)
       real(wp), allocatable :: scaled(:, :), left(:, :), values(:)
       integer :: i, m

@@ -20,7 +20,7 @@ module rbs_solve_static_bordered
    !> Added in proportion to the initial stiffness where elimination meets a zero: no more than round-off.
    real(wp), parameter :: round_off = 8.0_wp*epsilon(1.0_wp)
 
-   !> If one step of refinement changes the answer by more than this share, there is none.
+   !> If one step of refinement changes the solution by more than this share, the system counts as singular.
    real(wp), parameter :: no_answer = 1.0e-3_wp
 
    type :: bordered_band
@@ -28,7 +28,7 @@ module rbs_solve_static_bordered
       integer :: size = 0, width = 0
       !> The matrix, to be filled before `factor` (4, size): band(1 + i - j, j) = a(i, j), zero elsewhere
       real(wp), allocatable :: band(:, :)
-      !> Initial stiffness of the unknowns (size), to be given once: all is reckoned in shares of it
+      !> Initial stiffness of the unknowns (size), to be given once: everything is scaled by it
       real(wp), allocatable :: stiffness(:)
       !> Whether the matrix is positive definite, after `factor`
       logical :: positive = .false.
@@ -107,7 +107,7 @@ contains
       !> a and c (size); without c it is a
       real(wp), intent(in), contiguous :: column(:)
       real(wp), intent(in), contiguous, optional :: row(:)
-      !> Whether there can be one answer
+      !> Whether the system can have a unique solution
       logical, intent(out) :: regular
       integer :: m
 
@@ -137,7 +137,7 @@ contains
       !> Solutions (size, m), (m)
       real(wp), intent(out), contiguous :: x(:, :)
       real(wp), intent(out) :: y(:)
-      !> Whether there is one answer
+      !> Whether the system has a unique solution
       logical, intent(out) :: regular
       real(wp) :: change(size(g)), missing(size(g))
       integer :: j
@@ -148,7 +148,7 @@ contains
       call eliminate(self, self%right, g, x, y, regular)
       if (.not. regular) return
       if (.not. self%positive) then
-         ! What elimination left behind, once: also the proof that the answer is one.
+         ! One step of refinement. Its size also shows whether the system has a solution.
          do j = 1, size(g)
             self%right(:, j) = self%right(:, j) - times(self, x(:, j)) + self%border(:, 1)*y(j)
             missing(j) = g(j) - dot_product(self%border(:, 2), x(:, j))

@@ -17,7 +17,7 @@ module rbs_solve_static_corner
    !> springs.
    integer, parameter :: most_tried = 14, most_work = 1000000
 
-   !> How often all springs may be changed at once without fewer being in the way than ever before.
+   !> How often all springs may be changed at once while their least number without room stays the same.
    integer, parameter :: patience = 3
 
 contains
@@ -27,7 +27,7 @@ contains
    !> Springs without room are put on the next line, all at once as long as this leaves fewer and fewer
    !> without room, else the first one first: while the column is stable this ends (Murty's least-index
    !> rule; with blocks: Judice and Pires, Computers Oper. Res. 21 (1994) 587-596). Beyond the peak it may
-   !> go in a circle.
+   !> cycle.
    subroutine turn_corner(path, direction, target, error)
       class(static_path), intent(inout) :: path
       integer, intent(in) :: direction
@@ -73,7 +73,7 @@ contains
       end if
    end subroutine turn_corner
 
-   !> Without stiffness under a driven force this way, but some springs would unload: let them.
+   !> There is no stiffness under the driven force in this direction, but some springs would unload: let them.
    subroutine let_unload(path, direction, some)
       class(static_path), intent(inout) :: path
       integer, intent(in) :: direction
@@ -100,7 +100,7 @@ contains
       end do
    end function without_room
 
-   !> The way that a spring should go and cannot, 0 if it can.
+   !> The direction in which a spring should go but cannot, 0 if it can.
    pure integer function barred(path, i)
       class(static_path), intent(in) :: path
       integer, intent(in) :: i
@@ -131,8 +131,8 @@ contains
    end subroutine change_lines
 
    !> Try both ways of the springs at the corner in all combinations, one change at a time (Gray code),
-   !> until all have room. Of more springs than can be tried, those come first that the search went back
-   !> and forth with.
+   !> until all have room. Of more springs than can be tried, those come first that the search
+   !> has changed more than once.
    subroutine try_all_ways(path, direction, found)
       class(static_path), intent(inout) :: path
       integer, intent(in) :: direction
@@ -184,7 +184,7 @@ contains
       end if
    end function way_out
 
-   !> Say why the path cannot be carried on.
+   !> Report why the path cannot be continued.
    subroutine report_no_line(path, target, error)
       class(static_path), intent(in) :: path
       real(wp), intent(in) :: target
@@ -199,7 +199,7 @@ contains
       call name_spring(path, spring)
       call critical_factor(path%column, factor, ignored)
       if (.not. path%by_force) then
-         call fatal_error(error, analysis_failed, 'the column has no single answer to the displacement '// &
+         call fatal_error(error, analysis_failed, 'the equilibrium is not unique at the displacement '// &
                           to_text(target)//' m at '//state//': '//spring// &
                           ' and the axial load leave it without stiffness. Change the axial load '// &
                           'or the stiffness after yield')

@@ -18,7 +18,7 @@ module rbs_solve_static_curve
    real(wp), parameter :: round_off = 1.0e-13_wp
 
    !> A rate below this share of that of the top is round-off, and a difference of rates below this share of
-   !> their own size is none.
+   !> their own size is zero.
    real(wp), parameter :: noise = 1.0e-13_wp, same_rate = 1.0e-8_wp
 
    !> A spring that goes back less than this share of its deformation has not turned.
@@ -55,12 +55,12 @@ contains
       self%length = length
       self%near = near
       self%far = far
-      ! Well above what `clean` takes for round-off, so that a motion found to have turned is seen to.
+      ! Well above what `clean` takes for round-off, so that a motion found to have turned counts as turned.
       self%least(1) = 30.0_wp*noise*max(abs(near%displacement_rate), abs(far%displacement_rate))
       self%least(2) = self%least(1)/column%joint_height(column%n + 1)
    end subroutine set
 
-   !> Rates without round-off: below it there is none.
+   !> Set rates that are round-off to zero.
    pure function clean(column, point) result(rate)
       type(column_type), intent(in) :: column
       type(path_point), intent(in) :: point
@@ -135,7 +135,7 @@ contains
       end associate
    end function work
 
-   !> a/b - c/d; where there is no slope it counts as none.
+   !> a/b - c/d; a quotient whose divisor is zero counts as zero.
    elemental real(wp) function difference(a, b, c, d)
       real(wp), intent(in) :: a, b, c, d
 
@@ -144,8 +144,8 @@ contains
    end function difference
 
    !> The least forward rate of the springs on one-way lines, in shares of their largest, and `same_rate`
-   !> more: below zero a motion has clearly turned back. What the spring does wrong until then is the square
-   !> of that.
+   !> more: below zero a motion has clearly turned back. The error of the spring until then is the
+   !> square of that.
    pure real(wp) function least_rate(self, springs, rate) result(least)
       class(curve_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
@@ -241,7 +241,7 @@ contains
                   if (.not. beyond > 0.0_wp) cycle
                   if (.not. side*(at_share(self, i, beyond) - finish) > on_the_end*abs(finish)) cycle
                end if
-               ! Not there yet where another has been: it comes later.
+               ! Where another spring has passed, this one has not yet: it comes later.
                if (share < beyond) then
                   if (.not. side*(at_share(self, i, share) - finish) > 0.0_wp) cycle
                   beyond = share

@@ -23,8 +23,8 @@ module rbs_solve_static_equilibrium
    !> A pivot below this share of the initial stiffness is round-off.
    real(wp), parameter :: no_stiffness = 1.0e-12_wp
 
-   !> A relative rotation is a small difference of absolute ones. What that costs comes back if the
-   !> residual is taken in the deformations of the joints and solved for again.
+   !> A relative rotation is a small difference of absolute ones. The digits that this costs are
+   !> recovered: the residual is taken in the deformations of the joints and solved for again.
    integer, parameter :: refinements = 1
 
    !> Most bodies for which full matrices are faster than bands.
@@ -99,7 +99,7 @@ contains
       call self%tangent%create(2, stiffness)
    end subroutine create_band
 
-   !> What is missing to equilibrium: a F - f - K_G q.
+   !> Residual of the equilibrium: a F - f - K_G q.
    subroutine residual(self, q, f, force, r)
       class(equilibrium_type), intent(in) :: self
       !> Deformations and forces of the springs (2 n)
@@ -201,13 +201,13 @@ contains
       class(equilibrium_type), intent(inout) :: self
       !> Stiffness of the springs (2 n)
       real(wp), intent(in) :: k(:)
-      !> Residual (2 n), and what is missing to the displacement [m]
+      !> Residual (2 n), and what is missing from the displacement [m]
       real(wp), intent(in) :: r(:), gap
       !> Change of the deformations per metre, and what takes the residuals away (2 n)
       real(wp), intent(out), contiguous :: rate(:), correction(:)
       !> Change of the force [N/m], and of the force with the correction [N]
       real(wp), intent(out) :: force_rate, force_correction
-      !> Whether there is one answer
+      !> Whether there is a unique solution
       logical, intent(out) :: regular
       real(wp) :: g(2), y(2)
       real(wp) :: flexibility

@@ -16,7 +16,7 @@ module rbs_solve_static_finite_equilibrium
 
    public :: finite_equilibrium, path_point
 
-   !> Newton's method has arrived if a change is below this share of the largest deformation of its kind:
+   !> Newton's method has converged if a change is below this share of the largest deformation of its kind:
    !> the next one would be its square. Where round-off ends the progress before, that must be below the
    !> second share.
    real(wp), parameter :: arrived = 1.0e-10_wp, no_progress = 1.0e-7_wp
@@ -84,7 +84,7 @@ contains
       integer, intent(in) :: spring
       !> Its prescribed value
       real(wp), intent(in) :: value
-      !> Whether a point was found; if not, `point` is spoilt
+      !> Whether a point was found; if not, `point` is undefined
       logical, intent(out) :: found
       real(wp) :: change, last_change, more_force
       logical :: regular
@@ -172,7 +172,7 @@ contains
       end if
    end subroutine find_border
 
-   !> Whether the correction is one that can be believed in.
+   !> Whether the correction is within reasonable bounds.
    pure logical function reasonable(self)
       type(finite_equilibrium), intent(in) :: self
       integer :: n, per

@@ -18,11 +18,11 @@ module rbs_solve_static_path
    public :: static_path, kept_rows, is_on_end, describe_state, name_spring, on_the_end
 
    !> A spring this close to an end of its line, relative to the end, is on it. Not a tolerance of the
-   !> solution: where a cycle returns to its peak, round-off would else decide between outer and inner
+   !> solution: where a cycle returns to its peak, round-off would otherwise decide between outer and inner
    !> unloading.
    real(wp), parameter :: on_the_end = 1.0e-11_wp
 
-   !> A force that lacks less than this share is there.
+   !> A force is reached if less than this share of it is missing.
    real(wp), parameter :: no_force = 1.0e-12_wp
 
    !> The state of a path and how it goes on.
@@ -42,7 +42,7 @@ module rbs_solve_static_path
       real(wp), allocatable :: rate(:)
       !> How often each spring has changed its line at the present corner (unknowns)
       integer, allocatable :: changed(:)
-      !> Energy of springs and axial load at the begin [J], and the steps that were cut
+      !> Energy of springs and axial load at the start [J], and the steps that were cut
       real(wp) :: at_begin = 0.0_wp
       integer :: cuts = 0
    contains
@@ -73,7 +73,7 @@ module rbs_solve_static_path
          logical, intent(out) :: found
       end subroutine solve_line_interface
 
-      !> What the springs do not know: for a row.
+      !> The values of a row that do not follow from the springs.
       pure subroutine measure_interface(self, axial_work, height, rotation)
          import :: static_path, wp
          implicit none
@@ -202,10 +202,13 @@ contains
       real(wp) :: finish
 
       is_on_end = .false.
+      ! Most springs are far from their ends, which need not be computed then.
       if (rate > 0.0_wp .and. .not. springs%hi_closed(i)) then
+         if (springs%last(i) - d > 2.0_wp*on_the_end*abs(springs%last(i))) return
          finish = springs%end_toward(i, 1)
          is_on_end = finish - d <= on_the_end*abs(finish)
       else if (rate < 0.0_wp .and. .not. springs%lo_closed(i)) then
+         if (d - springs%first(i) > 2.0_wp*on_the_end*abs(springs%first(i))) return
          finish = springs%end_toward(i, -1)
          is_on_end = d - finish <= on_the_end*abs(finish)
       end if

@@ -95,7 +95,7 @@ contains
          end if
       end do
       call describe_state(self, state)
-      call fatal_error(error, analysis_failed, 'the static path makes no way at '//state//'; the '// &
+      call fatal_error(error, analysis_failed, 'the static path makes no progress at '//state//'; the '// &
                        'parameters of the springs or the targets are too extreme for the arithmetic')
    end subroutine advance
 
@@ -129,7 +129,7 @@ contains
       end associate
    end subroutine solve_line
 
-   !> Set out on the line found: where it begins and where it ends.
+   !> Begin the line that was found: where it starts and where it ends.
    subroutine begin_line(self, direction)
       class(straight_path), intent(inout) :: self
       integer, intent(in) :: direction
@@ -157,7 +157,7 @@ contains
       if (self%ends > 0) self%finish = self%start + direction*way
    end subroutine begin_line
 
-   !> How far the driven end goes until a spring has gone a way; a line without end stays so.
+   !> Change of what is driven until a spring has covered a distance; `huge` on a line without end.
    pure real(wp) function distance(way, rate)
       real(wp), intent(in) :: way, rate
 
@@ -165,7 +165,7 @@ contains
       if (way < 0.5_wp*huge(1.0_wp)*min(rate, 1.0_wp)) distance = max(way, 0.0_wp)/rate
    end function distance
 
-   !> Go along the line; every spring comes along on its own.
+   !> Go along the line; each spring moves on its own line.
    subroutine go(self, control)
       class(straight_path), intent(inout) :: self
       real(wp), intent(in) :: control
@@ -202,7 +202,7 @@ contains
       integer :: i
 
       i = self%ends
-      ! If `go` has put it there already, the line is done with.
+      ! If `go` has put it there already, the line has ended.
       if (self%direction /= 0 .and. i > 0) call self%springs%arrive(i, merge(1, -1, self%rate(i) > 0.0_wp))
       self%direction = 0
    end subroutine end_line

@@ -22,10 +22,10 @@ module rbs_solve_static_trace_finite
 
    public :: trace_finite
 
-   !> A stride below this share of what is driven, or of what was tried, is none.
+   !> A stride below this share of what is driven, or of what was tried, does not count as one.
    real(wp), parameter :: no_stride = 1.0e-11_wp
 
-   !> A stride may be cut so often, however short it is.
+   !> A stride may be cut at least this often, however short it becomes.
    integer, parameter :: fewest_cuts = 20
 
    type, extends(static_path) :: turning_path
@@ -38,7 +38,7 @@ module rbs_solve_static_trace_finite
       real(wp) :: stride = huge(1.0_wp)
       !> Largest work of the lateral force so far, in size [J]
       real(wp) :: most_work = 0.0_wp
-      !> Strides on end that brought nothing
+      !> Strides in a row that made no progress
       integer :: standing = 0
    contains
       procedure :: advance
@@ -255,7 +255,7 @@ contains
       if (done) call self%equilibrium%find_rates(self%springs, self%there, self%direction, done)
    end subroutine meet_end
 
-   !> Find the point where the first motion turns back, by the Illinois form of regula falsi.
+   !> Find the point where the first motion turns back, by the method of false position (Illinois).
    subroutine meet_turn(self, reached, done)
       class(turning_path), intent(inout) :: self
       real(wp), intent(inout) :: reached
@@ -332,11 +332,11 @@ contains
       self%standing = merge(0, self%standing + 1, abs(change) > 0.0_wp)
       if (spring > 0) then
          call self%springs%arrive(spring, way)
-         ! Where it got nowhere its rate is zero and will not tell that it goes on.
+         ! Where it made no progress its rate is zero and does not show that it goes on.
          if (.not. abs(change) > 0.0_wp) call self%springs%leave(spring, way)
       end if
       call put_springs(self)
-      ! A motion may have turned by less than was looked for.
+      ! A motion may have turned by less than the search resolves.
       if (turns .or. spring > 0 .or. any(self%springs%one_way*clean(self%column, self%there) < 0.0_wp)) then
          self%direction = 0
       end if
@@ -363,7 +363,7 @@ contains
       end associate
    end subroutine put_springs
 
-   !> Say why the path cannot be carried on.
+   !> Report why the path cannot be continued.
    subroutine report_no_way(self, target, error)
       class(turning_path), intent(in) :: self
       real(wp), intent(in) :: target
@@ -375,15 +375,14 @@ contains
       if (self%by_force) then
          call fatal_error(error, analysis_failed, 'the lateral force '//to_text(target)// &
                           ' N is beyond the capacity of the column: no stable equilibrium was found '// &
-                          'beyond '//state//' ('//spring//' has least stiffness left). The path up '// &
-                          'to there is kept; drive the column by displacement, or give the springs '// &
-                          'more stiffness')
+                          'beyond '//state//' ('//spring//' has the least stiffness left). The path up '// &
+                          'to there is kept; drive the column by displacement, or stiffen the springs')
       else
          call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//state// &
                           ' on the way to '//to_text(target)//' m: the column snaps back there, or '// &
-                          'the top has come as far as its length lets it ('//spring//' has least '// &
-                          'stiffness left). The path up to there is kept; a driven top cannot follow '// &
-                          'that, use a dynamic analysis')
+                          'the top has come as far as its length lets it ('//spring//' has the '// &
+                          'least stiffness left). The path up to there is kept; a driven top cannot '// &
+                          'follow that, use a dynamic analysis')
       end if
    end subroutine report_no_way
 

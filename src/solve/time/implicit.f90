@@ -20,10 +20,10 @@ module rbs_solve_time_implicit
 
    public :: implicit_stepper, new_newmark, new_generalised_alpha, new_hht
 
-   !> Trials of Newton's method, which mostly needs two or three; a step is cut in halves this often.
+   !> Most iterations of Newton's method, which mostly needs two or three, and most cuts of a step in halves.
    integer, parameter :: most_iterations = 40, most_cuts = 24
 
-   !> Trials in which Newton's method may go too far.
+   !> Number of trials in which Newton's method may overshoot.
    integer, parameter :: most_free = 8
 
    type, extends(stepper_type) :: implicit_stepper
@@ -147,9 +147,9 @@ contains
       if (marked) call state%springs%forget_mark()
    end subroutine solve_step
 
-   !> Newton's method with a line search. Every trial goes from the state at the begin of the step, springs
-   !> in one way each, so that what was tried leaves no trace; and the forces of springs that do not soften
-   !> then have a convex potential, on which this converges.
+   !> Newton's method with a line search. Every trial goes from the state at the start of the step, each
+   !> spring in one direction, so that earlier trials leave no trace; and the forces of springs that do not
+   !> soften then have a convex potential, on which this converges.
    subroutine iterate(self, state, h, load, converged, marked)
       type(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
@@ -165,7 +165,7 @@ contains
       self%step%q1 = state%q
       most = most_iterations
       if (self%most_changes > 0) most = self%most_changes
-      ! Modal damping is not in the tangent: its share goes with the damping ratio every time.
+      ! Modal damping is not in the tangent: an iteration leaves of its share as much as the damping ratio.
       if (allocated(state%motion%modal)) most = 10*most
       call self%step%find_residual(state, h, load, size_now)
       do iteration = 1, most
@@ -178,7 +178,7 @@ contains
          converged = has_converged(self, h, size_now, size_before)
          if (converged) return
          slope = inner_product(size(self%step%r), self%step%r, self%dx)
-         ! Too far is mostly no harm; where Newton's method has gone back and forth, it is made certain of.
+         ! An overshoot mostly does no harm. Where Newton's method goes back and forth, it is bounded.
          too_far = merge(0.9_wp, 0.05_wp, iteration <= most_free)
          if (slope < -too_far*slope_before) then
             call search_line(self, state, h, load, slope_before, slope, too_far/3.0_wp, marked, size_now)
@@ -193,9 +193,9 @@ contains
       type(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
       real(wp), intent(in) :: h, load(4)
-      !> Work of the residual on the correction at its begin and at its end
+      !> Work of the residual on the correction at its start and at its end
       real(wp), intent(in) :: slope_before, slope_at_end
-      !> What of the first may be left
+      !> Share of the first that may be left
       real(wp), intent(in) :: share_left
       logical, intent(inout) :: marked
       real(wp), intent(inout) :: size_now
@@ -225,7 +225,7 @@ contains
       end do
    end subroutine search_line
 
-   !> Go a share of the correction on (or back), and find the residual there.
+   !> Go on (or back) by a share of the correction, and find the residual there.
    subroutine try(self, state, h, load, share, marked, size_now)
       type(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
@@ -290,7 +290,7 @@ contains
       end do
    end subroutine go_by_events
 
-   !> Whether a residual is gone, or as small as round-off lets it be.
+   !> Whether the residual has vanished, or is as small as round-off lets it be.
    pure logical function has_converged(self, h, size_now, size_before)
       type(implicit_stepper), intent(in) :: self
       real(wp), intent(in) :: h
@@ -300,17 +300,17 @@ contains
       has_converged = size_now <= self%wanted
       if (has_converged .or. self%acceptable < 0.0_wp) return
       has_converged = size_now <= self%acceptable .and. size_now > 0.5_wp*size_before
-      ! As long as it becomes much smaller, it is not round-off yet.
+      ! As long as the residual decreases quickly, it is not yet round-off.
       if (has_converged .or. size_now < 0.1_wp*size_before) return
       has_converged = self%step%is_round_off(h, self%tangent%stiffness, self%tangent%diagonal)
    end function has_converged
 
-   !> How much of a correction the first spring allows that comes to an end of its line.
+   !> The share of a correction up to the first end of a line that a spring reaches.
    subroutine first_end(state, q, dq, share, first, way)
       type(state_type), intent(in) :: state
       !> Deformations reached and their correction (unknowns)
       real(wp), intent(in), contiguous :: q(:), dq(:)
-      !> Share from 0 to 1; the spring, 0 if all is allowed; its way
+      !> Share from 0 to 1; the spring, 0 if there is none; its direction
       real(wp), intent(out) :: share
       integer, intent(out) :: first, way
       real(wp) :: room
@@ -321,7 +321,7 @@ contains
       way = 0
       associate (springs => state%springs)
          do i = 1, springs%count
-            ! Most springs have room.
+            ! Most springs stay on their lines.
             if (q(i) + dq(i) >= springs%first(i) .and. q(i) + dq(i) <= springs%last(i)) cycle
             if (dq(i) > 0.0_wp) then
                ! The rear end of a one-way line is where the spring was put last.

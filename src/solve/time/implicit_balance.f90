@@ -23,7 +23,7 @@ module rbs_solve_time_implicit_balance
    type :: step_balance
       !> Parameters of the method; those of Newmark's average acceleration
       real(wp) :: alpha_m = 0.0_wp, alpha_f = 0.0_wp, beta = 0.25_wp, gamma = 0.5_wp
-      !> Velocities, accelerations and forces of the bodies at the begin of a step, and at its end
+      !> Velocities, accelerations and forces of the bodies at the start of a step, and at its end
       !> (unknowns), in the order x_1, th_1, x_2, ... [, y_1, ...]
       real(wp), allocatable :: v0(:), a0(:), g0(:), v1(:), a1(:), g1(:)
       !> Mass, residual, and what the bodies have moved in the step, in that order (unknowns)
@@ -45,7 +45,7 @@ module rbs_solve_time_implicit_balance
 
 contains
 
-   !> Velocities and accelerations of the bodies at the begin of the first step.
+   !> Velocities and accelerations of the bodies at the start of the first step.
    subroutine start(self, state)
       class(step_balance), intent(inout) :: self
       type(state_type), intent(in) :: state
@@ -68,7 +68,7 @@ contains
                       state%motion%column%upper(n), self%largest)
    end subroutine start
 
-   !> The end of the step that was found is the begin of the next one.
+   !> The end of the step that was found is the start of the next one.
    subroutine go_on(self)
       class(step_balance), intent(inout) :: self
 

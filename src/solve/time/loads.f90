@@ -1,4 +1,4 @@
-!> What acts on a column in time.
+!> The loads on a column in time.
 module rbs_solve_time_loads
    use rbs_base_kinds, only: wp
    use rbs_loading_signal, only: signal_type
@@ -8,7 +8,7 @@ module rbs_solve_time_loads
    public :: loads_type
    public :: lateral, horizontal, vertical, axial
 
-   !> Places in an array of the loads at one time.
+   !> Positions in an array of the loads at one time.
    integer, parameter :: lateral = 1, horizontal = 2, vertical = 3, axial = 4
 
    !> Signals without points are zero.
@@ -30,7 +30,7 @@ module rbs_solve_time_loads
 
 contains
 
-   !> Find out which of the four act, once before they are asked for values.
+   !> Find which of the four act; to be called once before `at_time`.
    subroutine find_acting(self)
       class(loads_type), intent(inout) :: self
 
@@ -49,7 +49,7 @@ contains
       if (self%axial%acts()) self%axial%time = self%axial%time - begin
    end subroutine set_begin
 
-   !> All four at a time [N, m/s2, m/s2, N].
+   !> All four loads at a time [N, m/s2, m/s2, N].
    subroutine at_time(self, t, load)
       class(loads_type), intent(inout) :: self
       !> Time [s]

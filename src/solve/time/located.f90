@@ -16,18 +16,18 @@ module rbs_solve_time_located
 
    public :: located_stepper
 
-   !> Error of an attempt that is not finite.
+   !> Error that stands for an attempt that is not finite.
    real(wp), parameter :: not_finite = 1.0e10_wp
 
-   !> Where an event is looked for, and what it is.
+   !> An event of a spring, and when in the step it is expected.
    type :: event_type
       !> Spring, 0 for none
       integer :: spring = 0
-      !> Way by which it leaves its line: +1, -1
+      !> Direction in which it leaves its line: +1, -1
       integer :: way = 0
       !> Whether it leaves because it turns back, else because its line ends
       logical :: turns = .false.
-      !> Time from the begin of the step: an estimate, and after which it has certainly happened [s]
+      !> Time from the start of the step: an estimate, and after which it has certainly happened [s]
       real(wp) :: estimate = 0.0_wp, latest = 0.0_wp
    end type event_type
 
@@ -35,7 +35,7 @@ module rbs_solve_time_located
       class(scheme_type), allocatable :: scheme
       !> Wanted relative error of a step in energy norm; 0: steps are not cut for accuracy
       real(wp) :: tolerance = 0.0_wp
-      !> Step that should do next, shortest and longest one [s]
+      !> Step to try next, shortest and longest step [s]
       real(wp) :: next_step = 0.0_wp, shortest = 0.0_wp, longest = huge(1.0_wp)
       !> Largest energy so far, as the measure of errors [J]
       real(wp), private :: largest = 0.0_wp
@@ -63,10 +63,10 @@ contains
       left = h
       idle = 0
       do
-         ! What is left below the last digits of the step is nothing. It is not read off the clock, which
+         ! A remainder below the last digits of the step is ignored. It is not read off the clock, which
          ! rounds where times are large.
          if (.not. left > 4.0_wp*spacing(h)) exit
-         ! A corner of the loading would cost the order as an event does.
+         ! A corner of the loading would lower the order as an event does.
          part = left
          corner = state%loads%corner_after(state%time) - state%time
          if (corner < left - 8.0_wp*spacing(finish)) then
@@ -83,7 +83,7 @@ contains
             call self%scheme%attempt(state, part)
             wrong = error_of(self, state)
             if (.not. wrong > 1.0_wp) exit
-            ! Within the last digits of the clock a load is there or not: no step is too short for that.
+            ! A load may jump within the last digits of the clock; a shorter step would not help then.
             if (part <= 8.0_wp*spacing(finish) .and. wrong < not_finite) exit
             if (self%tolerance > 0.0_wp .and. part > self%shortest) then
                part = max(part*max(0.2_wp, 0.9_wp*wrong**(-1.0_wp/self%scheme%order)), 0.5_wp*self%shortest)
@@ -138,7 +138,7 @@ contains
       if (self%tolerance > 0.0_wp) then
          self%longest_step = max(self%longest_step, h)
          self%largest = max(self%largest, energy_of(state, state%q, state%v))
-         ! An event says nothing of the step that accuracy would allow.
+         ! A step that ends at an event does not tell what accuracy would allow.
          if (i == 0) then
             self%next_step = h*min(5.0_wp, 0.9_wp*max(wrong, 1.0e-10_wp)**(-1.0_wp/self%scheme%order))
             self%next_step = min(self%next_step, self%longest)
@@ -210,7 +210,7 @@ contains
       call report_standstill(state, i, error)
    end subroutine leave_at_once
 
-   !> A spring goes round in a circle of lines.
+   !> Report a spring that changes its lines in a circle.
    subroutine report_standstill(state, i, error)
       type(state_type), intent(in) :: state
       integer, intent(in) :: i
@@ -240,7 +240,7 @@ contains
 
       event%estimate = huge(1.0_wp)
       do i = 1, state%springs%count
-         ! Most springs stay inside their line and go one way.
+         ! Most springs stay inside their line and do not turn.
          if (scheme%q(i) >= state%springs%first(i) .and. scheme%q(i) <= state%springs%last(i) .and. &
              state%v(i)*scheme%v(i) > 0.0_wp) cycle
          call event_of_spring(state, scheme, i, h, one)
@@ -265,7 +265,7 @@ contains
       if (way /= 0 .and. turning < h) then
          furthest = d + 0.5_wp*v*turning
          if (is_beyond(state, i, furthest, way)) then
-            ! Over the end and back within the step.
+            ! It passes the end and comes back within the step.
             far = state%springs%end_toward(i, way) - d
             event = event_type(i, way, .false., time_to(far, v, turning), turning)
             return
@@ -286,7 +286,7 @@ contains
    end subroutine event_of_spring
 
    !> Whether a deformation is beyond the end of a line in a direction, by more than the last digits. The
-   !> rear end of a one-way line is none.
+   !> rear end of a one-way line does not count.
    pure logical function is_beyond(state, i, d, way)
       type(state_type), intent(in) :: state
       integer, intent(in) :: i, way
@@ -300,7 +300,7 @@ contains
       is_beyond = way*(d - end_of_line) > 4.0_wp*spacing(max(abs(end_of_line), abs(state%q(i))))
    end function is_beyond
 
-   !> Time in which a decelerated motion, which would turn after `turning`, goes a way.
+   !> Time in which a decelerated motion, which would turn after `turning`, covers a distance.
    pure real(wp) function time_to(way, v, turning) result(t)
       real(wp), intent(in) :: way, v, turning
 
@@ -369,7 +369,7 @@ contains
       end do
    end subroutine approach
 
-   !> Accuracy cannot be had, or the motion has no bounds.
+   !> Report that the tolerance is not reached, or that the motion has no bounds.
    subroutine report_no_step(self, state, h, error)
       type(located_stepper), intent(in) :: self
       type(state_type), intent(in) :: state

@@ -21,9 +21,9 @@ module rbs_solve_time_march
 
    public :: initial_state, march
 
-   !> State at the begin; arrays that are not allocated are zero.
+   !> State at the start; arrays that are not allocated are zero.
    type :: initial_state
-      !> Deformations [m, rad] and velocities [m/s, rad/s] (unknowns); the springs get there from zero
+      !> Deformations [m, rad] and velocities [m/s, rad/s] (unknowns); the springs reach them from zero
       real(wp), allocatable :: deformation(:), velocity(:)
       !> Whether the openings are among them; else the axial springs begin in equilibrium with axial load
       !> and weight
@@ -176,27 +176,27 @@ contains
          if (.not. found) then
             call fatal_error(error, analysis_failed, trim(joint_name(state%motion%column, 2*n + i))// &
                              ' cannot carry the axial force of '//to_text(-tension)//' N (compression '// &
-                             'positive) at the begin; change axial_load or the spring, or give the '// &
-                             'openings at the begin')
+                             'positive) at the start; change axial_load or the spring, or give the '// &
+                             'openings at the start')
             return
          end if
          state%q(2*n + i) = state%springs%d(2*n + i)
       end do
    end subroutine close_joints
 
-   !> Say why one cannot go on from the state.
+   !> Report why the run cannot be continued.
    subroutine report_state(state, error)
       type(state_type), intent(in) :: state
       type(error_type), allocatable, intent(inout) :: error
 
       if (state%lost) then
-         call fatal_error(error, analysis_failed, 'the motion has no bounds any more at time '// &
+         call fatal_error(error, analysis_failed, 'the motion grows without bounds at time '// &
                           to_text(state%begin + state%time)//' s (a deformation is beyond '// &
                           to_text(out_of_bounds)//'): the step is beyond the stability limit, the column '// &
                           'has lost its stability under the axial load, or the loading has a wrong unit. '// &
                           'Rows up to there are kept')
       else
-         call fatal_error(error, analysis_failed, 'a hysteresis rule goes in a circle at time '// &
+         call fatal_error(error, analysis_failed, 'a hysteresis rule leads in a circle of lines at time '// &
                           to_text(state%begin + state%time)//' s; the parameters of a spring are too '// &
                           'extreme for the arithmetic. Rows up to there are kept')
       end if

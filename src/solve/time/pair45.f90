@@ -26,7 +26,7 @@ module rbs_solve_time_pair45
       [35.0_wp/384.0_wp, 0.0_wp, 500.0_wp/1113.0_wp, 125.0_wp/192.0_wp, -2187.0_wp/6784.0_wp, &
        11.0_wp/84.0_wp]], [stages - 1, stages])
 
-   !> Weights of order 5 less those of order 4.
+   !> Weights of order 5 minus those of order 4.
    real(wp), parameter :: difference(stages) = [ &
       71.0_wp/57600.0_wp, 0.0_wp, -71.0_wp/16695.0_wp, 71.0_wp/1920.0_wp, -17253.0_wp/339200.0_wp, &
       22.0_wp/525.0_wp, -1.0_wp/40.0_wp]
@@ -34,7 +34,7 @@ module rbs_solve_time_pair45
    type, extends(scheme_type) :: pair45_scheme
       !> Velocities and accelerations of the stages (unknowns, stages)
       real(wp), allocatable, private :: rate_q(:, :), rate_v(:, :)
-      !> Power of loads and damping at the begin of the step [W]
+      !> Power of loads and damping at the start of the step [W]
       real(wp), private :: load_power = 0.0_wp, damping_power = 0.0_wp
    contains
       procedure :: create

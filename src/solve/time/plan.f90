@@ -14,7 +14,7 @@ module rbs_solve_time_plan
    !> Steps this close to a whole number in an interval divide it.
    real(wp), parameter :: whole = 1.0e-9_wp
 
-   !> More steps than this do not end in a lifetime.
+   !> More steps than this would take too long.
    real(wp), parameter :: most_steps = 2.0e9_wp
 
    !> Intervals run from one time at which a row is kept by default to the next.
@@ -26,11 +26,11 @@ module rbs_solve_time_plan
       character(len=200) :: reason = ''
       !> Whether rk4 locates events
       logical :: located = .false.
-      !> Longest step for which RK4 is stable [s]; 0: not asked for
+      !> Longest step for which RK4 is stable [s]; 0 if it is not needed
       real(wp) :: limit = 0.0_wp
       !> Number of intervals between kept times, and of steps in all
       integer :: intervals = 0, steps = 0
-      !> Whether every interval is one step of length dt from the begin on (the last may be shorter);
+      !> Whether every interval is one step of length dt from the start on (the last may be shorter);
       !> else interval j is the loading's, in `parts(j)` equal steps
       logical :: free = .false.
       !> First and last time [s]
@@ -51,7 +51,7 @@ contains
 
       if (size(time) < 2) then
          call fatal_error(error, bad_input, 'time: '//to_text(size(time))// &
-                          ' point(s); give two or more, from the begin to the end of the analysis')
+                          ' point(s); give two or more, from the start to the end of the analysis')
          return
       end if
       do i = 1, size(time)
@@ -78,8 +78,8 @@ contains
    end subroutine check_times
 
    !> Plan the steps. Without `dt` each interval of the loading is cut into equal steps not longer than
-   !> `longest`, and rows are kept at its ends. With `dt` the same, if dt divides every interval; else steps
-   !> of dt run from the begin to the end and a row is kept after each.
+   !> `longest`, and rows are kept at its ends. With `dt` the same holds if dt divides every interval; else
+   !> steps of dt run from the start to the end and a row is kept after each.
    subroutine new_plan(plan, time, dt, longest, limit, error)
       type(time_plan), intent(inout) :: plan
       !> Times of the loading, checked (m) [s]
@@ -137,7 +137,7 @@ contains
       end if
    end subroutine check_length
 
-   !> Number of rows of a run, the first at its begin.
+   !> Number of rows of a run, the first at its start.
    elemental integer function rows(self, every)
       class(time_plan), intent(in) :: self
       !> Every n-th step is kept, and the last; `unset_integer`: every interval

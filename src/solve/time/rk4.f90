@@ -12,7 +12,7 @@ module rbs_solve_time_rk4
 
    public :: rk4_stepper, rk4_scheme
 
-   !> Stages: weight, way to the next one, and where their loads stand (begin, middle, end).
+   !> Stages: weight, way to the next one, and the times of their loads (start, middle, end of the step).
    real(wp), parameter :: weight(4) = [1.0_wp, 2.0_wp, 2.0_wp, 1.0_wp]/6.0_wp
    real(wp), parameter :: reach(4) = [0.5_wp, 0.5_wp, 1.0_wp, 0.0_wp]
    integer, parameter :: at(4) = [1, 2, 2, 3]
@@ -75,7 +75,7 @@ contains
       class(rk4_scheme), intent(inout) :: self
       type(state_type), intent(inout) :: state
       real(wp), intent(in) :: h
-      !> Loads at begin, middle and end
+      !> Loads at start, middle and end
       real(wp), intent(in) :: load(4, 3)
       real(wp) :: top, momentum, speed(2)
       integer :: stage, m, n
@@ -131,7 +131,7 @@ contains
       v = v0
    end subroutine begin_step
 
-   !> Add a stage to the result, and set out to the next one.
+   !> Add a stage to the result, and find the next stage.
    pure subroutine next_stage(m, share, reach, q0, v0, a, stage_q, stage_v, q, v)
       integer, intent(in) :: m
       !> Weight and place of the stage times the step [s]

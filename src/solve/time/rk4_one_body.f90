@@ -1,6 +1,7 @@
 !> The classical Runge-Kutta step for the paper's column: one body, small rotations, no damping, lateral force
-!> and horizontal ground motion. Two unknowns stay in registers, where the loops of a chain and their
-!> calls would be nearly all of the time. The equations are those of the chain.
+!> and horizontal ground motion. It is the one fast path beside `acceleration`: the two unknowns stay in
+!> registers, while the loops of a chain and their calls would take nearly all of the time. The equations
+!> are those of the chain.
 module rbs_solve_time_rk4_one_body
    use rbs_base_kinds, only: wp
    use rbs_solve_time_loads, only: lateral, horizontal
@@ -48,7 +49,7 @@ contains
       type(motion_type), intent(in) :: motion
       !> Lines of the springs
       real(wp), intent(in) :: d0(2), f0(2), k(2)
-      !> Step [s]; lateral force [N] and acceleration of the ground [m/s2] at its begin, middle and end
+      !> Step [s]; lateral force [N] and acceleration of the ground [m/s2] at its start, middle and end
       real(wp), intent(in) :: h, load_force(3), load_ground(3)
       !> Deformations and velocities
       real(wp), intent(inout) :: q(2), v(2)
@@ -73,9 +74,9 @@ contains
       half = 0.5_wp*h
       sixth = h*(1.0_wp/6.0_wp)
 
-      ! On their lines the springs resist a stage with what they do at the begin, and with k times the way
-      ! from there, which is a share of the velocity: accelerations are c - G v. So the chain of operations
-      ! from stage to stage is short.
+      ! On its line a spring resists a stage with its force at the start of the step plus k times the way from
+      ! there, which is a multiple of the velocity: the accelerations are c - G v. This keeps the chain of
+      ! dependent operations from stage to stage short.
       shear = half*k(1)
       flexure = half*(k(2) - softening)
       g11 = flexible*shear

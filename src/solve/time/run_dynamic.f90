@@ -32,7 +32,7 @@ module rbs_solve_time_run_dynamic
    !> What `auto` assumes: an implicit step costs as much as this number of explicit ones.
    real(wp), parameter :: implicit_step_cost = 5.0_wp
 
-   !> Explicit steps times bodies that take hundredths of a second, and minutes.
+   !> Numbers of explicit steps times bodies that take some hundredths of a second, and some minutes.
    real(wp), parameter :: negligible_work = 1.0e6_wp, bearable_work = 3.0e9_wp
 
 contains
@@ -156,7 +156,7 @@ contains
       else
          plan%method = explicit_choice%name
          plan%located = any(column%spring%rule /= 'elastic')
-         plan%reason = to_text(anint(explicit_steps))//' steps are no burden'
+         plan%reason = to_text(anint(explicit_steps))//' steps take little time'
          if (column%kinematics == finite) plan%reason = 'finite rotations: explicit'
          if (plan%located) plan%reason = trim(plan%reason)//'; events located'
       end if

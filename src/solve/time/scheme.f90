@@ -22,7 +22,7 @@ module rbs_solve_time_scheme
       real(wp) :: load(4) = 0.0_wp
       !> The equation of motion at the stage that was looked at last
       type(motion_result) :: now
-      !> Whether the acceleration at the begin is known from the last attempt
+      !> Whether the acceleration at the start is known from the last attempt
       logical :: begun = .false.
    contains
       procedure(create_interface), deferred :: create

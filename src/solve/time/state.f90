@@ -1,4 +1,4 @@
-!> The state of a column in time, what it has received so far, and who moves it on.
+!> The state of a column in time, the works done on it so far, and the type of a method that advances it.
 module rbs_solve_time_state
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
@@ -10,7 +10,7 @@ module rbs_solve_time_state
 
    public :: state_type, stepper_type, out_of_bounds, in_bounds
 
-   !> Beyond this [m, rad] no column is left, and squares would overflow.
+   !> Deformations beyond this [m, rad] have no meaning, and their squares would overflow.
    real(wp), parameter :: out_of_bounds = 1.0e100_wp
 
    type :: state_type
@@ -19,23 +19,23 @@ module rbs_solve_time_state
       type(loads_type) :: loads
       !> Deformations of the joints and their velocities (unknowns)
       real(wp), allocatable :: q(:), v(:)
-      !> Time since the begin of the run [s], which does not round where the clock is late; and loads then
+      !> Time since the start of the run [s], which keeps its digits where the clock is late; the loads then
       real(wp) :: time = 0.0_wp, load(4) = 0.0_wp
-      !> Time of the clock at the begin, and now [s]
+      !> Time of the clock at the start, and now [s]
       real(wp) :: begin = 0.0_wp, clock = 0.0_wp
-      !> Works of loads and damping, and the energy at the begin [J]
+      !> Works of loads and damping, and the energy at the start [J]
       real(wp) :: of_loads = 0.0_wp, of_damping = 0.0_wp, at_begin = 0.0_wp
-      !> Whether a deformation has gone out of bounds; one cannot go on from there
+      !> Whether a deformation is out of bounds; the run cannot be continued from there
       logical :: lost = .false.
    end type state_type
 
-   !> A method: what it needs from step to step lives in its own type.
+   !> A method of integration. What it needs from step to step is in its own type.
    type, abstract :: stepper_type
       !> Steps that were cut so far: at an event, for accuracy, or because they did not converge
       integer :: cut_steps = 0
-      !> Steps taken so far, the parts of cut ones each for itself
+      !> Steps taken so far; each part of a cut step counts as one
       integer :: steps = 0
-      !> Longest step taken, if the method chooses its steps; 0: as planned [s]
+      !> Longest step taken, if the method chooses its steps; 0 if they are as planned [s]
       real(wp) :: longest_step = 0.0_wp
    contains
       procedure(advance_interface), deferred :: advance
@@ -56,7 +56,7 @@ module rbs_solve_time_state
 
 contains
 
-   !> Whether all deformations are such that one can go on.
+   !> Whether all deformations are within bounds.
    pure logical function in_bounds(m, q)
       integer, intent(in) :: m
       real(wp), intent(in) :: q(m)
