@@ -58,27 +58,26 @@ case_file static_small <<'NML'
 &loading drive = 'force', unit = 'kN', amplitudes = 50, 100, 150, cycles = 2 /
 NML
 case_file static_pdelta <<'NML'
-&column n = 4, height = 1.6, mass = 614.4, kinematics = 'pdelta' /
-&axial load = 744e3, self_weight = .true. /
+&column n = 4, height = 1.6, mass = 614.4, kinematics = 'pdelta', axial_load = 744e3, self_weight = .true. /
 &loading drive = 'displacement', amplitudes = 0.0025, 0.01, 0.03, cycles = 2, 1, 2 /
 NML
 case_file dynamic_chain <<'NML'
-&column n = 4, height = 1.6, mass = 614.4, kinematics = 'pdelta', mass_damping = 1.0 /
-&axial load = 744e3 /
-&loading drive = 'ground', file = 'ground.csv' /
+&column n = 4, height = 1.6, mass = 614.4, kinematics = 'pdelta', axial_load = 744e3 /
+&damping mass = 1.0 /
+&loading drive = 'ground_acceleration', file = 'ground.csv' /
 &loading drive = 'force', unit = 'kN', amplitudes = 20, period = 0.3 /
 &analysis method = 'rk4' /
 &output every = 3 /
 NML
 printf '%s\n' 'time_s,acceleration_g' '0.0,0.0' '0.1,0.5' '0.2,-0.7' '0.3,0.0' >"$work/ground.csv"
 case_file dynamic_finite <<'NML'
-&column height = 1.6, mass = 614.4, kinematics = 'finite', stiffness_damping = 1e-6 /
+&column height = 1.6, mass = 614.4, kinematics = 'finite' /
+&damping stiffness = 1e-6 /
 &loading drive = 'force', unit = 'kN', amplitudes = 150, period = 0.2 /
 &analysis method = 'rk4', dt = 1e-4 /
 NML
 case_file capacity <<'NML'
-&column height = 1.6, mass = 614.4, kinematics = 'pdelta' /
-&axial load = 8e6 /
+&column height = 1.6, mass = 614.4, kinematics = 'pdelta', axial_load = 8e6 /
 &loading drive = 'force', unit = 'kN', amplitudes = 200 /
 NML
 case_file refused <<'NML'

@@ -60,7 +60,7 @@ def below_the_limit() -> Row:
             [0.0, steps * dt],
             dt=dt,
             every=steps // 4,
-            initial={"slip": start[:n], "rotation": start[n:]},
+            initial={"slip": start[:n], "rotation": start[n:]}, method="rk4",
         )
         total = run.energy["kinetic"] + run.energy["spring"]
         found.append(f"{share} n={n}: {total[-1] / total[0] - 1:+.0e}")
@@ -79,12 +79,12 @@ def above_the_limit() -> Row:
         dt = share * rbsdem.modes(column).stable_step
         start = {"rotation": [1e-3] * n}
         try:
-            rbsdem.time_history(column, [0, 1e4 * dt], dt=dt, initial=start)
+            rbsdem.time_history(column, [0, 1e4 * dt], dt=dt, initial=start, method="rk4")
             raise AssertionError("not refused")
         except rbsdem.InputError:
             pass
         try:
-            rbsdem.time_history(column, [0, 1e6 * dt], dt=dt, initial=start, allow_unstable=True)
+            rbsdem.time_history(column, [0, 1e6 * dt], dt=dt, initial=start, allow_unstable=True, method="rk4")
             raise AssertionError("not stopped")
         except rbsdem.SolveError as error:
             steps = error.result.summary["steps"]
@@ -118,7 +118,7 @@ def many_bodies() -> Row:
     """Solve one to 5000 bodies: static and implicit."""
     found = []
     for n in (1, 10, 100, 1000, 5000):
-        column = chain(n, axial_load=1e5, kinematics="pdelta", top_mass=1e4, stiffness_damping=2e-3)
+        column = chain(n, axial_load=1e5, kinematics="pdelta", top_mass=1e4, damping=rbsdem.Damping(stiffness=2e-3))
         begin = time.perf_counter()
         rbsdem.cyclic(column, force=[1e4])
         middle = time.perf_counter()
@@ -148,7 +148,7 @@ def full_turns() -> Row:
         1.0, 100.0, rbsdem.Elastic(1e5), rbsdem.Elastic(50.0), n=3, kinematics="finite"
     )
     start = {"rotation_velocity": [30.0, 0.0, 0.0]}
-    run = rbsdem.time_history(column, np.linspace(0, 1, 101), initial=start, dt=2e-5)
+    run = rbsdem.time_history(column, np.linspace(0, 1, 101), initial=start, dt=2e-5, method="rk4")
     return (
         "full turns, `finite`, n = 3",
         "free spinning against soft springs, 1 s",
@@ -207,10 +207,10 @@ def huge_damping() -> Row:
     """Step with damping far beyond critical."""
     found = []
     for beta in (1e-3, 1.0, 1e3):
-        column = chain(1, stiffness_damping=beta)
+        column = chain(1, damping=rbsdem.Damping(stiffness=beta))
         dt = 0.99 * rbsdem.modes(column).stable_step
         run = rbsdem.time_history(
-            column, [0, 2e4 * dt], dt=dt, every=5000, initial={"rotation": [1e-3]}
+            column, [0, 2e4 * dt], dt=dt, every=5000, initial={"rotation": [1e-3]}, method="rk4"
         )
         found.append(f"{beta:g} s: bounded {np.all(np.abs(run.rotation) <= 1.001e-3)}")
     return (
@@ -222,7 +222,7 @@ def huge_damping() -> Row:
 
 def long_record() -> Row:
     """Run one hour at 0.005 s."""
-    column = chain(10, kinematics="pdelta", axial_load=1e5, mass_damping=0.5, top_mass=1e4)
+    column = chain(10, kinematics="pdelta", axial_load=1e5, damping=rbsdem.Damping(mass=0.5), top_mass=1e4)
     times = np.arange(0, 3600.001, 0.005)
     motion = np.random.default_rng(2).normal(size=times.size)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

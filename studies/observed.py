@@ -164,7 +164,7 @@ def free_vibration() -> tuple[str, str, str, str]:
                 column,
                 time,
                 initial={"slip": start[:n], "rotation": start[n:]},
-                dt=time[1] / count,
+                dt=time[1] / count, method="rk4",
             )
             steps.append(run.summary["time_step"])
             errors.append(relative(np.hstack([run.slip, run.rotation]), exact))
@@ -184,7 +184,7 @@ def free_vibration_finite() -> tuple[str, str, str, str]:
     steps = [0.02, 0.01, 0.005, 0.0025]
 
     def end(dt: float) -> Array:
-        run = rbsdem.time_history(column, [0.0, 2.0], initial=start, dt=dt)
+        run = rbsdem.time_history(column, [0.0, 2.0], initial=start, dt=dt, method="rk4")
         return np.array([run.slip[-1, 0], run.rotation[-1, 0]])
 
     reference = end(steps[-1] / 32)
@@ -202,7 +202,7 @@ def shaken(parts: int) -> rbsdem.Result:
     time = np.linspace(0.0, 1.0, 101)
     ground = 392.0 * np.sin(8 * np.pi * time) * np.exp(-2 * time)
     column = rbsdem.paper_columns()[KEY]
-    return rbsdem.time_history(column, time, ground_acceleration=ground, dt=0.01 / parts)
+    return rbsdem.time_history(column, time, ground_acceleration=ground, dt=0.01 / parts, method="rk4")
 
 
 def nonlinear_order() -> tuple[str, str, str, str]:
@@ -227,7 +227,7 @@ def rk4_energy_linear() -> tuple[str, str, str, str]:
     start = modes.shapes @ (1e-3 / modes.omega)
     time = np.linspace(0.0, 20 / modes.omega[-1], 21)
     force = 1.0e4 * np.sin(0.3 * modes.omega[-1] * time)
-    damped = replace(plain, mass_damping=20.0, stiffness_damping=0.2 / modes.omega[-1])
+    damped = replace(plain, damping=rbsdem.Damping(mass=20.0, stiffness=0.2 / modes.omega[-1]))
     parts = np.array([8, 16, 32, 64])
     found = []
     for column in (plain, damped):
@@ -238,7 +238,7 @@ def rk4_energy_linear() -> tuple[str, str, str, str]:
                 time,
                 force=force,
                 initial={"slip": start[:3], "rotation": start[3:]},
-                dt=time[1] / count,
+                dt=time[1] / count, method="rk4",
             )
             residuals.append(run.summary["relative_energy_residual"])
         found.append(f"{residuals[0]:.0e}, order {slope(1 / parts, residuals):.2f}")
@@ -268,7 +268,7 @@ def highest_mode() -> tuple[str, str, str, str]:
     start = 1e-4 * modes.shapes[:, 1] / np.max(np.abs(modes.shapes[:, 1]))
     period = 2 * np.pi / modes.omega[1]
     run = rbsdem.time_history(
-        column, [0.0, 100 * period], initial={"slip": start[:1], "rotation": start[1:]}
+        column, [0.0, 100 * period], initial={"slip": start[:1], "rotation": start[1:]}, method="rk4"
     )
     total = run.energy["kinetic"] + run.energy["spring"]
     share = run.summary["time_step"] * modes.omega[1]
@@ -293,7 +293,7 @@ def slow_loading() -> tuple[str, str, str, str]:
     for row_time in (0.05, 0.1, 0.2, 0.4):
         time = np.arange(force.size) * row_time
         dt = row_time / np.ceil(row_time / (0.5 * limit))
-        run = rbsdem.time_history(column, time, force=force, dt=dt)
+        run = rbsdem.time_history(column, time, force=force, dt=dt, method="rk4")
         differences.append(relative(run.displacement, static.displacement))
     return (
         "RK4 under slow loading against the static path",
@@ -393,7 +393,7 @@ def finite_to_small() -> tuple[str, str, str, str]:
         for size in sizes:
             start = {"slip": [0.05 * size], "rotation": [size]}
             runs = [
-                rbsdem.time_history(column, np.linspace(0, 2, 41), initial=start, dt=1e-3)
+                rbsdem.time_history(column, np.linspace(0, 2, 41), initial=start, dt=1e-3, method="rk4")
                 for column in (finite, other)
             ]
             differences.append(relative(runs[0].displacement, runs[1].displacement))

@@ -113,7 +113,7 @@ def finite_chain_energy() -> Row:
     start = {"slip": [0.01, 0.02, -0.01], "rotation": [0.5, -0.3, 0.4]}
     steps, residuals, largest = [4e-4, 2e-4, 1e-4], [], 0.0
     for dt in steps:
-        run = rbsdem.time_history(column, np.linspace(0, 1, 101), initial=start, dt=dt)
+        run = rbsdem.time_history(column, np.linspace(0, 1, 101), initial=start, dt=dt, method="rk4")
         residuals.append(run.summary["relative_energy_residual"])
         largest = run.summary["peak_rotation"]
     return (

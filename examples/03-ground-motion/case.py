@@ -19,14 +19,13 @@ column = rbsdem.Column(
     masses=[134.4, 230.4, 76115.0],
     kinematics="pdelta",
     self_weight=True,
-    mass_damping=0.3,
-    stiffness_damping=2e-6,
+    damping=rbsdem.Damping(mass=0.3, stiffness=2e-6),
 )
 motion = Path(__file__).with_name("ground.csv")
 time, acceleration = np.loadtxt(motion, delimiter=",", skiprows=2, unpack=True)
 
 modes = rbsdem.modes(column)
-result = rbsdem.time_history(column, time, ground_acceleration=9.80665 * acceleration)
+result = rbsdem.time_history(column, time, ground_acceleration=9.80665 * acceleration, method="rk4")
 
 print(f"first period           {1 / modes.frequency[0]:8.3f} s")
 print(f"peak drift             {100 * np.abs(result.displacement).max() / column.height:8.2f} %")

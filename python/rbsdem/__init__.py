@@ -18,7 +18,7 @@ from rbsdem.errors import AccuracyWarning, InputError, RbsdemError, SolveError
 from rbsdem.paper import paper_columns, paper_sections
 from rbsdem.peer import PeerTest, read_peer
 from rbsdem.protocol import protocol
-from rbsdem.results import Result
+from rbsdem.result import Result
 from rbsdem.section import (
     CircularSection,
     Concrete,

@@ -5,8 +5,12 @@ Numbers go in as plain arrays, a status and a message come back; here they becom
 
 from __future__ import annotations
 
+import json
 import os
-from typing import Any
+from collections.abc import Iterator, Mapping
+from functools import cache
+from itertools import islice
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,52 +29,14 @@ UNSET_INTEGER = -int(np.iinfo(np.int32).max)
 #: Larger numbers have no meaning in any unit (the constant `beyond_meaning`).
 BEYOND_MEANING = 1e50
 
-#: Order of the numbers of a spring, and of the names of rules (`rbs_spec_spring_table`).
-SPRING_NUMBERS = (
-    *("k", "d_y", "k_post", "k_c", "d_c", "k_y", "k_u", "b0", "b1"),
-    *("f_c", "f_y", "d_cap", "f_cap", "d_pc", "f_res", "d_u"),
-    *("d_c_neg", "f_c_neg", "d_y_neg", "f_y_neg", "d_cap_neg", "f_cap_neg"),
-    *("d_pc_neg", "f_res_neg", "d_u_neg"),
-    *("lambda_s", "lambda_c", "lambda_k", "lambda_a", "c", "kappa_f", "kappa_d"),
-    *("f_peak", "d_peak", "k_fall", "plastic", "contact", "misfit", "wear"),
-    *("r0", "r1", "r2", "growth", "endurance", "axial_load"),
-)
-RULES = (
-    *("elastic", "bilinear", "takeda", "compression", "peak_oriented", "pinching"),
-    *("concrete", "steel", "layered"),
-)
-INNER = ("kc", "kr", "one")
-
 _ANALYSIS_FAILED = 1
 _LITTLE_ROOM = 3
 
-#: Names of the figures of a run, in the order of the Fortran summary.
-FIGURES = (
-    "steps",
-    "rows",
-    "events",
-    "time_step",
-    "stable_step",
-    "peak_displacement",
-    "peak_force",
-    "displacement_at_peak_force",
-    "input_energy",
-    "spring_energy",
-    "damping_energy",
-    "energy_residual",
-    "relative_energy_residual",
-    "peak_rotation",
-    "cut_steps",
-    "collapsed",
-)
-
+#: Figures of a run that are whole numbers.
 _COUNTS = ("steps", "rows", "events", "cut_steps")
 
 #: Letters of the name of a method; why the program chose it comes behind.
 _METHOD_LENGTH = 20
-
-#: Values of a row before those of the joints (`rbs_output_row`).
-ROW_JOINTS = 10
 
 
 def version() -> str:
@@ -151,63 +117,179 @@ def finite_vector(values: ArrayLike, name: str) -> Array:
     return array
 
 
-def check_spring(rule: str, numbers: Array, inner: str) -> None:
-    """Raise `InputError` for numbers that the rule does not allow."""
-    _raise(*_rbsdem.rbs_check_spring(rule, numbers, inner))
+class Text(str):
+    """A text of the user, which crosses as it is; other strings are words that Fortran knows."""
 
 
-def spring_response(rule: str, numbers: Array, inner: str, deformation: Array) -> Array:
+class Statement(NamedTuple):
+    """Groups of keys with their values, on their way to or from Fortran.
+
+    `text` has a line for each group: its name, then its keys, separated by tabs. ``key`` stands for
+    the next number, ``key:5`` for the next five, ``key=word`` for a text (`rbs_bindings_statements`).
+    """
+
+    text: str
+    numbers: list[float]
+
+    def __add__(self, other: Statement) -> Statement:  # type: ignore[override]
+        """Return the groups of both."""
+        if not other.text:
+            return self
+        return Statement(f"{self.text}\n{other.text}", self.numbers + other.numbers)
+
+
+def group(name: str, values: Mapping[str, Any]) -> Statement:
+    """Return the statement of one group: names and values; None and empty lists are left out."""
+    words, numbers = [name], list[float]()
+    for key, value in values.items():
+        if value is None:
+            continue
+        if isinstance(value, str):
+            text = _one_line(value) if isinstance(value, Text) else word(value)
+            words.append(f"{key}={text}")
+        elif isinstance(value, (tuple, list, np.ndarray)):
+            if len(value):
+                words.append(f"{key}:{len(value)}")
+                numbers.extend(value)
+        else:
+            words.append(key)
+            numbers.append(value)
+    return Statement("\t".join(words), numbers)
+
+
+def _one_line(text: str) -> str:
+    """Return a text without what separates the keys and groups of a statement."""
+    return "".join(letter if letter.isprintable() else " " for letter in text)
+
+
+def _crossing(statement: Statement) -> tuple[bytes, list[float]]:
+    """Return a statement for f2py, which takes no letters beyond ASCII but all bytes."""
+    return statement.text.encode("utf-8", "replace"), statement.numbers
+
+
+def groups(statement: Statement) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield name and values of each group: a number, a list of numbers, or a text for each key."""
+    numbers = iter(statement.numbers)
+    for line in statement.text.splitlines():
+        name, *items = line.split("\t")
+        values: dict[str, Any] = {}
+        for item in items:
+            key, mark, rest = _split_item(item)
+            if mark == "=":
+                values[key] = rest
+            elif mark == ":":
+                values[key] = list(islice(numbers, int(rest)))
+            else:
+                values[key] = next(numbers)
+        yield name, values
+
+
+def _split_item(item: str) -> tuple[str, str, str]:
+    for mark in ("=", ":"):
+        key, found, rest = item.partition(mark)
+        if found and key.isidentifier():
+            return key, mark, rest
+    return item, "", ""
+
+
+@cache
+def keys() -> dict[str, Any]:
+    """Return the list of all keys, as ``rbsdem keys --json`` prints it.
+
+    "groups" has a list of keys for each group of a case file; "rules" has "places" (where a spring
+    of the rule may stand) and "keys" (its parameters) for each rule. A key has "name", "kind",
+    "meaning" and, where they apply, "unit", "least", "least_open", "most", "most_open", "choices",
+    "default", "optional" and "values" (how many there may be at most).
+    """
+    room = 1 << 16
+    while True:
+        text, length = _rbsdem.rbs_keys(room)
+        if length <= room:
+            found: dict[str, Any] = json.loads(text[:length])
+            return found
+        room = length
+
+
+@cache
+def quantities(opens: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the names of what a row holds, an asterisk behind those of joints, and of figures."""
+    rows, figures = _rbsdem.rbs_quantities(int(opens))
+    return tuple(_text(rows).split()), tuple(_text(figures).split())
+
+
+def check_spring(statement: Statement, axial_load: float) -> None:
+    """Raise `InputError` for parameters that the rule does not allow."""
+    _raise(*_rbsdem.rbs_check_spring(*_crossing(statement), axial_load))
+
+
+def spring_response(statement: Statement, axial_load: float, deformation: Array) -> Array:
     """Return the forces of a virgin spring along a path."""
-    return _rbsdem.rbs_spring_response(rule, numbers, inner, deformation)
+    force, status, message = _rbsdem.rbs_spring_response(
+        *_crossing(statement), axial_load, deformation
+    )
+    _raise(status, message)
+    return force
 
-
-#: A column on its way to Fortran (`rbs_flat_pack`): whole numbers, reals, name of the kinematics.
-Packed = tuple[NDArray[np.int32], Array, str]
 
 #: Rows, figures, the error that ended a run early and what is to be noted of it.
 Run = tuple[Array, dict[str, Any], SolveError | None, str]
 
 
-def check_column(column: Packed) -> None:
+def check_column(column: Statement) -> None:
     """Raise `InputError` for everything that is wrong with a column."""
-    _raise(*_rbsdem.rbs_check_column(*column))
+    _raise(*_rbsdem.rbs_check_column(*_crossing(column)))
 
 
-def modes(column: Packed, unknowns: int) -> tuple[Array, Array, float, str]:
+def to_namelist(statement: Statement) -> str:
+    """Return the text of a case file."""
+    room = 200 + 2 * len(statement.text) + 30 * len(statement.numbers)
+    while True:
+        text, length, status, message = _rbsdem.rbs_to_namelist(*_crossing(statement), room)
+        _raise(status, message)
+        if length <= room:
+            return text[:length].decode("utf-8")
+        room = length
+
+
+def modes(column: Statement, unknowns: int) -> tuple[Array, Array, float, str]:
     """Return circular frequencies, shapes (one a column), the stable step of RK4, and a note."""
-    omega, shapes, stable_step, status, message = _rbsdem.rbs_modes(*column, unknowns)
+    omega, shapes, stable_step, status, message = _rbsdem.rbs_modes(*_crossing(column), unknowns)
     _raise(status, message)
     return omega, shapes, stable_step, _text(message)
 
 
-def mass_matrix(column: Packed, unknowns: int, paper: bool) -> Array:
+def mass_matrix(column: Statement, unknowns: int, paper: bool) -> Array:
     """Return the mass matrix in the paper's or in the symmetric form."""
-    mass, status, message = _rbsdem.rbs_mass_matrix(*column, unknowns, int(paper))
+    mass, status, message = _rbsdem.rbs_mass_matrix(*_crossing(column), unknowns, int(paper))
     _raise(status, message)
     return mass
 
 
 def cyclic(
-    column: Packed, unknowns: int, by_force: bool, values: Array, every: int, collapse_drift: float
+    column: Statement, shape: tuple[int, bool], by_force: bool, values: Array, every: int | None
 ) -> Run:
-    """Follow a static path."""
-    rows = _empty_rows(unknowns, _rbsdem.rbs_kept_rows(values.size, every))
+    """Follow a static path.
+
+    `column` holds the settings of the analysis too; `shape` is the number of bodies and whether
+    joints open.
+    """
+    rows = _empty_rows(
+        shape, _rbsdem.rbs_kept_rows(values.size, UNSET_INTEGER if every is None else every)
+    )
+    figures = len(quantities(False)[1])
     return _finish(
-        rows, *_rbsdem.rbs_cyclic(*column, int(by_force), values, every, collapse_drift, rows)
+        rows, *_rbsdem.rbs_cyclic(*_crossing(column), int(by_force), values, rows, figures)
     )
 
 
 def time_history(
-    column: Packed,
-    unknowns: int,
+    column: Statement,
+    shape: tuple[int, bool],
     time: Array,
-    loads: tuple[Array, Array, Array, Array],
-    method: str,
-    events: str,
-    settings: Array,
+    loads: Mapping[str, Array],
     initial: Array,
     opening_given: bool,
-    every: int,
+    every: int | None,
 ) -> Run:
     """March through time.
 
@@ -215,38 +297,48 @@ def time_history(
     Without `every`, and without a step that does not divide the intervals, there is one for each of
     `time`; else a first call asks for more room.
     """
-    wanted = time.size if every == UNSET_INTEGER else 0
+    for name, values in loads.items():
+        if values.size != time.size:
+            raise InputError(
+                f"{name}: {values.size} values for {time.size} times; give one for each"
+            )
+    load = np.empty((time.size, len(loads)), order="F")
+    for place, values in enumerate(loads.values()):
+        load[:, place] = values
+    figures = len(quantities(False)[1])
+    wanted = time.size if every is None else 0
     while True:
-        rows = _empty_rows(unknowns, wanted)
+        rows = _empty_rows(shape, wanted)
         wanted, *rest = _rbsdem.rbs_time_history(
-            *column,
+            *_crossing(column),
             time,
-            *loads,
-            method,
-            events,
-            settings,
+            " ".join(loads),
+            load,
             initial,
             int(opening_given),
-            every,
             rows,
+            figures,
         )
         if rest[2] != _LITTLE_ROOM:
             return _finish(rows, wanted, *rest)
 
 
-def read_case(path: str) -> tuple[Any, ...]:
-    """Return column, title, analysis and loadings of a case file, as `rbsdem.case` takes them."""
-    sizes = (0, 0, 0)
+def read_case(path: str) -> tuple[Statement, Array, Array, NDArray[np.int32]]:
+    """Return a case file as statement, times, values of the five drives, and which of them act."""
+    raw = os.fsencode(_path(path))
+    size = os.path.getsize(path) if os.path.isfile(path) else 0
+    # More than most cases need; a second call has the room that the first one asked for.
+    sizes = (4 * size + 1024, size // 2 + 64, size // 4 + 4096)
     while True:
-        answer = _rbsdem.rbs_read_case(os.fsencode(_path(path)), *sizes)
-        *found, status, message = answer
+        text, numbers, time, values, acting, wanted, status, message = _rbsdem.rbs_read_case(
+            raw, *sizes
+        )
         _raise(status, message)
-        wanted = tuple(int(size) for size in found.pop())
-        if wanted == sizes:
-            codes, numbers, kinematics, title, method, events, *rest = found
-            texts = (_text(text) for text in (kinematics, title, method, events))
-            return codes, numbers, *texts, *rest
-        sizes = wanted
+        letters, count, rows = (int(number) for number in wanted)
+        if letters <= sizes[0] and count <= sizes[1] and rows <= sizes[2]:
+            statement = Statement(text[:letters].decode("utf-8"), numbers[:count].tolist())
+            return statement, time[:rows].copy(), values[:rows], acting
+        sizes = (letters, count, rows)
 
 
 def protocol(amplitudes: Array, cycles: NDArray[np.int32], repeats: int, points: int) -> Array:
@@ -260,15 +352,18 @@ def protocol(amplitudes: Array, cycles: NDArray[np.int32], repeats: int, points:
     return values
 
 
-def read_history(path: str) -> tuple[str, Array, Array]:
-    """Return name, displacements [m] and forces [N] of a history file."""
+def read_history(path: str, length: str, force: str) -> tuple[str, Array, Array]:
+    """Return name, displacements [m] and forces [N] of a history file.
+
+    `length` and `force` are the units of the file; empty: those that the file names.
+    """
     path = _path(path)
     # No row is shorter than two digits, a separator and an end of line.
     most = os.path.getsize(path) // 4 + 1 if os.path.isfile(path) else 1
     if most > np.iinfo(np.int32).max:
         raise InputError(f"{path}: the file is too large")
     # As bytes: f2py takes no letters beyond ASCII.
-    answer = _rbsdem.rbs_read_history(os.fsencode(path), most)
+    answer = _rbsdem.rbs_read_history(os.fsencode(path), word(length), word(force), most)
     rows, name, displacement, force, status, message = answer
     _raise(status, message)
     return _text(name), displacement[:rows].copy(), force[:rows].copy()
@@ -405,9 +500,12 @@ def _path(path: str) -> str:
     return path
 
 
-def _empty_rows(unknowns: int, rows: int) -> Array:
+def _empty_rows(shape: tuple[int, bool], rows: int) -> Array:
     """Return the array that Fortran fills, one row of the result a column."""
-    return np.empty((ROW_JOINTS + 2 * unknowns, rows), order="F")
+    bodies, opens = shape
+    names = quantities(opens)[0]
+    joints = sum(name.endswith("*") for name in names)
+    return np.empty((len(names) + (bodies - 1) * joints, rows), order="F")
 
 
 def _finish(
@@ -421,7 +519,7 @@ def _finish(
         _raise(status, message)
     elif not message.startswith(b" "):
         note = _text(message)
-    named: dict[str, Any] = dict(zip(FIGURES, figures.tolist(), strict=True))
+    named: dict[str, Any] = dict(zip(quantities(False)[1], figures.tolist(), strict=True))
     for name in _COUNTS:
         named[name] = int(named[name])
     collapsed = named.pop("collapsed")

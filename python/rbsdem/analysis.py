@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,10 +15,12 @@ from rbsdem._core import Array
 from rbsdem.column import Column
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.methods import IN_TIME
-from rbsdem.results import Result, result_from_rows
+from rbsdem.result import Result, result_from_rows
 
 #: Names of the methods in time.
 METHODS = IN_TIME
+
+Method = Literal["auto", "rk4", "rk45", "newmark", "hht", "generalised_alpha"]
 
 _DEFORMATIONS = ("slip", "rotation", "opening")
 _NONE = np.empty(0)
@@ -63,7 +66,7 @@ def modes(column: Column) -> Modes:
     AccuracyWarning
         If the axial load is so near the critical one that low frequencies hang on its last digits.
     """
-    omega, shapes, stable_step, note = _core.modes(_checked(column)._packed, column.unknowns)
+    omega, shapes, stable_step, note = _core.modes(_checked(column)._statement, column.unknowns)
     if note:
         warnings.warn(note, AccuracyWarning, stacklevel=2)
     return Modes(omega, omega / (2 * np.pi), shapes, stable_step)
@@ -82,14 +85,14 @@ def mass_matrix(column: Column, form: str = "symmetric") -> Array:
     """
     if form not in ("symmetric", "paper"):
         raise InputError(f"form = {form!r} is not known; it is 'symmetric' or 'paper'")
-    return _core.mass_matrix(_checked(column)._packed, column.unknowns, form == "paper")
+    return _core.mass_matrix(_checked(column)._statement, column.unknowns, form == "paper")
 
 
 def cyclic(
     column: Column,
+    *,
     displacement: ArrayLike | None = None,
     force: ArrayLike | None = None,
-    *,
     every: int | None = None,
     collapse_drift: float | None = None,
 ) -> Result:
@@ -134,13 +137,15 @@ def cyclic(
     by_force = displacement is None
     name = "force" if by_force else "displacement"
     values = _core.vector(force if by_force else displacement, name)
+    if values.size == 0:
+        raise InputError(f"{name} is empty; give at least one point")
+    settings = _settings(every, collapse_drift=collapse_drift)
     run = _core.cyclic(
-        _checked(column)._packed,
-        column.unknowns,
+        _checked(column)._statement + settings,
+        (column.n, column.opens),
         by_force,
         values,
-        _every(every),
-        _optional(collapse_drift, "collapse_drift"),
+        every,
     )
     return _return(column, run, {"analysis": "static", "driven": name})
 
@@ -148,15 +153,15 @@ def cyclic(
 def time_history(
     column: Column,
     time: ArrayLike,
+    *,
     force: ArrayLike | None = None,
     ground_acceleration: ArrayLike | None = None,
     dt: float | None = None,
-    method: str = "rk4",
+    method: Method | None = None,
     initial: Mapping[str, ArrayLike] | None = None,
-    *,
     vertical_acceleration: ArrayLike | None = None,
     axial_load: ArrayLike | None = None,
-    events: str | None = None,
+    events: Literal["step", "located"] | None = None,
     tolerance: float | None = None,
     rho_infinity: float | None = None,
     collapse_drift: float | None = None,
@@ -180,14 +185,15 @@ def time_history(
         run from the first to the last time and a row is kept after each. Without `dt` the method
         chooses; with "rk4" every interval is cut into equal steps not longer than a fifth of the
         stability limit.
-    method : {"rk4", "auto", "rk45", "newmark", "hht", "generalised_alpha"}, optional
-        Classical Runge-Kutta with fixed step (the paper's scheme); the choice of the program, which
-        `summary["method"]` and `summary["reason"]` tell; Runge-Kutta 5(4) with error control;
-        implicit methods: average acceleration, Hilber-Hughes-Taylor, generalised-alpha.
+    method : {"auto", "rk4", "rk45", "newmark", "hht", "generalised_alpha"}, optional
+        The choice of the program, which `summary["method"]` and `summary["reason"]` tell; classical
+        Runge-Kutta with fixed step (the paper's scheme); Runge-Kutta 5(4) with error control;
+        implicit methods: average acceleration, Hilber-Hughes-Taylor, generalised-alpha. The default
+        is "auto" with ground motion; with a lateral force alone the method must be named.
     initial : mapping, optional
-        State at the begin: "slip" [m], "rotation" [rad], "opening" [m], and "slip_velocity",
+        State at the start: "slip" [m], "rotation" [rad], "opening" [m], and "slip_velocity",
         "rotation_velocity", "opening_velocity", each of shape (n,). The springs get there from
-        zero. Without "opening" the joints begin in equilibrium under axial load and weight.
+        zero. Without "opening" the joints start in equilibrium under axial load and weight.
     vertical_acceleration : array_like, shape (m,), optional
         Vertical acceleration of the ground, upward positive [m/s2].
     axial_load : array_like, shape (m,), optional
@@ -211,7 +217,7 @@ def time_history(
     Returns
     -------
     Result
-        A row for each time kept, the first one at the begin.
+        A row for each time kept, the first one at the start.
 
     Raises
     ------
@@ -227,32 +233,34 @@ def time_history(
         If a body turns by more than 0.1 rad with `kinematics` "small" or "pdelta", and if vertical
         loads have nothing to act on.
     """
-    packed = _checked(column)._packed
-    settings = np.array(
-        [
-            _optional(dt, "dt"),
-            _optional(tolerance, "tolerance"),
-            _optional(rho_infinity, "rho_infinity"),
-            _optional(collapse_drift, "collapse_drift"),
-            _core.switch(allow_unstable, "allow_unstable"),
-        ]
-    )
-    loads = (
-        _loading(force, "force"),
-        _loading(ground_acceleration, "ground_acceleration"),
-        _loading(vertical_acceleration, "vertical_acceleration"),
-        _loading(axial_load, "axial_load"),
+    given = {
+        "force": force,
+        "ground_acceleration": ground_acceleration,
+        "vertical_acceleration": vertical_acceleration,
+        "axial_load": axial_load,
+    }
+    loads = {name: _loading(values, name) for name, values in given.items() if values is not None}
+    if not loads and not initial:
+        raise InputError(
+            "time_history: nothing acts; give a load (" + ", ".join(given) + ") or an initial state"
+        )
+    settings = _settings(
+        every,
+        method=method,
+        dt=dt,
+        events=events,
+        tolerance=tolerance,
+        rho_infinity=rho_infinity,
+        collapse_drift=collapse_drift,
+        allow_unstable=int(_core.switch(allow_unstable, "allow_unstable")) or None,
     )
     run = _core.time_history(
-        packed,
-        column.unknowns,
+        _checked(column)._statement + settings,
+        (column.n, column.opens),
         _core.vector(time, "time"),
         loads,
-        _core.word(method),
-        "" if events is None else _core.word(events),
-        settings,
         *_initial_state(initial, column),
-        _every(every),
+        every,
     )
     return _return(column, run, {"analysis": "dynamic"})
 
@@ -263,22 +271,22 @@ def _checked(column: Column) -> Column:
     return column
 
 
-def _every(every: int | None) -> int:
+def _settings(every: int | None, **given: Any) -> _core.Statement:
+    """Return the groups analysis and output with the settings that are given."""
+    settings = {
+        name: str(value) if name in ("method", "events") else _core.number(value, name)
+        for name, value in given.items()
+        if value is not None
+    }
+    statement = _core.group("analysis", settings)
     if every is None:
-        return _core.UNSET_INTEGER
+        return statement
     if _core.whole(every, "every") < 1:
         raise InputError(f"every = {every} must be 1 or more")
-    return every
+    return statement + _core.group("output", {"every": every})
 
 
-def _optional(value: float | None, name: str) -> float:
-    return _core.UNSET if value is None else _core.number(value, name)
-
-
-def _loading(values: ArrayLike | None, name: str) -> Array:
-    """Return the values of a loading; an empty array stands for none."""
-    if values is None:
-        return _NONE
+def _loading(values: ArrayLike, name: str) -> Array:
     array = _core.vector(values, name)
     if array.size == 0:
         raise InputError(f"{name} is empty; give one value for each time")
@@ -286,19 +294,21 @@ def _loading(values: ArrayLike | None, name: str) -> Array:
 
 
 def _initial_state(initial: Mapping[str, ArrayLike] | None, column: Column) -> tuple[Array, bool]:
-    """Return deformations and velocities at the begin, and whether openings are given.
+    """Return deformations and velocities at the start, and whether openings are given.
 
     An empty array stands for a column at rest.
     """
     if not initial:
         return _NONE, False
     n = column.n
-    known = _DEFORMATIONS if column.axial is not None else _DEFORMATIONS[:2]
+    known = _DEFORMATIONS if column.opens else _DEFORMATIONS[:2]
     parts = {name: np.zeros(n) for name in (*known, *(f"{name}_velocity" for name in known))}
     for name, values in initial.items():
         if name not in parts:
             if name in ("opening", "opening_velocity"):
-                raise InputError(f"initial: {name!r} needs joints that open; give the column axial")
+                raise InputError(
+                    f"initial: {name!r} needs joints that open; give the column axial_spring"
+                )
             raise InputError(f"initial: {name!r} is not known; it is one of {', '.join(parts)}")
         array = _core.finite_vector(np.atleast_1d(values), f"initial: {name}")
         if array.shape != (n,):

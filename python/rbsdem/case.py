@@ -3,41 +3,24 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from dataclasses import dataclass
-from itertools import islice
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 
 from rbsdem import _core
-from rbsdem._core import UNSET, UNSET_INTEGER, Array
+from rbsdem._core import Array
 from rbsdem.analysis import cyclic, time_history
 from rbsdem.column import Column
 from rbsdem.damping import Damping
-from rbsdem.results import Result
-from rbsdem.springs import (
-    Bilinear,
-    Compression,
-    ConcreteSpring,
-    Elastic,
-    Layered,
-    PeakOriented,
-    Pinching,
-    Spring,
-    SteelSpring,
-    Takeda,
-)
+from rbsdem.errors import SolveError
+from rbsdem.result import Result
+from rbsdem.springs import SPRINGS, Spring
 
-_SPRINGS = (
-    *(Elastic, Bilinear, Takeda, Compression, PeakOriented, Pinching),
-    *(ConcreteSpring, SteelSpring, Layered),
-)
 _DRIVES = ("displacement", "force", "ground_acceleration", "vertical_acceleration", "axial_load")
-_SETTINGS = ("dt", "tolerance", "rho_infinity", "collapse_drift")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Case:
     """A case file: a column, its loading and its analysis.
 
@@ -90,10 +73,50 @@ class Case:
         """
         column = self.column if column is None else column
         loads = {name: getattr(self, name) for name in _DRIVES if getattr(self, name) is not None}
-        if self.method == "static":
-            return cyclic(column, **loads, **(self.settings | changes))
-        keywords = {"method": self.method} | self.settings | changes
-        return time_history(column, self.time, **loads, **keywords)
+        try:
+            if self.method == "static":
+                result = cyclic(column, **loads, **(self.settings | changes))
+            else:
+                keywords = {"method": self.method} | self.settings | changes
+                result = time_history(column, self.time, **loads, **keywords)
+        except SolveError as error:
+            if error.result is not None:
+                error.result = replace(error.result, case=self)
+            raise
+        return replace(result, case=self)
+
+    def to_namelist(self) -> str:
+        """Return the text of a case file, from which the same case comes back.
+
+        Histories stand in the text itself, with all their digits.
+        """
+        head = {"title": _core.Text(self.title) if self.title else None}
+        parts = [_core.group("case", head), self.column._statement]
+        for name in _DRIVES:
+            values = getattr(self, name)
+            if values is None:
+                continue
+            time = None if self.method == "static" else self.time
+            parts.append(_core.group("loading", {"drive": name, "time": time, "values": values}))
+        settings = dict(self.settings)
+        every = settings.pop("every", None)
+        parts.append(_core.group("analysis", {"method": self.method} | settings))
+        parts.append(_core.group("output", {"every": every}))
+        numbers = [float(number) for part in parts for number in part.numbers]
+        return _core.to_namelist(_core.Statement("\n".join(part.text for part in parts), numbers))
+
+    def __eq__(self, other: object) -> bool:
+        """Whether another case has the same column, histories and settings, bit for bit."""
+        if not isinstance(other, Case):
+            return NotImplemented
+        return all(
+            np.array_equal(one, two) if isinstance(one, np.ndarray) else bool(one == two)
+            for one, two in (
+                (getattr(self, field.name), getattr(other, field.name)) for field in fields(self)
+            )
+        )
+
+    __hash__ = None  # type: ignore[assignment]
 
 
 def read_case(path: str | os.PathLike[str]) -> Case:
@@ -111,74 +134,100 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     InputError
         With a line for everything that is wrong, as `rbsdem check` finds it.
     """
-    answer = _core.read_case(os.fspath(path))
-    codes, numbers, kinematics, title, method, events, settings, every, time, values, acting = (
-        answer
-    )
-    found: dict[str, Any] = {
-        name: float(value)
-        for name, value in zip(_SETTINGS, settings, strict=False)
-        if value != UNSET
-    }
-    if events:
-        found["events"] = events
-    if settings[-1]:
-        found["allow_unstable"] = True
-    if every != UNSET_INTEGER:
-        found["every"] = int(every)
+    statement, time, values, acting = _core.read_case(os.fspath(path))
+    found: dict[str, dict[str, Any]] = {}
+    springs = _Springs()
+    for name, given in _core.groups(statement):
+        if not springs.take(name, given):
+            found[name] = given
+    settings = _typed("analysis", found.get("analysis", {}))
+    settings |= _typed("output", found.get("output", {}))
+    # The histories end there already, and the csv is that of the executable.
+    for name in ("duration", "file"):
+        settings.pop(name, None)
+    column = _typed("column", found["column"])
+    column |= springs.of_joints(column.get("n", 1))
+    if "damping" in found:
+        column["damping"] = Damping(**_typed("damping", found["damping"]))
     loads = (np.ascontiguousarray(values[:, i]) if acting[i] else None for i in range(len(_DRIVES)))
-    return Case(title, _column(codes, numbers, kinematics), method, time, *loads, found)
-
-
-def _column(codes: Array, numbers: Array, kinematics: str) -> Column:
-    """Return the column that two arrays hold; the inverse of `Column._pack`."""
-    n, weight, axial_follows, force_follows, tangent, *rest = codes.tolist()
-    sizes, rules = rest[:7], iter(rest[7:])
-    values = iter(numbers.tolist())
-    height, mass, load, gravity, top_mass, top_inertia, depth, *damping = islice(values, 9)
-    lengths, masses, rotary_inertia, modal = (list(islice(values, size)) for size in sizes[:4])
-    springs = [
-        [_spring(next(rules), next(rules), next(rules), values) for _ in range(size)]
-        for size in sizes[4:]
-    ]
-    shear, flexure, axial = (group[0] if len(group) == 1 else group for group in springs)
-    damped = Damping(*damping, bool(tangent), (modal[0] if len(modal) == 1 else modal) or None)
-    return Column(
-        height,
-        None if mass == UNSET else mass,
-        shear,
-        flexure,
-        n=n,
-        axial_load=load,
-        kinematics=kinematics,
-        lengths=lengths or None,
-        masses=masses or None,
-        self_weight=bool(weight),
-        gravity=gravity,
-        axial=axial or None,
-        top_mass=top_mass,
-        top_inertia=top_inertia,
-        depth=depth,
-        rotary_inertia=rotary_inertia or None,
-        axial_follows=bool(axial_follows),
-        force_follows=bool(force_follows),
-        damping=None if damped == Damping() else damped,
+    return Case(
+        found.get("case", {}).get("title", ""),
+        Column(**({"mass": None} | column)),
+        settings.pop("method"),
+        time,
+        *loads,
+        settings,
     )
 
 
-def _spring(rule: int, inner: int, layers: int, values: Iterator[float]) -> Spring:
-    """Return the spring of a rule by its place, from the next numbers."""
-    kind = _SPRINGS[rule - 1]
-    numbers = islice(values, len(_core.SPRING_NUMBERS))
-    given = {
-        name: value
-        for name, value in zip(_core.SPRING_NUMBERS, list(numbers), strict=True)
-        if name in kind.__dataclass_fields__ and value != UNSET
-    }
-    if kind is Takeda:
-        given["inner"] = _core.INNER[inner - 1]
-    if kind is Layered:
-        given["layers"] = [
-            (next(values), _spring(int(next(values)), 1, 0, values)) for _ in range(layers)
-        ]
-    return kind(**given)
+def _typed(group: str, given: dict[str, Any]) -> dict[str, Any]:
+    """Return values in the types of their keys: whole numbers and switches cross as numbers."""
+    types = {"integer": int, "logical": bool}
+    typed = {}
+    for key in _core.keys()["groups"][group]:
+        if key["name"] not in given:
+            continue
+        value = given[key["name"]]
+        if key.get("values", 1) > 1:
+            value = _several(value)
+        elif key["kind"] in types:
+            value = types[key["kind"]](value)
+        typed[key["name"]] = value
+    return typed
+
+
+class _Springs:
+    """Springs of a case, as its groups state them."""
+
+    def __init__(self) -> None:
+        self.stated: dict[str, list[dict[str, Any]]] = {
+            name: [] for name in ("shear", "flexure", "axial_spring", "layer_spring", "layers")
+        }
+
+    def take(self, group: str, given: dict[str, Any]) -> bool:
+        """Keep a group of springs; return whether it is one."""
+        if group in self.stated:
+            self.stated[group].append(given)
+        return group in self.stated
+
+    def of_joints(self, n: int) -> dict[str, Any]:
+        """Return the springs of a column, one for all joints or one for each."""
+        springs = {int(given["id"]): _spring(given) for given in self.stated["layer_spring"]}
+        layers: dict[tuple[int, ...], list[tuple[float, Spring]]] = {
+            _joints(given): list(
+                zip(
+                    _several(given["y"]),
+                    (springs[int(number)] for number in _several(given["spring"])),
+                    strict=True,
+                )
+            )
+            for given in self.stated["layers"]
+        }
+        column: dict[str, Any] = {}
+        for name in ("shear", "flexure", "axial_spring"):
+            places: dict[int, Spring] = {}
+            for given in self.stated[name]:
+                joints = _joints(given)
+                spring = _spring(given, layers[joints] if given["rule"] == "layered" else None)
+                places |= dict.fromkeys(joints or (0,), spring)
+            if 0 in places:
+                column[name] = places[0]
+            elif places:
+                column[name] = [places[joint] for joint in range(1, n + 1)]
+        return column
+
+
+def _several(value: float | list[float]) -> list[float]:
+    return value if isinstance(value, list) else [value]
+
+
+def _joints(given: dict[str, Any]) -> tuple[int, ...]:
+    """Return the joints that a group names; none: all."""
+    return tuple(int(joint) for joint in _several(given.get("joint", [])))
+
+
+def _spring(given: dict[str, Any], layers: list[tuple[float, Spring]] | None = None) -> Spring:
+    """Return the spring that a group states."""
+    kind = SPRINGS[given["rule"]]
+    values = {name: value for name, value in given.items() if name not in ("rule", "joint", "id")}
+    return kind(**(values if layers is None else {"layers": layers}))

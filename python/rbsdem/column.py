@@ -2,36 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rbsdem import _core
-from rbsdem._core import UNSET
+from rbsdem._renamed import renamed
 from rbsdem.damping import Damping
 from rbsdem.errors import InputError
-from rbsdem.springs import Spring
+from rbsdem.springs import Layered, Spring, layer_springs
 
 #: Standard acceleration of gravity [m/s2].
 STANDARD_GRAVITY = 9.80665
 
-_NUMBERS = (
-    "height",
-    "axial_load",
-    "gravity",
-    "top_mass",
-    "top_inertia",
-    "depth",
-    "mass_damping",
-    "stiffness_damping",
-)
+#: Levels of kinematics.
+Kinematics = Literal["small", "pdelta", "finite"]
+
+_NUMBERS = ("height", "axial_load", "gravity", "top_mass", "top_inertia", "depth")
 _SWITCHES = ("self_weight", "axial_follows", "force_follows")
+_LISTS = ("lengths", "masses", "rotary_inertia")
 
 
-@dataclass(frozen=True)
+@renamed(
+    axial="axial_spring",
+    mass_damping="damping=Damping(mass=...)",
+    stiffness_damping="damping=Damping(stiffness=...)",
+)
+@dataclass(frozen=True, repr=False)
 class Column:
     """A column of `n` rigid bodies on `n` joints; joint i is at the bottom of body i.
 
@@ -57,10 +57,7 @@ class Column:
         Whether the weight of the bodies acts too.
     gravity : float, optional
         Acceleration of gravity for the weight [m/s2].
-    mass_damping, stiffness_damping : float, optional
-        Damping in proportion to the mass [1/s] and to the initial stiffness of each joint [s]; in
-        place of `damping`.
-    axial : Spring or sequence of n Spring, optional
+    axial_spring : Spring or sequence of n Spring, optional
         Axial springs of the joints, opening and tension positive: `Elastic`, `Bilinear` or
         `Compression`. Without them joints do not open.
     top_mass, top_inertia : float, optional
@@ -76,6 +73,9 @@ class Column:
         only.
     damping : float or Damping, optional
         Viscous damping; a number is the damping ratio of every mode.
+    model : str, optional
+        Which model made the column, and the version of its parameters ("layered 2026.1"); for the
+        record only.
 
     Raises
     ------
@@ -89,14 +89,12 @@ class Column:
     flexure: Spring | Sequence[Spring]
     n: int = 1
     axial_load: float = 0.0
-    kinematics: str = "small"
+    kinematics: Kinematics = "small"
     lengths: ArrayLike | None = None
     masses: ArrayLike | None = None
     self_weight: bool = False
     gravity: float = STANDARD_GRAVITY
-    mass_damping: float = 0.0
-    stiffness_damping: float = 0.0
-    axial: Spring | Sequence[Spring] | None = None
+    axial_spring: Spring | Sequence[Spring] | None = None
     top_mass: float = 0.0
     top_inertia: float = 0.0
     depth: float = 0.0
@@ -104,6 +102,7 @@ class Column:
     axial_follows: bool = False
     force_follows: bool = False
     damping: float | Damping | None = None
+    model: str = ""
 
     def __post_init__(self) -> None:
         def put(name: str, value: Any) -> None:
@@ -116,60 +115,87 @@ class Column:
             put(name, _core.switch(getattr(self, name), f"column: {name}"))
         if self.mass is not None:
             put("mass", _core.number(self.mass, "column: mass"))
-        for name in ("lengths", "masses", "rotary_inertia"):
+        for name in _LISTS:
             if getattr(self, name) is not None:
                 put(name, _parts(getattr(self, name), name))
-        put("shear", _springs(self.shear, "shear"))
-        put("flexure", _springs(self.flexure, "flexure"))
-        if self.axial is not None:
-            put("axial", _springs(self.axial, "axial"))
-        put("damping", self._damping())
+        put("shear", _springs(self.shear, "shear", self.n))
+        put("flexure", _springs(self.flexure, "flexure", self.n))
+        if self.axial_spring is not None:
+            put("axial_spring", _springs(self.axial_spring, "axial_spring", self.n))
+        if self.damping is not None and not isinstance(self.damping, Damping):
+            put("damping", Damping(modal=_core.number(self.damping, "column: damping")))
         # Once for all analyses: what is frozen does not change.
-        put("_packed", self._pack())
-        _core.check_column(self._packed)
+        put("_statement", self._state())
+        _core.check_column(self._statement)
+
+    def __repr__(self) -> str:
+        kinds = [type(spring).__name__ for spring in dict.fromkeys(self.joints("flexure"))]
+        return (
+            f"Column(height={self.height:g}, n={self.n}, kinematics={self.kinematics!r}, "
+            f"axial_load={self.axial_load:g}, flexure: {', '.join(dict.fromkeys(kinds))})"
+        )
 
     @property
     def unknowns(self) -> int:
         """Number of joint deformations: 2n, or 3n where the joints open."""
-        return (2 if self.axial is None else 3) * self.n
+        return (2 if self.axial_spring is None else 3) * self.n
 
-    def _damping(self) -> Damping | None:
-        if self.damping is None:
-            return None
-        if self.mass_damping or self.stiffness_damping:
-            raise InputError(
-                "column: both damping and mass_damping or stiffness_damping are given; "
-                "keep the one that is meant (Damping has both)"
-            )
-        if isinstance(self.damping, Damping):
-            return self.damping
-        return Damping(modal=_core.number(self.damping, "column: damping"))
+    @property
+    def opens(self) -> bool:
+        """Whether the joints have axial springs and open."""
+        return self.axial_spring is not None
 
-    def _pack(self) -> _core.Packed:
-        """Return the column as two arrays and a word, in the order of `rbs_flat_pack`."""
-        damping = self.damping or Damping(self.mass_damping, self.stiffness_damping)
-        lists = [self.lengths, self.masses, self.rotary_inertia, damping.ratios()]
-        springs = [_sequence(springs) for springs in (self.shear, self.flexure, self.axial)]
-        codes = [self.n, *(getattr(self, name) for name in _SWITCHES), damping.tangent]
-        codes += [len(part or ()) for part in (*lists, *springs)]
-        numbers = [
-            self.height,
-            UNSET if self.mass is None else self.mass,
-            self.axial_load,
-            self.gravity,
-            self.top_mass,
-            self.top_inertia,
-            self.depth,
-            damping.mass,
-            damping.stiffness,
-        ]
-        for part in lists:
-            numbers += part or ()
-        for several in springs:
-            for spring in several:
-                codes += spring.codes()
-                numbers += spring.numbers().tolist()
-        return np.array(codes, dtype=np.int32), np.array(numbers), _core.word(self.kinematics)
+    def joints(self, name: Literal["shear", "flexure", "axial_spring"]) -> tuple[Spring, ...]:
+        """Return the springs of one kind, one for each joint from the ground up.
+
+        Parameters
+        ----------
+        name : {"shear", "flexure", "axial_spring"}
+            Which springs; empty for axial springs that are not there.
+        """
+        springs = getattr(self, name)
+        if springs is None:
+            return ()
+        return (springs,) * self.n if isinstance(springs, Spring) else tuple(springs)
+
+    def to_namelist(self) -> str:
+        """Return the column as groups of a case file, from which the same column comes back."""
+        return _core.to_namelist(self._statement)
+
+    def _state(self) -> _core.Statement:
+        """Return the keys of the column, as the groups of a case file."""
+        own: dict[str, Any] = {"n": self.n, "kinematics": str(self.kinematics)}
+        own |= {name: getattr(self, name) for name in (*_NUMBERS, "mass", *_LISTS)}
+        own |= {name: True for name in _SWITCHES if getattr(self, name)}
+        own |= {"model": _core.Text(self.model)} if self.model else {}
+        parts = [_core.group("column", own)]
+        if self.damping is not None:
+            parts.append(self.damping.statement())
+        ids: dict[Spring, int] = {}
+        for name in ("shear", "flexure", "axial_spring"):
+            parts += _springs_statement(getattr(self, name), name, ids)
+        if ids:
+            parts.append(layer_springs(ids))
+        numbers = [number for part in parts for number in part.numbers]
+        return _core.Statement("\n".join(part.text for part in parts), numbers)
+
+
+def _springs_statement(
+    springs: Spring | Sequence[Spring] | None, name: str, ids: dict[Spring, int]
+) -> Iterator[_core.Statement]:
+    """Yield the springs of one kind of joint, equal ones once, with the joints that have them."""
+    if springs is None:
+        return
+    if isinstance(springs, Spring):
+        joints: dict[Spring, dict[str, Any]] = {springs: {}}
+    else:
+        joints = {}
+        for number, spring in enumerate(springs, 1):
+            joints.setdefault(spring, {"joint": []})["joint"].append(number)
+    for spring, place in joints.items():
+        yield spring.statement(name, **place)
+        if isinstance(spring, Layered):
+            yield spring.layers_statement(ids, **place)
 
 
 def _parts(values: ArrayLike, name: str) -> tuple[float, ...]:
@@ -182,8 +208,8 @@ def _parts(values: ArrayLike, name: str) -> tuple[float, ...]:
     return tuple(parts.tolist())
 
 
-def _springs(springs: Any, name: str) -> Spring | tuple[Spring, ...]:
-    """Return one spring, or a tuple of them."""
+def _springs(springs: Any, name: str, n: int) -> Spring | tuple[Spring, ...]:
+    """Return one spring, or a tuple of them; equal springs at all joints are one."""
     if isinstance(springs, Spring):
         return springs
     try:
@@ -194,14 +220,15 @@ def _springs(springs: Any, name: str) -> Spring | tuple[Spring, ...]:
         if not isinstance(spring, Spring):
             raise InputError(
                 f"column: {name} = {spring!r} must be a spring (Elastic, Bilinear, Takeda, "
-                "PeakOriented, Pinching, for axial also Compression) or a sequence of them"
+                "PeakOriented, Pinching, Layered; Compression as axial spring) or a sequence of them"
             )
     if not several:
         raise InputError(f"column: {name} is empty; give one spring, or one for each joint")
+    if len(several) != n and n > 0:
+        raise InputError(
+            f"column: {name} has {len(several)} springs for n = {n} joints; "
+            "give one, or one for each joint"
+        )
+    if all(spring == several[0] for spring in several[1:]):
+        return several[0]
     return several
-
-
-def _sequence(springs: Spring | Sequence[Spring] | None) -> Sequence[Spring]:
-    if springs is None:
-        return ()
-    return (springs,) if isinstance(springs, Spring) else springs

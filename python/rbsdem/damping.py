@@ -32,7 +32,7 @@ class Damping:
     Raises
     ------
     InputError
-        If a number is none; values are checked with the column that they are given to.
+        If a value is not a number; its bounds are checked with the column that has the damping.
     """
 
     mass: float = 0.0
@@ -53,7 +53,9 @@ class Damping:
         ratios = _core.vector(self.modal, "damping: modal")
         if ratios.size == 0:
             raise InputError("damping: modal is empty; give a ratio, or None")
-        object.__setattr__(self, "modal", tuple(ratios.tolist()))
+        # One ratio is for all modes, in a list or not.
+        modal = ratios.tolist()[0] if ratios.size == 1 else tuple(ratios.tolist())
+        object.__setattr__(self, "modal", modal)
 
     @classmethod
     def rayleigh(
@@ -97,8 +99,15 @@ class Damping:
         stiffness = 2.0 * ratio / (omega[0] + omega[1])
         return cls(mass=stiffness * omega[0] * omega[1], stiffness=stiffness, tangent=tangent)
 
-    def ratios(self) -> tuple[float, ...]:
-        """Return the modal ratios, one for all or those of the first modes; empty if none."""
-        if self.modal is None:
-            return ()
-        return self.modal if isinstance(self.modal, tuple) else (self.modal,)
+    def statement(self) -> _core.Statement:
+        """Return the keys of the damping, as a group of a case file."""
+        modal = self.modal if self.modal is None or isinstance(self.modal, tuple) else (self.modal,)
+        return _core.group(
+            "damping",
+            {
+                "mass": self.mass,
+                "stiffness": self.stiffness,
+                "tangent": self.tangent or None,
+                "modal": modal,
+            },
+        )

@@ -1,4 +1,4 @@
-"""Joint springs: a rule and its numbers.
+"""Joint springs: a rule and its parameters.
 
 Deformation and force are slip [m] and shear [N], or rotation [rad] and moment [N m]; the units
 below are those of a shear spring.
@@ -6,15 +6,24 @@ below are those of a shear spring.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import ClassVar
+from dataclasses import dataclass, fields, replace
+from functools import cache
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rbsdem import _core
 from rbsdem._core import Array
+from rbsdem._renamed import renamed
 from rbsdem.errors import InputError
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+
+#: Classes of springs by the name of their rule.
+SPRINGS: dict[str, type[Spring]] = {}
 
 
 @dataclass(frozen=True)
@@ -23,6 +32,10 @@ class Spring:
 
     #: Name of the rule in the Fortran part.
     rule: ClassVar[str] = ""
+
+    def __init_subclass__(cls) -> None:
+        """List the class under its rule."""
+        SPRINGS[cls.rule] = cls
 
     def __post_init__(self) -> None:
         if not self.rule:
@@ -36,27 +49,59 @@ class Spring:
                 continue
             if not (given is None and field.default is None):
                 name = f"{self.rule} spring: {field.name}"
-                value = _core.number(given, name)
-                object.__setattr__(self, field.name, value)
-        _core.check_spring(self.rule, self.numbers(), self._inner())
+                object.__setattr__(self, field.name, _core.number(given, name))
+        self._check()
 
-    def _inner(self) -> str:
-        return str(getattr(self, "inner", "kc"))
+    def _check(self) -> None:
+        """Raise `InputError` for parameters that the rule does not allow."""
+        _core.check_spring(self.statement("flexure"), 0.0)
 
-    def numbers(self) -> Array:
-        """Return the numbers in the order of the Fortran part, `UNSET` for those without."""
-        given = (getattr(self, name, None) for name in _core.SPRING_NUMBERS)
-        return np.array([_core.UNSET if value is None else value for value in given])
+    def statement(self, group: str, **place: Any) -> _core.Statement:
+        """Return the keys of the spring as a group of a case.
 
-    def codes(self) -> tuple[int, int, int]:
-        """Return the places (from 1) of rule and inner rule, and the number of layers."""
-        layers = len(getattr(self, "layers", ()))
-        return _core.RULES.index(self.rule) + 1, _core.INNER.index(self._inner()) + 1, layers
+        Parameters
+        ----------
+        group : str
+            "shear", "flexure", "axial_spring" or "layer_spring".
+        **place
+            Keys that say where the spring stands: `joint` or `id`.
+        """
+        if "_own" not in self.__dict__:
+            own = {"rule": self.rule} | {name: getattr(self, name) for name in _names(type(self))}
+            object.__setattr__(self, "_own", _core.group("", own))
+        own = self.__dict__["_own"]
+        head = _core.group(group, place) if place else _core.Statement(group, [])
+        return _core.Statement(head.text + own.text, head.numbers + own.numbers)
+
+    def split(self, n: int) -> Self:
+        """Return one of n equal springs in series that together are this one.
+
+        Parameters
+        ----------
+        n : int
+            How many there are: each has n times the stiffness and 1/n of the deformations.
+
+        Raises
+        ------
+        InputError
+            If `n` is not a whole number of 1 or more.
+        """
+        if _core.whole(n, "split: n") < 1:
+            raise InputError(f"split: n = {n} must be 1 or more")
+        keys = _core.keys()["rules"][self.rule]["keys"]
+        changes: dict[str, Any] = {}
+        for key in keys:
+            value = getattr(self, key["name"])
+            if value is not None and key.get("unit") == "stiffness":
+                changes[key["name"]] = value * n
+            elif value is not None and key.get("unit") == "deformation":
+                changes[key["name"]] = value / n
+        return replace(self, **changes)
 
     def response(self, deformation: ArrayLike) -> Array:
         """Return the force along a path of deformation.
 
-        The path begins at the virgin state (zero) and runs straight from point to point; the force
+        The path starts at the virgin state (zero) and runs straight from point to point; the force
         at a point is exact and does not depend on further points in between.
 
         Parameters
@@ -74,10 +119,19 @@ class Spring:
         InputError
             If the array has not one dimension or holds a value that is not finite.
         """
+        return self._response(deformation, 0.0)
+
+    def _response(self, deformation: ArrayLike, axial_load: float) -> Array:
         path = _core.finite_vector(deformation, "deformation")
         if path.size == 0:
             return np.empty(0)
-        return _core.spring_response(self.rule, self.numbers(), self._inner(), path)
+        return _core.spring_response(self.statement("flexure"), axial_load, path)
+
+
+@cache
+def _names(kind: type[Spring]) -> tuple[str, ...]:
+    """Return the parameters of a rule, as its class has them."""
+    return tuple(field.name for field in fields(kind) if field.name != "layers")
 
 
 @dataclass(frozen=True)
@@ -110,7 +164,7 @@ class Bilinear(Spring):
     Raises
     ------
     InputError
-        If a number is outside the rule.
+        If a parameter is outside the rule.
     """
 
     rule: ClassVar[str] = "bilinear"
@@ -146,7 +200,7 @@ class Takeda(Spring):
     Raises
     ------
     InputError
-        If a number is outside the rule.
+        If a parameter is outside the rule.
     """
 
     rule: ClassVar[str] = "takeda"
@@ -157,7 +211,7 @@ class Takeda(Spring):
     k_u: float
     b0: float = 0.4
     b1: float = 1.0
-    inner: str = "kc"
+    inner: Literal["kc", "kr", "one"] = "kc"
 
 
 @dataclass(frozen=True)
@@ -196,7 +250,7 @@ class PeakOriented(Spring):
     Raises
     ------
     InputError
-        If a number is outside the rule.
+        If a parameter is outside the rule.
     """
 
     rule: ClassVar[str] = "peak_oriented"
@@ -248,7 +302,7 @@ class Pinching(PeakOriented):
     Raises
     ------
     InputError
-        If a number is outside the rule.
+        If a parameter is outside the rule.
     """
 
     rule: ClassVar[str] = "pinching"
@@ -276,24 +330,25 @@ class Compression(Spring):
     k: float
 
 
+@renamed(k_fall="k_soft")
 @dataclass(frozen=True)
 class ConcreteSpring(Spring):
     """Concrete across a joint: crushes in compression, opens without tension, closes gradually.
 
     For axial springs and the layers of `Layered`. Opening and tension are positive, so that it
-    works at negative deformations; the numbers here are positive.
+    works at negative deformations; the parameters here are positive.
 
     Parameters
     ----------
     k : float
-        Stiffness at first [N/m].
+        Initial stiffness [N/m].
     f_peak, d_peak : float
         Largest compression [N] and the closing there [m]; the curve up to it is that of Popovics
         (1973), so `f_peak` is below k d_peak.
-    k_fall : float
-        How fast the force falls behind the peak [N/m], positive.
+    k_soft : float
+        Slope of softening behind the peak [N/m], as a positive number.
     f_res : float, optional
-        Force that is left [N].
+        Force that softening leaves [N].
     plastic : float, optional
         Factor of the plastic closing of Karsan and Jirsa (1969).
     contact : float, optional
@@ -306,14 +361,14 @@ class ConcreteSpring(Spring):
     Raises
     ------
     InputError
-        If a number is outside the rule.
+        If a parameter is outside the rule.
     """
 
     rule: ClassVar[str] = "concrete"
     k: float
     f_peak: float
     d_peak: float
-    k_fall: float
+    k_soft: float
     f_res: float = 0.0
     plastic: float = 1.0
     contact: float = 0.0
@@ -321,6 +376,7 @@ class ConcreteSpring(Spring):
     wear: float = 0.0
 
 
+@renamed(r1="cr1", r2="cr2", growth="isotropic_hardening", endurance="half_strength_work")
 @dataclass(frozen=True)
 class SteelSpring(Spring):
     """Steel that yields round: the curve of Menegotto and Pinto (1973) as straight lines.
@@ -333,19 +389,19 @@ class SteelSpring(Spring):
         Yield force [N].
     k_post : float
         Stiffness of hardening [N/m], from 0 to below `k`.
-    r0, r1, r2 : float, optional
-        Roundness R = r0 (1 - r1 xi/(r2 + xi)) of a branch, xi the plastic excursion over the yield
-        deformation; r1 is below 1.
-    growth : float, optional
+    r0, cr1, cr2 : float, optional
+        Roundness R = r0 (1 - cr1 xi/(cr2 + xi)) of a branch, xi the plastic excursion over the
+        yield deformation; cr1 is below 1.
+    isotropic_hardening : float, optional
         Share by which the strength has grown when the deformation has reached from -d_y to d_y
         (Filippou, Popov and Bertero 1983); with the power 0.8 of the reach.
-    endurance : float, optional
+    half_strength_work : float, optional
         Plastic work over f_y d_y at which the strength of new branches is half; 0: it stays.
 
     Raises
     ------
     InputError
-        If a number is outside the rule.
+        If a parameter is outside the rule.
     """
 
     rule: ClassVar[str] = "steel"
@@ -353,23 +409,22 @@ class SteelSpring(Spring):
     f_y: float
     k_post: float
     r0: float = 20.0
-    r1: float = 0.925
-    r2: float = 0.15
-    growth: float = 0.0
-    endurance: float = 0.0
+    cr1: float = 0.925
+    cr2: float = 0.15
+    isotropic_hardening: float = 0.0
+    half_strength_work: float = 0.0
 
 
-@dataclass(frozen=True)
+@renamed(axial_load="the axial load of the column: Column(axial_load=...)")
+@dataclass(frozen=True, repr=False)
 class Layered(Spring):
-    """A joint as layers: normal springs across it that share a constant axial load.
+    """A joint as layers: normal springs across it that share the axial load of the column.
 
     For flexural springs. Layer i opens by w + y_i theta; the opening w at the middle of the section
     follows from the equilibrium of the axial load. Positive rotation opens layers at positive y.
 
     Parameters
     ----------
-    axial_load : float
-        Axial load that the layers share, compression positive [N]; it stays constant.
     layers : sequence of (float, Spring)
         Distance of each layer from the middle of the section [m] and its spring: `ConcreteSpring`,
         `SteelSpring`, `Elastic`, `Bilinear` or `Compression`. At least two.
@@ -377,11 +432,10 @@ class Layered(Spring):
     Raises
     ------
     InputError
-        If a layer is outside its rule, or the layers cannot carry the axial load.
+        If a layer is outside its rule.
     """
 
     rule: ClassVar[str] = "layered"
-    axial_load: float
     layers: tuple[tuple[float, Spring], ...]
 
     def __post_init__(self) -> None:
@@ -404,9 +458,66 @@ class Layered(Spring):
         object.__setattr__(self, "layers", layers)
         super().__post_init__()
 
-    def numbers(self) -> Array:
-        """Return the numbers, and behind them place, rule and numbers of each layer."""
-        parts = [super().numbers()]
-        for y, spring in self.layers:
-            parts += [np.array([y, spring.codes()[0]]), spring.numbers()]
-        return np.concatenate(parts)
+    def __repr__(self) -> str:
+        return f"Layered({len(self.layers)} layers)"
+
+    def _check(self) -> None:
+        # The axial load is that of the column, which checks whether the layers can carry it.
+        _core.check_spring(self._alone(), 0.0)
+
+    def _alone(self) -> _core.Statement:
+        """Return the spring with its layers, as a case of one joint."""
+        ids: dict[Spring, int] = {}
+        layers = self.layers_statement(ids)
+        return self.statement("flexure") + layer_springs(ids) + layers
+
+    def layers_statement(self, ids: dict[Spring, int], **place: Any) -> _core.Statement:
+        """Return the layers as a group of a case.
+
+        Parameters
+        ----------
+        ids : dict
+            Numbers of the springs of layers; new ones are put in.
+        **place
+            `joint`, if the layers are not those of all joints.
+        """
+        spring = [ids.setdefault(spring, len(ids) + 1) for _, spring in self.layers]
+        return _core.group("layers", place | {"y": [y for y, _ in self.layers], "spring": spring})
+
+    def split(self, n: int) -> Self:
+        """Return one of n equal springs in series: the layers are split, their places stay."""
+        return replace(self, layers=tuple((y, spring.split(n)) for y, spring in self.layers))
+
+    def response(self, deformation: ArrayLike, axial_load: float = 0.0) -> Array:
+        """Return the moment along a path of rotation under a constant axial load.
+
+        Parameters
+        ----------
+        deformation : array_like, shape (m,)
+            Rotations, one after the other [rad].
+        axial_load : float, optional
+            Axial load that the layers share, compression positive [N].
+
+        Returns
+        -------
+        ndarray, shape (m,)
+            Moments [N m].
+
+        Raises
+        ------
+        InputError
+            If the layers cannot carry the axial load, or a rotation is not finite.
+        """
+        return self._response(deformation, _core.number(axial_load, "axial_load"))
+
+    def _response(self, deformation: ArrayLike, axial_load: float) -> Array:
+        path = _core.finite_vector(deformation, "deformation")
+        return _core.spring_response(self._alone(), axial_load, path)
+
+
+def layer_springs(ids: dict[Spring, int]) -> _core.Statement:
+    """Return the springs of layers by their numbers, each once."""
+    parts = [spring.statement("layer_spring", id=number) for spring, number in ids.items()]
+    return _core.Statement(
+        "\n".join(part.text for part in parts), [x for part in parts for x in part.numbers]
+    )

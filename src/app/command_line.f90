@@ -7,17 +7,20 @@ module rbs_app_command_line
 
    public :: command_type, read_command_line
 
-   character(len=9), parameter :: commands(3) = ['run  ', 'check', 'modes']
-   character(len=9), parameter :: options(4) = ['--output ', '--quiet  ', '--help   ', '--version']
+   character(len=9), parameter :: commands(4) = ['run  ', 'check', 'modes', 'keys ']
+   character(len=9), parameter :: options(5) = ['--output ', '--quiet  ', '--json   ', '--help   ', &
+             '--version']
 
    type :: command_type
-      !> run, check, modes, help or version
+      !> run, check, modes, keys, help or version
       character(len=:), allocatable :: name
       !> Path of the case
       character(len=:), allocatable :: case
       !> Path of the output; not allocated: what the case says
       character(len=:), allocatable :: output
       logical :: quiet = .false.
+      !> keys: as JSON, else as a table
+      logical :: as_json = .false.
    end type command_type
 
 contains
@@ -63,6 +66,8 @@ contains
          command%name = 'version'
       case ('-q', '--quiet')
          command%quiet = .true.
+      case ('--json')
+         command%as_json = .true.
       case ('-o', '--output')
          if (mark < len(word)) then
             command%output = word(mark + 1:)
@@ -112,6 +117,10 @@ contains
          call complain('no command', error)
       else if (command%name == 'help' .or. command%name == 'version') then
          return
+      else if (command%as_json .and. command%name /= 'keys') then
+         call complain('--json is for keys only', error)
+      else if (command%name == 'keys') then
+         if (allocated(command%case)) call complain("one argument too many: '"//command%case//"'", error)
       else if (.not. allocated(command%case)) then
          call complain(command%name//' needs the path of a case behind it', error)
       else if (allocated(command%output)) then

@@ -3,7 +3,7 @@ program rbsdem
    use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: error_unit
    use rbs_app_command_line, only: command_type, read_command_line
-   use rbs_app_run, only: run_case, check_case, show_modes
+   use rbs_app_commands, only: run_case, check_case, show_modes, show_keys
    use rbs_app_say, only: say
    use rbs_base_error, only: error_type
    use rbs_version, only: version
@@ -31,6 +31,8 @@ program rbsdem
          call check_case(command%case, command%quiet, error)
       case ('modes')
          call show_modes(command%case, error)
+      case ('keys')
+         call show_keys(command%as_json, error)
       case ('version')
          call say('rbsdem '//version, error)
       case default
@@ -65,13 +67,14 @@ contains
 
    subroutine print_help(error)
       type(error_type), allocatable, intent(inout) :: error
-      character(len=*), parameter :: text(26) = [character(len=84) :: &
+      character(len=*), parameter :: text(27) = [character(len=84) :: &
          'rbsdem '//version//': reinforced-concrete columns as rigid bodies and springs', &
          '', &
          'usage:', &
          '  rbsdem run CASE.nml [--output FILE] [--quiet]  solve a case, write a csv', &
          '  rbsdem check CASE.nml [--quiet]                 find all errors of the input', &
          '  rbsdem modes CASE.nml                           natural frequencies, stable step', &
+         '  rbsdem keys [--json]                            groups, rules and all their keys', &
          '  rbsdem --help | --version', &
          '', &
          'rbsdem trade CASE.nml needs the command that comes with the Python package,', &
@@ -88,9 +91,9 @@ contains
          '  2  the input is wrong; all its errors are listed', &
          '  3  the column collapsed: collapse_drift was reached; the rows are whole', &
          '', &
-         'A case has the groups &case, &column, &axial, &shear, &flexure, &opening,', &
-         '&loading, &analysis and &output. The input reference is docs/input.md, examples', &
-         'are in examples/.', &
+         'A case has the groups &case, &units, &column, &damping, &shear, &flexure,', &
+         '&axial_spring, &layer_spring, &layers, &loading, &analysis and &output. The input', &
+         'reference is docs/input.md, examples are in examples/.', &
          '']
       integer :: i
 

@@ -33,6 +33,7 @@ module rbs_base_error
       character(len=:), allocatable :: text
    contains
       procedure :: add
+      procedure :: join
       procedure :: raise
    end type message_list
 
@@ -61,6 +62,16 @@ contains
          self%text = self%text//new_line('a')//message
       end if
    end subroutine add
+
+   !> Put all messages of another list behind these.
+   subroutine join(self, other)
+      class(message_list), intent(inout) :: self
+      type(message_list), intent(in) :: other
+
+      if (other%count == 0) return
+      call self%add(other%text)
+      self%count = self%count + other%count - 1
+   end subroutine join
 
    !> Turn the list into one `bad_input` error; none if the list is empty.
    subroutine raise(self, error)

@@ -8,7 +8,7 @@ module rbs_base_text
    implicit none
    private
 
-   public :: to_text, integer_length, lower, nearest_name, list_of
+   public :: to_text, exact_text, integer_length, lower, nearest_name, list_of
 
    !> No number is longer than this.
    integer, parameter :: longest = 32
@@ -41,18 +41,27 @@ contains
    pure function integer_to_text(i) result(text)
       integer, intent(in) :: i
       character(len=integer_length(i)) :: text
-      character(len=longest) :: buffer
+      integer :: left, place
 
-      write (buffer, '(i0)') i
-      text = buffer(:len(text))
+      ! By hand: the input of a case takes its locations, and formatted output is slow.
+      left = i
+      if (i < 0) text(1:1) = '-'
+      do place = len(text), merge(2, 1, i < 0), -1
+         text(place:place) = achar(iachar('0') + abs(mod(left, 10)))
+         left = left/10
+      end do
    end function integer_to_text
 
    pure integer function integer_length(i)
       integer, intent(in) :: i
-      character(len=longest) :: buffer
+      integer :: left
 
-      write (buffer, '(i0)') i
-      integer_length = len_trim(buffer)
+      integer_length = merge(2, 1, i < 0)
+      left = i/10
+      do while (left /= 0)
+         integer_length = integer_length + 1
+         left = left/10
+      end do
    end function integer_length
 
    !> A number at the left of a text.
@@ -88,6 +97,42 @@ contains
          end if
       end if
    end subroutine write_real
+
+   !> A number with as many digits as it takes to read back the same bits.
+   pure function exact_text(x) result(text)
+      !> Finite
+      real(wp), intent(in) :: x
+      character(len=longest) :: text
+      character(len=longest) :: buffer, digits
+      real(wp) :: again
+      integer :: count, mark, power, last
+
+      text = '0'
+      if (.not. abs(x) > 0.0_wp) return
+      do count = 15, 17
+         write (digits, '(a, i0, a)') '(es', 26, '.'//to_text(count - 1)//'e3)'
+         write (buffer, digits) abs(x)
+         read (buffer, *) again
+         if (.not. abs(again - abs(x)) > 0.0_wp) exit
+      end do
+      buffer = adjustl(buffer)
+      mark = index(buffer, 'E')
+      read (buffer(mark + 1:), *) power
+      digits = buffer(1:1)//buffer(3:mark - 1)
+      last = verify(digits(:mark - 2), '0', back=.true.)
+      if (power >= last - 1 .and. power <= 8) then
+         text = digits(:last)//repeat('0', power - last + 1)
+      else if (power >= 0 .and. power <= 8) then
+         text = digits(:power + 1)//'.'//digits(power + 2:last)
+      else if (power < 0 .and. power >= -4) then
+         text = '0.'//repeat('0', -power - 1)//digits(:last)
+      else if (last == 1) then
+         text = digits(1:1)//'e'//to_text(power)
+      else
+         text = digits(1:1)//'.'//digits(2:last)//'e'//to_text(power)
+      end if
+      if (x < 0.0_wp) text = '-'//text(:longest - 1)
+   end function exact_text
 
    !> Take the zeros (and the point) off the end of a decimal number.
    pure subroutine cut_zeros(number)

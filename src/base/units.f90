@@ -1,11 +1,11 @@
-!> Units of history files; inside the program everything is SI.
+!> Units at the edge; inside the program everything is SI.
 module rbs_base_units
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: standard_gravity
    implicit none
    private
 
-   public :: unit_type, length_units, force_units, acceleration_units, to_si
+   public :: unit_type, unit_system, length_units, force_units, mass_units, acceleration_units, to_si, from_si
 
    !> A unit by name.
    type :: unit_type
@@ -26,6 +26,18 @@ module rbs_base_units
       unit_type('m/s2', 1.0_wp), unit_type('g', standard_gravity), &
       unit_type('cm/s2', 1.0e-2_wp), unit_type('mm/s2', 1.0e-3_wp)]
 
+   type(unit_type), parameter :: mass_units(2) = [unit_type('kg', 1.0_wp), unit_type('t', 1.0e3_wp)]
+
+   !> The units of a case file.
+   type :: unit_system
+      type(unit_type) :: force = force_units(1), length = length_units(1), mass = mass_units(1)
+   contains
+      procedure :: is_si
+      procedure :: into_si
+      procedure :: out_of_si
+      procedure :: name_of
+   end type unit_system
+
 contains
 
    !> A value in SI. Millimetres and the like are divided by a whole number, which rounds once; a factor
@@ -40,5 +52,126 @@ contains
          to_si = value*unit%factor
       end if
    end function to_si
+
+   !> A value in a unit, from SI; the inverse of `to_si`.
+   elemental real(wp) function from_si(value, unit)
+      real(wp), intent(in) :: value
+      type(unit_type), intent(in) :: unit
+
+      if (unit%factor < 1.0_wp .and. abs(nint(1.0_wp/unit%factor)*unit%factor - 1.0_wp) < 1.0e-15_wp) then
+         from_si = value*nint(1.0_wp/unit%factor)
+      else
+         from_si = value/unit%factor
+      end if
+   end function from_si
+
+   !> Whether nothing has to be converted.
+   pure logical function is_si(self)
+      class(unit_system), intent(in) :: self
+
+      is_si = self%force%name == 'N' .and. self%length%name == 'm' .and. self%mass%name == 'kg'
+   end function is_si
+
+   !> A number of the user in SI.
+   elemental real(wp) function into_si(self, value, unit)
+      class(unit_system), intent(in) :: self
+      real(wp), intent(in) :: value
+      !> The SI unit, of N, m, kg, s and rad: 'N/m', 'N m/rad', 'kg m2'
+      character(len=*), intent(in) :: unit
+
+      into_si = converted(self, value, unit, 1)
+   end function into_si
+
+   !> A number of the program in the units of the user.
+   elemental real(wp) function out_of_si(self, value, unit)
+      class(unit_system), intent(in) :: self
+      real(wp), intent(in) :: value
+      character(len=*), intent(in) :: unit
+
+      out_of_si = converted(self, value, unit, -1)
+   end function out_of_si
+
+   elemental real(wp) function converted(self, value, unit, direction)
+      class(unit_system), intent(in) :: self
+      real(wp), intent(in) :: value
+      character(len=*), intent(in) :: unit
+      !> +1: into SI, -1: out of it
+      integer, intent(in) :: direction
+      type(unit_type) :: one
+      integer :: i, power
+      logical :: found
+
+      converted = value
+      power = direction
+      ! Seconds keep their unit, and accelerations and work have units of their own.
+      if (unit == 'm/s2' .or. unit == 'J') return
+      do i = 1, len_trim(unit)
+         if (unit(i:i) == '/') power = -direction
+         call unit_of_letter(self, unit, i, one, found)
+         if (.not. found) cycle
+         converted = applied(converted, one, power)
+         if (i == len(unit)) cycle
+         if (unit(i + 1:i + 1) == '2') converted = applied(converted, one, power)
+      end do
+   end function converted
+
+   !> The unit that begins at a letter; none if the letter belongs to 'rad', 's' or the like.
+   pure subroutine unit_of_letter(self, unit, i, one, found)
+      class(unit_system), intent(in) :: self
+      character(len=*), intent(in) :: unit
+      integer, intent(in) :: i
+      type(unit_type), intent(out) :: one
+      logical, intent(out) :: found
+
+      found = .true.
+      one = length_units(1)
+      select case (unit(i:i))
+      case ('N')
+         one = self%force
+      case ('m')
+         one = self%length
+      case ('k')
+         one = self%mass
+      case default
+         found = .false.
+      end select
+   end subroutine unit_of_letter
+
+   elemental real(wp) function applied(value, unit, power)
+      real(wp), intent(in) :: value
+      type(unit_type), intent(in) :: unit
+      integer, intent(in) :: power
+
+      if (power > 0) then
+         applied = to_si(value, unit)
+      else
+         applied = from_si(value, unit)
+      end if
+   end function applied
+
+   !> The name that an SI unit has here: 'kN/mm' for 'N/m'.
+   pure function name_of(self, unit) result(name)
+      class(unit_system), intent(in) :: self
+      character(len=*), intent(in) :: unit
+      character(len=32) :: name
+      type(unit_type) :: one
+      integer :: i
+      logical :: found
+
+      name = ''
+      if (unit == 'm/s2' .or. unit == 'J') name = unit
+      if (name /= '') return
+      do i = 1, len_trim(unit)
+         call unit_of_letter(self, unit, i, one, found)
+         if (found) then
+            name = trim(name)//one%name
+            if (unit(i:i) /= 'k') cycle
+         else if (i > 1 .and. unit(i:i) == 'g') then
+            cycle
+         else
+            name = trim(name)//unit(i:i)
+         end if
+      end do
+   end function name_of
 
 end module rbs_base_units

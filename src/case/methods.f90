@@ -6,7 +6,7 @@ module rbs_case_methods
    implicit none
    private
 
-   public :: method_type, methods, method_named, quoted_names, method_rows
+   public :: method_type, methods, method_named, method_choices, quoted_names, method_rows
    public :: usual_tolerance, usual_rho_infinity, methods_columns
 
    !> Where the user gives none: error of a step of rk45, spectral radius at infinite frequency.
@@ -67,6 +67,17 @@ contains
          if (methods(i)%name == name) method = methods(i)
       end do
    end function method_named
+
+   !> The names of all methods, separated by blanks.
+   pure function method_choices() result(names)
+      character(len=112) :: names
+      integer :: i
+
+      names = methods(1)%name
+      do i = 2, size(methods)
+         names = trim(names)//' '//methods(i)%name
+      end do
+   end function method_choices
 
    !> Names in quotes of some of the methods: "'rk4' or 'rk45'".
    subroutine quoted_names(wanted, text)

@@ -7,8 +7,8 @@
 module rbs_column_column
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_spec_column, only: column_spec
-   use rbs_spec_spring, only: spring_spec, initial_stiffness
+   use rbs_column_column_record, only: column_record
+   use rbs_hysteresis_spring_record, only: spring_record
    implicit none
    private
 
@@ -60,8 +60,8 @@ module rbs_column_column
       logical :: tangent_damping = .false.
       !> Damping ratios of the modes (first modes, or one for all); not allocated without modal damping
       real(wp), allocatable :: modal_damping(:)
-      !> Numbers of the springs (unknowns), shear first, and their initial stiffness
-      type(spring_spec), allocatable :: spring(:)
+      !> Springs (unknowns), shear first, and their initial stiffness
+      type(spring_record), allocatable :: spring(:)
       real(wp), allocatable :: initial_stiffness(:)
    end type column_type
 
@@ -70,12 +70,12 @@ contains
    !> Make the column of a validated specification.
    subroutine new_column(column, spec)
       type(column_type), intent(out) :: column
-      type(column_spec), intent(in) :: spec
+      type(column_record), intent(in) :: spec
       integer :: n
 
       n = spec%n
       column%n = n
-      column%opens = allocated(spec%axial)
+      column%opens = allocated(spec%axial_spring)
       column%unknowns = merge(3, 2, column%opens)*n
       select case (spec%kinematics)
       case ('pdelta')
@@ -97,10 +97,10 @@ contains
       else
          column%mass = spec%mass*(column%length/spec%height)
       end if
-      column%mass_damping = spec%mass_damping
-      column%stiffness_damping = spec%stiffness_damping
-      column%tangent_damping = spec%tangent_damping
-      if (allocated(spec%modal_damping)) column%modal_damping = spec%modal_damping
+      column%mass_damping = spec%damping%mass
+      column%stiffness_damping = spec%damping%stiffness
+      column%tangent_damping = spec%damping%tangent
+      if (allocated(spec%damping%modal)) column%modal_damping = spec%damping%modal
       column%axial_follows = spec%axial_follows
       column%force_follows = spec%force_follows
 
@@ -134,7 +134,7 @@ contains
    !> Axial forces of load and weight of the bodies.
    subroutine set_weights(column, spec)
       type(column_type), intent(inout) :: column
-      type(column_spec), intent(in) :: spec
+      type(column_record), intent(in) :: spec
       real(wp) :: above(column%n + 1)
       real(wp) :: dead
       integer :: i, n
@@ -158,7 +158,7 @@ contains
    !> Centroids and rotary inertias, the lumped mass included.
    subroutine set_bodies(column, spec)
       type(column_type), intent(inout) :: column
-      type(column_spec), intent(in) :: spec
+      type(column_record), intent(in) :: spec
       real(wp) :: own, shift
       integer :: i, n
 
@@ -214,7 +214,7 @@ contains
 
    subroutine set_springs(column, spec)
       type(column_type), intent(inout) :: column
-      type(column_spec), intent(in) :: spec
+      type(column_record), intent(in) :: spec
       integer :: i, n
 
       n = column%n
@@ -222,9 +222,11 @@ contains
       do i = 1, n
          column%spring(i) = spec%shear(min(i, size(spec%shear)))
          column%spring(n + i) = spec%flexure(min(i, size(spec%flexure)))
-         if (column%opens) column%spring(2*n + i) = spec%axial(min(i, size(spec%axial)))
+         if (column%opens) column%spring(2*n + i) = spec%axial_spring(min(i, size(spec%axial_spring)))
       end do
-      column%initial_stiffness = initial_stiffness(column%spring)
+      ! Layered joints share the axial load of load and weight above them.
+      column%spring(n + 1:2*n)%axial_load = column%compression
+      column%initial_stiffness = column%spring%initial_stiffness()
    end subroutine set_springs
 
    !> Which spring an unknown is, for messages: 'the shear spring of joint 3'.

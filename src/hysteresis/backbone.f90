@@ -2,13 +2,13 @@
 !>
 !> What energy has taken away enters as two factors (Ibarra, Medina, Krawinkler 2005, Earthquake Eng.
 !> Struct. Dyn. 34, section 3): cracking point, yield point and slope to the cap are multiplied by
-!> `strength`, the force of the softening line at zero deformation by `softening`. Cap and begin of the
+!> `strength`, the force of the softening line at zero deformation by `softening`. Cap and start of the
 !> residual are where the lines meet; beyond `d_u` the force falls to zero.
 module rbs_hysteresis_backbone
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_segment, only: segment
-   use rbs_spec_backbone, only: backbone_spec
+   use rbs_hysteresis_backbone_parameters, only: backbone_parameters
    use rbs_base_check, only: is_given
    implicit none
    private
@@ -16,8 +16,8 @@ module rbs_hysteresis_backbone
    public :: backbone_side
 
    type :: backbone_side
-      !> The numbers of the user
-      type(backbone_spec) :: given
+      !> The parameters of the user
+      type(backbone_parameters) :: given
       !> What is left of the strength, and of the force of the softening line
       real(wp) :: strength = 1.0_wp, softening = 1.0_wp
       !> Present corners from 0, the origin: deformations [m or rad] and forces [N or N m]

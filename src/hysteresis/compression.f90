@@ -1,23 +1,57 @@
 !> A contact: elastic while the joint is closed, without force while it is open.
 module rbs_hysteresis_compression
+   use rbs_base_keys, only: key_type, above_zero, stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unbounded
-   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_rule, only: rule_type, places_length, in_axial, in_layer
    use rbs_hysteresis_segment, only: segment
    implicit none
    private
 
    public :: compression_rule
 
+   type(key_type), parameter :: parameters(*) = [ &
+      key_type('k', unit=stiffness, bound=above_zero, &
+               meaning='stiffness in compression; there is none in tension')]
+
    type, extends(rule_type) :: compression_rule
       !> Stiffness of the closed joint [N/m]
       real(wp) :: k = 0.0_wp
    contains
+      procedure, nopass :: keys
+      procedure, nopass :: places
+      procedure :: set
+      procedure :: initial_stiffness
       procedure :: start
       procedure :: next
    end type compression_rule
 
 contains
+
+   pure function keys()
+      type(key_type), allocatable :: keys(:)
+
+      keys = parameters
+   end function keys
+
+   pure function places()
+      character(len=places_length) :: places
+
+      places = in_axial//' '//in_layer
+   end function places
+
+   pure subroutine set(self, value)
+      class(compression_rule), intent(inout) :: self
+      real(wp), intent(in) :: value(:)
+
+      self%k = value(1)
+   end subroutine set
+
+   pure real(wp) function initial_stiffness(self)
+      class(compression_rule), intent(in) :: self
+
+      initial_stiffness = self%k
+   end function initial_stiffness
 
    !> The joint is closed at zero opening; openings are positive.
    subroutine start(self, line)

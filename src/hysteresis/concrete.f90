@@ -1,14 +1,18 @@
 !> Concrete across a joint: a normal spring that crushes, opens and closes again.
 !>
 !> Opening is positive, so the spring works at negative deformations; inside, `c` = -d is the closing.
-!> Envelope: the curve of Popovics (1973), as chords, to the peak, a falling line, a residual. Plastic
+!> Envelope: the curve of Popovics (1973), as chords, to the peak, a line of softening, a residual. Plastic
 !> closing after unloading: Karsan and Jirsa (1969). Faces that were apart do not match: they touch
 !> before the plastic closing is reached (Stanton and McNiven 1979 call it focal point), which makes the
 !> closing of a crack gradual.
 module rbs_hysteresis_concrete
+   use rbs_base_error, only: message_list
+   use rbs_base_keys, only: key_type, above_zero, not_negative, share_below_one, &
+                           force, deformation, stiffness
    use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
    use rbs_base_constants, only: unbounded
-   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_rule, only: rule_type, check_product, places_length, in_axial, in_layer
    use rbs_hysteresis_segment, only: segment
    implicit none
    private
@@ -21,13 +25,33 @@ module rbs_hysteresis_concrete
    !> Chords of the rising curve, as shares of the closing at the peak
    real(wp), parameter :: chord_ends(4) = [0.25_wp, 0.5_wp, 0.75_wp, 1.0_wp]
 
+   type(key_type), parameter :: parameters(*) = [ &
+      key_type('k', unit=stiffness, bound=above_zero, &
+               meaning='initial stiffness'), &
+      key_type('f_peak', unit=force, bound=above_zero, &
+               meaning='largest compression'), &
+      key_type('d_peak', unit=deformation, bound=above_zero, &
+               meaning='closing at the largest compression'), &
+      key_type('k_soft', unit=stiffness, bound=above_zero, &
+               meaning='slope of softening behind the peak, as a positive number'), &
+      key_type('f_res', unit=force, bound=not_negative, default=0.0_wp, &
+               meaning='force that softening leaves'), &
+      key_type('plastic', bound=not_negative, default=1.0_wp, &
+               meaning='factor of the plastic closing of Karsan and Jirsa'), &
+      key_type('contact', bound=share_below_one, default=0.0_wp, &
+               meaning='share of the force at unloading at which a closing crack is fully closed'), &
+      key_type('misfit', bound=share_below_one, default=0.0_wp, &
+               meaning='share of the widest opening at which the faces of a closing crack touch'), &
+      key_type('wear', bound=share_below_one, default=0.0_wp, &
+               meaning='share of the strength lost each time the crack closes and opens again')]
+
    type, extends(rule_type) :: concrete_rule
       !> Stiffness at first [N/m]
       real(wp) :: k = 0.0_wp
       !> Largest force [N] and the closing there [m]
       real(wp) :: f_peak = 0.0_wp, d_peak = 0.0_wp
-      !> How fast the force falls behind the peak [N/m] and what is left of it [N]
-      real(wp) :: k_fall = 0.0_wp, f_res = 0.0_wp
+      !> Slope of softening behind the peak [N/m], positive, and the force that is left [N]
+      real(wp) :: k_soft = 0.0_wp, f_res = 0.0_wp
       !> Factor of the plastic closing
       real(wp) :: plastic = 1.0_wp
       !> Share of the force at unloading at which a closing crack is fully closed
@@ -44,11 +68,65 @@ module rbs_hysteresis_concrete
       !> Whether the crack was closed since it last opened
       logical, private :: was_closed = .true.
    contains
+      procedure, nopass :: keys
+      procedure, nopass :: places
+      procedure :: set
+      procedure :: initial_stiffness
+      procedure :: check
       procedure :: start
       procedure :: next
    end type concrete_rule
 
 contains
+
+   pure function keys()
+      type(key_type), allocatable :: keys(:)
+
+      keys = parameters
+   end function keys
+
+   pure function places()
+      character(len=places_length) :: places
+
+      places = in_axial//' '//in_layer
+   end function places
+
+   pure subroutine set(self, value)
+      class(concrete_rule), intent(inout) :: self
+      real(wp), intent(in) :: value(:)
+
+      self%k = value(1)
+      self%f_peak = value(2)
+      self%d_peak = value(3)
+      self%k_soft = value(4)
+      self%f_res = value(5)
+      self%plastic = value(6)
+      self%contact = value(7)
+      self%misfit = value(8)
+      self%wear = value(9)
+   end subroutine set
+
+   pure real(wp) function initial_stiffness(self)
+      class(concrete_rule), intent(in) :: self
+
+      initial_stiffness = self%k
+   end function initial_stiffness
+
+   subroutine check(self, name, messages)
+      class(concrete_rule), intent(in) :: self
+      character(len=*), intent(in) :: name
+      type(message_list), intent(inout) :: messages
+
+      if (self%f_peak >= self%k*self%d_peak) then
+         call messages%add(name//': f_peak = '//to_text(self%f_peak)//' must be below k d_peak = '// &
+                           to_text(self%k*self%d_peak)//' (the curve bends towards its peak)')
+      end if
+      if (self%f_res > self%f_peak) then
+         call messages%add(name//': f_res = '//to_text(self%f_res)//' must not be above f_peak = '// &
+                           to_text(self%f_peak)//' (it is what is left of it)')
+      end if
+      call check_product(self%k, self%d_peak, name, 'k d_peak', messages)
+   end subroutine check
 
    subroutine start(self, line)
       class(concrete_rule), intent(inout) :: self
@@ -125,7 +203,7 @@ contains
             return
          end if
       end do
-      c_flat = self%d_peak + (self%f_peak - self%f_res)/self%k_fall
+      c_flat = self%d_peak + (self%f_peak - self%f_res)/self%k_soft
       if (c_flat > c*(1.0_wp + 1.0e-9_wp)) then
          line = chord(c, f, c_flat, self%strength*self%f_res)
       else

@@ -9,9 +9,10 @@
 !>
 !> So the joint is again a line with two ends: it ends where the first layer comes to an end of its own.
 module rbs_hysteresis_layered
+   use rbs_base_keys, only: key_type
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unbounded
-   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_rule, only: rule_type, places_length, in_flexure
    use rbs_hysteresis_segment, only: segment
    implicit none
    private
@@ -52,12 +53,48 @@ module rbs_hysteresis_layered
       !> Rotation under the axial load alone, from which the rotation of the joint is counted
       real(wp), private :: rest = 0.0_wp
    contains
+      procedure, nopass :: keys
+      procedure, nopass :: places
+      procedure :: set
+      procedure :: initial_stiffness
       procedure :: start
       procedure :: next
       procedure :: opening_at
    end type layered_rule
 
 contains
+
+   !> No parameters of its own: the layers are springs, and the axial load is that of the column.
+   pure function keys()
+      type(key_type), allocatable :: keys(:)
+
+      allocate (keys(0))
+   end function keys
+
+   pure function places()
+      character(len=places_length) :: places
+
+      places = in_flexure
+   end function places
+
+   pure subroutine set(self, value)
+      class(layered_rule), intent(inout) :: self
+      real(wp), intent(in) :: value(:)
+
+      self%carries = size(value) >= 0
+   end subroutine set
+
+   !> Against rotation, with all layers uncracked [N m/rad].
+   pure real(wp) function initial_stiffness(self)
+      class(layered_rule), intent(in) :: self
+      real(wp) :: k(size(self%y))
+      integer :: i
+
+      do i = 1, size(k)
+         k(i) = self%slot(i)%rule%initial_stiffness()
+      end do
+      initial_stiffness = sum(k*self%y**2) - sum(k*self%y)**2/sum(k)
+   end function initial_stiffness
 
    !> Put the axial load on the virgin layers; without moment an unsymmetric section rotates.
    subroutine start(self, line)

@@ -13,18 +13,21 @@
 !> the side that is entered pays for the excursion that ends. The unloading stiffness alone is reckoned
 !> where a side turns back; that counts once zero force is reached, so partial unloading leaves no trace.
 module rbs_hysteresis_peak_oriented
+   use rbs_base_check, only: is_given
+   use rbs_base_error, only: message_list
+   use rbs_base_keys, only: key_type, bound_type, not_negative
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_backbone, only: backbone_side
+   use rbs_hysteresis_backbone_parameters, only: backbone_parameters, backbone_keys, other_side_keys, &
+                                                  from_values
    use rbs_hysteresis_deterioration, only: deterioration_type
    use rbs_hysteresis_inner_peaks, only: point
-   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_rule, only: rule_type, places_length, in_shear, in_flexure
    use rbs_hysteresis_segment, only: segment
-   use rbs_spec_backbone, only: backbone_spec
-   use rbs_base_check, only: is_given
    implicit none
    private
 
-   public :: peak_oriented_rule
+   public :: peak_oriented_rule, capped_keys
 
    integer, parameter :: virgin = 0, on_backbone = 1, unloading = 2, reloading = 3, dead = 4
 
@@ -41,12 +44,32 @@ module rbs_hysteresis_peak_oriented
    !> the excursion is the limit long before.
    real(wp), parameter :: least_stiffness = 1.0e-6_wp
 
+   character(len=*), parameter :: small_excursions = '(small excursions would count too much)'
+
+   !> Parameters of this rule and of those that extend it: the positive side, what both sides share, the
+   !> negative side.
+   type(key_type), parameter :: shared_keys(6) = [ &
+      key_type('b0', bound=not_negative, default=0.0_wp, &
+               meaning='exponent of the unloading stiffness over ductility'), &
+      key_type('lambda_s', bound=not_negative, default=0.0_wp, &
+               meaning='energy over f_y d_y that deterioration of the strength lasts for; 0: none'), &
+      key_type('lambda_c', bound=not_negative, default=0.0_wp, &
+               meaning='the same for the softening line behind the cap'), &
+      key_type('lambda_k', bound=not_negative, default=0.0_wp, &
+               meaning='the same for the unloading stiffness'), &
+      key_type('lambda_a', bound=not_negative, default=0.0_wp, &
+               meaning='the same for the target of reloading'), &
+      key_type('c', bound=bound_type(least=1.0_wp, reason=small_excursions), default=1.0_wp, &
+               meaning='exponent of deterioration')]
+   integer, parameter :: sides = size(backbone_keys), shared = size(shared_keys)
+   type(key_type), parameter :: capped_keys(*) = [backbone_keys, shared_keys, other_side_keys]
+
    type, extends(rule_type) :: peak_oriented_rule
       !> Exponent of the unloading stiffness over ductility
       real(wp) :: b0 = 0.0_wp
       type(deterioration_type) :: deterioration
-      !> Numbers of both sides
-      type(backbone_spec), private :: given(-1:1)
+      !> Parameters of both sides
+      type(backbone_parameters), private :: given(-1:1)
       !> Present backbones
       type(backbone_side), private :: backbone(-1:1)
       !> Stiffest virgin slope: no line is steeper [N/m or N m/rad]
@@ -70,23 +93,65 @@ module rbs_hysteresis_peak_oriented
       integer, private :: left_branch = virgin
       logical, private :: aims_at_peak = .true.
    contains
+      procedure, nopass :: keys
+      procedure, nopass :: places
+      procedure :: set
+      procedure :: initial_stiffness
+      procedure :: check
       procedure :: start
       procedure :: next
-      procedure :: set_backbone
       procedure :: unloading_stiffness
       procedure :: break_point
    end type peak_oriented_rule
 
 contains
 
-   !> Take the numbers of both sides.
-   subroutine set_backbone(self, positive, negative)
-      class(peak_oriented_rule), intent(inout) :: self
-      type(backbone_spec), intent(in) :: positive, negative
+   pure function keys()
+      type(key_type), allocatable :: keys(:)
 
-      self%given(1) = positive
-      self%given(-1) = negative
-   end subroutine set_backbone
+      keys = capped_keys
+   end function keys
+
+   pure function places()
+      character(len=places_length) :: places
+
+      places = in_shear//' '//in_flexure
+   end function places
+
+   pure subroutine set(self, value)
+      class(peak_oriented_rule), intent(inout) :: self
+      real(wp), intent(in) :: value(:)
+      real(wp) :: energy
+
+      associate (positive => value(:sides), negative => value(sides + shared + 1:2*sides + shared))
+         self%given(1) = from_values(positive)
+         self%given(-1) = from_values(merge(negative, positive, is_given(negative)))
+      end associate
+      self%b0 = value(sides + 1)
+      energy = 0.5_wp*(self%given(1)%f_y*self%given(1)%d_y + self%given(-1)%f_y*self%given(-1)%d_y)
+      associate (lambda => value(sides + 2:sides + 5))
+         self%deterioration = deterioration_type(lambda(1)*energy, lambda(2)*energy, lambda(3)*energy, &
+                                                 lambda(4)*energy, value(sides + 6))
+      end associate
+   end subroutine set
+
+   pure real(wp) function initial_stiffness(self)
+      class(peak_oriented_rule), intent(in) :: self
+
+      initial_stiffness = max(self%given(1)%stiffness(), self%given(-1)%stiffness())
+   end function initial_stiffness
+
+   subroutine check(self, name, messages)
+      class(peak_oriented_rule), intent(in) :: self
+      character(len=*), intent(in) :: name
+      type(message_list), intent(inout) :: messages
+      integer :: known
+
+      known = messages%count
+      call self%given(1)%check(name, '', messages)
+      ! Else the faults of the one side would be told twice.
+      if (messages%count == known) call self%given(-1)%check(name, '_neg', messages)
+   end subroutine check
 
    subroutine start(self, line)
       class(peak_oriented_rule), intent(inout) :: self
@@ -99,7 +164,7 @@ contains
          ! An untouched side reloads toward cracking, or yield (see `reload`).
          self%peak(s) = self%given(s)%d_c
       end do
-      self%k_0 = max(self%given(1)%stiffness(), self%given(-1)%stiffness())
+      self%k_0 = self%initial_stiffness()
       self%branch = virgin
       self%side = 1
       self%turned = no_point

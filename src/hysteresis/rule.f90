@@ -1,20 +1,67 @@
-!> What a hysteresis rule is: the author of a spring's lines.
+!> What a hysteresis rule is: its parameters, and the author of a spring's lines.
 module rbs_hysteresis_rule
+   use rbs_base_error, only: message_list
+   use rbs_base_keys, only: key_type
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
    use rbs_hysteresis_segment, only: segment
    implicit none
    private
 
-   public :: rule_type
+   public :: rule_type, check_product
+
+   !> Where a spring may stand; `places` of a rule holds the words of those that it suits.
+   character(len=*), parameter, public :: in_shear = 'shear', in_flexure = 'flexure'
+   character(len=*), parameter, public :: in_axial = 'axial', in_layer = 'layer'
+
+   !> Largest number of parameters of a rule.
+   integer, parameter, public :: most_parameters = 32
+
+   integer, parameter, public :: rule_length = 16, places_length = 32
 
    !> A rule is asked only when a line ends or the motion turns back. What it must remember lives in
    !> its own type and is copied by assignment.
    type, abstract :: rule_type
    contains
+      procedure(keys_interface), deferred, nopass :: keys
+      procedure(places_interface), deferred, nopass :: places
+      procedure(set_interface), deferred :: set
+      procedure(stiffness_interface), deferred :: initial_stiffness
+      procedure :: check
       procedure(start_interface), deferred :: start
       procedure(next_interface), deferred :: next
    end type rule_type
 
    abstract interface
+      !> The parameters: names, dimensions, bounds, defaults, meaning.
+      pure function keys_interface() result(keys)
+         import :: key_type
+         implicit none
+         type(key_type), allocatable :: keys(:)
+      end function keys_interface
+
+      !> The joints that a spring of this rule suits: some of the words above, separated by blanks.
+      pure function places_interface() result(places)
+         import :: places_length
+         implicit none
+         character(len=places_length) :: places
+      end function places_interface
+
+      !> Take the parameters, in the order of `keys`.
+      pure subroutine set_interface(self, value)
+         import :: rule_type, wp
+         implicit none
+         class(rule_type), intent(inout) :: self
+         real(wp), intent(in) :: value(:)
+      end subroutine set_interface
+
+      !> Stiffness of the virgin spring, of the stiffer side if they differ [N/m or N m/rad].
+      pure real(wp) function stiffness_interface(self)
+         import :: rule_type, wp
+         implicit none
+         class(rule_type), intent(in) :: self
+      end function stiffness_interface
+
       !> The line of the virgin spring; forgets everything.
       subroutine start_interface(self, line)
          import :: rule_type, segment
@@ -35,5 +82,34 @@ module rbs_hysteresis_rule
          integer, intent(in) :: direction
       end subroutine next_interface
    end interface
+
+contains
+
+   !> Messages on relations between parameters that are each within their bounds. A rule without such
+   !> relations inherits this.
+   subroutine check(self, name, messages)
+      class(rule_type), intent(in) :: self
+      !> Which spring: 'shear spring of joint 2'
+      character(len=*), intent(in) :: name
+      type(message_list), intent(inout) :: messages
+
+      if (.false.) call messages%add(name//to_text(self%initial_stiffness()))
+   end subroutine check
+
+   !> Stiffness times deformation must be an ordinary number, or the lines have no meaning.
+   subroutine check_product(k, d, name, product_name, messages)
+      real(wp), intent(in) :: k, d
+      !> The spring, and the product as the user reads it: 'k d_y'
+      character(len=*), intent(in) :: name, product_name
+      type(message_list), intent(inout) :: messages
+      real(wp) :: power
+
+      power = log10(k) + log10(d)
+      if (power > 0.9_wp*range(1.0_wp) .or. power < -0.9_wp*range(1.0_wp) .or. &
+          abs(log10(k)) > 0.5_wp*range(1.0_wp) .or. abs(log10(d)) > 0.5_wp*range(1.0_wp)) then
+         call messages%add(name//': '//product_name//' = '//to_text(k)//' * '//to_text(d)// &
+                           ' is outside the range of the arithmetic; check the units')
+      end if
+   end subroutine check_product
 
 end module rbs_hysteresis_rule

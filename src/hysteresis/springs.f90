@@ -4,10 +4,9 @@ module rbs_hysteresis_springs
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unbounded
-   use rbs_hysteresis_factory, only: new_rule
    use rbs_hysteresis_journal, only: journal_type, rule_slot
    use rbs_hysteresis_segment, only: segment
-   use rbs_spec_spring, only: spring_spec
+   use rbs_hysteresis_spring_record, only: spring_record
    implicit none
    private
 
@@ -65,8 +64,8 @@ contains
    !> Virgin springs.
    subroutine create(self, specs)
       class(spring_array), intent(out) :: self
-      !> Validated numbers of each spring
-      type(spring_spec), intent(in) :: specs(:)
+      !> Validated parameters of each spring
+      type(spring_record), intent(in) :: specs(:)
       type(segment) :: line
       integer :: i, n
 
@@ -76,7 +75,7 @@ contains
       allocate (self%d(n), self%work(n), source=0.0_wp)
       allocate (self%d0(n), self%f0(n), self%k(n), self%first(n), self%last(n))
       do i = 1, n
-         call new_rule(self%slot(i)%rule, specs(i))
+         call specs(i)%make(self%slot(i)%rule)
          call self%slot(i)%rule%start(line)
          call put_line(self, i, line)
       end do
@@ -414,8 +413,8 @@ contains
 
    !> Forces of one virgin spring along a path.
    subroutine follow_path(spec, d, f)
-      !> Validated numbers of the spring
-      type(spring_spec), intent(in) :: spec
+      !> Validated parameters of the spring
+      type(spring_record), intent(in) :: spec
       !> Deformations, one after the other (m) [m or rad]
       real(wp), intent(in) :: d(:)
       !> Forces there (m) [N or N m]

@@ -1,15 +1,20 @@
 !> Steel that yields round: Menegotto and Pinto (1973) as straight lines.
 !>
 !> A branch begins where the motion turned back and bends from the elastic stiffness to the line of
-!> hardening,  f* = b x + (1 - b) x/(1 + x^R)^(1/R),  R = r0 (1 - r1 xi/(r2 + xi)),  xi = plastic
+!> hardening,  f* = b x + (1 - b) x/(1 + x^R)^(1/R),  R = r0 (1 - cr1 xi/(cr2 + xi)),  xi = plastic
 !> excursion over the yield deformation. The curve is followed by chords whose ends are chosen for its
 !> roundness. A branch that meets the one of its direction that was left before goes on along that one:
 !> small cycles close and never overshoot. The strength of new branches
 !> grows with the reach of the strains (Filippou, Popov and Bertero 1983) and falls with the plastic work.
 module rbs_hysteresis_steel
+   use rbs_base_error, only: message_list
+   use rbs_base_keys, only: key_type, above_zero, not_negative, share_below_one, &
+                           force, stiffness
    use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
    use rbs_base_constants, only: unbounded
-   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_rule, only: rule_type, check_product, places_length, in_shear, in_flexure, &
+      in_axial, in_layer
    use rbs_hysteresis_segment, only: segment
    implicit none
    private
@@ -34,16 +39,34 @@ module rbs_hysteresis_steel
       real(wp) :: d_meet = unbounded
    end type branch_type
 
+   type(key_type), parameter :: parameters(*) = [ &
+      key_type('k', unit=stiffness, bound=above_zero, &
+               meaning='elastic stiffness'), &
+      key_type('f_y', unit=force, bound=above_zero, &
+               meaning='yield force'), &
+      key_type('k_post', unit=stiffness, bound=not_negative, &
+               meaning='stiffness of hardening, below k'), &
+      key_type('r0', bound=above_zero, default=20.0_wp, &
+               meaning='roundness of the virgin branch'), &
+      key_type('cr1', bound=share_below_one, default=0.925_wp, &
+               meaning='largest share by which plastic excursions lower the roundness'), &
+      key_type('cr2', bound=above_zero, default=0.15_wp, &
+               meaning='plastic excursion over the yield deformation at half of that share'), &
+      key_type('isotropic_hardening', bound=not_negative, default=0.0_wp, &
+               meaning='share by which the strength has grown at a reach of strains from -d_y to d_y'), &
+      key_type('half_strength_work', bound=not_negative, default=0.0_wp, &
+               meaning='plastic work over f_y d_y at which the strength is half; 0: it stays')]
+
    type, extends(rule_type) :: steel_rule
       !> Elastic stiffness [N/m], yield force [N], stiffness of hardening [N/m]
       real(wp) :: k = 0.0_wp, f_y = 0.0_wp, k_post = 0.0_wp
       !> Roundness of the virgin branch and how it falls with the plastic excursion
-      real(wp) :: r0 = 20.0_wp, r1 = 0.925_wp, r2 = 0.15_wp
+      real(wp) :: r0 = 20.0_wp, cr1 = 0.925_wp, cr2 = 0.15_wp
       !> Share by which the strength has grown when the strains have reached from -d_y to d_y (Filippou,
       !> Popov and Bertero 1983); it grows with the power 0.8 of that reach
-      real(wp) :: growth = 0.0_wp
+      real(wp) :: isotropic_hardening = 0.0_wp
       !> Plastic work over f_y d_y at which the strength is half (0: it stays)
-      real(wp) :: endurance = 0.0_wp
+      real(wp) :: half_strength_work = 0.0_wp
       type(branch_type), private :: branch(most_branches)
       !> Branches in memory; 0: virgin
       integer, private :: count = 0
@@ -52,11 +75,60 @@ module rbs_hysteresis_steel
       !> Work up to the last corner [J], which was there [m, N]
       real(wp), private :: work = 0.0_wp, d_last = 0.0_wp, f_last = 0.0_wp
    contains
+      procedure, nopass :: keys
+      procedure, nopass :: places
+      procedure :: set
+      procedure :: initial_stiffness
+      procedure :: check
       procedure :: start
       procedure :: next
    end type steel_rule
 
 contains
+
+   pure function keys()
+      type(key_type), allocatable :: keys(:)
+
+      keys = parameters
+   end function keys
+
+   pure function places()
+      character(len=places_length) :: places
+
+      places = in_shear//' '//in_flexure//' '//in_axial//' '//in_layer
+   end function places
+
+   pure subroutine set(self, value)
+      class(steel_rule), intent(inout) :: self
+      real(wp), intent(in) :: value(:)
+
+      self%k = value(1)
+      self%f_y = value(2)
+      self%k_post = value(3)
+      self%r0 = value(4)
+      self%cr1 = value(5)
+      self%cr2 = value(6)
+      self%isotropic_hardening = value(7)
+      self%half_strength_work = value(8)
+   end subroutine set
+
+   pure real(wp) function initial_stiffness(self)
+      class(steel_rule), intent(in) :: self
+
+      initial_stiffness = self%k
+   end function initial_stiffness
+
+   subroutine check(self, name, messages)
+      class(steel_rule), intent(in) :: self
+      character(len=*), intent(in) :: name
+      type(message_list), intent(inout) :: messages
+
+      if (self%k_post >= self%k) then
+         call messages%add(name//': k_post = '//to_text(self%k_post)//' must be below k = '// &
+                           to_text(self%k)//'; use an elastic spring for one that does not yield')
+      end if
+      call check_product(self%k, self%f_y/self%k, name, 'k d_y', messages)
+   end subroutine check
 
    subroutine start(self, line)
       class(steel_rule), intent(inout) :: self
@@ -126,12 +198,12 @@ contains
       self%highest = max(self%highest, d)
       self%lowest = min(self%lowest, d)
       strength = 1.0_wp
-      if (self%growth > 0.0_wp) then
-         strength = 1.0_wp + self%growth*(0.5_wp*(self%highest - self%lowest)/d_y)**0.8_wp
+      if (self%isotropic_hardening > 0.0_wp) then
+         strength = 1.0_wp + self%isotropic_hardening*(0.5_wp*(self%highest - self%lowest)/d_y)**0.8_wp
       end if
-      if (self%endurance > 0.0_wp) then
+      if (self%half_strength_work > 0.0_wp) then
          plastic = max(0.0_wp, self%work - 0.5_wp*f**2/self%k)/(self%f_y*d_y)
-         strength = strength/(1.0_wp + (plastic/self%endurance)**2)
+         strength = strength/(1.0_wp + (plastic/self%half_strength_work)**2)
       end if
       new%direction = s
       new%d_0 = d
@@ -141,7 +213,7 @@ contains
       if (s*(new%d_a - d) < 1.0e-9_wp*d_y) new%d_a = d + s*1.0e-9_wp*d_y
       new%f_a = f + self%k*(new%d_a - d)
       xi = abs(merge(self%highest, self%lowest, s > 0) - new%d_a)/d_y
-      new%r = max(least_r, self%r0*(1.0_wp - self%r1*xi/(self%r2 + xi)))
+      new%r = max(least_r, self%r0*(1.0_wp - self%cr1*xi/(self%cr2 + xi)))
       new%d_meet = s*unbounded
       if (self%count >= 2) call find_meeting(self, self%branch(self%count - 1), new)
       self%count = self%count + 1

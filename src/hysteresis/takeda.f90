@@ -14,10 +14,14 @@
 !> the secant to the zero crossing of the excursion: below it a loop would create energy.
 module rbs_hysteresis_takeda
    use, intrinsic :: iso_fortran_env, only: int64
+   use rbs_base_error, only: message_list
+   use rbs_base_keys, only: key_type, word_kind, above_zero, not_negative, choice_name, &
+                            choice_length, deformation, stiffness
    use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_inner_peaks, only: point, reloading_line, inner_peaks
-   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_rule, only: rule_type, check_product, places_length, in_shear, in_flexure
    use rbs_hysteresis_segment, only: segment
    implicit none
    private
@@ -33,6 +37,24 @@ module rbs_hysteresis_takeda
    !> A line this close to the slope of the yielded backbone does not meet it; K_r comes to it at
    !> ductilities that only round-off knows.
    real(wp), parameter :: parallel = 1.0e-9_wp
+
+   type(key_type), parameter :: parameters(*) = [ &
+      key_type('k_c', unit=stiffness, bound=above_zero, &
+               meaning='uncracked stiffness'), &
+      key_type('d_c', unit=deformation, bound=above_zero, &
+               meaning='cracking deformation'), &
+      key_type('k_y', unit=stiffness, bound=above_zero, &
+               meaning='cracked stiffness, below k_c'), &
+      key_type('d_y', unit=deformation, bound=above_zero, &
+               meaning='yield deformation, above d_c'), &
+      key_type('k_u', unit=stiffness, bound=not_negative, &
+               meaning='stiffness after yield, up to k_y'), &
+      key_type('b0', bound=not_negative, default=0.4_wp, &
+               meaning='exponent of the outer unloading stiffness'), &
+      key_type('b1', bound=above_zero, default=1.0_wp, &
+               meaning='factor of the inner unloading stiffness'), &
+      key_type('inner', kind=word_kind, default=1.0_wp, choices='kc kr one', &
+               meaning='what b1 multiplies: k_c, the outer unloading stiffness, or nothing')]
 
    type, extends(rule_type) :: takeda_rule
       !> Uncracked, cracked and yielded stiffness [N/m or N m/rad]
@@ -55,11 +77,70 @@ module rbs_hysteresis_takeda
       type(reloading_line), private :: aim
       type(inner_peaks), private :: open
    contains
+      procedure, nopass :: keys
+      procedure, nopass :: places
+      procedure :: set
+      procedure :: initial_stiffness
+      procedure :: check
       procedure :: start
       procedure :: next
    end type takeda_rule
 
 contains
+
+   pure function keys()
+      type(key_type), allocatable :: keys(:)
+
+      keys = parameters
+   end function keys
+
+   pure function places()
+      character(len=places_length) :: places
+
+      places = in_shear//' '//in_flexure
+   end function places
+
+   pure subroutine set(self, value)
+      class(takeda_rule), intent(inout) :: self
+      real(wp), intent(in) :: value(:)
+      character(len=choice_length) :: inner
+
+      self%k_c = value(1)
+      self%d_c = value(2)
+      self%k_y = value(3)
+      self%d_y = value(4)
+      self%k_u = value(5)
+      self%b0 = value(6)
+      self%b1 = value(7)
+      inner = choice_name(parameters(8), nint(value(8)))
+      self%inner = inner(:3)
+   end subroutine set
+
+   pure real(wp) function initial_stiffness(self)
+      class(takeda_rule), intent(in) :: self
+
+      initial_stiffness = self%k_c
+   end function initial_stiffness
+
+   subroutine check(self, name, messages)
+      class(takeda_rule), intent(in) :: self
+      character(len=*), intent(in) :: name
+      type(message_list), intent(inout) :: messages
+
+      if (self%d_y <= self%d_c) then
+         call messages%add(name//': d_y = '//to_text(self%d_y)//' must be above d_c = '// &
+                           to_text(self%d_c)//' (yield comes after cracking)')
+      end if
+      if (self%k_y >= self%k_c) then
+         call messages%add(name//': k_y = '//to_text(self%k_y)//' must be below k_c = '// &
+                           to_text(self%k_c)//' (cracking softens)')
+      end if
+      if (self%k_u > self%k_y) then
+         call messages%add(name//': k_u = '//to_text(self%k_u)//' must not be above k_y = '// &
+                           to_text(self%k_y)//' (yielding softens)')
+      end if
+      call check_product(self%k_c, self%d_y, name, 'k_c d_y', messages)
+   end subroutine check
 
    subroutine start(self, line)
       class(takeda_rule), intent(inout) :: self

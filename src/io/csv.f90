@@ -7,6 +7,7 @@ module rbs_io_csv
                                           c_ptr, c_size_t
    use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
+   use rbs_base_units, only: unit_system
    use rbs_output_recorder, only: recorder_type
    use rbs_output_row, only: row_time
    implicit none
@@ -27,6 +28,9 @@ module rbs_io_csv
       real(wp) :: last_time = 0.0_wp
       !> Path of the file
       character(len=:), allocatable :: path
+      !> Units of the file, and the SI units of the values of a row (values of a row)
+      type(unit_system) :: units
+      character(len=4), allocatable :: si(:)
       type(c_ptr), private :: stream = c_null_ptr
       character(len=:), allocatable, private :: buffer
    contains
@@ -105,7 +109,7 @@ module rbs_io_csv
 
 contains
 
-   !> Begin the file: comment lines, then the names of the columns.
+   !> Start the file: comment lines, then the names of the columns.
    subroutine open_csv(self, path, comments, labels, error)
       class(csv_recorder), intent(inout) :: self
       !> Path of the file when it is whole
@@ -153,12 +157,15 @@ contains
       real(wp), intent(in) :: row(:)
       type(error_type), allocatable, intent(inout) :: error
       character(len=width) :: number
+      real(wp) :: value(size(row))
       integer :: i, at, first
 
       if (allocated(error)) return
+      value = row
+      if (.not. self%units%is_si()) value = self%units%out_of_si(row, self%si)
       at = 0
       do i = 1, size(row)
-         write (number, '(es24.16e3)') row(i)
+         write (number, '(es24.16e3)') value(i)
          first = verify(number, ' ')
          self%buffer(at + 1:at + width - first) = number(first:width - 1)
          at = at + width - first + 1

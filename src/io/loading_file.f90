@@ -7,7 +7,7 @@ module rbs_io_loading_file
    use rbs_io_history, only: history_type, read_history
    use rbs_io_text_file, only: is_integer
    use rbs_base_check, only: is_given
-   use rbs_spec_loading, only: loading_spec, units_of
+   use rbs_loading_loading_record, only: loading_record, units_of
    use rbs_base_units, only: unit_type, to_si
    implicit none
    private
@@ -17,13 +17,15 @@ module rbs_io_loading_file
 contains
 
    !> Times and values of a loading with source = 'file'.
-   subroutine loading_values(spec, folder, dynamic, time, value, error)
+   subroutine loading_values(spec, folder, dynamic, refuse_times, time, value, error)
       !> Validated loading
-      type(loading_spec), intent(in) :: spec
+      type(loading_record), intent(in) :: spec
       !> Folder that a relative path starts from, with a slash at its end, or empty
       character(len=*), intent(in) :: folder
       !> Whether times are needed
       logical, intent(in) :: dynamic
+      !> Whether a force with times is refused, because nobody has said that they do not count
+      logical, intent(in) :: refuse_times
       !> Times (m) [s]; the number of the row in a static analysis
       real(wp), allocatable, intent(out) :: time(:)
       !> Values (m) [m, N or m/s2]
@@ -46,6 +48,12 @@ contains
       if (allocated(error)) return
       value = value*spec%scale
       if (.not. dynamic) then
+         if (refuse_times .and. spec%drive == 'force' .and. any(is_time(history%labels))) then
+            call fatal_error(error, bad_input, path// &
+                             ': the force has times; name the method in &analysis: '// &
+                             "'static' for the path without inertia, or 'auto' for the response in time")
+            return
+         end if
          time = [(real(i - 1, wp), i=1, history%rows)]
          return
       end if
@@ -53,8 +61,10 @@ contains
    end subroutine loading_values
 
    !> Displacements [m] and forces [N] of a measured test.
-   subroutine read_test(path, name, rows, displacement, force, error)
+   subroutine read_test(path, units, name, rows, displacement, force, error)
       character(len=*), intent(in) :: path
+      !> Units of displacement and force; blank: those of the file, see `convert`
+      character(len=*), intent(in) :: units(2)
       !> Name of the test
       character(len=:), allocatable, intent(out) :: name
       !> Number of rows; the arrays must have room for as many
@@ -84,7 +94,7 @@ contains
          value = history%values(column, :)
          call check_range(value, path, column, 1.0e300_wp, error)
          if (allocated(error)) return
-         call convert(history, path, column, drives(i), '', value, error)
+         call convert(history, path, column, drives(i), units(i), value, error)
          if (allocated(error)) return
          if (i == 1) displacement(:history%rows) = value
          if (i == 2) force(:history%rows) = value
@@ -108,7 +118,10 @@ contains
       call describe_columns(history, there)
       if (word == '') then
          wanted = drive
-         if (drive == 'ground') wanted = 'acceleration'
+         if (drive == 'ground_acceleration') wanted = 'acceleration'
+         ! Short names are common in files: 'vertical_g', 'axial_kN'.
+         if (drive == 'vertical_acceleration') wanted = 'vertical'
+         if (drive == 'axial_load') wanted = 'axial'
          do i = 1, history%columns
             if (index(lower(history%labels(i)), trim(wanted)) == 1 .or. &
                 index(lower(history%labels(i)), trim(drive)) == 1) column = i
@@ -190,7 +203,7 @@ contains
    subroutine find_times(history, path, spec, time, error)
       type(history_type), intent(in) :: history
       character(len=*), intent(in) :: path
-      type(loading_spec), intent(in) :: spec
+      type(loading_record), intent(in) :: spec
       real(wp), allocatable, intent(out) :: time(:)
       type(error_type), allocatable, intent(out) :: error
       integer :: column, i
@@ -277,7 +290,7 @@ contains
    end function unit_of
 
    !> Whether a column has the name of a time: t, time, time_s.
-   pure logical function is_time(label)
+   elemental logical function is_time(label)
       character(len=*), intent(in) :: label
 
       is_time = lower(label) == 't' .or. lower(label) == 't_s' .or. index(lower(label), 'time') == 1

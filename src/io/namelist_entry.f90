@@ -1,41 +1,23 @@
-!> Second look at a namelist file: each entry against the names that its group has.
+!> Second look at a namelist file: each entry against the key that it names.
 module rbs_io_namelist_entry
+   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_negative_inf, ieee_positive_inf
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: lower, nearest_name, list_of, to_text, integer_length
+   use rbs_base_keys, only: key_type, real_kind, integer_kind, logical_kind, word_kind, text_kind
+   use rbs_base_text, only: lower, to_text, integer_length
    use rbs_io_namelist_pieces, only: nml_entry, nml_group, nml_scan
-   use rbs_io_namelist_scan, only: most_messages
-   use rbs_io_text_file, only: read_real, number_wrong, number_not_finite
+   use rbs_io_text_file, only: read_real, number_ok, number_wrong, number_not_finite
    implicit none
    private
 
-   public :: key_type, key, check_group_name, entry_text, location
+   public :: location, check_twice, check_values, entry_text, entry_numbers
 
    !> Texts longer than this are refused: they would be cut.
-   integer, parameter, public :: text_length = 512
-
-   !> A name that a group has.
-   type :: key_type
-      character(len=32) :: name
-      !> 'r' real, 'i' whole number, 'l' logical, 's' text
-      character(len=1) :: kind
-      !> Most values
-      integer :: most
-   end type key_type
+   integer, parameter :: text_length = 512
 
 contains
 
-   !> A name with its kind and most values (one, if not said).
-   pure type(key_type) function key(name, kind, most)
-      character(len=*), intent(in) :: name
-      character(len=1), intent(in) :: kind
-      integer, intent(in), optional :: most
-
-      key = key_type(name=name, kind=kind, most=1)
-      if (present(most)) key%most = most
-   end function key
-
-   !> 'case.nml line 4', for the begin of a message.
+   !> 'case.nml line 4', for the start of a message.
    pure function location(path, line) result(text)
       character(len=*), intent(in) :: path
       integer, intent(in) :: line
@@ -43,58 +25,6 @@ contains
 
       text = path//' line '//to_text(line)
    end function location
-
-   !> A message if a group is none of the valid ones.
-   subroutine check_group_name(path, group, valid, messages)
-      character(len=*), intent(in) :: path
-      type(nml_group), intent(in) :: group
-      character(len=*), intent(in) :: valid(:)
-      type(message_list), intent(inout) :: messages
-
-      if (any(valid == group%name) .or. messages%count > most_messages) return
-      call messages%add(location(path, group%line)//': the group &'//trim(group%name)// &
-                        " is not known; did you mean '&"//nearest_name(group%name, valid)// &
-                        "'? Groups are "//list_of(valid))
-   end subroutine check_group_name
-
-   !> One entry as a namelist of its own, `&group name = values /`, if it is sound.
-   subroutine entry_text(path, scanned, group, i, keys, text, messages)
-      character(len=*), intent(in) :: path
-      type(nml_scan), intent(in) :: scanned
-      type(nml_group), intent(in) :: group
-      !> Number of the entry
-      integer, intent(in) :: i
-      !> Names that the group has
-      type(key_type), intent(in) :: keys(:)
-      !> Not allocated if the entry is not sound
-      character(len=:), allocatable, intent(out) :: text
-      type(message_list), intent(inout) :: messages
-      character(len=len(keys%name)) :: names(size(keys))
-      integer :: place, known
-
-      known = messages%count
-      if (known > most_messages) return
-      names = keys%name
-      associate (entry => scanned%entry(i))
-         do place = 1, size(keys)
-            if (keys(place)%name == entry%name) exit
-         end do
-         if (place > size(keys)) then
-            call messages%add(location(path, entry%line)//': &'//trim(group%name)//" has no '"// &
-                              trim(entry%name)//"'; did you mean '"// &
-                              nearest_name(entry%name, names)//"'?")
-            return
-         end if
-         call check_twice(path, scanned, group, i, messages)
-         call check_values(path, entry, keys(place), messages)
-         if (messages%count > known) return
-         text = '&'//trim(group%name)//' '//trim(entry%name)
-         if (entry%subscript > 0) text = text//'('//to_text(entry%subscript)//')'
-         text = text//' ='
-         call add_values(entry, text)
-         text = text//' /'
-      end associate
-   end subroutine entry_text
 
    !> The same name (and subscript) must not come twice in a group.
    subroutine check_twice(path, scanned, group, i, messages)
@@ -159,14 +89,15 @@ contains
       what = ''
       quoted = text(1:1) == '''' .or. text(1:1) == '"'
       select case (kind)
-      case ('s')
+      case (text_kind, word_kind)
          if (.not. quoted) then
             what = "must be a text in quotes: '"//clean(text)//"'"
          else if (len(text) > text_length) then
             what = 'is longer than '//to_text(text_length - 2)//' letters'
          end if
-      case ('r')
+      case (real_kind)
          call read_real(text, value, status)
+         if (status == number_ok) return
          if (quoted) then
             what = 'must be a number without quotes'
          else if (status == number_wrong) then
@@ -174,7 +105,7 @@ contains
          else if (status == number_not_finite .and. scan(text, '0123456789') > 0) then
             what = 'is too large to be a finite number; check its exponent'
          end if
-      case ('i')
+      case (integer_kind)
          first = merge(2, 1, scan(text(1:1), '+-') == 1)
          if (len(text) < first .or. len(text) > 9 .or. verify(text(first:), '0123456789') /= 0) then
             what = 'must be a whole number'
@@ -189,18 +120,99 @@ contains
       end select
    end subroutine find_fault
 
-   !> Put the values of an entry behind a text, separated by commas.
-   subroutine add_values(entry, text)
+   !> The text of an entry without its quotes, doubled ones within made single.
+   subroutine entry_text(entry, text)
       type(nml_entry), intent(in) :: entry
-      character(len=:), allocatable, intent(inout) :: text
-      integer :: i
+      character(len=:), allocatable, intent(out) :: text
+      character(len=:), allocatable :: quoted
+      integer :: i, length
 
-      do i = 1, entry%values
-         if (i > 1) text = text//','
-         if (entry%value(i)%times > 1) text = text//to_text(entry%value(i)%times)//'*'
-         text = text//entry%value(i)%text
+      quoted = entry%value(1)%text
+      allocate (character(len=len(quoted)) :: text)
+      length = 0
+      i = 2
+      do while (i < len(quoted))
+         length = length + 1
+         text(length:length) = quoted(i:i)
+         if (quoted(i:i) == quoted(1:1)) i = i + 1
+         i = i + 1
       end do
-   end subroutine add_values
+      text = text(:length)
+   end subroutine entry_text
+
+   !> The numbers of an entry. Where the entry has a subscript: those of all entries of its name, with the
+   !> first of them; not allocated for the others, and where some are missing.
+   subroutine entry_numbers(path, scanned, group, i, key, number, messages)
+      character(len=*), intent(in) :: path
+      type(nml_scan), intent(in) :: scanned
+      type(nml_group), intent(in) :: group
+      !> Number of the entry
+      integer, intent(in) :: i
+      type(key_type), intent(in) :: key
+      real(wp), allocatable, intent(out) :: number(:)
+      type(message_list), intent(inout) :: messages
+      integer :: j, k, at, last
+      logical, allocatable :: there(:)
+
+      if (scanned%entry(i)%subscript == 0) then
+         allocate (number(sum(scanned%entry(i)%value(:scanned%entry(i)%values)%times)))
+         at = 0
+         do k = 1, scanned%entry(i)%values
+            associate (value => scanned%entry(i)%value(k))
+               number(at + 1:at + value%times) = one_number(value%text, key%kind)
+               at = at + value%times
+            end associate
+         end do
+         return
+      end if
+      last = 0
+      do j = group%first, group%last
+         if (scanned%entry(j)%name /= scanned%entry(i)%name) cycle
+         if (j < i) return
+         last = max(last, scanned%entry(j)%subscript)
+      end do
+      if (last > key%most) return                   ! told of that entry
+      allocate (number(last), there(last))
+      there = .false.
+      do j = i, group%last
+         if (scanned%entry(j)%name /= scanned%entry(i)%name .or. scanned%entry(j)%subscript == 0) cycle
+         number(scanned%entry(j)%subscript) = one_number(scanned%entry(j)%value(1)%text, key%kind)
+         there(scanned%entry(j)%subscript) = .true.
+      end do
+      j = findloc(there, .false., dim=1)
+      if (j == 0) return
+      call messages%add(path//': '//trim(group%name)//': '//trim(key%name)//'('//to_text(j)// &
+                        ') is missing before '//trim(key%name)//'('//to_text(last)//'); give them all')
+      deallocate (number)
+   end subroutine entry_numbers
+
+   !> A value that has been found sound.
+   real(wp) function one_number(text, kind)
+      character(len=*), intent(in) :: text
+      character(len=1), intent(in) :: kind
+      integer :: status
+
+      if (kind == logical_kind) then
+         one_number = merge(1.0_wp, 0.0_wp, scan(lower(text(:min(2, len(text)))), 't') > 0)
+      else
+         call read_real(text, one_number, status)
+         if (status == number_wrong) one_number = 0.0_wp
+         if (status == number_not_finite) one_number = not_finite(text)
+      end if
+   end function one_number
+
+   !> NaN or infinity, as it is written: the check of the values names it.
+   real(wp) function not_finite(text)
+      character(len=*), intent(in) :: text
+
+      if (scan(text, 'aA') > 0) then
+         not_finite = ieee_value(not_finite, ieee_quiet_nan)
+      else if (text(1:1) == '-') then
+         not_finite = ieee_value(not_finite, ieee_negative_inf)
+      else
+         not_finite = ieee_value(not_finite, ieee_positive_inf)
+      end if
+   end function not_finite
 
    !> A short piece of a text for a message.
    pure function clean(text)

@@ -137,6 +137,8 @@ contains
       character(len=12) :: form
       integer :: ios
 
+      call read_short(word, value, status)
+      if (status == number_ok) return
       value = 0.0_wp
       status = number_wrong
       select case (lower(word(min(1, len(word) + 1):)))
@@ -163,6 +165,63 @@ contains
          status = merge(number_ok, number_not_finite, ieee_is_finite(value))
       end if
    end subroutine read_real
+
+   !> A decimal number of few digits: a whole number below 2**53, times or over a power of ten that is exact,
+   !> is rounded once, which gives the nearest number. Other words are left to the library.
+   pure subroutine read_short(word, value, status)
+      character(len=*), intent(in) :: word
+      real(wp), intent(out) :: value
+      !> `number_ok`, or `number_wrong` for what is not so short
+      integer, intent(out) :: status
+      integer, parameter :: most_places = 15, most_power = 22
+      real(wp), parameter :: ten = 10.0_wp
+      integer(int64) :: mantissa
+      integer :: i, digit, places, power, exponent, sign_of_power
+      logical :: point, negative, in_exponent
+
+      value = 0.0_wp
+      status = number_wrong
+      mantissa = 0_int64
+      places = 0
+      power = 0
+      exponent = -1
+      sign_of_power = 1
+      point = .false.
+      in_exponent = .false.
+      negative = .false.
+      do i = 1, len(word)
+         digit = iachar(word(i:i)) - iachar('0')
+         if (digit >= 0 .and. digit <= 9) then
+            if (in_exponent) then
+               exponent = 10*max(exponent, 0) + digit
+               if (exponent > most_power + most_places) return
+            else
+               mantissa = 10_int64*mantissa + digit
+               places = places + 1
+               if (places > most_places) return
+               if (point) power = power - 1
+            end if
+         else if (word(i:i) == '.' .and. .not. (point .or. in_exponent)) then
+            point = .true.
+         else if ((word(i:i) == 'e' .or. word(i:i) == 'E') .and. places > 0 .and. .not. in_exponent) then
+            in_exponent = .true.
+         else if (word(i:i) == '-' .and. i == 1) then
+            negative = .true.
+         else if (word(i:i) == '-' .and. in_exponent .and. exponent < 0 .and. sign_of_power == 1) then
+            sign_of_power = -1
+         else
+            return
+         end if
+      end do
+      if (places == 0 .or. (in_exponent .and. exponent < 0)) return
+      power = power + sign_of_power*max(exponent, 0)
+      if (abs(power) > most_power) return
+      value = real(mantissa, wp)
+      if (power > 0) value = value*ten**power
+      if (power < 0) value = value/ten**(-power)
+      if (negative) value = -value
+      status = number_ok
+   end subroutine read_short
 
    !> Whether a number that `looks_real` is too large for the arithmetic. Asked before the read: that
    !> overflows inside the C library, which ends a program that traps overflow.

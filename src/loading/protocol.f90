@@ -3,7 +3,7 @@ module rbs_loading_protocol
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_spec_loading, only: loading_spec, units_of
+   use rbs_loading_loading_record, only: loading_record, units_of
    use rbs_base_units, only: unit_type, to_si
    implicit none
    private
@@ -19,7 +19,7 @@ contains
    !> equal parts; the whole `repeats` times.
    subroutine protocol_values(spec, height, time, value, error)
       !> Validated loading with source = 'protocol'
-      type(loading_spec), intent(in) :: spec
+      type(loading_record), intent(in) :: spec
       !> Height of the column, for amplitudes in drift [m]
       real(wp), intent(in) :: height
       !> Time of each point [s]; the number of the point where no period is given
@@ -62,7 +62,7 @@ contains
 
    !> Amplitude in SI; drift is displacement over height.
    real(wp) function si_amplitude(spec, amplitude, height) result(si)
-      type(loading_spec), intent(in) :: spec
+      type(loading_record), intent(in) :: spec
       real(wp), intent(in) :: amplitude, height
       type(unit_type), allocatable :: units(:)
       integer :: i

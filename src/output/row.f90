@@ -2,10 +2,11 @@
 module rbs_output_row
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
+   use rbs_base_units, only: unit_system
    implicit none
    private
 
-   public :: row_size, row_labels
+   public :: row_size, row_labels, row_quantities
    public :: row_time, row_displacement, row_force, row_input, row_kinetic, row_spring, row_damping
    public :: row_axial, row_residual, row_top, row_joints
 
@@ -21,9 +22,22 @@ module rbs_output_row
    !> the same order n shear forces [N], n moments [N m] and n axial forces [N].
    integer, parameter :: row_joints = 11
 
-   character(len=14), parameter :: fixed(10) = [ &
-      'time_s        ', 'displacement_m', 'force_N       ', 'input_J       ', 'kinetic_J     ', &
-      'spring_J      ', 'damping_J     ', 'axial_J       ', 'residual_J    ', 'top_height_m  ']
+   !> One value of a row, or one for each joint, with its SI unit.
+   type :: quantity_type
+      character(len=12) :: name
+      character(len=4) :: unit
+   end type quantity_type
+
+   type(quantity_type), parameter :: fixed(row_joints - 1) = [ &
+      quantity_type('time', 's'), quantity_type('displacement', 'm'), quantity_type('force', 'N'), &
+      quantity_type('input', 'J'), quantity_type('kinetic', 'J'), quantity_type('spring', 'J'), &
+      quantity_type('damping', 'J'), quantity_type('axial', 'J'), quantity_type('residual', 'J'), &
+      quantity_type('top_height', 'm')]
+
+   !> For each joint: deformations, then forces; those of openings come last of each.
+   type(quantity_type), parameter :: of_joints(6) = [ &
+      quantity_type('slip', 'm'), quantity_type('rotation', 'rad'), quantity_type('opening', 'm'), &
+      quantity_type('shear', 'N'), quantity_type('moment', 'N m'), quantity_type('axial_force', 'N')]
 
 contains
 
@@ -35,29 +49,63 @@ contains
       row_size = row_joints - 1 + 2*unknowns
    end function row_size
 
-   !> Names of the values with their units.
-   function row_labels(n, opens, dynamic) result(labels)
+   !> Names of the quantities in their order, separated by blanks; an asterisk marks one value a joint.
+   pure function row_quantities(opens) result(names)
+      !> Whether the joints open
+      logical, intent(in) :: opens
+      character(len=512) :: names
+      integer :: i
+
+      names = fixed(1)%name
+      do i = 2, size(fixed)
+         names = trim(names)//' '//fixed(i)%name
+      end do
+      do i = 1, size(of_joints)
+         if (.not. opens .and. mod(i, 3) == 0) cycle
+         names = trim(names)//' '//trim(of_joints(i)%name)//'*'
+      end do
+   end function row_quantities
+
+   !> Names of the values with their units, and the SI units themselves.
+   subroutine row_labels(n, opens, dynamic, units, labels, si)
       integer, intent(in) :: n
       !> Whether the joints open, and whether the first value is a time
       logical, intent(in) :: opens, dynamic
-      character(len=24), allocatable :: labels(:)
-      integer :: i, m
+      !> Units of the labels
+      type(unit_system), intent(in) :: units
+      !> (values of a row)
+      character(len=32), allocatable, intent(out) :: labels(:)
+      character(len=4), allocatable, intent(out) :: si(:)
+      integer :: i, j, at
 
-      m = merge(3, 2, opens)*n
-      allocate (labels(row_size(m)))
-      labels(:row_joints - 1) = fixed
-      if (.not. dynamic) labels(row_time) = 'step'
-      do i = 1, n
-         associate (deformation => row_joints - 1 + i, force => row_joints - 1 + m + i)
-            labels(deformation) = 'slip_'//to_text(i)//'_m'
-            labels(deformation + n) = 'rotation_'//to_text(i)//'_rad'
-            labels(force) = 'shear_'//to_text(i)//'_N'
-            labels(force + n) = 'moment_'//to_text(i)//'_Nm'
-            if (.not. opens) cycle
-            labels(deformation + 2*n) = 'opening_'//to_text(i)//'_m'
-            labels(force + 2*n) = 'axial_force_'//to_text(i)//'_N'
-         end associate
+      allocate (labels(row_size(merge(3, 2, opens)*n)), si(row_size(merge(3, 2, opens)*n)))
+      do i = 1, size(fixed)
+         labels(i) = trim(fixed(i)%name)//'_'//compact(units%name_of(fixed(i)%unit))
+         si(i) = fixed(i)%unit
       end do
-   end function row_labels
+      if (.not. dynamic) labels(row_time) = 'step'
+      at = size(fixed)
+      do j = 1, size(of_joints)
+         if (.not. opens .and. mod(j, 3) == 0) cycle
+         do i = 1, n
+            at = at + 1
+            labels(at) = trim(of_joints(j)%name)//'_'//to_text(i)//'_'// &
+                   compact(units%name_of(of_joints(j)%unit))
+            si(at) = of_joints(j)%unit
+         end do
+      end do
+   end subroutine row_labels
+
+   !> A unit without blanks, as it stands in a label: 'Nm'.
+   pure function compact(unit) result(text)
+      character(len=*), intent(in) :: unit
+      character(len=len(unit)) :: text
+      integer :: i
+
+      text = ''
+      do i = 1, len_trim(unit)
+         if (unit(i:i) /= ' ') text = trim(text)//unit(i:i)
+      end do
+   end function compact
 
 end module rbs_output_row

@@ -5,18 +5,17 @@ module rbs_output_summary
    implicit none
    private
 
-   public :: summary_type, summary_size, summary_names
+   public :: summary_type, summary_size, summary_names, summary_units, figure_names
 
    integer, parameter :: summary_size = 16
 
-   !> Names of the values of `as_array`.
-   character(len=28), parameter :: summary_names(summary_size) = [ &
-      'steps                       ', 'rows                        ', 'events                      ', &
-      'time_step_s                 ', 'stable_step_s               ', 'peak_displacement_m         ', &
-      'peak_force_N                ', 'displacement_at_peak_force_m', 'input_energy_J              ', &
-      'spring_energy_J             ', 'damping_energy_J            ', 'energy_residual_J           ', &
-      'relative_energy_residual    ', 'peak_rotation_rad           ', 'cut_steps                   ', &
-      'collapsed                   ']
+   !> Names of the figures of `as_array`, and their SI units.
+   character(len=26), parameter :: summary_names(summary_size) = [character(len=26) :: &
+      'steps', 'rows', 'events', 'time_step', 'stable_step', 'peak_displacement', 'peak_force', &
+      'displacement_at_peak_force', 'input_energy', 'spring_energy', 'damping_energy', 'energy_residual', &
+      'relative_energy_residual', 'peak_rotation', 'cut_steps', 'collapsed']
+   character(len=4), parameter :: summary_units(summary_size) = [character(len=4) :: &
+      '', '', '', 's', 's', 'm', 'N', 'm', 'J', 'J', 'J', 'J', '', 'rad', '', '']
 
    type :: summary_type
       !> Steps or increments taken, rows offered to the recorder, lines that springs have left
@@ -74,7 +73,7 @@ contains
       self%largest = max(self%largest, abs(row(row_input)), row(row_kinetic) + row(row_spring))
    end subroutine see
 
-   !> The values in the order of `summary_names`.
+   !> The figures in the order of `summary_names`.
    pure function as_array(self) result(values)
       class(summary_type), intent(in) :: self
       real(wp) :: values(summary_size)
@@ -85,5 +84,16 @@ contains
                 self%residual/max(self%largest, tiny(1.0_wp)), self%peak_rotation, &
                 real(self%cut_steps, wp), merge(1.0_wp, 0.0_wp, self%collapsed)]
    end function as_array
+
+   !> Names of the figures in their order, separated by blanks.
+   pure function figure_names() result(names)
+      character(len=512) :: names
+      integer :: i
+
+      names = summary_names(1)
+      do i = 2, summary_size
+         names = trim(names)//' '//summary_names(i)
+      end do
+   end function figure_names
 
 end module rbs_output_summary

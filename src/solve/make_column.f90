@@ -3,8 +3,8 @@ module rbs_solve_make_column
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, new_column
-   use rbs_hysteresis_factory, only: carries_axial_load
-   use rbs_spec_column, only: column_spec
+   use rbs_hysteresis_spring_record, only: carries_axial_load
+   use rbs_column_column_record, only: column_record
    implicit none
    private
 
@@ -14,7 +14,7 @@ contains
 
    !> Validate a column and make it.
    subroutine make_column(spec, column, error)
-      type(column_spec), intent(in) :: spec
+      type(column_record), intent(inout) :: spec
       type(column_type), intent(out) :: column
       type(error_type), allocatable, intent(out) :: error
       type(message_list) :: messages
@@ -23,14 +23,17 @@ contains
       call spec%validate(messages)
       call messages%raise(error)
       if (allocated(error)) return
-      do i = 1, size(spec%flexure)
-         if (carries_axial_load(spec%flexure(i))) cycle
-         call fatal_error(error, bad_input, 'flexure spring of joint '//to_text(i)//': its layers cannot '// &
-                          'carry axial_load = '//to_text(spec%flexure(i)%axial_load)//' N; lower it, or '// &
-                          'give stronger layers')
+      call new_column(column, spec)
+      do i = 1, column%n
+         associate (spring => column%spring(column%n + i))
+            if (carries_axial_load(spring)) cycle
+            call fatal_error(error, bad_input, 'flexure spring of joint '//to_text(i)// &
+                             ': its layers cannot '// &
+                             'carry the axial load of '//to_text(spring%axial_load)//' N; lower it, or '// &
+                             'give stronger layers')
+         end associate
          return
       end do
-      call new_column(column, spec)
    end subroutine make_column
 
 end module rbs_solve_make_column

@@ -30,6 +30,7 @@ from compare import against_rows, take_turns, yardstick_rows
 from rows import ROOT, Row, newest, show
 
 import rbsdem
+from rbsdem import _core
 from rbsdem.__main__ import executable as installed_executable
 
 try:
@@ -53,18 +54,18 @@ def seconds(action: Callable[[], Any], repeats: int) -> list[float]:
     action()
     times = []
     for _ in range(repeats):
-        begin = time.perf_counter()
+        start = time.perf_counter()
         action()
-        times.append(time.perf_counter() - begin)
+        times.append(time.perf_counter() - start)
     return times
 
 
 def processor_time(command: list[Any]) -> float:
     """Return the processor time of a process; its wall time where that is not known (Windows)."""
-    begin = time.perf_counter()
+    start = time.perf_counter()
     used = children()
     subprocess.run(command, check=True)
-    return children() - used or time.perf_counter() - begin
+    return children() - used or time.perf_counter() - start
 
 
 def children() -> float:
@@ -113,6 +114,29 @@ def through_python(repeats: int) -> list[Row]:
         Row("section, 100 moments", "ms", 5, [1e3 * t for t in moments]),
         Row("section, shear diagram", "ms", 20, [1e3 * t for t in shear]),
     ]
+
+
+def crossing(repeats: int) -> list[Row]:
+    """Time the way of a column, from Python or from its file, to a solver ready to start."""
+    one = rbsdem.paper_columns()["soesianawati_1"]
+    paper = rbsdem.paper_sections()["tanaka_park_5"]
+    predicted = paper.section.column(paper.length, axial_load=paper.axial_load)
+    text = predicted.to_namelist() + "&loading drive = 'displacement', values = 0.001 /\n"
+    calls: list[tuple[str, float, Callable[[], Any]]] = [
+        ("one body, crossing", 0.05, lambda: _core.check_column(one._statement)),
+        ("predicted column, crossing", 0.3, lambda: _core.check_column(predicted._statement)),
+        ("static, N = 1, 2 points", 0.11, lambda: rbsdem.cyclic(one, displacement=[0.001, 0.002])),
+    ]
+    with tempfile.TemporaryDirectory() as folder:
+        case = Path(folder) / "predicted.nml"
+        case.write_text(text, encoding="utf-8")
+        calls.append(("predicted column, file", 1.0, lambda: _core.read_case(str(case))))
+        rows = []
+        for name, goal, call in calls:
+            times = seconds(lambda call=call: [call() for _ in range(100)], 3 * repeats)
+            rows.append(Row(name, "ms", goal, [10.0 * t for t in times]))
+    rows[1].note = f"{len(predicted._statement.numbers)} numbers"
+    return rows
 
 
 INSIDE = (
@@ -266,7 +290,11 @@ def main() -> None:
     executable = find_executable(given.build)
     rows = {}
     if "python" in parts:
-        rows["Through Python"] = through_python(repeats) + four_columns(repeats)
+        rows["Through Python"] = [
+            *through_python(repeats),
+            *crossing(repeats),
+            *four_columns(repeats),
+        ]
     if "fortran" in parts:
         driver = newest("time_solver", given.build)
         rows["Inside Fortran"] = inside_fortran(driver, repeats, divisor)

@@ -26,9 +26,9 @@ program time_solver
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: plan_dynamic, run_dynamic
-   use rbs_spec_analysis, only: analysis_spec
-   use rbs_spec_column, only: column_spec
-   use rbs_spec_spring, only: spring_spec
+   use rbs_case_analysis_record, only: analysis_record
+   use rbs_column_column_record, only: column_record
+   use rbs_hysteresis_spring_record, only: spring_record
    implicit none
 
    integer :: repeats, divisor, repeat
@@ -106,7 +106,7 @@ contains
       type(column_type), intent(out) :: column
       character(len=*), intent(in) :: kinematics
       integer, intent(in) :: n
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(error_type), allocatable :: error
 
       spec%n = n
@@ -116,23 +116,23 @@ contains
       if (kinematics == 'pdelta') spec%axial_load = 744.0e3_wp
       allocate (spec%shear(1), spec%flexure(1))
       spec%shear(1)%rule = 'bilinear'
-      spec%shear(1)%k = 7.0387e8_wp
-      spec%shear(1)%d_y = 1.2960e-4_wp
-      spec%shear(1)%k_post = 8.3185e6_wp
+      call spec%shear(1)%set('k', 7.0387e8_wp)
+      call spec%shear(1)%set('d_y', 1.2960e-4_wp)
+      call spec%shear(1)%set('k_post', 8.3185e6_wp)
       spec%flexure(1) = paper_flexure()
       call make_column(spec, column, error)
       if (allocated(error)) error stop 'time_solver: the column is refused'
    end subroutine make_paper_column
 
-   type(spring_spec) function paper_flexure() result(spec)
+   type(spring_record) function paper_flexure() result(spec)
       spec%rule = 'takeda'
-      spec%k_c = 2.5428e8_wp
-      spec%d_c = 3.1891e-4_wp
-      spec%k_y = 6.2937e7_wp
-      spec%d_y = 2.7183e-3_wp
-      spec%k_u = 7.5772e6_wp
-      spec%b0 = 0.4_wp
-      spec%b1 = 0.22_wp
+      call spec%set('k_c', 2.5428e8_wp)
+      call spec%set('d_c', 3.1891e-4_wp)
+      call spec%set('k_y', 6.2937e7_wp)
+      call spec%set('d_y', 2.7183e-3_wp)
+      call spec%set('k_u', 7.5772e6_wp)
+      call spec%set('b0', 0.4_wp)
+      call spec%set('b1', 0.22_wp)
    end function paper_flexure
 
    !> A wave whose amplitude grows and falls, with a second one on it that makes inner loops.
@@ -200,7 +200,7 @@ contains
       type(column_type) :: column
       type(summary_type) :: summary
       type(error_type), allocatable :: error
-      type(analysis_spec) :: analysis
+      type(analysis_record) :: analysis
       type(time_plan) :: plan
       type(loads_type) :: loads
       real(wp) :: used
@@ -226,7 +226,7 @@ contains
    !> Plan and run; every 1000th step is kept. Only the run is timed.
    subroutine run(column, analysis, loads, summary, used)
       type(column_type), intent(in) :: column
-      type(analysis_spec), intent(in) :: analysis
+      type(analysis_record), intent(in) :: analysis
       type(loads_type), intent(in) :: loads
       type(summary_type), intent(out) :: summary
       !> Processor time [s]
@@ -256,7 +256,7 @@ contains
       integer, intent(in) :: n
       !> Of the shear springs, 1 as in the paper
       real(wp), intent(in) :: strength
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(error_type), allocatable :: error
 
       spec%n = n
@@ -265,13 +265,13 @@ contains
       spec%depth = 0.4_wp
       allocate (spec%shear(1), spec%flexure(1))
       spec%shear(1)%rule = 'bilinear'
-      spec%shear(1)%k = n*7.0387e8_wp
-      spec%shear(1)%d_y = strength*1.2960e-4_wp/n
-      spec%shear(1)%k_post = n*8.3185e6_wp
+      call spec%shear(1)%set('k', n*7.0387e8_wp)
+      call spec%shear(1)%set('d_y', strength*1.2960e-4_wp/n)
+      call spec%shear(1)%set('k_post', n*8.3185e6_wp)
       spec%flexure(1)%rule = 'bilinear'
-      spec%flexure(1)%k = n*6.2937e7_wp
-      spec%flexure(1)%d_y = 2.7183e-3_wp/n
-      spec%flexure(1)%k_post = n*7.5772e6_wp
+      call spec%flexure(1)%set('k', n*6.2937e7_wp)
+      call spec%flexure(1)%set('d_y', 2.7183e-3_wp/n)
+      call spec%flexure(1)%set('k_post', n*7.5772e6_wp)
       call make_column(spec, column, error)
       if (allocated(error)) call give_up(error)
    end subroutine make_bilinear_column
@@ -284,7 +284,7 @@ contains
       real(wp), intent(in) :: dt, period, strength
       type(column_type) :: column
       type(summary_type) :: summary
-      type(analysis_spec) :: analysis
+      type(analysis_record) :: analysis
       type(loads_type) :: loads
       real(wp) :: used
       integer, parameter :: spacing = 20

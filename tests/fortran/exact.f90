@@ -5,7 +5,7 @@ module exact
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: solve_general
    use rbs_column_column, only: column_type
-   use rbs_spec_column, only: column_spec
+   use rbs_column_column_record, only: column_record
    use samples, only: chain, elastic, random_type
    implicit none
    private
@@ -83,7 +83,7 @@ contains
    end function cosine
 
    !> Column of n bodies that differ, with everything that a column can have.
-   type(column_spec) function sample(n, kind) result(spec)
+   type(column_record) function sample(n, kind) result(spec)
       integer, intent(in) :: n
       type(variant), intent(in) :: kind
 
@@ -91,7 +91,7 @@ contains
       spec%axial_load = 2.0e4_wp
       spec%self_weight = .true.
       spec%depth = 0.4_wp
-      spec%mass_damping = 0.7_wp
+      spec%damping%mass = 0.7_wp
       spec%axial_follows = kind%axial_follows
       spec%force_follows = kind%force_follows
       if (kind%lumped) then
@@ -99,8 +99,8 @@ contains
          spec%top_inertia = 30.0_wp
       end if
       if (kind%opens) then
-         allocate (spec%axial(1))
-         spec%axial(1) = elastic(1.0e9_wp)
+         allocate (spec%axial_spring(1))
+         spec%axial_spring(1) = elastic(1.0e9_wp)
       end if
    end function sample
 
@@ -132,7 +132,7 @@ contains
    !> Own masses at mid-length of the bodies, the last point is the lumped mass at the top (n + 1), while
    !> the unknowns move as q + v s + a s^2/2.
    subroutine place(spec, q, v, a, points)
-      type(column_spec), intent(in) :: spec
+      type(column_record), intent(in) :: spec
       real(wp), intent(in) :: q(:), v(:), a(:)
       type(point), intent(out) :: points(:)
       type(jet) :: moving(size(q)), x, y, rotation
@@ -145,7 +145,7 @@ contains
       do i = 1, n
          x = x + moving(i)*cosine(rotation)
          y = y + (-1.0_wp)*(moving(i)*sine(rotation))
-         if (allocated(spec%axial)) then
+         if (allocated(spec%axial_spring)) then
             x = x + moving(2*n + i)*sine(rotation)
             y = y + moving(2*n + i)*cosine(rotation)
          end if
@@ -167,7 +167,7 @@ contains
 
    !> J of all points (3, n + 1, unknowns).
    subroutine find_jacobian(spec, q, jacobian)
-      type(column_spec), intent(in) :: spec
+      type(column_record), intent(in) :: spec
       real(wp), intent(in) :: q(:)
       real(wp), intent(out) :: jacobian(:, :, :)
       type(point) :: points(spec%n + 1)
@@ -187,7 +187,7 @@ contains
 
    !> M = sum J' diag(m, m, I) J.
    subroutine dense_mass(spec, q, mass)
-      type(column_spec), intent(in) :: spec
+      type(column_record), intent(in) :: spec
       real(wp), intent(in) :: q(:)
       real(wp), intent(out) :: mass(:, :)
       type(point) :: points(spec%n + 1)
@@ -209,7 +209,7 @@ contains
 
    !> M a = J'(F - m c''(q'' = 0)) - f.
    subroutine dense_acceleration(spec, now, a, largest)
-      type(column_spec), intent(in) :: spec
+      type(column_record), intent(in) :: spec
       type(state), intent(in) :: now
       real(wp), intent(out) :: a(:)
       !> Size of the terms that make the accelerations up
@@ -229,9 +229,9 @@ contains
          g = spec%gravity
          if (k > n) g = 0.0_wp
          associate (p => points(k))
-            force(1) = -p%mass*(now%load(2) + p%x%d(2) + spec%mass_damping*p%x%d(1))
-            force(2) = -p%mass*(now%load(3) + g + p%y%d(2) + spec%mass_damping*p%y%d(1))
-            force(3) = -p%inertia*(p%rotation%d(2) + spec%mass_damping*p%rotation%d(1))
+            force(1) = -p%mass*(now%load(2) + p%x%d(2) + spec%damping%mass*p%x%d(1))
+            force(2) = -p%mass*(now%load(3) + g + p%y%d(2) + spec%damping%mass*p%y%d(1))
+            force(3) = -p%inertia*(p%rotation%d(2) + spec%damping%mass*p%rotation%d(1))
          end associate
          if (k > n) then
             axial = spec%axial_load + now%load(4)

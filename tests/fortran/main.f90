@@ -21,7 +21,7 @@ program unit_tests
    use test_segment, only: collect_segment
    use test_shear, only: collect_shear
    use test_signal, only: collect_signal
-   use test_spec, only: collect_spec
+   use test_case, only: collect_case
    use test_springs, only: collect_springs
    use test_static, only: collect_static
    use test_static_finite, only: collect_static_finite
@@ -52,7 +52,7 @@ program unit_tests
 
    suites = [suite_type('text', collect_text), suite_type('section', collect_section), &
               suite_type('linalg', collect_linalg), &
-             suite_type('spec', collect_spec), suite_type('segment', collect_segment), &
+             suite_type('case', collect_case), suite_type('segment', collect_segment), &
              suite_type('bilinear', collect_bilinear), suite_type('takeda', collect_takeda), &
              suite_type('capped', collect_capped), suite_type('concrete', collect_concrete), &
              suite_type('steel', collect_steel), suite_type('layered', collect_layered), &

@@ -4,7 +4,7 @@ module paths
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_springs, only: follow_path, spring_array
-   use rbs_spec_spring, only: spring_spec
+   use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: random_type
    implicit none
    private
@@ -16,7 +16,7 @@ contains
    !> A path cut into increments ends every move at the same force, to the last bit.
    subroutine check_increments(error, spec, d, parts)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec), intent(in) :: spec
+      type(spring_record), intent(in) :: spec
       real(wp), intent(in) :: d(:)
       !> Increments of a move
       integer, intent(in) :: parts
@@ -40,7 +40,7 @@ contains
    !> Trial moves with mark and restore, and copies, change nothing.
    subroutine check_copies(error, spec, d, random, reach)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec), intent(in) :: spec
+      type(spring_record), intent(in) :: spec
       real(wp), intent(in) :: d(:)
       type(random_type), intent(inout) :: random
       !> Of the trial moves

@@ -20,9 +20,9 @@ module runs
    use rbs_solve_time_rk4, only: rk4_scheme
    use rbs_solve_time_run_dynamic, only: plan_dynamic, run_dynamic
    use rbs_solve_time_state, only: state_type, stepper_type
-   use rbs_spec_analysis, only: analysis_spec
-   use rbs_spec_column, only: column_spec
-   use rbs_spec_spring, only: spring_spec
+   use rbs_case_analysis_record, only: analysis_record
+   use rbs_column_column_record, only: column_record
+   use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: bilinear, chain, column_1, made, random_type, d_c, k_c
    implicit none
    private
@@ -33,7 +33,7 @@ module runs
 
    !> One run: what goes in besides the column, and what comes out.
    type :: run_data
-      type(analysis_spec) :: analysis = analysis_spec(method='rk4')
+      type(analysis_record) :: analysis = analysis_record(method='rk4')
       !> Times of the loading [s]; what is not allocated does not act
       real(wp), allocatable :: time(:), force(:), ground(:), vertical(:), axial(:)
       integer :: every = unset_integer
@@ -195,7 +195,7 @@ contains
    subroutine new_scene(scene, number)
       type(scene_type), intent(out) :: scene
       integer, intent(in) :: number
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(random_type) :: random
       real(wp) :: value(8)
       integer :: i
@@ -218,7 +218,7 @@ contains
          spec%n = 3
          spec%axial_load = 1.0e6_wp
          spec%self_weight = .true.
-         spec%mass_damping = 5.0_wp
+         spec%damping%mass = 5.0_wp
       case default
          spec = column_1('finite')
          spec%axial_load = 1.0e6_wp
@@ -236,15 +236,15 @@ contains
    !> One mass on an axial spring, which nothing couples to the rest, without load.
    subroutine new_mass(scene, spring, mass, w, v)
       type(scene_type), intent(out) :: scene
-      type(spring_spec), intent(in) :: spring
+      type(spring_record), intent(in) :: spring
       !> Mass [kg], opening and its velocity
       real(wp), intent(in) :: mass, w, v
-      type(column_spec) :: spec
+      type(column_record) :: spec
 
       spec = chain(1, 'small')
       spec%masses = [mass]
-      allocate (spec%axial(1))
-      spec%axial(1) = spring
+      allocate (spec%axial_spring(1))
+      spec%axial_spring(1) = spring
       scene%column = made(spec)
       scene%q = [0.0_wp, 0.0_wp, w]
       scene%v = [0.0_wp, 0.0_wp, v]

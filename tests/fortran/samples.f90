@@ -5,8 +5,8 @@ module samples
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
    use rbs_solve_make_column, only: make_column
-   use rbs_spec_column, only: column_spec
-   use rbs_spec_spring, only: spring_spec
+   use rbs_column_column_record, only: column_record
+   use rbs_hysteresis_spring_record, only: spring_record
    implicit none
    private
 
@@ -56,85 +56,85 @@ contains
       end do
    end function uniform_array
 
-   pure type(spring_spec) function elastic(k) result(spec)
+   type(spring_record) function elastic(k) result(spec)
       real(wp), intent(in) :: k
 
       spec%rule = 'elastic'
-      spec%k = k
+      call spec%set('k', k)
    end function elastic
 
-   pure type(spring_spec) function bilinear(k, d_y, k_post) result(spec)
+   type(spring_record) function bilinear(k, d_y, k_post) result(spec)
       real(wp), intent(in) :: k, d_y, k_post
 
       spec%rule = 'bilinear'
-      spec%k = k
-      spec%d_y = d_y
-      spec%k_post = k_post
+      call spec%set('k', k)
+      call spec%set('d_y', d_y)
+      call spec%set('k_post', k_post)
    end function bilinear
 
-   pure type(spring_spec) function compression(k) result(spec)
+   type(spring_record) function compression(k) result(spec)
       real(wp), intent(in) :: k
 
       spec%rule = 'compression'
-      spec%k = k
+      call spec%set('k', k)
    end function compression
 
-   pure type(spring_spec) function takeda(k_c, d_c, k_y, d_y, k_u, b0, b1, inner) result(spec)
+   type(spring_record) function takeda(k_c, d_c, k_y, d_y, k_u, b0, b1, inner) result(spec)
       real(wp), intent(in) :: k_c, d_c, k_y, d_y, k_u, b0, b1
       character(len=*), intent(in) :: inner
 
       spec%rule = 'takeda'
-      spec%k_c = k_c
-      spec%d_c = d_c
-      spec%k_y = k_y
-      spec%d_y = d_y
-      spec%k_u = k_u
-      spec%b0 = b0
-      spec%b1 = b1
-      spec%inner = inner
+      call spec%set('k_c', k_c)
+      call spec%set('d_c', d_c)
+      call spec%set('k_y', k_y)
+      call spec%set('d_y', d_y)
+      call spec%set('k_u', k_u)
+      call spec%set('b0', b0)
+      call spec%set('b1', b1)
+      call spec%set('inner', real(findloc(['kc ', 'kr ', 'one'] == inner, .true., dim=1), wp))
    end function takeda
 
    !> Shear spring of column 1.
-   pure type(spring_spec) function bilinear_1() result(spec)
+   type(spring_record) function bilinear_1() result(spec)
       spec = bilinear(s_k, s_d, s_post)
    end function bilinear_1
 
    !> Flexural spring of column 1.
-   pure type(spring_spec) function takeda_1(inner) result(spec)
+   type(spring_record) function takeda_1(inner) result(spec)
       character(len=*), intent(in) :: inner
 
       spec = takeda(k_c, d_c, k_y, d_y, k_u, b0, b1, inner)
    end function takeda_1
 
    !> A strip of a joint of concrete, 0.4 m by 0.4 m and 0.3 m long, of 30 MPa.
-   pure type(spring_spec) function concrete_1(share) result(spec)
+   type(spring_record) function concrete_1(share) result(spec)
       !> Of the area
       real(wp), intent(in) :: share
 
       spec%rule = 'concrete'
-      spec%k = 1.6e10_wp*share
-      spec%f_peak = 4.8e6_wp*share
-      spec%d_peak = 6.0e-4_wp
-      spec%k_fall = 2.4e9_wp*share
-      spec%f_res = 1.0e6_wp*share
-      spec%plastic = 1.2_wp
-      spec%contact = 0.35_wp
-      spec%misfit = 0.4_wp
-      spec%wear = 0.03_wp
+      call spec%set('k', 1.6e10_wp*share)
+      call spec%set('f_peak', 4.8e6_wp*share)
+      call spec%set('d_peak', 6.0e-4_wp)
+      call spec%set('k_soft', 2.4e9_wp*share)
+      call spec%set('f_res', 1.0e6_wp*share)
+      call spec%set('plastic', 1.2_wp)
+      call spec%set('contact', 0.35_wp)
+      call spec%set('misfit', 0.4_wp)
+      call spec%set('wear', 0.03_wp)
    end function concrete_1
 
    !> A row of its bars, 1600 mm2 of 450 MPa over 0.4 m.
-   pure type(spring_spec) function steel_1() result(spec)
+   type(spring_record) function steel_1() result(spec)
       spec%rule = 'steel'
-      spec%k = 8.0e8_wp
-      spec%f_y = 7.2e5_wp
-      spec%k_post = 8.0e6_wp
-      spec%growth = 0.01_wp
-      spec%endurance = 2000.0_wp
+      call spec%set('k', 8.0e8_wp)
+      call spec%set('f_y', 7.2e5_wp)
+      call spec%set('k_post', 8.0e6_wp)
+      call spec%set('isotropic_hardening', 0.01_wp)
+      call spec%set('half_strength_work', 2000.0_wp)
    end function steel_1
 
    !> Column 1 in one component.
-   type(column_spec) function column_1(kinematics) result(spec)
+   type(column_record) function column_1(kinematics) result(spec)
       character(len=*), intent(in) :: kinematics
 
       spec%height = height_1
@@ -146,7 +146,7 @@ contains
    end function column_1
 
    !> A column 2 m high of n bodies that differ, with elastic springs that differ.
-   type(column_spec) function chain(n, kinematics) result(spec)
+   type(column_record) function chain(n, kinematics) result(spec)
       integer, intent(in) :: n
       character(len=*), intent(in) :: kinematics
       integer :: i
@@ -165,7 +165,7 @@ contains
    end function chain
 
    !> A random column of n bodies with bilinear springs, axial load and weight; it does not buckle.
-   type(column_spec) function rich_column(n, kinematics, opens, random) result(spec)
+   type(column_record) function rich_column(n, kinematics, opens, random) result(spec)
       integer, intent(in) :: n
       character(len=*), intent(in) :: kinematics
       !> Whether the joints have axial springs
@@ -179,7 +179,7 @@ contains
       spec%axial_load = random%uniform(-1.0e6_wp, 2.0e6_wp)
       spec%self_weight = .true.
       allocate (spec%lengths(n), spec%masses(n), spec%shear(n), spec%flexure(n), spec%rotary_inertia(n))
-      if (opens) allocate (spec%axial(n))
+      if (opens) allocate (spec%axial_spring(n))
       do i = 1, n
          spec%lengths(i) = random%uniform(0.2_wp, 1.0_wp)
          spec%masses(i) = random%uniform(50.0_wp, 500.0_wp)
@@ -187,17 +187,19 @@ contains
          number = random%uniform_array(1.0_wp, 9.0_wp, 6)
          spec%shear(i) = bilinear(1.0e8_wp*number(1), 2.0e-3_wp, 1.0e7_wp*number(2))
          spec%flexure(i) = bilinear(1.0e8_wp*number(3), 2.0e-3_wp, 1.0e7_wp*number(4))
-         if (opens) spec%axial(i) = bilinear(1.0e9_wp*number(5), 2.0e-3_wp, 1.0e7_wp*number(6))
+         if (opens) spec%axial_spring(i) = bilinear(1.0e9_wp*number(5), 2.0e-3_wp, 1.0e7_wp*number(6))
       end do
       spec%height = sum(spec%lengths)
    end function rich_column
 
    !> The column of a specification that must be valid.
    type(column_type) function made(spec) result(column)
-      type(column_spec), intent(in) :: spec
+      type(column_record), intent(in) :: spec
       type(error_type), allocatable :: error
+      type(column_record) :: asked
 
-      call make_column(spec, column, error)
+      asked = spec
+      call make_column(asked, column, error)
       if (allocated(error)) error stop 'samples: a column that should be valid is refused'
    end function made
 

@@ -10,7 +10,7 @@ module test_band
                               to_joints, from_joints
    use rbs_column_column, only: column_type
    use rbs_column_mass, only: symmetric_mass
-   use rbs_spec_column, only: column_spec
+   use rbs_column_column_record, only: column_record
    use samples, only: chain, elastic, made, random_type
    implicit none
    private
@@ -34,7 +34,7 @@ contains
    !> A chain with everything: openings, a mass on top, weight and axial load.
    type(column_type) function full(n) result(column)
       integer, intent(in) :: n
-      type(column_spec) :: spec
+      type(column_record) :: spec
       integer :: i
 
       spec = chain(n, 'pdelta')
@@ -43,9 +43,9 @@ contains
       spec%axial_load = 1.0e6_wp
       spec%self_weight = .true.
       spec%gravity = 2.0e3_wp
-      allocate (spec%axial(n))
+      allocate (spec%axial_spring(n))
       do i = 1, n
-         spec%axial(i) = elastic(1.0e9_wp + 2.0e8_wp*sin(5.0_wp*i))
+         spec%axial_spring(i) = elastic(1.0e9_wp + 2.0e8_wp*sin(5.0_wp*i))
       end do
       column = made(spec)
    end function full
@@ -210,7 +210,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 5
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(random_type) :: random
       real(wp) :: factor, softening(2*n, 2*n), stiffness(2*n, 2*n), w(2*n)
@@ -219,8 +219,8 @@ contains
       do trial = 1, 40
          spec = chain(n, 'pdelta')
          do i = 1, n
-            spec%shear(i)%k = 10.0_wp**random%uniform(4.0_wp, 9.0_wp)
-            spec%flexure(i)%k = 10.0_wp**random%uniform(5.0_wp, 8.0_wp)
+            call spec%shear(i)%set('k', 10.0_wp**random%uniform(4.0_wp, 9.0_wp))
+            call spec%flexure(i)%set('k', 10.0_wp**random%uniform(5.0_wp, 8.0_wp))
          end do
          ! Compression and tension, weight against tension too
          spec%axial_load = random%uniform(-1.0e5_wp, 1.0e5_wp)
@@ -249,7 +249,7 @@ contains
    subroutine critical_long(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       integer, parameter :: bodies(3) = [200, 1000, 10000]
       real(wp), parameter :: height = 2.0_wp, ei = 1.0e6_wp, ga = 3.0e6_wp
       real(wp) :: euler, haringx, factor, wrong(3)

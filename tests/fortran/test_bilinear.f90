@@ -4,7 +4,7 @@ module test_bilinear
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_springs, only: follow_path, spring_array
-   use rbs_spec_spring, only: spring_spec
+   use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: elastic, bilinear, bilinear_1, s_k, s_d, s_post, random_type
    implicit none
    private
@@ -58,7 +58,7 @@ contains
    subroutine median(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: d(200), f(200), by_median(200), k, k_post, d_old, f_old
       integer :: path, j
 

@@ -3,14 +3,17 @@ module test_capped
    use check, only: unit_test, check_close, check_contains, check_equal, check_same, check_true
    use paths, only: check_copies, check_increments
    use rbs_base_error, only: error_type, message_list
+   use rbs_base_check, only: is_given
+   use rbs_base_keys, only: find_key, key_type
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_backbone, only: backbone_side
    use rbs_hysteresis_deterioration, only: deterioration_type
    use rbs_hysteresis_springs, only: follow_path, spring_array
-   use rbs_spec_backbone, only: backbone_spec
-   use rbs_spec_column, only: column_spec
-   use rbs_spec_spring, only: spring_spec, initial_stiffness
-   use rbs_spec_spring_table, only: number_names, number_count, rule_names, takes
+   use rbs_hysteresis_backbone_parameters, only: backbone_parameters
+   use rbs_hysteresis_registry, only: keys_of, rule_names
+   use rbs_hysteresis_rule, only: most_parameters
+   use rbs_column_column_record, only: column_record
+   use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: elastic, random_type
    implicit none
    private
@@ -22,7 +25,7 @@ contains
    subroutine collect_capped(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
-      tests = [unit_test('the table: numbers in and out, and what a rule takes', table), &
+      tests = [unit_test('keys: each has a place of its own', table), &
                unit_test('validation names number, value and remedy', validation), &
                unit_test('initial stiffness is that of the stiffer side', stiffness), &
                unit_test('backbone: corners by hand', corners), &
@@ -38,74 +41,90 @@ contains
    end subroutine collect_capped
 
    !> Elastic 100 up to (1, 100), cap (3, 120), softening with -10 to the residual 20 at 13.
-   pure type(spring_spec) function hand() result(spec)
+   type(spring_record) function hand() result(spec)
       spec%rule = 'peak_oriented'
-      spec%d_y = 1.0_wp
-      spec%f_y = 100.0_wp
-      spec%d_cap = 3.0_wp
-      spec%f_cap = 120.0_wp
-      spec%d_pc = 12.0_wp
-      spec%f_res = 20.0_wp
+      call spec%set('d_y', 1.0_wp)
+      call spec%set('f_y', 100.0_wp)
+      call spec%set('d_cap', 3.0_wp)
+      call spec%set('f_cap', 120.0_wp)
+      call spec%set('d_pc', 12.0_wp)
+      call spec%set('f_res', 20.0_wp)
    end function hand
+
+   !> The backbone of a side, with what is not given for the negative one as on the positive.
+   type(backbone_parameters) function side_of(spec, s) result(side)
+      type(spring_record), intent(in) :: spec
+      integer, intent(in) :: s
+
+      side = backbone_parameters(d_y=value('d_y'), f_y=value('f_y'), d_cap=value('d_cap'), &
+                                 f_cap=value('f_cap'), d_pc=value('d_pc'), f_res=value('f_res'), &
+                                 d_u=value('d_u'), d_c=value('d_c'), f_c=value('f_c'))
+
+   contains
+
+      real(wp) function value(name)
+         character(len=*), intent(in) :: name
+
+         value = spec%get(name)
+         if (s < 0) then
+            if (is_given(spec%get(name//'_neg'))) value = spec%get(name//'_neg')
+         end if
+      end function value
+   end function side_of
 
    subroutine table(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: spec
-      real(wp) :: values(number_count)
+      type(key_type), allocatable :: keys(:), more(:)
+      type(spring_record) :: spec
       integer :: i
 
-      do i = 1, number_count
-         values(i) = i
+      call keys_of('pinching', keys)
+      spec%rule = 'pinching'
+      do i = 1, size(keys)
+         call spec%set(trim(keys(i)%name), 1.0_wp*i)
       end do
-      call spec%set_numbers(values)
-      call check_same(error, spec%numbers(), values, 'there and back')
-      call check_same(error, [spec%k, spec%b1, spec%d_u, spec%d_u_neg, spec%kappa_d], &
-                      values([1, 9, 16, 25, 32]), 'places')
-      call check_true(error, all(number_names([1, 9, 16, 25, 32]) == ['k      ', 'b1     ', 'd_u    ', &
-                                                                      'd_u_neg', 'kappa_d']), 'names')
-      call check_true(error, all(takes(rule_names(:6), 'k') .eqv. [.true., .true., .false., .true., .false., &
-                                                               .false.]), 'who takes k')
-      call check_true(error, takes('pinching', 'kappa_f') .and. .not. takes('peak_oriented', 'kappa_f'), &
+      call check_same(error, spec%value(:size(keys)), [(1.0_wp*i, i=1, size(keys))], 'each has a place')
+      call check_same(error, spec%get(keys%name), spec%value(:size(keys)), 'there and back')
+      call spec%set('k', 7.0_wp)
+      call check_true(error, .not. is_given(spec%get('k')), 'k is not there')
+      call keys_of('peak_oriented', more)
+      call check_true(error, find_key(keys, 'kappa_f') > 0 .and. find_key(more, 'kappa_f') == 0, &
                       'who takes kappa_f')
-      ! Not a part of another name.
-      call check_true(error, .not. takes('takeda', 'k') .and. .not. takes('bilinear', 'd'), 'parts of names')
+      do i = 1, size(rule_names)
+         call keys_of(rule_names(i), keys)
+         call check_true(error, size(keys) <= most_parameters, 'there is room for the parameters')
+      end do
    end subroutine table
 
    subroutine validation(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
 
       spec = hand()
       call expect(error, spec, '')
-      spec%f_y_neg = 130.0_wp
+      call spec%set('f_y_neg', 130.0_wp)
       call expect(error, spec, 'f_cap_neg = 120 must not be below f_y_neg = 130')
       spec = hand()
-      spec%k = 1.0_wp
-      call expect(error, spec, 'k is not used by the rule peak_oriented; remove it')
-      spec = hand()
       spec%rule = 'pinching'
-      spec%kappa_d = 0.5_wp
+      call spec%set('kappa_d', 0.5_wp)
       call expect(error, spec, 'kappa_f is missing')
-      spec%kappa_f = 1.5_wp
+      call spec%set('kappa_f', 1.5_wp)
       call expect(error, spec, 'kappa_f = 1.5 must not be above 1')
       spec = hand()
-      spec%d_c = 0.5_wp
+      call spec%set('d_c', 0.5_wp)
       call expect(error, spec, 'are a point together')
-      spec%f_c = 40.0_wp
+      call spec%set('f_c', 40.0_wp)
       call expect(error, spec, 'f_c / d_c = 80 must be above f_y / d_y = 100 (cracking softens)')
       spec = hand()
-      spec%c = 0.5_wp
-      call expect(error, spec, 'c = 0.5 must not be below 1')
-      spec = elastic(1.0_wp)
-      spec%b0 = 0.4_wp
-      call expect(error, spec, 'b0 is not used by the rule elastic')
+      call spec%set('c', 0.5_wp)
+      call expect(error, spec, 'c = 0.5 must be 1 or more (small excursions would count too much)')
       call axial(error)
    end subroutine validation
 
    !> One message that holds `part`; none if the part is empty.
    subroutine expect(error, spec, part)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec), intent(in) :: spec
+      type(spring_record), intent(in) :: spec
       character(len=*), intent(in) :: part
       type(message_list) :: messages
 
@@ -116,15 +135,15 @@ contains
 
    subroutine axial(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(message_list) :: messages
 
       spec%height = 1.0_wp
       spec%mass = 1.0_wp
-      allocate (spec%shear(1), spec%flexure(1), spec%axial(1))
+      allocate (spec%shear(1), spec%flexure(1), spec%axial_spring(1))
       spec%shear(1) = elastic(1.0_wp)
       spec%flexure(1) = hand()
-      spec%axial(1) = hand()
+      spec%axial_spring(1) = hand()
       call spec%validate(messages)
       call check_equal(error, messages%count, 1, 'messages')
       call check_contains(error, messages%text, "cannot be of the rule 'peak_oriented'", 'axial')
@@ -132,37 +151,36 @@ contains
 
    subroutine stiffness(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
 
       spec = hand()
-      call check_same(error, initial_stiffness(spec), 100.0_wp, 'elastic up to yield')
-      spec%d_y_neg = 0.5_wp
-      call check_same(error, initial_stiffness(spec), 200.0_wp, 'the negative side is stiffer')
-      spec%d_c = 0.1_wp
-      spec%f_c = 50.0_wp
-      call check_same(error, initial_stiffness(spec), 500.0_wp, 'up to cracking')
+      call check_same(error, spec%initial_stiffness(), 100.0_wp, 'elastic up to yield')
+      call spec%set('d_y_neg', 0.5_wp)
+      call check_same(error, spec%initial_stiffness(), 200.0_wp, 'the negative side is stiffer')
+      call spec%set('d_c', 0.1_wp)
+      call spec%set('f_c', 50.0_wp)
+      call check_same(error, spec%initial_stiffness(), 500.0_wp, 'up to cracking')
    end subroutine stiffness
 
    subroutine corners(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       type(backbone_side) :: side
 
       spec = hand()
-      call spec%fill_defaults()
-      side = backbone_side(given=spec%side(1))
+      side = backbone_side(given=side_of(spec, 1))
       call side%draw()
       call check_same(error, side%d(:side%last), [0.0_wp, 1.0_wp, 3.0_wp, 13.0_wp], 'deformations')
       call check_same(error, side%f(:side%last), [0.0_wp, 100.0_wp, 120.0_wp, 20.0_wp], 'forces')
       call check_same(error, side%force([0.5_wp, 2.0_wp, 8.0_wp, 99.0_wp]), &
                       [50.0_wp, 110.0_wp, 70.0_wp, 20.0_wp], 'between')
       call check_true(error, .not. side%is_exhausted(1.0e6_wp), 'a residual lasts')
-      spec%d_c = 0.25_wp
-      spec%f_c = 40.0_wp
-      spec%d_cap = 1.0_wp
-      spec%f_cap = 100.0_wp
-      spec%f_res = 0.0_wp
-      side = backbone_side(given=spec%side(1))
+      call spec%set('d_c', 0.25_wp)
+      call spec%set('f_c', 40.0_wp)
+      call spec%set('d_cap', 1.0_wp)
+      call spec%set('f_cap', 100.0_wp)
+      call spec%set('f_res', 0.0_wp)
+      side = backbone_side(given=side_of(spec, 1))
       call side%draw()
       call check_close(error, side%d(:side%last), [0.0_wp, 0.25_wp, 1.0_wp, 13.0_wp], 1.0e-15_wp, 0.0_wp, &
                        'cracking, no hardening')
@@ -173,25 +191,24 @@ contains
    !> Half the strength: 5 d + 45 beyond (0.5, 50). Less softening line: (150 C - 10 d).
    subroutine weakened(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       type(backbone_side) :: side
 
       spec = hand()
-      call spec%fill_defaults()
-      side = backbone_side(given=spec%side(1), strength=0.5_wp)
+      side = backbone_side(given=side_of(spec, 1), strength=0.5_wp)
       call side%draw()
       call check_close(error, side%d(:side%last), [0.0_wp, 0.5_wp, (150.0_wp - 47.5_wp)/15.0_wp, 13.0_wp], &
                        1.0e-14_wp, 0.0_wp, 'half the strength')
-      side = backbone_side(given=spec%side(1), softening=0.6_wp)
+      side = backbone_side(given=side_of(spec, 1), softening=0.6_wp)
       call side%draw()
       call check_close(error, side%d(:side%last), [0.0_wp, 90.0_wp/110.0_wp, 7.0_wp], 1.0e-14_wp, 0.0_wp, &
                        'the softening line cuts the elastic one')
       call check_close(error, side%f(1), 9000.0_wp/110.0_wp, 1.0e-14_wp, 0.0_wp, 'there')
-      side = backbone_side(given=spec%side(1), softening=0.1_wp)
+      side = backbone_side(given=side_of(spec, 1), softening=0.1_wp)
       call side%draw()
       call check_close(error, side%d(:side%last), [0.0_wp, 0.2_wp], 1.0e-14_wp, 0.0_wp, &
                        'only the residual is left')
-      side = backbone_side(given=spec%side(1), strength=0.01_wp)
+      side = backbone_side(given=side_of(spec, 1), strength=0.01_wp)
       call side%draw()
       call check_close(error, side%strength, 0.2_wp, 1.0e-15_wp, 0.0_wp, 'not below the residual')
       call check_close(error, side%force(5.0_wp), 0.2_wp*(100.0_wp + 10.0_wp*4.8_wp), 1.0e-14_wp, 0.0_wp, &
@@ -200,17 +217,16 @@ contains
 
    subroutine rupture(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       type(backbone_side) :: side
 
       spec = hand()
-      call spec%fill_defaults()
-      spec%d_u = 8.0_wp
-      side = backbone_side(given=spec%side(1))
+      call spec%set('d_u', 8.0_wp)
+      side = backbone_side(given=side_of(spec, 1))
       call side%draw()
       call check_same(error, side%d(:side%last), [0.0_wp, 1.0_wp, 3.0_wp, 8.0_wp, 8.7_wp], 'while softening')
-      spec%d_u = 20.0_wp
-      side = backbone_side(given=spec%side(1))
+      call spec%set('d_u', 20.0_wp)
+      side = backbone_side(given=side_of(spec, 1))
       call side%draw()
       call check_same(error, side%d(:side%last), [0.0_wp, 1.0_wp, 3.0_wp, 13.0_wp, 20.0_wp, 20.2_wp], &
                       'on the residual')
@@ -233,36 +249,36 @@ contains
    !> A spring with all features at random, and a path for it.
    subroutine random_spring(random, spec, d)
       type(random_type), intent(inout) :: random
-      type(spring_spec), intent(out) :: spec
+      type(spring_record), intent(out) :: spec
       real(wp), intent(out) :: d(:)
       real(wp) :: size_of_move
       integer :: j
 
       spec = hand()
-      spec%d_cap = random%uniform(1.0_wp, 5.0_wp)
-      spec%f_cap = 100.0_wp + (spec%d_cap - 1.0_wp)*random%uniform(0.0_wp, 20.0_wp)
-      spec%d_pc = random%uniform(1.0_wp, 50.0_wp)
-      spec%f_res = random%uniform(-50.0_wp, 90.0_wp)
-      if (spec%f_res < 0.0_wp) spec%f_res = 0.0_wp
+      call spec%set('d_cap', random%uniform(1.0_wp, 5.0_wp))
+      call spec%set('f_cap', 100.0_wp + (spec%get('d_cap') - 1.0_wp)*random%uniform(0.0_wp, 20.0_wp))
+      call spec%set('d_pc', random%uniform(1.0_wp, 50.0_wp))
+      call spec%set('f_res', random%uniform(-50.0_wp, 90.0_wp))
+      if (spec%get('f_res') < 0.0_wp) call spec%set('f_res', 0.0_wp)
       if (random%uniform(0.0_wp, 1.0_wp) > 0.5_wp) then
-         spec%d_c = 0.2_wp
-         spec%f_c = random%uniform(34.0_wp, 60.0_wp)
+         call spec%set('d_c', 0.2_wp)
+         call spec%set('f_c', random%uniform(34.0_wp, 60.0_wp))
       end if
       if (random%uniform(0.0_wp, 1.0_wp) > 0.5_wp) then
-         spec%d_y_neg = random%uniform(0.6_wp, 1.0_wp)
-         spec%f_res_neg = 0.5_wp*spec%f_res
-         spec%d_u_neg = random%uniform(5.0_wp, 15.0_wp)
+         call spec%set('d_y_neg', random%uniform(0.6_wp, 1.0_wp))
+         call spec%set('f_res_neg', 0.5_wp*spec%get('f_res'))
+         call spec%set('d_u_neg', random%uniform(5.0_wp, 15.0_wp))
       end if
-      spec%b0 = random%uniform(0.0_wp, 0.8_wp)
-      spec%lambda_s = random%uniform(0.0_wp, 200.0_wp)
-      spec%lambda_c = random%uniform(2.0_wp, 200.0_wp)
-      spec%lambda_k = random%uniform(2.0_wp, 200.0_wp)
-      spec%lambda_a = random%uniform(2.0_wp, 200.0_wp)
-      spec%c = random%uniform(1.0_wp, 2.0_wp)
+      call spec%set('b0', random%uniform(0.0_wp, 0.8_wp))
+      call spec%set('lambda_s', random%uniform(0.0_wp, 200.0_wp))
+      call spec%set('lambda_c', random%uniform(2.0_wp, 200.0_wp))
+      call spec%set('lambda_k', random%uniform(2.0_wp, 200.0_wp))
+      call spec%set('lambda_a', random%uniform(2.0_wp, 200.0_wp))
+      call spec%set('c', random%uniform(1.0_wp, 2.0_wp))
       if (random%uniform(0.0_wp, 1.0_wp) > 0.5_wp) then
          spec%rule = 'pinching'
-         spec%kappa_f = random%uniform(0.1_wp, 1.0_wp)
-         spec%kappa_d = random%uniform(0.1_wp, 1.0_wp)
+         call spec%set('kappa_f', random%uniform(0.1_wp, 1.0_wp))
+         call spec%set('kappa_d', random%uniform(0.1_wp, 1.0_wp))
       end if
       do j = 1, size(d)
          size_of_move = random%uniform(-0.5_wp, 1.1_wp)
@@ -275,7 +291,7 @@ contains
    subroutine increments(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: d(20)
       integer :: path
 
@@ -290,25 +306,24 @@ contains
    subroutine mirror(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec, other
-      type(backbone_spec) :: side(-1:1)
+      type(spring_record) :: spec, other
+      type(backbone_parameters) :: side(-1:1)
       real(wp) :: d(40), f(40), mirrored(40)
       integer :: path, s
 
       do path = 1, 200
          call random_spring(random, spec, d)
-         call spec%fill_defaults()
-         do s = -1, 1, 2
-            side(s) = spec%side(s)
+            do s = -1, 1, 2
+            side(s) = side_of(spec, s)
          end do
          other = spec
-         other%d_y = side(-1)%d_y
-         other%f_res = side(-1)%f_res
-         other%d_u = side(-1)%d_u
-         other%d_y_neg = side(1)%d_y
-         other%f_res_neg = side(1)%f_res
+         call other%set('d_y', side(-1)%d_y)
+         call other%set('f_res', side(-1)%f_res)
+         call other%set('d_u', side(-1)%d_u)
+         call other%set('d_y_neg', side(1)%d_y)
+         call other%set('f_res_neg', side(1)%f_res)
          ! What has no end on one side cannot be said of the other alone.
-         other%d_u_neg = max(side(1)%d_u, 1.0e9_wp)
+         call other%set('d_u_neg', max(side(1)%d_u, 1.0e9_wp))
          call follow_path(spec, d, f)
          call follow_path(other, -d, mirrored)
          call check_same(error, mirrored, 0.0_wp - f, 'mirror')
@@ -318,7 +333,7 @@ contains
    subroutine work_positive(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       type(spring_array) :: spring
       real(wp) :: d(60)
       integer :: path, j
@@ -336,7 +351,7 @@ contains
    subroutine copies(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: d(40)
       integer :: path
 
@@ -349,12 +364,12 @@ contains
    !> lambda = 1.8: the first excursion to 2 dissipates 94.5 of 180.
    subroutine exhausted(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       type(spring_array) :: spring
       integer :: i
 
       spec = hand()
-      spec%lambda_a = 1.8_wp
+      call spec%set('lambda_a', 1.8_wp)
       call spring%create([spec])
       call spring%move(1, 2.0_wp)
       call check_close(error, spring%force(1), 110.0_wp, 1.0e-14_wp, 0.0_wp, 'at 2')
@@ -369,7 +384,7 @@ contains
    subroutine steepest(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       type(spring_array) :: spring
       real(wp) :: d(60)
       integer :: path, j
@@ -379,7 +394,7 @@ contains
          call spring%create([spec])
          do j = 1, size(d)
             call spring%move(1, d(j))
-            call check_true(error, spring%k(1) <= (1.0_wp + 1.0e-9_wp)*initial_stiffness(spec), 'slope')
+            call check_true(error, spring%k(1) <= (1.0_wp + 1.0e-9_wp)*spec%initial_stiffness(), 'slope')
          end do
       end do
    end subroutine steepest

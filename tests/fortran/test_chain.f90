@@ -18,7 +18,7 @@ module test_chain
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_rk4, only: rk4_scheme
    use rbs_solve_time_state, only: state_type
-   use rbs_spec_column, only: column_spec
+   use rbs_column_column_record, only: column_record
    use runs, only: new_state, signal_of
    use samples, only: bilinear, made, random_type, rich_column
    implicit none
@@ -42,7 +42,7 @@ contains
 
    !> Whether a bit of the number of a variant is set: opens, second order, lumped mass, damping of mass,
    !> initial stiffness, present stiffness, modes.
-   type(column_spec) function variant(n, kind, random) result(spec)
+   type(column_record) function variant(n, kind, random) result(spec)
       integer, intent(in) :: n, kind
       type(random_type), intent(inout) :: random
 
@@ -51,17 +51,17 @@ contains
          spec%top_mass = random%uniform(100.0_wp, 2000.0_wp)
          spec%top_inertia = random%uniform(0.0_wp, 200.0_wp)
       end if
-      if (btest(kind, 3)) spec%mass_damping = random%uniform(0.0_wp, 20.0_wp)
+      if (btest(kind, 3)) spec%damping%mass = random%uniform(0.0_wp, 20.0_wp)
       if (btest(kind, 4)) then
-         spec%stiffness_damping = random%uniform(0.0_wp, 1.0e-3_wp)
-         spec%tangent_damping = btest(kind, 5)
+         spec%damping%stiffness = random%uniform(0.0_wp, 1.0e-3_wp)
+         spec%damping%tangent = btest(kind, 5)
       end if
-      if (btest(kind, 6)) spec%modal_damping = [random%uniform(0.0_wp, 0.3_wp)]
+      if (btest(kind, 6)) spec%damping%modal = [random%uniform(0.0_wp, 0.3_wp)]
    end function variant
 
    !> A state with springs somewhere on their ways, and all loads.
    subroutine random_state(spec, random, state)
-      type(column_spec), intent(in) :: spec
+      type(column_record), intent(in) :: spec
       type(random_type), intent(inout) :: random
       type(state_type), intent(out) :: state
       type(column_type) :: column
@@ -123,7 +123,7 @@ contains
 
    !> Right-hand side of M a = f and M itself, term by term.
    subroutine equation_of_motion(spec, state, mass, right)
-      type(column_spec), intent(in) :: spec
+      type(column_record), intent(in) :: spec
       type(state_type), intent(in) :: state
       real(wp), allocatable, intent(out) :: mass(:, :), right(:)
       type(error_type), allocatable :: outcome
@@ -147,15 +147,15 @@ contains
          end do
          call add_dead_load(column, spec%axial_load + load(axial) + spec%top_mass*load(vertical), n, &
                             spec%lengths(n), state%q, spec%kinematics == 'pdelta', right)
-         right = right - spec%mass_damping*matmul(mass, state%v)
+         right = right - spec%damping%mass*matmul(mass, state%v)
          do i = 1, m
-            right(i) = right(i) - spec%stiffness_damping*state%v(i) &
-                       *merge(springs%k(i), column%initial_stiffness(i), spec%tangent_damping)
+            right(i) = right(i) - spec%damping%stiffness*state%v(i) &
+                       *merge(springs%k(i), column%initial_stiffness(i), spec%damping%tangent)
          end do
-         if (allocated(spec%modal_damping)) then
+         if (allocated(spec%damping%modal)) then
             call find_modes(column, modes, outcome)
             do i = 1, m
-               shape_force = 2.0_wp*spec%modal_damping(1)*modes%omega(i) &
+               shape_force = 2.0_wp*spec%damping%modal(1)*modes%omega(i) &
                              *dot_product(modes%shapes(:, i), matmul(mass, state%v))
                right = right - shape_force*matmul(mass, modes%shapes(:, i))
             end do
@@ -166,7 +166,7 @@ contains
    subroutine dense(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(state_type) :: state
       type(motion_result) :: now
       real(wp), allocatable :: mass(:, :), expected(:)
@@ -194,7 +194,7 @@ contains
    subroutine one_load(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(state_type) :: state
       type(column_type) :: column
       type(loads_type) :: loads
@@ -308,7 +308,7 @@ contains
    subroutine height(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(state_type) :: state
       real(wp) :: top(2)
       integer :: n, kind
@@ -332,7 +332,7 @@ contains
    subroutine fast_step(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(state_type) :: state
       type(loads_type) :: loads

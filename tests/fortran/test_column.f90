@@ -9,7 +9,7 @@ module test_column
                                check_stable
    use rbs_column_column, only: column_type, joint_name, small, pdelta, finite
    use rbs_column_mass, only: symmetric_mass, paper_mass
-   use rbs_spec_column, only: column_spec
+   use rbs_column_column_record, only: column_record
    use samples, only: chain, column_1, elastic, made, random_type, k_c, s_k, mass_1, height_1
    implicit none
    private
@@ -63,7 +63,7 @@ contains
 
    subroutine equal_bodies(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
 
       spec = column_1('small')
@@ -107,19 +107,19 @@ contains
 
    subroutine spring_places(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       integer :: i
 
       spec = chain(3, 'small')
       column = made(spec)
       do i = 1, 3
-         call check_same(error, column%spring(i)%k, spec%shear(i)%k, 'shear of a joint')
-         call check_same(error, column%spring(3 + i)%k, spec%flexure(i)%k, 'flexure of a joint')
+         call check_same(error, column%spring(i)%get('k'), spec%shear(i)%get('k'), 'shear of a joint')
+         call check_same(error, column%spring(3 + i)%get('k'), spec%flexure(i)%get('k'), 'flexure of a joint')
       end do
       spec%shear = spec%shear(2:2)
       column = made(spec)
-      call check_same(error, [(column%spring(i)%k, i=1, 3)], spread(spec%shear(1)%k, 1, 3), &
+      call check_same(error, [(column%spring(i)%get('k'), i=1, 3)], spread(spec%shear(1)%get('k'), 1, 3), &
                       'one for every joint')
    end subroutine spring_places
 
@@ -250,7 +250,7 @@ contains
 
    !> A chain with axial load and weight.
    type(column_type) function loaded() result(column)
-      type(column_spec) :: spec
+      type(column_record) :: spec
 
       spec = chain(n, 'pdelta')
       spec%axial_load = 3.0e5_wp
@@ -306,7 +306,7 @@ contains
    subroutine no_axial(error)
       type(error_type), allocatable, intent(inout) :: error
       type(column_type) :: column
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(error_type), allocatable :: outcome
       real(wp) :: factor
 
@@ -323,7 +323,7 @@ contains
 
    subroutine critical_one(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(error_type), allocatable :: outcome
       real(wp) :: factor
 
@@ -367,7 +367,7 @@ contains
 
    subroutine tension(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(error_type), allocatable :: outcome
       real(wp) :: factor
 
@@ -382,7 +382,7 @@ contains
 
    subroutine buckling(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(error_type), allocatable :: outcome
 
       spec = column_1('pdelta')
@@ -400,7 +400,7 @@ contains
    subroutine lumped(error)
       type(error_type), allocatable, intent(inout) :: error
       real(wp), parameter :: m = 700.0_wp, j = 35.0_wp
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column, plain
       real(wp) :: mass(2*n, 2*n), without(2*n, 2*n), expected(2*n, 2*n), own, l, centroid
       integer :: a, b
@@ -444,7 +444,7 @@ contains
 
    subroutine rotary(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
 
       spec = chain(n, 'small')
@@ -465,7 +465,7 @@ contains
 
    subroutine weights(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       integer :: i
 
@@ -492,7 +492,7 @@ contains
    !> A vertical acceleration a of the ground is a weight of all masses, the lumped one included.
    subroutine lifted(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       integer :: i
 
@@ -509,15 +509,15 @@ contains
 
    subroutine opening(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column, plain
       real(wp) :: mass(3*n, 3*n), lateral(2*n, 2*n)
       integer :: i, j
 
       spec = chain(n, 'small')
       plain = made(spec)
-      allocate (spec%axial(n))
-      spec%axial = [(elastic(1.0e9_wp*i), i=1, n)]
+      allocate (spec%axial_spring(n))
+      spec%axial_spring = [(elastic(1.0e9_wp*i), i=1, n)]
       column = made(spec)
       call check_equal(error, column%unknowns, 3*n, 'unknowns')
       call check_true(error, column%opens .and. .not. plain%opens, 'opens')
@@ -539,12 +539,12 @@ contains
 
    subroutine names(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
 
       spec = chain(n, 'small')
-      allocate (spec%axial(1))
-      spec%axial(1) = elastic(1.0e9_wp)
+      allocate (spec%axial_spring(1))
+      spec%axial_spring(1) = elastic(1.0e9_wp)
       column = made(spec)
       call check_equal(error, trim(joint_name(column, 1)), 'the shear spring of joint 1', 'first')
       call check_equal(error, trim(joint_name(column, n)), 'the shear spring of joint 5', 'last shear')

@@ -4,11 +4,10 @@ module test_concrete
    use paths, only: check_copies, check_increments
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_factory, only: new_rule
    use rbs_hysteresis_rule, only: rule_type
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_springs, only: follow_path, spring_array
-   use rbs_spec_spring, only: spring_spec, initial_stiffness
+   use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: concrete_1, random_type
    implicit none
    private
@@ -38,14 +37,13 @@ contains
    end subroutine collect_concrete
 
    !> A spring of simple numbers: 100 at a closing of 2, then -10 down to 20 at 10.
-   type(spring_spec) function hand() result(spec)
+   type(spring_record) function hand() result(spec)
       spec%rule = 'concrete'
-      spec%k = 100.0_wp
-      spec%f_peak = 100.0_wp
-      spec%d_peak = 2.0_wp
-      spec%k_fall = 10.0_wp
-      spec%f_res = 20.0_wp
-      call spec%fill_defaults()
+      call spec%set('k', 100.0_wp)
+      call spec%set('f_peak', 100.0_wp)
+      call spec%set('d_peak', 2.0_wp)
+      call spec%set('k_soft', 10.0_wp)
+      call spec%set('f_res', 20.0_wp)
    end function hand
 
    !> r = 100/(100 - 50) = 2: the curve is f_peak 2 x/(1 + x^2).
@@ -88,35 +86,37 @@ contains
    !> A plastic closing that is too large gives way: from (4, 80) the line of slope 100 ends at 3.2.
    subroutine stiffest(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: f(3)
 
       spec = hand()
-      spec%plastic = 5.0_wp
+      call spec%set('plastic', 5.0_wp)
       call follow_path(spec, [-4.0_wp, -3.6_wp, -3.2_wp], f)
       call check_close(error, f, [-80.0_wp, -40.0_wp, 0.0_wp], 1.0e-12_wp, 1.0e-11_wp, 'force')
    end subroutine stiffest
 
    subroutine elastic_begin(error)
       type(error_type), allocatable, intent(inout) :: error
+      type(spring_record) :: spec
       real(wp) :: f(5), k
 
       k = 200.0_wp*0.25_wp/(1.0_wp + 0.25_wp**2)/0.5_wp
       call follow_path(hand(), [-0.4_wp, -0.1_wp, -0.45_wp, -0.2_wp, 0.0_wp], f)
       call check_close(error, f, -k*[0.4_wp, 0.1_wp, 0.45_wp, 0.2_wp, 0.0_wp], 1.0e-14_wp, 0.0_wp, 'force')
-      call check_true(error, k <= initial_stiffness(hand()), 'chord below the tangent')
+      spec = hand()
+      call check_true(error, k <= spec%initial_stiffness(), 'chord below the tangent')
    end subroutine elastic_begin
 
    !> By hand: from (4, 80) the plastic closing is 1.68. Opened to -1.32 (widest 3), faces touch at
    !> 1.68 - 0.5 3 = 0.18; fully closed at 1.68 + 0.25 (4 - 1.68) = 2.26 with 20.
    subroutine contact(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: f(6)
 
       spec = hand()
-      spec%contact = 0.25_wp
-      spec%misfit = 0.5_wp
+      call spec%set('contact', 0.25_wp)
+      call spec%set('misfit', 0.5_wp)
       call follow_path(spec, [-4.0_wp, 1.32_wp, -0.18_wp, -1.22_wp, -2.26_wp, -3.13_wp], f)
       call check_close(error, f, -[80.0_wp, 0.0_wp, 0.0_wp, 10.0_wp, 20.0_wp, 50.0_wp], 1.0e-12_wp, &
                        1.0e-11_wp, 'force')
@@ -137,11 +137,11 @@ contains
    !> 10 % at twice the closing at the peak and beyond; half of that at the peak.
    subroutine wear(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: f(7)
 
       spec = hand()
-      spec%wear = 0.1_wp
+      call spec%set('wear', 0.1_wp)
       call follow_path(spec, [-4.0_wp, 1.0_wp, -4.0_wp, 1.0_wp, 2.0_wp, 1.0_wp, -5.0_wp], f)
       call check_close(error, f(3), -72.0_wp, 1.0e-12_wp, 0.0_wp, 'after one opening')
       call check_close(error, f(7), -0.81_wp*70.0_wp, 1.0e-12_wp, 0.0_wp, 'envelope, after two')
@@ -151,7 +151,7 @@ contains
 
    subroutine partial(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: f(7), straight(1)
 
       spec = concrete_1(1.0_wp)
@@ -165,19 +165,19 @@ contains
    !> A random spring of its kind, and a path in closings at the peak.
    subroutine random_spring(random, spec, d)
       type(random_type), intent(inout) :: random
-      type(spring_spec), intent(out) :: spec
+      type(spring_record), intent(out) :: spec
       real(wp), intent(out) :: d(:)
       real(wp) :: exponent
       integer :: j
 
       spec = hand()
-      spec%k = random%uniform(51.0_wp, 300.0_wp)
-      spec%k_fall = 10.0_wp**random%uniform(-1.0_wp, 3.0_wp)
-      spec%f_res = random%uniform(0.0_wp, 100.0_wp)
-      spec%plastic = random%uniform(0.0_wp, 2.0_wp)
-      spec%contact = max(0.0_wp, random%uniform(-0.3_wp, 0.95_wp))
-      spec%misfit = max(0.0_wp, random%uniform(-0.3_wp, 0.95_wp))
-      spec%wear = max(0.0_wp, random%uniform(-0.2_wp, 0.2_wp))
+      call spec%set('k', random%uniform(51.0_wp, 300.0_wp))
+      call spec%set('k_soft', 10.0_wp**random%uniform(-1.0_wp, 3.0_wp))
+      call spec%set('f_res', random%uniform(0.0_wp, 100.0_wp))
+      call spec%set('plastic', random%uniform(0.0_wp, 2.0_wp))
+      call spec%set('contact', max(0.0_wp, random%uniform(-0.3_wp, 0.95_wp)))
+      call spec%set('misfit', max(0.0_wp, random%uniform(-0.3_wp, 0.95_wp)))
+      call spec%set('wear', max(0.0_wp, random%uniform(-0.2_wp, 0.2_wp)))
       do j = 1, size(d)
          exponent = random%uniform(-1.0_wp, 1.2_wp)
          d(j) = random%uniform(-1.0_wp, 0.5_wp)*10.0_wp**exponent
@@ -190,7 +190,7 @@ contains
    subroutine continuous(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       class(rule_type), allocatable :: rule
       type(segment) :: line
       real(wp) :: to(30), d, before
@@ -198,7 +198,7 @@ contains
 
       do path = 1, 300
          call random_spring(random, spec, to)
-         call new_rule(rule, spec)
+         call spec%make(rule)
          call rule%start(line)
          d = 0.0_wp
          do j = 1, size(to)
@@ -215,7 +215,8 @@ contains
                call check_close(error, line%force(d), before, 0.0_wp, 1.0e-10_wp, 'force at an event')
                call check_true(error, line%lo <= line%hi, 'ends in order')
                call check_true(error, line%lo <= d .and. d <= line%hi, 'on the new line')
-               call check_true(error, line%k <= (1.0_wp + 1.0e-9_wp)*spec%k, 'not stiffer than at first')
+               call check_true(error, line%k <= (1.0_wp + 1.0e-9_wp)*spec%get('k'), &
+                               'not stiffer than at first')
             end do
             call check_true(error, lines < 50, 'few lines in one move')
             d = to(j)
@@ -226,7 +227,7 @@ contains
    subroutine increments(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: d(20)
       integer :: path
 
@@ -240,7 +241,7 @@ contains
    subroutine copies(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: d(40)
       integer :: path
 
@@ -253,14 +254,14 @@ contains
    subroutine forgets(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       class(rule_type), allocatable :: rule
       type(segment) :: first, line
       real(wp) :: d(1)
       integer :: i
 
       call random_spring(random, spec, d)
-      call new_rule(rule, spec)
+      call spec%make(rule)
       call rule%start(first)
       line = first
       do i = 1, 100
@@ -277,18 +278,18 @@ contains
    subroutine work_positive(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       type(spring_array) :: spring
       real(wp) :: d(60), least
       integer :: path, j
 
       do path = 1, 300
          call random_spring(random, spec, d)
-         if (mod(path, 2) == 0) spec%contact = 0.0_wp
+         if (mod(path, 2) == 0) call spec%set('contact', 0.0_wp)
          call spring%create([spec])
          do j = 1, size(d)
             call spring%move(1, d(j))
-            least = -0.5_wp*spec%contact*spec%f_peak*(maxval(abs(d(:j))) + spec%d_peak)
+            least = -0.5_wp*spec%get('contact')*spec%get('f_peak')*(maxval(abs(d(:j))) + spec%get('d_peak'))
             call check_true(error, spring%work(1) >= least - 1.0e-9_wp, 'work')
          end do
       end do
@@ -298,18 +299,19 @@ contains
    subroutine envelope(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: d(60), f(60), straight(1)
       integer :: path, j
 
       do path = 1, 300
          call random_spring(random, spec, d)
-         if (mod(path, 2) == 0) spec%misfit = 0.0_wp
+         if (mod(path, 2) == 0) call spec%set('misfit', 0.0_wp)
          call follow_path(spec, d, f)
          do j = 1, size(d)
             call check_true(error, f(j) <= 0.0_wp, 'no tension')
-            call check_true(error, f(j) >= -spec%f_peak*(1.0_wp + 1.0e-12_wp), 'not above the strength')
-            if (spec%misfit > 0.0_wp) cycle
+            call check_true(error, f(j) >= -spec%get('f_peak')*(1.0_wp + 1.0e-12_wp), &
+                            'not above the strength')
+            if (spec%get('misfit') > 0.0_wp) cycle
             if (d(j) > 0.0_wp) cycle
             call follow_path(spec, d(j:j), straight)
             call check_true(error, f(j) >= straight(1) - 1.0e-9_wp, 'within the envelope')

@@ -11,7 +11,7 @@ module test_finite
    use rbs_column_finite, only: finite_work, finite_acceleration, finite_kinetic, finite_potential, &
                                 finite_power, finite_top, finite_mass
    use rbs_column_mass, only: symmetric_mass
-   use rbs_spec_column, only: column_spec
+   use rbs_column_column_record, only: column_record
    use exact, only: point, variant, state, sample, variant_of, random_state, place, dense_mass, &
                     dense_acceleration
    use samples, only: made, random_type
@@ -57,7 +57,7 @@ contains
    subroutine accelerations(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(state) :: now
       real(wp), allocatable :: expected(:)
@@ -82,7 +82,7 @@ contains
    subroutine many_bodies(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(state) :: now
       real(wp), allocatable :: expected(:)
@@ -103,7 +103,7 @@ contains
    subroutine mass_definition(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(state) :: now
       real(wp), allocatable :: mass(:, :), expected(:, :)
@@ -141,14 +141,14 @@ contains
    subroutine one_body(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(state) :: now
       real(wp) :: a(2), left(2), right(2), i_half, s, c
       integer :: i
 
       spec = sample(1, variant())
-      spec%mass_damping = 0.0_wp
+      spec%damping%mass = 0.0_wp
       spec%depth = 0.0_wp
       column = made(spec)
       do i = 1, 20
@@ -197,7 +197,7 @@ contains
    subroutine power_balance(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(state) :: now
       type(point), allocatable :: points(:)
@@ -227,7 +227,7 @@ contains
                   call add(now%f(k)*now%v(k))
                end do
                right = finite_power(column, now%q, now%v, now%load) &
-                       - 2.0_wp*spec%mass_damping*finite_kinetic(column, now%q, now%v)
+                       - 2.0_wp*spec%damping%mass*finite_kinetic(column, now%q, now%v)
                call check_close(error, left, right, 0.0_wp, 1.0e-11_wp*terms, &
                                 'n = '//to_text(n)//', variant '//to_text(i))
             end do
@@ -249,7 +249,7 @@ contains
    subroutine kinetic(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(state) :: now
       type(point) :: points(6)
@@ -275,7 +275,7 @@ contains
    subroutine potential(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(state) :: now
       type(point) :: points(6), straight(6)
@@ -413,7 +413,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 4
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(state) :: now
       real(wp) :: before(3*n), after(3*n), turn
@@ -461,7 +461,7 @@ contains
    subroutine free_fall(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(state) :: now
       real(wp) :: falling(10), expected(10)

@@ -22,7 +22,7 @@ module test_history
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_rk4, only: rk4_stepper
    use rbs_solve_time_run_dynamic, only: plan_dynamic, run_dynamic
-   use rbs_spec_column, only: column_spec
+   use rbs_column_column_record, only: column_record
    use runs, only: run_data, run, times, last_deformation
    use samples, only: chain, column_1, elastic, made, random_type, d_y, k_u, mass_1, height_1
    implicit none
@@ -150,7 +150,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(run_data) :: data
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(modes_type) :: modes
       real(wp), parameter :: alpha(3) = [60.0_wp, 0.0_wp, 30.0_wp], beta(3) = [0.0_wp, 5.0e-5_wp, 2.0e-5_wp]
@@ -159,8 +159,8 @@ contains
 
       do kind = 1, 3
          spec = chain(2, 'small')
-         spec%mass_damping = alpha(kind)
-         spec%stiffness_damping = beta(kind)
+         spec%damping%mass = alpha(kind)
+         spec%damping%stiffness = beta(kind)
          column = made(spec)
          call find_modes(column, modes, outcome)
          call check_passed(error, outcome, 'find_modes')
@@ -291,7 +291,7 @@ contains
    subroutine limit(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(modes_type) :: modes
       type(time_plan) :: plan
@@ -308,7 +308,7 @@ contains
       share = [0.999_wp, 1.001_wp]
       do kind = 1, 3
          spec = chain(2, 'small')
-         if (kind > 1) spec%stiffness_damping = 1.0e-5_wp*100.0_wp**(kind - 2)
+         if (kind > 1) spec%damping%stiffness = 1.0e-5_wp*100.0_wp**(kind - 2)
          column = made(spec)
          call find_modes(column, modes, outcome)
          call check_passed(error, outcome, 'find_modes')
@@ -356,7 +356,7 @@ contains
    subroutine misprint_e6(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp) :: energy
 
       spec = column_1('finite')
@@ -379,7 +379,7 @@ contains
    subroutine finite_energy(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp) :: wrong(3)
       integer :: i, last
 
@@ -388,8 +388,8 @@ contains
       spec%flexure(1) = elastic(2.5e4_wp)
       spec%axial_load = 5.0e3_wp
       spec%self_weight = .true.
-      spec%mass_damping = 0.3_wp
-      spec%stiffness_damping = 1.0e-3_wp
+      spec%damping%mass = 0.3_wp
+      spec%damping%stiffness = 1.0e-3_wp
       data%initial%deformation = [0.05_wp, 0.6_wp]
       data%initial%velocity = [-0.2_wp, 1.0_wp]
       do i = 1, 3
@@ -413,7 +413,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(motion_type) :: small, finite
       type(spring_array) :: springs
       type(motion_result) :: a, b
@@ -424,8 +424,8 @@ contains
       spec = column_1('pdelta')
       spec%axial_load = 1.0e6_wp
       spec%self_weight = .true.
-      spec%mass_damping = 2.0_wp
-      spec%stiffness_damping = 1.0e-4_wp
+      spec%damping%mass = 2.0_wp
+      spec%damping%stiffness = 1.0e-4_wp
       call small%create(made(spec), spread(.true., 1, 4), outcome)
       call check_passed(error, outcome, 'small')
       spec%kinematics = 'finite'
@@ -450,15 +450,15 @@ contains
    subroutine chain_energy(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp) :: wrong(3)
       integer :: i
 
       spec = chain(5, 'pdelta')
       spec%axial_load = 1.0e6_wp
       spec%self_weight = .true.
-      spec%mass_damping = 5.0_wp
-      spec%stiffness_damping = 1.0e-6_wp
+      spec%damping%mass = 5.0_wp
+      spec%damping%stiffness = 1.0e-6_wp
       do i = 1, 3
          data%time = times(40, 1.0e-3_wp)
          data%force = 3.0e5_wp*sin(70.0_wp*data%time)
@@ -528,7 +528,7 @@ contains
    subroutine slow_loading(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(run_data) :: data
       type(array_recorder) :: recorder
       type(summary_type) :: summary
@@ -537,7 +537,7 @@ contains
       integer :: i
 
       spec = column_1('small')
-      spec%mass_damping = 100.0_wp
+      spec%damping%mass = 100.0_wp
       do i = 1, 2
          call yielding_force(data, 1.6e5_wp, 5.0_wp*10**(i - 1))
          call run(data, made(spec))
@@ -645,7 +645,7 @@ contains
    subroutine falling(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data
-      type(column_spec) :: spec
+      type(column_record) :: spec
       integer :: last
 
       spec = column_1('pdelta')

@@ -11,7 +11,7 @@ module test_implicit
    use rbs_solve_time_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha
    use rbs_solve_time_loads, only: loads_type
    use rbs_solve_time_state, only: state_type
-   use rbs_spec_column, only: column_spec
+   use rbs_column_column_record, only: column_record
    use runs, only: scene_type, scenes, new_scene, new_mass, play, play_located, find_reference, new_state, &
                    signal_of, check_order, residual_of, distance
    use samples, only: chain, column_1, compression, elastic, made, random_type, takeda_1, d_y, k_u
@@ -71,7 +71,7 @@ contains
    subroutine scalar_theory(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(loads_type) :: loads
       type(state_type) :: state
@@ -83,10 +83,10 @@ contains
 
       spec = chain(1, 'small')
       spec%masses = [mass]
-      allocate (spec%axial(1))
-      spec%axial(1) = elastic(k)
-      spec%mass_damping = 2.0_wp
-      spec%stiffness_damping = 1.0e-3_wp
+      allocate (spec%axial_spring(1))
+      spec%axial_spring(1) = elastic(k)
+      spec%damping%mass = 2.0_wp
+      spec%damping%stiffness = 1.0e-3_wp
       column = made(spec)
       c = 2.0_wp*mass + 1.0e-3_wp*k
       loads%axial = signal_of([0.0_wp, 1.0e6_wp], [30.0_wp, 30.0_wp + 1.0e6_wp])
@@ -171,7 +171,7 @@ contains
    subroutine vibration(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(modes_type) :: modes
       type(state_type) :: state
@@ -183,8 +183,8 @@ contains
       do kind = 1, 3
          spec = chain(3, 'pdelta')
          if (kind < 3) spec%axial_load = 1.0e7_wp
-         spec%mass_damping = alpha(kind)
-         spec%stiffness_damping = beta(kind)
+         spec%damping%mass = alpha(kind)
+         spec%damping%stiffness = beta(kind)
          column = made(spec)
          call find_modes(column, modes, outcome)
          call check_passed(error, outcome, 'find_modes')
@@ -249,7 +249,7 @@ contains
       integer, parameter :: bodies(4) = [1, 3, 20, 100]
       type(error_type), allocatable :: outcome
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(loads_type) :: loads
       type(state_type) :: state
@@ -264,12 +264,12 @@ contains
             spec%self_weight = .true.
             spec%top_mass = 300.0_wp
             if (btest(kind, 0)) then
-               spec%mass_damping = 3.0_wp
-               spec%stiffness_damping = 1.0e-4_wp
+               spec%damping%mass = 3.0_wp
+               spec%damping%stiffness = 1.0e-4_wp
             end if
             if (btest(kind, 1)) then
-               allocate (spec%axial(1))
-               spec%axial(1) = elastic(2.0e9_wp)
+               allocate (spec%axial_spring(1))
+               spec%axial_spring(1) = elastic(2.0e9_wp)
             end if
             column = made(spec)
             m = column%unknowns
@@ -326,7 +326,7 @@ contains
    subroutine ten_bodies(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(scene_type) :: scene
       type(state_type) :: reference, state
       type(implicit_stepper) :: stepper
@@ -363,7 +363,7 @@ contains
    subroutine axial_history(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(scene_type) :: scene
       type(state_type) :: reference, state
       type(implicit_stepper) :: stepper
@@ -374,10 +374,10 @@ contains
          spec = chain(3, 'pdelta')
          spec%axial_load = 1.0e7_wp
          spec%self_weight = .true.
-         spec%stiffness_damping = 1.0e-5_wp
+         spec%damping%stiffness = 1.0e-5_wp
          if (kind == 2) then
-            allocate (spec%axial(1))
-            spec%axial(1) = elastic(2.0e9_wp)
+            allocate (spec%axial_spring(1))
+            spec%axial_spring(1) = elastic(2.0e9_wp)
          end if
          scene = scene_type()
          scene%column = made(spec)
@@ -411,7 +411,7 @@ contains
    subroutine modal_decay(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(scene_type) :: scene
       type(modes_type) :: modes
       type(state_type) :: state
@@ -421,9 +421,9 @@ contains
 
       spec = chain(2, 'pdelta')
       spec%axial_load = 1.0e7_wp
-      spec%modal_damping = [0.02_wp, 0.3_wp, 0.9_wp]
-      allocate (spec%axial(1))
-      spec%axial(1) = elastic(2.0e9_wp)
+      spec%damping%modal = [0.02_wp, 0.3_wp, 0.9_wp]
+      allocate (spec%axial_spring(1))
+      spec%axial_spring(1) = elastic(2.0e9_wp)
       scene%column = made(spec)
       ! The openings vibrate about what the axial load closes.
       rest = 0.0_wp
@@ -432,7 +432,7 @@ contains
       call check_passed(error, outcome, 'find_modes')
       do mode = 1, 6
          z = 0.0_wp
-         if (mode <= 3) z = spec%modal_damping(mode)
+         if (mode <= 3) z = spec%damping%modal(mode)
          w = modes%omega(mode)*sqrt(1.0_wp - z**2)
          scene%finish = 4.7_wp/w
          scene%q = rest + modes%shapes(:, mode)
@@ -467,7 +467,7 @@ contains
    subroutine modal_yielding(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(scene_type) :: scene
       type(state_type) :: reference, state
       type(implicit_stepper) :: stepper
@@ -477,7 +477,7 @@ contains
       call new_scene(scene, 4)
       spec = column_1('small')
       spec%n = 3
-      spec%modal_damping = [0.05_wp]
+      spec%damping%modal = [0.05_wp]
       scene%column = made(spec)
       scene%v = scene%v*3.0_wp
       call play_located(scene, 1.0e-11_wp, 1, reference, outcome)
@@ -501,7 +501,7 @@ contains
    subroutine tangent_damping(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(scene_type) :: scene
       type(state_type) :: reference, state
       type(implicit_stepper) :: stepper
@@ -511,8 +511,8 @@ contains
       call new_scene(scene, 1)
       spec = column_1('pdelta')
       spec%axial_load = 1.0e6_wp
-      spec%stiffness_damping = 1.0e-5_wp
-      spec%tangent_damping = .true.
+      spec%damping%stiffness = 1.0e-5_wp
+      spec%damping%tangent = .true.
       scene%column = made(spec)
       call play_located(scene, 1.0e-12_wp, 1, reference, outcome)
       call check_passed(error, outcome, 'rk45')
@@ -565,25 +565,27 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: bodies(3) = [10, 200, 1000]
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(loads_type) :: loads
       type(state_type) :: state
       type(implicit_stepper) :: stepper
       real(wp), allocatable :: expected(:)
       real(wp), parameter :: push = 1.0e5_wp
-      integer :: i, number, step
+      integer :: i, j, number, step
 
       do i = 1, 3
          spec = chain(bodies(i), 'small')
-         allocate (spec%axial(1))
-         spec%axial(1) = elastic(2.0e9_wp*bodies(i))
+         allocate (spec%axial_spring(1))
+         spec%axial_spring(1) = elastic(2.0e9_wp*bodies(i))
          ! The same column, finer: equal flexibility and mass in all.
-         spec%shear%k = spec%shear%k*bodies(i)
-         spec%flexure%k = spec%flexure%k*bodies(i)
+         do j = 1, size(spec%shear)
+            call spec%shear(j)%set('k', spec%shear(j)%get('k')*bodies(i))
+            call spec%flexure(j)%set('k', spec%flexure(j)%get('k')*bodies(i))
+         end do
          spec%masses = spec%masses/bodies(i)
          spec%axial_load = 1.0e6_wp
-         spec%stiffness_damping = 0.1_wp
+         spec%damping%stiffness = 0.1_wp
          column = made(spec)
          expected = column%arm*push/column%initial_stiffness
          expected(2*bodies(i) + 1:) = -1.0e6_wp/column%initial_stiffness(2*bodies(i) + 1:)
@@ -609,7 +611,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: bodies(2) = [200, 1000]
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(scene_type) :: scene
       type(state_type) :: state
       type(implicit_stepper) :: stepper
@@ -621,15 +623,15 @@ contains
          spec%n = bodies(i)
          share = 1.0_wp/bodies(i)
          ! The flexibility of one joint, spread over all; shear elastic.
-         spec%shear(1) = elastic(spec%shear(1)%k*bodies(i))
-         spec%flexure(1)%k_c = spec%flexure(1)%k_c*bodies(i)
-         spec%flexure(1)%k_y = spec%flexure(1)%k_y*bodies(i)
-         spec%flexure(1)%k_u = spec%flexure(1)%k_u*bodies(i)
-         spec%flexure(1)%d_c = spec%flexure(1)%d_c*share
-         spec%flexure(1)%d_y = spec%flexure(1)%d_y*share
+         spec%shear(1) = elastic(spec%shear(1)%get('k')*bodies(i))
+         call spec%flexure(1)%set('k_c', spec%flexure(1)%get('k_c')*bodies(i))
+         call spec%flexure(1)%set('k_y', spec%flexure(1)%get('k_y')*bodies(i))
+         call spec%flexure(1)%set('k_u', spec%flexure(1)%get('k_u')*bodies(i))
+         call spec%flexure(1)%set('d_c', spec%flexure(1)%get('d_c')*share)
+         call spec%flexure(1)%set('d_y', spec%flexure(1)%get('d_y')*share)
          spec%axial_load = 5.0e5_wp
          spec%top_mass = 2.0e4_wp
-         spec%stiffness_damping = 1.0e-3_wp
+         spec%damping%stiffness = 1.0e-3_wp
          scene = scene_type()
          scene%column = made(spec)
          allocate (scene%q(2*bodies(i)), scene%v(2*bodies(i)), source=0.0_wp)
@@ -686,7 +688,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 20
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(scene_type) :: scene
       type(state_type) :: state
       type(implicit_stepper) :: stepper
@@ -694,10 +696,10 @@ contains
       integer :: number, step
 
       spec = chain(n, 'small')
-      allocate (spec%axial(1))
-      spec%axial(1) = compression(1.0e9_wp)
+      allocate (spec%axial_spring(1))
+      spec%axial_spring(1) = compression(1.0e9_wp)
       spec%self_weight = .true.
-      spec%stiffness_damping = 1.0e-4_wp
+      spec%damping%stiffness = 1.0e-4_wp
       scene%column = made(spec)
       allocate (scene%q(3*n), scene%v(3*n), source=0.0_wp)
       scene%q(2*n + 1:) = 0.01_wp
@@ -723,7 +725,7 @@ contains
    subroutine falling(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(scene_type) :: scene
       type(state_type) :: state
       type(implicit_stepper) :: stepper
@@ -839,7 +841,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(state_type) :: state
       type(implicit_stepper) :: stepper

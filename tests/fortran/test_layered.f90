@@ -5,15 +5,13 @@ module test_layered
    use rbs_base_error, only: bad_input, error_type, message_list
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
-   use rbs_hysteresis_factory, only: carries_axial_load, new_rule
    use rbs_hysteresis_layered, only: layered_rule
    use rbs_hysteresis_rule, only: rule_type
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_solve_make_column, only: make_column
-   use rbs_spec_column, only: column_spec
-   use rbs_spec_spring, only: spring_spec, initial_stiffness
-   use rbs_spec_spring_table, only: rule_names
+   use rbs_column_column_record, only: column_record
+   use rbs_hysteresis_spring_record, only: spring_record, carries_axial_load
    use samples, only: bilinear, compression, concrete_1, elastic, steel_1, takeda_1, random_type
    implicit none
    private
@@ -64,26 +62,20 @@ contains
    !> A joint from distances and springs.
    function joint(axial_load, y, layer) result(spec)
       real(wp), intent(in) :: axial_load, y(:)
-      type(spring_spec), intent(in) :: layer(:)
-      type(spring_spec) :: spec
-      integer :: i
+      type(spring_record), intent(in) :: layer(:)
+      type(spring_record) :: spec
 
       spec%rule = 'layered'
       spec%axial_load = axial_load
-      allocate (spec%layers(2 + size(layer(1)%numbers()), size(y)))
-      do i = 1, size(y)
-         spec%layers(1, i) = y(i)
-         spec%layers(2, i) = findloc(rule_names == layer(i)%rule, .true., dim=1)
-         spec%layers(3:, i) = layer(i)%numbers()
-      end do
+      call spec%set_layers(y, layer)
    end function joint
 
    !> Reinforced concrete: `strips` of concrete_1 over the depth, two rows of bars.
    function section(axial_load, strips) result(spec)
       real(wp), intent(in) :: axial_load
       integer, intent(in) :: strips
-      type(spring_spec) :: spec
-      type(spring_spec) :: layer(strips + 2)
+      type(spring_record) :: spec
+      type(spring_record) :: layer(strips + 2)
       real(wp) :: y(strips + 2)
       integer :: i
 
@@ -99,17 +91,17 @@ contains
 
    subroutine begin(self, spec)
       class(double_joint), intent(inout) :: self
-      type(spring_spec), intent(in) :: spec
-      type(spring_spec) :: layer(size(spec%layers, 2))
+      type(spring_record), intent(in) :: spec
+      type(spring_record) :: layer(size(spec%y))
       integer :: i
 
-      call new_rule(self%rule, spec)
+      call spec%make(self%rule)
       call self%rule%start(self%line)
       do i = 1, size(layer)
          layer(i) = spec%layer(i)
       end do
       call self%layers%create(layer)
-      self%y = spec%layers(1, :)
+      self%y = spec%y
       self%axial_load = spec%axial_load
       self%rotation = 0.0_wp
       self%axial_fault = 0.0_wp
@@ -169,7 +161,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 100
       real(wp), parameter :: ea = 1.2e9_wp, ea_bar = 2.0e8_wp
-      type(spring_spec) :: layer(n + 1)
+      type(spring_record) :: layer(n + 1)
       real(wp) :: y(n + 1), f(2), centroid, ei
       integer :: i
 
@@ -192,7 +184,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 21
       real(wp), parameter :: f_y = 1.0e5_wp
-      type(spring_spec) :: layer(n)
+      type(spring_record) :: layer(n)
       real(wp) :: y(n), f(2), axial_load, expected, rest
       integer :: i, load, tension
 
@@ -213,7 +205,7 @@ contains
    !> Blocks that only push: the joint opens until it stands on the last one.
    subroutine rocking(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: layer(20)
+      type(spring_record) :: layer(20)
       real(wp) :: y(20), f(3), k, edge
       integer :: i
 
@@ -234,17 +226,18 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(double_joint) :: both
       type(random_type) :: random
-      type(spring_spec) :: spec, bar
+      type(spring_record) :: spec, bar, layer(14)
       integer :: path, j, events
 
       events = 0
       bar = bilinear(8.0e8_wp, 9.0e-4_wp, 8.0e6_wp)
       do path = 1, 40
          spec = section(random%uniform(-2.0e5_wp, 1.5e6_wp), 12)
-         do j = 13, 14
-            spec%layers(2, j) = findloc(rule_names == bar%rule, .true., dim=1)
-            spec%layers(3:, j) = bar%numbers()
+         do j = 1, 12
+            layer(j) = spec%layer(j)
          end do
+         layer(13:) = bar
+         call spec%set_layers(spec%y, layer)
          call both%begin(spec)
          do j = 1, 30
             call both%turn_to(random%uniform(-1.0e-2_wp, 1.0e-2_wp))
@@ -276,7 +269,7 @@ contains
    !> Bars on one side only: under the axial load alone the joint turns, and counts from there.
    subroutine unsymmetric(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: layer(9)
+      type(spring_record) :: layer(9)
       real(wp) :: y(9), f(4)
       integer :: i
 
@@ -305,13 +298,16 @@ contains
    subroutine order(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec, other
+      type(spring_record) :: spec, other, layer(12)
       real(wp) :: d(30), f(30), g(30)
-      integer :: path
+      integer :: path, i
 
       spec = section(1.0e6_wp, 10)
       other = spec
-      other%layers = spec%layers(:, size(spec%layers, 2):1:-1)
+      do i = size(layer), 1, -1
+         layer(size(layer) + 1 - i) = spec%layer(i)
+      end do
+      call other%set_layers(spec%y(size(layer):1:-1), layer)
       do path = 1, 20
          call wander(random, d)
          call follow_path(spec, d, f)
@@ -323,8 +319,8 @@ contains
    subroutine cut_layer(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: whole, cut
-      type(spring_spec) :: layer(6)
+      type(spring_record) :: whole, cut
+      type(spring_record) :: layer(6)
       real(wp) :: d(30), f(30), g(30), y(6)
       integer :: path, i
 
@@ -349,7 +345,7 @@ contains
    subroutine increments(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: d(20)
       integer :: path
 
@@ -364,7 +360,7 @@ contains
    subroutine copies(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: d(20)
       integer :: path
 
@@ -378,10 +374,12 @@ contains
    subroutine forgets(error)
       type(error_type), allocatable, intent(inout) :: error
       class(rule_type), allocatable :: rule
+      type(spring_record) :: spec
       type(segment) :: first, line
       integer :: i
 
-      call new_rule(rule, section(8.0e5_wp, 10))
+      spec = section(8.0e5_wp, 10)
+      call spec%make(rule)
       call rule%start(first)
       line = first
       do i = 1, 300
@@ -394,23 +392,23 @@ contains
 
    subroutine first_slope(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: f(1)
 
       spec = section(0.0_wp, 10)
       call follow_path(spec, [1.0e-9_wp], f)
-      call check_true(error, f(1)/1.0e-9_wp < initial_stiffness(spec), 'concrete without load opens')
+      call check_true(error, f(1)/1.0e-9_wp < spec%initial_stiffness(), 'concrete without load opens')
       spec = joint(0.0_wp, [-arm, arm, 0.0_wp], [elastic(1.0_wp), elastic(2.0_wp), elastic(3.0_wp)])
       call follow_path(spec, [1.0_wp], f)
-      call check_close(error, initial_stiffness(spec), f(1), 1.0e-14_wp, 0.0_wp, 'slope')
+      call check_close(error, spec%initial_stiffness(), f(1), 1.0e-14_wp, 0.0_wp, 'slope')
    end subroutine first_slope
 
    subroutine refused(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
-      type(spring_spec) :: strip(4)
+      type(spring_record) :: strip(4)
       real(wp), parameter :: y(4) = [-0.15_wp, -0.05_wp, 0.05_wp, 0.15_wp]
       integer :: i
 
@@ -427,14 +425,15 @@ contains
       spec%mass = 600.0_wp
       spec%shear = [elastic(1.0e9_wp)]
       allocate (spec%flexure(1))
-      spec%flexure(1) = joint(4.81e6_wp, y, strip)
+      spec%flexure(1) = joint(0.0_wp, y, strip)
+      spec%axial_load = 4.81e6_wp
       call make_column(spec, column, outcome)
-      call check_failed(error, outcome, bad_input, 'cannot carry axial_load = 4.81e+06 N')
+      call check_failed(error, outcome, bad_input, 'cannot carry the axial load of 4.81e+06 N')
    end subroutine refused
 
    subroutine validation(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: spec, wrong
+      type(spring_record) :: spec, wrong
 
       call expect(error, section(1.0e6_wp, 10), '')
       spec%rule = 'layered'
@@ -442,13 +441,14 @@ contains
       call expect(error, spec, 'the layers are missing; give at least two')
       call expect(error, joint(0.0_wp, [0.1_wp], [elastic(1.0_wp)]), 'give at least two')
       spec = joint(0.0_wp, [0.1_wp, 0.2_wp], [elastic(1.0_wp), takeda_1('kc')])
-      call expect(error, spec, "layer 2 has the rule 'takeda'; it is one of concrete, steel, elastic")
+      call expect(error, spec, &
+                  "layer 2 has the rule 'takeda'; it is one of elastic, bilinear, compression")
       wrong = steel_1()
-      wrong%k_post = wrong%k
+      call wrong%set('k_post', wrong%get('k'))
       call expect(error, joint(0.0_wp, [0.1_wp, 0.2_wp], [steel_1(), wrong]), &
                   'layer 2: k_post = 8e+08 must be below k = 8e+08')
       wrong = concrete_1(1.0_wp)
-      wrong%f_peak = 1.0e7_wp
+      call wrong%set('f_peak', 1.0e7_wp)
       call expect(error, joint(0.0_wp, [0.1_wp, 0.2_wp], [wrong, steel_1()]), &
                   'layer 1: f_peak = 1e+07 must be below k d_peak = 9.6e+06')
    end subroutine validation
@@ -456,7 +456,7 @@ contains
    !> What validation says of a spring, empty for nothing.
    subroutine expect(error, spec, part)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec), intent(in) :: spec
+      type(spring_record), intent(in) :: spec
       character(len=*), intent(in) :: part
       type(error_type), allocatable :: outcome
       type(message_list) :: messages

@@ -8,7 +8,7 @@ module test_modal
    use rbs_column_column, only: column_type
    use rbs_column_mass, only: symmetric_mass
    use rbs_solve_modal_modes, only: modes_type, find_modes, frequency_bounds, stability_limit
-   use rbs_spec_column, only: column_spec, most_dense
+   use rbs_column_column_record, only: column_record, most_dense
    use samples, only: bilinear, chain, column_1, elastic, made, random_type, k_c, s_k, mass_1, height_1
    implicit none
    private
@@ -68,7 +68,7 @@ contains
       integer, parameter :: n = 6
       type(error_type), allocatable :: outcome
       type(column_type) :: column
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(modes_type) :: modes
       real(wp), dimension(2*n, 2*n) :: mass, stiffness, product
       integer :: i
@@ -99,7 +99,7 @@ contains
    subroutine axial(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(modes_type) :: modes
       real(wp), parameter :: load(3) = [1.0e7_wp, -1.0e7_wp, 0.99_wp*k_c/height_1]
       integer :: i
@@ -125,7 +125,7 @@ contains
    subroutine cantilever(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(modes_type) :: modes
       integer, parameter :: bodies(3) = [10, 20, 40]
       real(wp), parameter :: ei = 1.0e6_wp, length = 2.0_wp, mass = 100.0_wp
@@ -190,7 +190,7 @@ contains
    subroutine damped_step(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(modes_type) :: modes
       integer, parameter :: cases = 5
       real(wp), parameter :: alpha(cases) = [1.0_wp, 500.0_wp, 0.0_wp, 100.0_wp, 0.0_wp]
@@ -199,8 +199,8 @@ contains
 
       do i = 1, cases
          spec = column_1('small')
-         spec%mass_damping = alpha(i)
-         spec%stiffness_damping = beta(i)
+         spec%damping%mass = alpha(i)
+         spec%damping%stiffness = beta(i)
          call find_modes(made(spec), modes, outcome)
          call check_passed(error, outcome, 'find_modes')
          if (allocated(error)) return
@@ -220,7 +220,7 @@ contains
    subroutine axial_step(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(modes_type) :: free, pressed, pulled
 
       call find_modes(made(column_1('pdelta')), free, outcome)
@@ -238,7 +238,7 @@ contains
    subroutine buckling(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(modes_type) :: modes
 
       spec = column_1('finite')
@@ -253,7 +253,7 @@ contains
       integer, parameter :: n = 5
       real(wp), parameter :: k = 3.0e9_wp, mass = 40.0_wp
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(modes_type) :: plain, modes
       real(wp) :: m(3*n, 3*n), product(3*n, 3*n), expected(3*n)
@@ -263,8 +263,8 @@ contains
       spec%masses = mass
       call find_modes(made(spec), plain, outcome)
       call check_passed(error, outcome, 'find_modes')
-      allocate (spec%axial(1))
-      spec%axial(1) = elastic(k)
+      allocate (spec%axial_spring(1))
+      spec%axial_spring(1) = elastic(k)
       column = made(spec)
       call find_modes(column, modes, outcome)
       call check_passed(error, outcome, 'find_modes')
@@ -296,7 +296,7 @@ contains
    subroutine bounds(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(modes_type) :: modes
       type(random_type) :: random
@@ -308,12 +308,12 @@ contains
          spec = chain(n, merge('small ', 'pdelta', mod(trial, 3) == 0))
          do i = 1, n
             spec%masses(i) = 10.0_wp**random%uniform(-4.0_wp, 4.0_wp)
-            spec%shear(i)%k = 10.0_wp**random%uniform(0.0_wp, 12.0_wp)
-            spec%flexure(i)%k = 10.0_wp**random%uniform(0.0_wp, 12.0_wp)
+            call spec%shear(i)%set('k', 10.0_wp**random%uniform(0.0_wp, 12.0_wp))
+            call spec%flexure(i)%set('k', 10.0_wp**random%uniform(0.0_wp, 12.0_wp))
          end do
          if (mod(trial, 4) == 1) then
-            allocate (spec%axial(1))
-            spec%axial(1) = elastic(10.0_wp**random%uniform(0.0_wp, 12.0_wp))
+            allocate (spec%axial_spring(1))
+            spec%axial_spring(1) = elastic(10.0_wp**random%uniform(0.0_wp, 12.0_wp))
          end if
          if (mod(trial, 3) /= 0) then
             spec%axial_load = sign(1.0e-3_wp, random%uniform(-1.0_wp, 1.0_wp))
@@ -336,7 +336,7 @@ contains
    subroutine bounds_long(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       integer, parameter :: n = 10000
       real(wp), parameter :: ei = 1.0e6_wp, length = 2.0_wp, mass = 100.0_wp, k_v = 1.0e21_wp
       real(wp) :: lowest, highest, limit
@@ -360,7 +360,7 @@ contains
    subroutine chain_steps(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(modes_type) :: modes
       integer, parameter :: n = 6, cases = 6
       real(wp), parameter :: alpha(cases) = [1.0_wp, 3.0e4_wp, 0.0_wp, 1.0e2_wp, 0.0_wp, 1.0e5_wp]
@@ -370,8 +370,8 @@ contains
 
       do i = 1, cases
          spec = chain(n, 'small')
-         spec%mass_damping = alpha(i)
-         spec%stiffness_damping = beta(i)
+         spec%damping%mass = alpha(i)
+         spec%damping%stiffness = beta(i)
          call find_modes(made(spec), modes, outcome)
          call check_passed(error, outcome, 'find_modes')
          call stability_limit(made(spec), limit, outcome)
@@ -436,14 +436,14 @@ contains
       integer, parameter :: n = 4
       real(wp), parameter :: zeta = 0.3_wp
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(modes_type) :: modes
       real(wp) :: limit, highest
       integer :: i
 
       spec = chain(n, 'pdelta')
       spec%axial_load = -1.0e6_wp
-      spec%modal_damping = [zeta]
+      spec%damping%modal = [zeta]
       call find_modes(made(spec), modes, outcome)
       call check_passed(error, outcome, 'find_modes')
       if (allocated(error)) return
@@ -453,12 +453,12 @@ contains
       call check_close(error, limit, edge(highest, 2.0_wp*zeta*highest), 1.0e-10_wp, 0.0_wp, 'elastic')
       do i = 1, 3
          if (i == 1) then
-            spec%modal_damping = [zeta, 0.1_wp]
+            spec%damping%modal = [zeta, 0.1_wp]
          else if (i == 2) then
-            spec%modal_damping = [zeta]
-            spec%mass_damping = 1.0_wp
+            spec%damping%modal = [zeta]
+            spec%damping%mass = 1.0_wp
          else
-            spec%flexure(1) = bilinear(spec%flexure(1)%k, 1.0e-3_wp, 0.0_wp)
+            spec%flexure(1) = bilinear(spec%flexure(1)%get('k'), 1.0e-3_wp, 0.0_wp)
          end if
          call stability_limit(made(spec), limit, outcome)
          call check_passed(error, outcome, 'stability_limit')
@@ -470,18 +470,18 @@ contains
    subroutine tangent_step(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(modes_type) :: modes
       real(wp) :: c
 
       spec = column_1('small')
-      spec%stiffness_damping = 7.0e-4_wp
+      spec%damping%stiffness = 7.0e-4_wp
       call find_modes(made(spec), modes, outcome)
       call check_passed(error, outcome, 'find_modes')
       if (allocated(error)) return
-      c = spec%stiffness_damping*modes%omega(2)**2
+      c = spec%damping%stiffness*modes%omega(2)**2
       call check_close(error, modes%stable_step, 2.785293563405282_wp/c, 1.0e-12_wp, 0.0_wp, 'initial')
-      spec%tangent_damping = .true.
+      spec%damping%tangent = .true.
       call find_modes(made(spec), modes, outcome)
       call check_passed(error, outcome, 'find_modes')
       call check_close(error, modes%stable_step, edge(modes%omega(2), c), 1.0e-6_wp, 0.0_wp, 'tangent')
@@ -491,7 +491,7 @@ contains
    subroutine near_critical(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(modes_type) :: modes
 
       spec = column_1('pdelta')

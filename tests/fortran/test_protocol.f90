@@ -4,7 +4,7 @@ module test_protocol
    use rbs_base_error, only: error_type, bad_input
    use rbs_base_kinds, only: wp
    use rbs_loading_protocol, only: protocol_values
-   use rbs_spec_loading, only: loading_spec
+   use rbs_loading_loading_record, only: loading_record
    implicit none
    private
 
@@ -24,7 +24,7 @@ contains
                unit_test('a protocol too long to be meant is refused', too_long)]
    end subroutine collect_protocol
 
-   type(loading_spec) function protocol(amplitudes, points) result(spec)
+   type(loading_record) function protocol(amplitudes, points) result(spec)
       real(wp), intent(in) :: amplitudes(:)
       integer, intent(in) :: points
 
@@ -37,7 +37,7 @@ contains
 
    subroutine expect(error, spec, expected, what)
       type(error_type), allocatable, intent(inout) :: error
-      type(loading_spec), intent(in) :: spec
+      type(loading_record), intent(in) :: spec
       real(wp), intent(in) :: expected(:)
       character(len=*), intent(in) :: what
       type(error_type), allocatable :: outcome
@@ -76,7 +76,7 @@ contains
 
    subroutine cycles(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(loading_spec) :: spec
+      type(loading_record) :: spec
 
       spec = protocol([1.0_wp, 2.0_wp], 1)
       spec%cycles = [2]
@@ -87,7 +87,7 @@ contains
 
    subroutine repeats(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(loading_spec) :: spec
+      type(loading_record) :: spec
 
       spec = protocol([1.0_wp, 2.0_wp], 1)
       spec%repeats = 2
@@ -96,7 +96,7 @@ contains
 
    subroutine units(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(loading_spec) :: spec
+      type(loading_record) :: spec
 
       spec = protocol([0.01_wp], 1)
       spec%unit = ''
@@ -115,7 +115,7 @@ contains
    subroutine times(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(loading_spec) :: spec
+      type(loading_record) :: spec
       real(wp), allocatable :: time(:), value(:)
 
       spec = protocol([1.0_wp], 1)
@@ -131,7 +131,7 @@ contains
    subroutine too_long(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(loading_spec) :: spec
+      type(loading_record) :: spec
       real(wp), allocatable :: time(:), value(:)
 
       spec = protocol([1.0_wp], 25000)

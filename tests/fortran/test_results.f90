@@ -3,6 +3,7 @@ module test_results
    use check, only: unit_test, check_close, check_equal, check_same, check_true
    use rbs_base_error, only: error_type, fatal_error
    use rbs_base_kinds, only: wp
+   use rbs_base_units, only: unit_system
    use rbs_output_recorder, only: array_recorder
    use rbs_output_row, only: row_size, row_labels, row_time, row_displacement, row_force, row_input, &
                               row_kinetic, row_spring, row_damping, row_axial, row_residual, row_top, &
@@ -45,9 +46,11 @@ contains
 
    subroutine labels(error)
       type(error_type), allocatable, intent(inout) :: error
-      character(len=24), allocatable :: label(:)
+      character(len=32), allocatable :: label(:)
+      character(len=4), allocatable :: si(:)
+      type(unit_system) :: units
 
-      allocate (label, source=row_labels(12, .false., .true.))
+      call row_labels(12, .false., .true., units, label, si)
       call check_equal(error, size(label), row_size(24), 'number of labels')
       call check_equal(error, trim(label(row_time)), 'time_s', 'dynamic')
       call check_equal(error, trim(label(row_residual)), 'residual_J', 'residual')
@@ -56,16 +59,18 @@ contains
       call check_equal(error, trim(label(row_joints + 12)), 'rotation_1_rad', 'first rotation')
       call check_equal(error, trim(label(row_joints + 35)), 'shear_12_N', 'last shear')
       call check_equal(error, trim(label(row_joints + 47)), 'moment_12_Nm', 'last moment')
-      label = row_labels(1, .false., .false.)
+      call row_labels(1, .false., .false., units, label, si)
       call check_equal(error, trim(label(row_time)), 'step', 'static')
    end subroutine labels
 
    subroutine labels_of_openings(error)
       type(error_type), allocatable, intent(inout) :: error
-      character(len=24), allocatable :: label(:)
+      character(len=32), allocatable :: label(:)
+      character(len=4), allocatable :: si(:)
+      type(unit_system) :: units
       integer :: i, j
 
-      allocate (label, source=row_labels(12, .true., .true.))
+      call row_labels(12, .true., .true., units, label, si)
       call check_equal(error, size(label), row_size(36), 'number of labels')
       call check_equal(error, trim(label(row_joints + 23)), 'rotation_12_rad', 'last rotation')
       call check_equal(error, trim(label(row_joints + 24)), 'opening_1_m', 'first opening')
@@ -167,16 +172,16 @@ contains
       values = summary%as_array()
       call check_same(error, values(named('steps')), 7.0_wp, 'steps')
       call check_same(error, values(named('rows')), 1.0_wp, 'rows')
-      call check_same(error, values(named('stable_step_s')), 0.5_wp, 'stable step')
-      call check_same(error, values(named('peak_force_N')), 5.0_wp, 'peak force')
-      call check_same(error, values(named('damping_energy_J')), 3.0_wp, 'damping')
+      call check_same(error, values(named('stable_step')), 0.5_wp, 'stable step')
+      call check_same(error, values(named('peak_force')), 5.0_wp, 'peak force')
+      call check_same(error, values(named('damping_energy')), 3.0_wp, 'damping')
       call check_close(error, values(named('relative_energy_residual')), 1.0e-9_wp/50.0_wp, 1.0e-15_wp, &
                        0.0_wp, 'relative residual')
       summary%peak_rotation = 0.25_wp
       summary%cut_steps = 3
       summary%collapsed = .true.
       values = summary%as_array()
-      call check_same(error, values(named('peak_rotation_rad')), 0.25_wp, 'peak rotation')
+      call check_same(error, values(named('peak_rotation')), 0.25_wp, 'peak rotation')
       call check_same(error, values(named('cut_steps')), 3.0_wp, 'cut steps')
       call check_same(error, values(named('collapsed')), 1.0_wp, 'collapsed')
       call check_true(error, all(summary_names /= ''), 'every number has a name')

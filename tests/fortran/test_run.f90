@@ -19,8 +19,8 @@ module test_run
    use rbs_solve_time_plan, only: time_plan, new_plan
    use rbs_solve_time_run_dynamic, only: plan_dynamic
    use rbs_solve_time_state, only: state_type, stepper_type
-   use rbs_spec_analysis, only: analysis_spec
-   use rbs_spec_column, only: column_spec
+   use rbs_case_analysis_record, only: analysis_record
+   use rbs_column_column_record, only: column_record
    use runs, only: run_data, run, times, new_located
    use samples, only: bilinear, chain, column_1, compression, elastic, made, k_c, k_u, height_1
    implicit none
@@ -81,7 +81,7 @@ contains
    end subroutine ask
 
    !> A column with all that it can have, scaled to other units of length, mass and time.
-   type(column_spec) function scaled(kinematics, length, mass, time) result(spec)
+   type(column_record) function scaled(kinematics, length, mass, time) result(spec)
       character(len=*), intent(in) :: kinematics
       real(wp), intent(in) :: length, mass, time
       real(wp) :: force
@@ -97,15 +97,15 @@ contains
       spec%top_mass = 500.0_wp*mass
       spec%top_inertia = 20.0_wp*mass*length**2
       spec%depth = 0.4_wp*length
-      spec%mass_damping = 5.0_wp/time
-      spec%stiffness_damping = 1.0e-5_wp*time
-      spec%shear(1) = bilinear(spec%shear(1)%k*force/length, spec%shear(1)%d_y*length, &
-                               spec%shear(1)%k_post*force/length)
-      spec%flexure(1)%k_c = spec%flexure(1)%k_c*force*length
-      spec%flexure(1)%k_y = spec%flexure(1)%k_y*force*length
-      spec%flexure(1)%k_u = spec%flexure(1)%k_u*force*length
-      allocate (spec%axial(1))
-      spec%axial(1) = bilinear(2.0e9_wp*force/length, 4.0e-3_wp*length, 1.0e8_wp*force/length)
+      spec%damping%mass = 5.0_wp/time
+      spec%damping%stiffness = 1.0e-5_wp*time
+      spec%shear(1) = bilinear(spec%shear(1)%get('k')*force/length, spec%shear(1)%get('d_y')*length, &
+                               spec%shear(1)%get('k_post')*force/length)
+      call spec%flexure(1)%set('k_c', spec%flexure(1)%get('k_c')*force*length)
+      call spec%flexure(1)%set('k_y', spec%flexure(1)%get('k_y')*force*length)
+      call spec%flexure(1)%set('k_u', spec%flexure(1)%get('k_u')*force*length)
+      allocate (spec%axial_spring(1))
+      spec%axial_spring(1) = bilinear(2.0e9_wp*force/length, 4.0e-3_wp*length, 1.0e8_wp*force/length)
    end function scaled
 
    !> Its loads, scaled.
@@ -219,7 +219,7 @@ contains
       type(run_data), intent(inout) :: data
       character(len=*), intent(in) :: kinematics
       integer, intent(in) :: n
-      type(column_spec), intent(out) :: spec
+      type(column_record), intent(out) :: spec
 
       spec = column_1(kinematics)
       spec%n = n
@@ -231,7 +231,7 @@ contains
    subroutine collapse(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data
-      type(column_spec) :: spec
+      type(column_record) :: spec
       integer, parameter :: every(3) = [unset_integer, 1, 7]
       integer :: i, last, level, method, n
 
@@ -288,7 +288,7 @@ contains
    subroutine no_bounds(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data
-      type(column_spec) :: spec
+      type(column_record) :: spec
       integer :: last, method, n
 
       do n = 1, 3, 2
@@ -317,7 +317,7 @@ contains
    subroutine unstable(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data
-      type(column_spec) :: spec
+      type(column_record) :: spec
       integer :: n, located
 
       do n = 1, 2
@@ -379,7 +379,7 @@ contains
    subroutine refused(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data
-      type(column_spec) :: spec
+      type(column_record) :: spec
       integer :: method
 
       do method = 4, methods
@@ -408,7 +408,7 @@ contains
    subroutine idle_loads(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data
-      type(column_spec) :: spec
+      type(column_record) :: spec
 
       data%time = [0.0_wp, 1.0e-3_wp]
       data%vertical = [1.0_wp, 1.0_wp]
@@ -421,31 +421,31 @@ contains
       call run(data, made(column_1('pdelta')))
       call check_passed(error, data%outcome, 'pdelta')
       spec = column_1('small')
-      allocate (spec%axial(1))
-      spec%axial(1) = elastic(1.0e9_wp)
+      allocate (spec%axial_spring(1))
+      spec%axial_spring(1) = elastic(1.0e9_wp)
       call run(data, made(spec))
       call check_passed(error, data%outcome, 'openings')
    end subroutine idle_loads
 
    !> Stiff: many short bodies under a long loading.
-   type(column_spec) function stiff() result(spec)
+   type(column_record) function stiff() result(spec)
       integer, parameter :: n = 200
 
       spec = column_1('pdelta')
       spec%n = n
-      spec%shear(1) = elastic(spec%shear(1)%k*n)
-      spec%flexure(1)%k_c = spec%flexure(1)%k_c*n
-      spec%flexure(1)%k_y = spec%flexure(1)%k_y*n
-      spec%flexure(1)%k_u = spec%flexure(1)%k_u*n
-      spec%flexure(1)%d_c = spec%flexure(1)%d_c/n
-      spec%flexure(1)%d_y = spec%flexure(1)%d_y/n
+      spec%shear(1) = elastic(spec%shear(1)%get('k')*n)
+      call spec%flexure(1)%set('k_c', spec%flexure(1)%get('k_c')*n)
+      call spec%flexure(1)%set('k_y', spec%flexure(1)%get('k_y')*n)
+      call spec%flexure(1)%set('k_u', spec%flexure(1)%get('k_u')*n)
+      call spec%flexure(1)%set('d_c', spec%flexure(1)%get('d_c')/n)
+      call spec%flexure(1)%set('d_y', spec%flexure(1)%get('d_y')/n)
       spec%top_mass = 2.0e4_wp
    end function stiff
 
    subroutine choice(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data
-      type(column_spec) :: spec
+      type(column_record) :: spec
 
       data%analysis%method = 'auto'
       data%time = [0.0_wp, 0.01_wp]
@@ -504,7 +504,7 @@ contains
          type(time_plan), intent(out) :: plan
          type(error_type), allocatable :: outcome
 
-         call plan_dynamic(column, analysis_spec(method=method), time, loads_type(), plan, outcome)
+         call plan_dynamic(column, analysis_record(method=method), time, loads_type(), plan, outcome)
          call check_passed(error, outcome, method)
       end subroutine planned
 
@@ -534,7 +534,7 @@ contains
    subroutine auto_is_method(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: auto, named
-      type(column_spec) :: spec(4)
+      type(column_record) :: spec(4)
       integer :: i
 
       spec(1) = chain(2, 'small')
@@ -565,7 +565,7 @@ contains
    subroutine at_rest(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data
-      type(column_spec) :: spec
+      type(column_record) :: spec
       integer :: kind, method, n
 
       do kind = 1, 3
@@ -574,10 +574,10 @@ contains
                spec = chain(n, 'pdelta')
                spec%axial_load = 1.0e6_wp
                spec%self_weight = .true.
-               allocate (spec%axial(1))
-               spec%axial(1) = elastic(2.0e9_wp)
-               if (kind == 2) spec%axial(1) = compression(2.0e9_wp)
-               if (kind == 3) spec%axial(1) = bilinear(2.0e9_wp, 1.0e-4_wp, 1.0e8_wp)
+               allocate (spec%axial_spring(1))
+               spec%axial_spring(1) = elastic(2.0e9_wp)
+               if (kind == 2) spec%axial_spring(1) = compression(2.0e9_wp)
+               if (kind == 3) spec%axial_spring(1) = bilinear(2.0e9_wp, 1.0e-4_wp, 1.0e8_wp)
                data = run_data()
                data%time = times(10, 1.0e-3_wp)
                call ask(data, method)
@@ -599,12 +599,12 @@ contains
    subroutine cannot_carry(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data
-      type(column_spec) :: spec
+      type(column_record) :: spec
 
       spec = chain(3, 'small')
       spec%axial_load = -1.0e5_wp
-      allocate (spec%axial(1))
-      spec%axial(1) = compression(1.0e9_wp)
+      allocate (spec%axial_spring(1))
+      spec%axial_spring(1) = compression(1.0e9_wp)
       data%time = [0.0_wp, 0.01_wp]
       call run(data, made(spec))
       call check_failed(error, data%outcome, analysis_failed, &
@@ -623,12 +623,12 @@ contains
    subroutine openings(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data
-      type(column_spec) :: spec
+      type(column_record) :: spec
 
       spec = chain(2, 'small')
       spec%axial_load = 1.0e6_wp
-      allocate (spec%axial(1))
-      spec%axial(1) = elastic(1.0e9_wp)
+      allocate (spec%axial_spring(1))
+      spec%axial_spring(1) = elastic(1.0e9_wp)
       data%time = [0.0_wp, 1.0e-4_wp]
       data%axial = [1.0e6_wp, 1.0e6_wp]
       ! What is said of openings counts only if they are given.

@@ -5,7 +5,7 @@ module test_springs
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_hysteresis_springs, only: follow_path, spring_array
-   use rbs_spec_spring, only: spring_spec
+   use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: bilinear, bilinear_1, compression, elastic, random_type, takeda_1, d_c, d_y, f_c, f_y, &
                       k_c, k_y, k_u, s_d, s_k
    implicit none
@@ -42,7 +42,7 @@ contains
 
    !> One spring of every kind.
    subroutine every_kind(specs)
-      type(spring_spec), intent(out) :: specs(5)
+      type(spring_record), intent(out) :: specs(5)
 
       specs(1) = elastic(2.0_wp)
       specs(2) = bilinear_1()
@@ -65,7 +65,7 @@ contains
 
    subroutine virgin(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: specs(5)
+      type(spring_record) :: specs(5)
       type(spring_array) :: springs
       integer :: i
 
@@ -85,7 +85,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: m = 300
       type(random_type) :: random
-      type(spring_spec) :: specs(5)
+      type(spring_record) :: specs(5)
       type(spring_array) :: springs
       real(wp) :: d(5, m), f(5, m), alone(m)
       integer :: i, j
@@ -109,7 +109,7 @@ contains
    subroutine copy_and_restore(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: specs(5)
+      type(spring_record) :: specs(5)
       type(spring_array) :: springs, saved
       real(wp) :: d(5, 60), f(5), first(5, 60), work(5), point(5)
       integer :: path, j, events
@@ -163,7 +163,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: cuts(3) = [1, 7, 1000]
       type(random_type) :: random
-      type(spring_spec) :: specs(5)
+      type(spring_record) :: specs(5)
       type(spring_array) :: springs(3)
       real(wp) :: from(5), to(5)
       integer :: cut, j, i
@@ -191,7 +191,7 @@ contains
    subroutine work(error)
       type(error_type), allocatable, intent(inout) :: error
       type(spring_array) :: whole, cut
-      type(spring_spec) :: specs(5)
+      type(spring_record) :: specs(5)
       type(random_type) :: random
       real(wp) :: from(5), to(5)
       integer :: j, i
@@ -216,7 +216,7 @@ contains
    subroutine within_ends(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: specs(5)
+      type(spring_record) :: specs(5)
       type(spring_array) :: springs
       real(wp) :: d(5)
       integer :: j
@@ -281,7 +281,7 @@ contains
    subroutine create_again(error)
       type(error_type), allocatable, intent(inout) :: error
       type(spring_array) :: springs
-      type(spring_spec) :: specs(5)
+      type(spring_record) :: specs(5)
 
       call every_kind(specs)
       call springs%create(specs)
@@ -297,7 +297,7 @@ contains
 
    !> One more of every kind, for the tests of going back.
    subroutine all_kinds(specs)
-      type(spring_spec), intent(out) :: specs(6)
+      type(spring_record), intent(out) :: specs(6)
 
       call every_kind(specs(:5))
       specs(6) = compression(3.0_wp)
@@ -349,7 +349,7 @@ contains
    subroutine restoring(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: specs(6)
+      type(spring_record) :: specs(6)
       type(spring_array) :: springs, undisturbed
       real(wp) :: point(6)
       integer :: round, trial, j, i
@@ -427,7 +427,7 @@ contains
    subroutine forgetting(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: specs(6)
+      type(spring_record) :: specs(6)
       type(spring_array) :: springs, plain, copy
       real(wp) :: point(6)
       integer :: j
@@ -482,7 +482,7 @@ contains
    subroutine carried(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: specs(6)
+      type(spring_record) :: specs(6)
       type(spring_array) :: springs, moved
       real(wp) :: point(6)
       integer :: j, within

@@ -16,7 +16,7 @@ module test_static
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_run_static, only: run_static
    use rbs_solve_static_trace, only: kept_rows
-   use rbs_spec_column, only: column_spec
+   use rbs_column_column_record, only: column_record
    use samples, only: bilinear, bilinear_1, chain, column_1, elastic, made, random_type, takeda_1, &
                       k_c, d_y, f_y, k_u, s_k, s_d, height_1
    implicit none
@@ -78,7 +78,7 @@ contains
 
    !> Run into an array of rows.
    subroutine run(spec, by_force, values, rows, outcome, every, summary, collapse_drift)
-      type(column_spec), intent(in) :: spec
+      type(column_record), intent(in) :: spec
       logical, intent(in) :: by_force
       real(wp), intent(in) :: values(:)
       real(wp), allocatable, intent(out) :: rows(:, :)
@@ -108,7 +108,7 @@ contains
    subroutine series(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       real(wp), allocatable :: rows(:, :)
       real(wp), parameter :: x(3) = [0.01_wp, -0.02_wp, 0.005_wp]
@@ -120,15 +120,16 @@ contains
       column = made(spec)
       flexibility = 0.0_wp
       do i = 1, n
-         flexibility = flexibility + 1.0_wp/spec%shear(i)%k &
-                       + (2.0_wp - column%joint_height(i))**2/spec%flexure(i)%k
+         flexibility = flexibility + 1.0_wp/spec%shear(i)%get('k') &
+                       + (2.0_wp - column%joint_height(i))**2/spec%flexure(i)%get('k')
       end do
       call run(spec, .false., x, rows, outcome)
       call check_passed(error, outcome, 'driven by displacement')
       call check_close(error, rows(row_force, :), x/flexibility, 1.0e-13_wp, 0.0_wp, 'force')
       call check_close(error, rows(row_input, :), 0.5_wp*x**2/flexibility, 1.0e-12_wp, 0.0_wp, 'work')
       do i = 1, 3
-         call check_close(error, rows(row_joints:row_joints + n - 1, i), x(i)/flexibility/spec%shear%k, &
+         call check_close(error, rows(row_joints:row_joints + n - 1, i), &
+                          x(i)/flexibility/spec%shear%get('k'), &
                           1.0e-13_wp, 0.0_wp, 'slips')
       end do
       call run(spec, .true., x/flexibility, rows, outcome)
@@ -185,7 +186,7 @@ contains
    end subroutine bracketing
 
    !> A nonlinear chain.
-   type(column_spec) function yielding_chain(n, kinematics) result(spec)
+   type(column_record) function yielding_chain(n, kinematics) result(spec)
       integer, intent(in) :: n
       character(len=*), intent(in) :: kinematics
       integer :: i
@@ -194,8 +195,8 @@ contains
       spec%n = n
       spec%flexure = [(takeda_1('kc'), i=1, n)]
       do i = 1, n
-         spec%flexure(i)%k_c = spec%flexure(i)%k_c*(1.0_wp + 0.3_wp*sin(1.0_wp*i))
-         spec%flexure(i)%k_u = spec%flexure(i)%k_u*(1.0_wp + 0.2_wp*cos(1.0_wp*i))
+         call spec%flexure(i)%set('k_c', spec%flexure(i)%get('k_c')*(1.0_wp + 0.3_wp*sin(1.0_wp*i)))
+         call spec%flexure(i)%set('k_u', spec%flexure(i)%get('k_u')*(1.0_wp + 0.2_wp*cos(1.0_wp*i)))
       end do
    end function yielding_chain
 
@@ -204,7 +205,7 @@ contains
       integer, parameter :: n = 7
       type(error_type), allocatable :: outcome
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       real(wp), allocatable :: rows(:, :)
       real(wp) :: x(100), f(100)
@@ -233,7 +234,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :), again(:, :)
       real(wp) :: x(80)
 
@@ -252,7 +253,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :), cut(:, :)
       integer, parameter :: m = 40, parts = 50
       real(wp) :: x(m), fine(m*parts), from
@@ -288,7 +289,7 @@ contains
       integer, parameter :: n = 6
       type(error_type), allocatable :: outcome
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       real(wp), allocatable :: rows(:, :)
       real(wp) :: x(150), g(2*n), largest
@@ -315,7 +316,7 @@ contains
    subroutine pdelta_elastic(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :)
       real(wp), parameter :: load = 5.0e7_wp
       real(wp) :: flexibility
@@ -335,7 +336,7 @@ contains
    subroutine capacity(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :)
       integer :: last
 
@@ -355,7 +356,7 @@ contains
    end subroutine capacity
 
    !> k_u - P l < 0: the force is largest at yield, F l = f_y - P l d_y.
-   type(column_spec) function softening_column() result(spec)
+   type(column_record) function softening_column() result(spec)
       spec = column_1('pdelta')
       spec%axial_load = 8.0e6_wp
       spec%shear(1) = elastic(s_k)
@@ -396,7 +397,7 @@ contains
    subroutine mechanism(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :)
 
       spec = column_1('small')
@@ -415,7 +416,7 @@ contains
    subroutine mechanism_unequal(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :)
       real(wp) :: slip(2)
 
@@ -435,7 +436,7 @@ contains
    subroutine repeated_cycles(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :)
       real(wp), parameter :: share(4) = [1.0_wp, 0.9_wp, -1.0_wp, -0.9_wp]
       real(wp) :: slope, first
@@ -463,7 +464,7 @@ contains
    subroutine buckled(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :)
       real(wp), parameter :: load = 2.0e8_wp
 
@@ -584,7 +585,7 @@ contains
       type(equilibrium_type) :: full, band
       type(random_type) :: random
       type(column_type) :: column
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable, dimension(:) :: k, r, rate, correction, rate_band, correction_band
       real(wp) :: gap, force(2), force_band(2), largest(2)
       logical :: regular, regular_band
@@ -644,7 +645,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(summary_type) :: summary
       integer, parameter :: n = 60
@@ -680,7 +681,7 @@ contains
    subroutine band_mechanism(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :)
       integer :: i, n
 
@@ -705,7 +706,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :), closed(:, :)
       character(len=6), parameter :: kinematics(2) = ['small ', 'pdelta']
       integer, parameter :: bodies(3) = [1, 2, 6]
@@ -720,7 +721,7 @@ contains
             call random_targets(random, x, 0.05_wp)
             call run(spec, .false., x, closed, outcome)
             call check_passed(error, outcome, 'closed joints')
-            spec%axial = [bilinear(1.0e9_wp, 1.0e-4_wp, 1.0e8_wp)]
+            spec%axial_spring = [bilinear(1.0e9_wp, 1.0e-4_wp, 1.0e8_wp)]
             call run(spec, .false., x, rows, outcome)
             call check_passed(error, outcome, 'joints that open')
             if (allocated(error)) return
@@ -740,7 +741,7 @@ contains
    subroutine height_of_top(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(summary_type) :: summary
       real(wp), allocatable :: rows(:, :)

@@ -13,9 +13,10 @@ module test_static_finite
    use rbs_output_summary, only: summary_type
    use rbs_solve_static_trace, only: trace
    use rbs_solve_static_trace_finite, only: trace_finite
-   use rbs_spec_column, only: column_spec
-   use rbs_spec_spring, only: spring_spec
-   use samples, only: bilinear, bilinear_1, chain, column_1, elastic, made, random_type, takeda_1, &
+   use rbs_column_column_record, only: column_record
+   use rbs_hysteresis_spring_record, only: spring_record
+   use samples, only: bilinear, bilinear_1, chain, column_1, compression, elastic, made, random_type, &
+      takeda_1, &
                       f_y, d_y, k_u, s_k, height_1, mass_1
    implicit none
    private
@@ -53,7 +54,7 @@ contains
 
    !> Run into an array of rows.
    subroutine run(spec, by_force, values, rows, outcome, summary, drift)
-      type(column_spec), intent(in) :: spec
+      type(column_record), intent(in) :: spec
       logical, intent(in) :: by_force
       real(wp), intent(in) :: values(:)
       real(wp), allocatable, intent(out) :: rows(:, :)
@@ -97,7 +98,7 @@ contains
    subroutine bracketing(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(random_type) :: random
       type(spring_array) :: springs, trial
       real(wp), allocatable :: rows(:, :)
@@ -139,7 +140,7 @@ contains
    subroutine small_amplitudes(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :), second_order(:, :)
       real(wp) :: difference(4), x(2)
       integer :: i, n
@@ -166,7 +167,7 @@ contains
 
    !> A chain for an elastic beam of EI = 1 and length 1 in n parts: a joint stands for the half parts
    !> beside it, so that the curvature is summed by the trapezoidal rule (it is zero at the top).
-   type(column_spec) function beam(n) result(spec)
+   type(column_record) function beam(n) result(spec)
       integer, intent(in) :: n
       integer :: i
 
@@ -177,7 +178,7 @@ contains
       allocate (spec%shear(1))
       spec%shear(1) = elastic(1.0e13_wp)
       spec%flexure = [(elastic(1.0_wp*n), i=1, n)]
-      spec%flexure(1)%k = 2.0_wp*n
+      call spec%flexure(1)%set('k', 2.0_wp*n)
    end function beam
 
    !> Integrals of 1 and of 2 k^2 sin^2 - 1 over sqrt(1 - k^2 sin^2) from `low` to pi/2, by Simpson's rule.
@@ -230,7 +231,7 @@ contains
    subroutine buckled_elastica(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(summary_type) :: summary
       real(wp), allocatable :: rows(:, :)
       real(wp) :: angle, k2, integral(2), x, wrong(4), turn
@@ -258,7 +259,7 @@ contains
    end subroutine buckled_elastica
 
    !> A nonlinear chain.
-   type(column_spec) function yielding_chain(n) result(spec)
+   type(column_record) function yielding_chain(n) result(spec)
       integer, intent(in) :: n
       integer :: i
 
@@ -269,8 +270,8 @@ contains
       spec%lengths = spec%lengths*(spec%height/sum(spec%lengths))
       spec%flexure = [(takeda_1('kc'), i=1, n)]
       do i = 1, n
-         spec%flexure(i)%k_c = spec%flexure(i)%k_c*(1.0_wp + 0.3_wp*sin(1.0_wp*i))
-         spec%flexure(i)%k_u = spec%flexure(i)%k_u*(1.0_wp + 0.2_wp*cos(1.0_wp*i))
+         call spec%flexure(i)%set('k_c', spec%flexure(i)%get('k_c')*(1.0_wp + 0.3_wp*sin(1.0_wp*i)))
+         call spec%flexure(i)%set('k_u', spec%flexure(i)%get('k_u')*(1.0_wp + 0.2_wp*cos(1.0_wp*i)))
       end do
    end function yielding_chain
 
@@ -324,7 +325,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(summary_type) :: summary
       real(wp), allocatable :: rows(:, :)
@@ -354,7 +355,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(random_type) :: random
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       real(wp), allocatable :: rows(:, :)
       real(wp) :: x(40), largest
@@ -366,11 +367,11 @@ contains
             spec%self_weight = .true.
             select case (j)
             case (1)
-               spec%axial = [elastic(1.0e7_wp)]
+               spec%axial_spring = [elastic(1.0e7_wp)]
             case (2)
-               spec%axial = [bilinear(1.0e7_wp, 0.06_wp, 1.0e6_wp)]
+               spec%axial_spring = [bilinear(1.0e7_wp, 0.06_wp, 1.0e6_wp)]
             case default
-               spec%axial = [spring_spec(rule='compression', k=2.0e7_wp)]
+               spec%axial_spring = [compression(2.0e7_wp)]
             end select
             column = made(spec)
             call random_targets(random, x, 0.4_wp)
@@ -478,7 +479,7 @@ contains
    subroutine closed_loops(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :)
       real(wp), parameter :: share(6) = [1.0_wp, 0.5_wp, 0.9_wp, -1.0_wp, 0.2_wp, -0.6_wp]
       integer :: i, j
@@ -530,7 +531,7 @@ contains
    subroutine softening(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :)
       real(wp), parameter :: load = 8.0e6_wp
       real(wp) :: th(4), force(4), largest
@@ -561,7 +562,7 @@ contains
    subroutine smooth_peak(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :), driven(:, :)
       real(wp), parameter :: load = 1.0_wp
       real(wp) :: largest
@@ -570,7 +571,7 @@ contains
       spec = beam(2)
       spec%axial_load = load
       spec%lengths = [0.95_wp, 0.05_wp]
-      spec%axial = [elastic(2.5_wp)]
+      spec%axial_spring = [elastic(2.5_wp)]
       spec%flexure = [elastic(0.66_wp), elastic(10.0_wp)]
       call run(spec, .false., [(0.002_wp*i, i=1, 300)], rows, outcome)
       call check_passed(error, outcome, 'driven by displacement')
@@ -588,15 +589,15 @@ contains
    subroutine farthest_top(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :)
       real(wp) :: th, x, farthest
       integer :: i, last
 
       spec = beam(1)
       spec%axial_load = 3.0_wp
-      spec%flexure(1)%k = 1.0_wp
-      spec%shear(1)%k = 10.0_wp
+      call spec%flexure(1)%set('k', 1.0_wp)
+      call spec%shear(1)%set('k', 10.0_wp)
       farthest = 0.0_wp
       do i = 1, 100000
          th = 0.5_wp*pi*i/100001
@@ -618,13 +619,13 @@ contains
    subroutine buckled(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :)
       real(wp) :: th, force
 
       spec = beam(1)
-      spec%flexure(1)%k = 1.0_wp
-      spec%shear(1)%k = 100.0_wp
+      call spec%flexure(1)%set('k', 1.0_wp)
+      call spec%shear(1)%set('k', 100.0_wp)
       spec%axial_load = 1.25_wp
       call run(spec, .true., [0.1_wp], rows, outcome)
       call check_failed(error, outcome, analysis_failed, &
@@ -648,7 +649,7 @@ contains
    subroutine axial_yield(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :)
       real(wp) :: opening(2)
       character(len=6), parameter :: kinematics(3) = ['small ', 'pdelta', 'finite']
@@ -659,7 +660,8 @@ contains
          spec%axial_load = 1.0e5_wp
          spec%self_weight = .true.
          spec%masses = [1000.0_wp, 2000.0_wp]
-         spec%axial = [bilinear(1.0e8_wp, 1.1e-3_wp, 1.0e7_wp), bilinear(1.0e8_wp, 1.5e-3_wp, 1.0e7_wp)]
+         spec%axial_spring = [bilinear(1.0e8_wp, 1.1e-3_wp, 1.0e7_wp), bilinear(1.0e8_wp, 1.5e-3_wp, &
+                                       1.0e7_wp)]
          opening(2) = -(1.0e5_wp + 2000.0_wp*9.80665_wp)/1.0e8_wp
          opening(1) = -(1.1e-3_wp + (1.0e5_wp + 3000.0_wp*9.80665_wp - 1.1e5_wp)/1.0e7_wp)
          call run(spec, .false., [0.0_wp, 1.0e-4_wp], rows, outcome)
@@ -682,7 +684,7 @@ contains
    subroutine no_tension(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :)
       character(len=6), parameter :: kinematics(3) = ['small ', 'pdelta', 'finite']
       integer :: i
@@ -690,12 +692,12 @@ contains
       do i = 1, 3
          spec = chain(2, kinematics(i))
          spec%axial_load = -500.0_wp
-         spec%axial = [spring_spec(rule='compression', k=1.0e8_wp)]
+         spec%axial_spring = [compression(1.0e8_wp)]
          call run(spec, .false., [1.0e-4_wp], rows, outcome)
          call check_failed(error, outcome, analysis_failed, &
                            "the axial spring of joint 1 (rule 'compression')")
          call check_failed(error, outcome, analysis_failed, 'cannot carry the tension of 500 N')
-         spec%axial = [elastic(1.0e8_wp), bilinear(1.0e8_wp, 4.0e-6_wp, 0.0_wp)]
+         spec%axial_spring = [elastic(1.0e8_wp), bilinear(1.0e8_wp, 4.0e-6_wp, 0.0_wp)]
          call run(spec, .false., [1.0e-4_wp], rows, outcome)
          call check_failed(error, outcome, analysis_failed, "the axial spring of joint 2 (rule 'bilinear')")
          call check_equal(error, size(rows, 2), 0, 'rows')
@@ -705,7 +707,7 @@ contains
    subroutine following(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :)
 
       spec = column_1('finite')
@@ -738,7 +740,7 @@ contains
    subroutine long_chain(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       real(wp), allocatable :: rows(:, :)
       real(wp) :: k2, integral(2), force
       integer, parameter :: n = 2000

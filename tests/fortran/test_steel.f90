@@ -4,11 +4,10 @@ module test_steel
    use paths, only: check_copies, check_increments
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_factory, only: new_rule
    use rbs_hysteresis_rule, only: rule_type
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_springs, only: follow_path, spring_array
-   use rbs_spec_spring, only: spring_spec
+   use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: random_type, steel_1
    implicit none
    private
@@ -41,12 +40,11 @@ contains
    end subroutine collect_steel
 
    !> Yields at (1, 1).
-   type(spring_spec) function unit_steel() result(spec)
+   type(spring_record) function unit_steel() result(spec)
       spec%rule = 'steel'
-      spec%k = 1.0_wp
-      spec%f_y = 1.0_wp
-      spec%k_post = hardening
-      call spec%fill_defaults()
+      call spec%set('k', 1.0_wp)
+      call spec%set('f_y', 1.0_wp)
+      call spec%set('k_post', hardening)
    end function unit_steel
 
    !> f* = b x + (1 - b) x/(1 + x^R)^(1/R).
@@ -74,11 +72,11 @@ contains
       call check_close(error, far(1), star(50.0_wp, 20.0_wp), 2.0e-3_wp, 0.0_wp, 'asymptote')
    end subroutine virgin
 
-   type(spring_spec) function with_roundness(r0) result(spec)
+   type(spring_record) function with_roundness(r0) result(spec)
       real(wp), intent(in) :: r0
 
       spec = unit_steel()
-      spec%r0 = r0
+      call spec%set('r0', r0)
    end function with_roundness
 
    !> From (5, f): asymptotes meet where the elastic line meets -1 + b (d + 1); the plastic excursion is
@@ -86,14 +84,14 @@ contains
    subroutine reversed(error)
       type(error_type), allocatable, intent(inout) :: error
       real(wp) :: f(2), f_turn(1), d_a, f_a, r, xi, x
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
 
       spec = unit_steel()
       call follow_path(spec, [5.0_wp], f_turn)
       d_a = (-1.0_wp + hardening - f_turn(1) + 5.0_wp)/(1.0_wp - hardening)
       f_a = f_turn(1) + d_a - 5.0_wp
       xi = abs(0.0_wp - d_a)
-      r = spec%r0*(1.0_wp - spec%r1*xi/(spec%r2 + xi))
+      r = spec%get('r0')*(1.0_wp - spec%get('cr1')*xi/(spec%get('cr2') + xi))
       x = 1.5_wp**(1.0_wp/r)
       call follow_path(spec, [5.0_wp, 5.0_wp + x*(d_a - 5.0_wp)], f)
       call check_close(error, f(2), f_turn(1) + star(x, r)*(f_a - f_turn(1)), 1.0e-12_wp, 0.0_wp, 'force')
@@ -102,13 +100,13 @@ contains
    !> Reach from 0 to 8: half of it is 4 d_y, the strength grows by growth 4^0.8.
    subroutine growth(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: f(2), g(2)
 
       spec = unit_steel()
-      spec%r1 = 0.0_wp
+      call spec%set('cr1', 0.0_wp)
       call follow_path(spec, [8.0_wp, -200.0_wp], f)
-      spec%growth = 0.1_wp
+      call spec%set('isotropic_hardening', 0.1_wp)
       call follow_path(spec, [8.0_wp, -200.0_wp], g)
       call check_same(error, g(1), f(1), 'virgin branch')
       call check_close(error, f(2) - g(2), 0.1_wp*4.0_wp**0.8_wp, 3.0e-3_wp, 0.0_wp, 'new branch')
@@ -117,17 +115,17 @@ contains
    !> Plastic work of the way to `far` is that under the curve less the elastic part.
    subroutine endurance(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       type(spring_array) :: spring
       real(wp) :: f(2), g(2), plastic
 
       spec = unit_steel()
-      spec%r1 = 0.0_wp
+      call spec%set('cr1', 0.0_wp)
       call spring%create([spec])
       call spring%move(1, 20.0_wp)
       plastic = spring%work(1) - 0.5_wp*spring%force(1)**2
       call follow_path(spec, [20.0_wp, -400.0_wp], f)
-      spec%endurance = plastic
+      call spec%set('half_strength_work', plastic)
       call follow_path(spec, [20.0_wp, -400.0_wp], g)
       call check_close(error, g(2) - f(2), 0.5_wp, 3.0e-3_wp, 0.0_wp, 'half')
    end subroutine endurance
@@ -147,7 +145,7 @@ contains
    subroutine small_cycles(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: top, d(8), f(8), x
       integer :: i, j
 
@@ -161,8 +159,8 @@ contains
          x = top + random%uniform(0.5_wp, 3.0_wp)
          d(8) = x
          call follow_path(spec, d, f)
-         call check_true(error, f(8) <= star(x, spec%r0) + 1.0e-9_wp, 'no overshoot')
-         call check_close(error, f(8), star(x, spec%r0), 2.0e-2_wp, 0.0_wp, 'behind the small cycles')
+         call check_true(error, f(8) <= star(x, spec%get('r0')) + 1.0e-9_wp, 'no overshoot')
+         call check_close(error, f(8), star(x, spec%get('r0')), 2.0e-2_wp, 0.0_wp, 'behind the small cycles')
       end do
    end subroutine small_cycles
 
@@ -170,7 +168,7 @@ contains
    subroutine closed(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: d(6), f(6), g(3), small
       integer :: i
 
@@ -190,12 +188,12 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: most = 60
       real(wp), parameter :: widths(4) = [0.4_wp, 0.8_wp, 1.5_wp, 6.0_wp]
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: d(most + 1), f(most + 1), g(2)
       integer :: i, w, side
 
       spec = unit_steel()
-      spec%r1 = 0.0_wp
+      call spec%set('cr1', 0.0_wp)
       do w = 1, size(widths)
          do i = 1, most
             d(i) = 6.0_wp - widths(w)*(1.0_wp - (1.0_wp - 0.012_wp*i)*(-1.0_wp)**(i + 1))
@@ -213,16 +211,16 @@ contains
    !> A random steel and a path in yield deformations.
    subroutine random_steel(random, spec, d)
       type(random_type), intent(inout) :: random
-      type(spring_spec), intent(out) :: spec
+      type(spring_record), intent(out) :: spec
       real(wp), intent(out) :: d(:)
       real(wp) :: exponent
       integer :: j
 
       spec = unit_steel()
-      spec%k_post = max(0.0_wp, random%uniform(-0.02_wp, 0.1_wp))
-      spec%r0 = random%uniform(1.0_wp, 25.0_wp)
-      spec%r1 = random%uniform(0.0_wp, 0.95_wp)
-      spec%r2 = random%uniform(0.05_wp, 0.5_wp)
+      call spec%set('k_post', max(0.0_wp, random%uniform(-0.02_wp, 0.1_wp)))
+      call spec%set('r0', random%uniform(1.0_wp, 25.0_wp))
+      call spec%set('cr1', random%uniform(0.0_wp, 0.95_wp))
+      call spec%set('cr2', random%uniform(0.05_wp, 0.5_wp))
       do j = 1, size(d)
          exponent = random%uniform(-1.0_wp, 1.2_wp)
          d(j) = random%uniform(-1.0_wp, 1.0_wp)*10.0_wp**exponent
@@ -234,14 +232,14 @@ contains
    subroutine mirror(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: d(40), f(40), mirrored(40)
       integer :: path
 
       do path = 1, 200
          call random_steel(random, spec, d)
-         spec%growth = 0.02_wp
-         spec%endurance = 500.0_wp
+         call spec%set('isotropic_hardening', 0.02_wp)
+         call spec%set('half_strength_work', 500.0_wp)
          call follow_path(spec, d, f)
          call follow_path(spec, -d, mirrored)
          call check_same(error, mirrored, 0.0_wp - f, 'mirror')
@@ -252,7 +250,7 @@ contains
    subroutine continuous(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       class(rule_type), allocatable :: rule
       type(segment) :: line
       real(wp) :: to(40), d, before
@@ -260,9 +258,9 @@ contains
 
       do path = 1, 300
          call random_steel(random, spec, to)
-         spec%growth = 0.02_wp
-         spec%endurance = 500.0_wp
-         call new_rule(rule, spec)
+         call spec%set('isotropic_hardening', 0.02_wp)
+         call spec%set('half_strength_work', 500.0_wp)
+         call spec%make(rule)
          call rule%start(line)
          d = 0.0_wp
          do j = 1, size(to)
@@ -290,7 +288,7 @@ contains
    subroutine increments(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: d(20)
       integer :: path
 
@@ -304,7 +302,7 @@ contains
    subroutine copies(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: d(40)
       integer :: path
 
@@ -317,10 +315,12 @@ contains
    subroutine forgets(error)
       type(error_type), allocatable, intent(inout) :: error
       class(rule_type), allocatable :: rule
+      type(spring_record) :: spec
       type(segment) :: first, line
       integer :: i
 
-      call new_rule(rule, steel_1())
+      spec = steel_1()
+      call spec%make(rule)
       call rule%start(first)
       line = first
       do i = 1, 100
@@ -336,7 +336,7 @@ contains
    subroutine cycles(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       type(spring_array) :: spring
       real(wp) :: d(12), begin, ends(2)
       integer :: path, j, i
@@ -364,14 +364,16 @@ contains
    subroutine bounded(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: d(60), f(60)
       integer :: path
 
       do path = 1, 300
          call random_steel(random, spec, d)
          call follow_path(spec, d, f)
-         call check_true(error, all(abs(f - spec%k_post*d) <= 1.0_wp - spec%k_post + 1.0e-6_wp), 'bounds')
+         call check_true(error, &
+                         all(abs(f - spec%get('k_post')*d) <= 1.0_wp - spec%get('k_post') + 1.0e-6_wp), &
+                             'bounds')
       end do
    end subroutine bounded
 

@@ -13,7 +13,7 @@ module test_steppers
    use rbs_solve_time_pair45, only: pair45_scheme
    use rbs_solve_time_rk4, only: rk4_stepper
    use rbs_solve_time_state, only: state_type
-   use rbs_spec_column, only: column_spec
+   use rbs_column_column_record, only: column_record
    use runs, only: scene_type, scenes, new_scene, new_mass, play, play_located, find_reference, new_state, &
                    new_located, signal_of, check_order, residual_of, distance
    use samples, only: bilinear, chain, column_1, compression, elastic, made, random_type, takeda_1, d_c, &
@@ -292,7 +292,7 @@ contains
    subroutine pair_order(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(modes_type) :: modes
       type(state_type) :: state
@@ -301,11 +301,11 @@ contains
       integer :: i, step, steps
 
       spec = chain(2, 'small')
-      spec%mass_damping = 200.0_wp
+      spec%damping%mass = 200.0_wp
       column = made(spec)
       call find_modes(column, modes, outcome)
       call check_passed(error, outcome, 'find_modes')
-      c = 0.5_wp*spec%mass_damping
+      c = 0.5_wp*spec%damping%mass
       omega = sqrt(modes%omega(4)**2 - c**2)
       t = 5.0_wp/omega
       q = exp(-c*t)*(cos(omega*t) + c/omega*sin(omega*t))
@@ -394,7 +394,7 @@ contains
    subroutine at_once(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(scene_type) :: scene
       type(state_type) :: state, reference
       real(wp) :: wrong(4)
@@ -402,8 +402,8 @@ contains
 
       spec = chain(2, 'small')
       spec%masses = [1.0_wp, 1.0_wp]
-      allocate (spec%axial(1))
-      spec%axial(1) = compression(100.0_wp)
+      allocate (spec%axial_spring(1))
+      spec%axial_spring(1) = compression(100.0_wp)
       scene%column = made(spec)
       allocate (scene%q(6), scene%v(6), source=0.0_wp)
       scene%q(5:6) = 1.0_wp
@@ -429,7 +429,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 8
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(random_type) :: random
       type(scene_type) :: scene
       type(state_type) :: state
@@ -438,8 +438,8 @@ contains
 
       spec = chain(n, 'small')
       spec%masses = 1.0_wp
-      allocate (spec%axial(1))
-      spec%axial(1) = compression(100.0_wp)
+      allocate (spec%axial_spring(1))
+      spec%axial_spring(1) = compression(100.0_wp)
       scene%column = made(spec)
       allocate (scene%q(3*n), scene%v(3*n), source=0.0_wp)
       scene%finish = 3.0_wp
@@ -557,7 +557,7 @@ contains
    subroutine small_loops(error)
       type(error_type), allocatable, intent(inout) :: error
       character(len=3), parameter :: inner(3) = ['kc ', 'kr ', 'one']
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
       type(state_type) :: state, reference
       integer :: i
@@ -565,7 +565,7 @@ contains
       do i = 1, 3
          spec = column_1('small')
          spec%flexure(1) = takeda_1(trim(inner(i)))
-         spec%mass_damping = 20.0_wp
+         spec%damping%mass = 20.0_wp
          column = made(spec)
          call swing(0.2_wp, 1.0e-12_wp, 1, reference)
          call swing(0.2_wp, 0.0_wp, 8000, state)
@@ -675,7 +675,7 @@ contains
    subroutine falling(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(scene_type) :: scene
       type(state_type) :: state
       integer :: method

@@ -5,7 +5,7 @@ module test_takeda
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_springs, only: follow_path, spring_array
-   use rbs_spec_spring, only: spring_spec
+   use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: takeda, takeda_1, k_c, d_c, k_y, d_y, k_u, b0, b1, f_c, f_y, k_0, random_type
    implicit none
    private
@@ -234,7 +234,7 @@ contains
    subroutine outer_line(error)
       type(error_type), allocatable, intent(inout) :: error
       real(wp) :: f(4), f_peak, k_r
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
 
       f_peak = f_y + k_u*d_y
       k_r = k_0*0.5_wp**b0
@@ -252,7 +252,7 @@ contains
    subroutine first_return(error)
       type(error_type), allocatable, intent(inout) :: error
       real(wp) :: f(3), k_r, crack
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
 
       k_r = k_0*0.5_wp**b0
       crack = 2.0_wp*d_y - (f_y + k_u*d_y + f_c)/k_r
@@ -296,7 +296,7 @@ contains
    subroutine turn_at_zero(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       type(spring_array) :: spring
       real(wp) :: d(12), back
       integer :: path, j, ulps, direction, found
@@ -304,7 +304,7 @@ contains
       found = 0
       do path = 1, 400
          call random_spring(random, spec)
-         call random_path(random, spec%d_y, d)
+         call random_path(random, spec%get('d_y'), d)
          call spring%create([spec])
          do j = 1, size(d)
             call spring%move(1, d(j))
@@ -375,7 +375,7 @@ contains
    !> Numbers over the whole range that takeda.md section 3 was tried on.
    subroutine random_spring(random, spec)
       type(random_type), intent(inout) :: random
-      type(spring_spec), intent(out) :: spec
+      type(spring_record), intent(out) :: spec
       real(wp) :: yield, k_yield, k_ultimate, factor
 
       yield = random%uniform(1.05_wp, 15.0_wp)
@@ -410,13 +410,13 @@ contains
    subroutine increments(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: d(40)
       integer :: path
 
       do path = 1, 200
          call random_spring(random, spec)
-         call random_path(random, spec%d_y, d)
+         call random_path(random, spec%get('d_y'), d)
          call check_increments(error, spec, d, 7)
          if (mod(path, 10) == 0) call check_increments(error, spec, d, 1000)
       end do
@@ -425,7 +425,7 @@ contains
    subroutine continuity(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       type(spring_array) :: spring
       real(wp) :: d(40), from, to, f, change, steepest
       integer :: path, j, i
@@ -433,7 +433,7 @@ contains
       steepest = 0.0_wp
       do path = 1, 60
          call random_spring(random, spec)
-         call random_path(random, spec%d_y, d)
+         call random_path(random, spec%get('d_y'), d)
          call spring%create([spec])
          to = 0.0_wp
          do j = 1, size(d)
@@ -454,13 +454,13 @@ contains
    subroutine mirror(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: d(40), f(40), f_mirror(40)
       integer :: path
 
       do path = 1, 300
          call random_spring(random, spec)
-         call random_path(random, spec%d_y, d)
+         call random_path(random, spec%get('d_y'), d)
          call follow_path(spec, d, f)
          call follow_path(spec, -d, f_mirror)
          ! + 0: a zero of either sign is the same zero.
@@ -471,7 +471,7 @@ contains
    subroutine work_positive(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       type(spring_array) :: spring
       real(wp) :: d(60), least
       integer :: path, j
@@ -479,7 +479,7 @@ contains
       least = 0.0_wp
       do path = 1, 300
          call random_spring(random, spec)
-         call random_path(random, spec%d_y, d)
+         call random_path(random, spec%get('d_y'), d)
          call spring%create([spec])
          do j = 1, size(d)
             call spring%move(1, d(j))

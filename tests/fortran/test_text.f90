@@ -2,10 +2,12 @@
 module test_text
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf, &
                                             ieee_negative_inf
-   use check, only: unit_test, check_equal, check_failed, check_true
+   use check, only: unit_test, check_equal, check_failed, check_same, check_true
    use rbs_base_error, only: error_type, message_list, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: to_text, lower, nearest_name, list_of
+   use rbs_base_text, only: exact_text, to_text, lower, nearest_name, list_of
+   use rbs_io_text_file, only: read_real, number_ok
+   use samples, only: random_type
    implicit none
    private
 
@@ -23,6 +25,8 @@ contains
                unit_test('reals are rounded before the form is chosen', rounding), &
                unit_test('numbers that are none', not_numbers), &
                unit_test('integers', integers), &
+               unit_test('exact text reads back to the same bits', exact), &
+               unit_test('short decimals are read as the library reads them', short_decimals), &
                unit_test('lower case', lower_case), &
                unit_test('list of names', lists), &
                unit_test('nearest name by edit distance', nearest), &
@@ -80,6 +84,46 @@ contains
       call check_equal(error, to_text(-42), '-42', '-42')
       call check_equal(error, to_text(huge(1)), '2147483647', 'the largest')
    end subroutine integers
+
+   !> By the library and by our own reader.
+   subroutine exact(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      character(len=32) :: text
+      real(wp) :: x, again, ours
+      integer :: i, status
+
+      call check_equal(error, trim(exact_text(1.6_wp)), '1.6', '1.6')
+      call check_equal(error, trim(exact_text(-744.0e3_wp)), '-744000', '-744e3')
+      call check_equal(error, trim(exact_text(1.296e-4_wp)), '0.0001296', '1.296e-4')
+      call check_equal(error, trim(exact_text(2.0e11_wp)), '2e11', '2e11')
+      do i = 1, 20000
+         x = random%uniform(-1.0_wp, 1.0_wp)*10.0_wp**nint(random%uniform(-40.0_wp, 40.0_wp))
+         text = exact_text(x)
+         read (text, *) again
+         call read_real(trim(text), ours, status)
+         call check_same(error, again, x, text)
+         call check_same(error, ours, x, text)
+      end do
+   end subroutine exact
+
+   subroutine short_decimals(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      character(len=32) :: text, form
+      real(wp) :: library, ours
+      integer :: i, status
+
+      do i = 1, 50000
+         write (form, '(a, i0, a)') '(es32.', int(random%uniform(0.0_wp, 17.0_wp)), 'e3)'
+         write (text, form) random%uniform(-1.0_wp, 1.0_wp)*10.0_wp**nint(random%uniform(-25.0_wp, 25.0_wp))
+         text = adjustl(text)
+         read (text, *) library
+         call read_real(trim(text), ours, status)
+         call check_equal(error, status, number_ok, text)
+         call check_same(error, ours, library, text)
+      end do
+   end subroutine short_decimals
 
    subroutine lower_case(error)
       type(error_type), allocatable, intent(inout) :: error

@@ -28,7 +28,7 @@ GROUPS = {
 
 # The same column at rest, and the ground begins to move.
 DYNAMIC = {
-    "loading": "drive = 'ground', amplitudes = 3.0, period = 0.1, points = 4",
+    "loading": "drive = 'ground_acceleration', amplitudes = 3.0, period = 0.1, points = 4",
     "analysis": "method = 'rk4'",
 }
 

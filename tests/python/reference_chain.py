@@ -45,9 +45,9 @@ class Chain:
             inertia = ones * c.rotary_inertia
         # A mass at the top is one more body without length.
         self.own, self.inertia = own, inertia
-        springs = [c.shear, c.flexure] + ([] if c.axial is None else [c.axial])
-        alike = [[one] * n if hasattr(one, "k") else one for one in springs]
-        self.k = np.array([one.k for several in alike for one in several])
+        springs = [one for name in ("shear", "flexure", "axial_spring") for one in c.joints(name)]
+        self.k = np.array([one.k for one in springs])
+        self.damping = c.damping or rbsdem.Damping()
         self.size = self.k.size
 
     def bodies(self, q, v):
@@ -125,7 +125,7 @@ class Chain:
     def rates(self, time, state):
         q, p = state[: self.size], state[self.size :]
         v = np.linalg.solve(self.mass(q), p)
-        viscous = self.column.stiffness_damping * self.k * v + self.column.mass_damping * p
+        viscous = self.damping.stiffness * self.k * v + self.damping.mass * p
         return np.concatenate([v, self.slope(q, v) + self.push(q, time) - viscous])
 
     def solve(self, times, q, v, tolerance=1e-11):

@@ -23,7 +23,7 @@ class Concrete:
     k: float
     f_peak: float
     d_peak: float
-    k_fall: float
+    k_soft: float
     f_res: float = 0.0
     plastic: float = 1.0
     contact: float = 0.0
@@ -42,7 +42,7 @@ class Concrete:
         if c <= self.d_peak:
             rising = self.f_peak * CHORDS * r / (r - 1 + CHORDS**r)
             return float(np.interp(c / self.d_peak, CHORDS, rising))
-        return max(self.f_peak - self.k_fall * (c - self.d_peak), self.f_res)
+        return max(self.f_peak - self.k_soft * (c - self.d_peak), self.f_res)
 
     def step(self, d: float) -> tuple[float, Concrete]:
         c = -d
@@ -110,10 +110,10 @@ class Steel:
     f_y: float
     k_post: float
     r0: float = 20.0
-    r1: float = 0.925
-    r2: float = 0.15
-    growth: float = 0.0
-    endurance: float = 0.0
+    cr1: float = 0.925
+    cr2: float = 0.15
+    isotropic_hardening: float = 0.0
+    half_strength_work: float = 0.0
     d: float = 0.0
     f: float = 0.0
     work: float = 0.0
@@ -133,15 +133,15 @@ class Steel:
             else:
                 del branches[-3 if len(branches) >= 3 else -2 : -1]
         high, low = max(self.highest, self.d), min(self.lowest, self.d)
-        strength = 1 + self.growth * ((high - low) / 2 / d_y) ** 0.8
-        if self.endurance:
+        strength = 1 + self.isotropic_hardening * ((high - low) / 2 / d_y) ** 0.8
+        if self.half_strength_work:
             spent = max(0.0, self.work - self.f**2 / 2 / self.k) / (self.f_y * d_y)
-            strength /= 1 + (spent / self.endurance) ** 2
+            strength /= 1 + (spent / self.half_strength_work) ** 2
         # Where the elastic line through here meets the line of hardening of the other side.
         line = way * (strength * self.f_y - self.k_post * d_y)
         d_a = (line - self.f + self.k * self.d) / (self.k - self.k_post)
         xi = abs((high if way > 0 else low) - d_a) / d_y
-        r = max(0.8, self.r0 * (1 - self.r1 * xi / (self.r2 + xi)))
+        r = max(0.8, self.r0 * (1 - self.cr1 * xi / (self.cr2 + xi)))
         f_a = self.f + self.k * (d_a - self.d)
         new = Branch(way, self.d, self.f, d_a, f_a, r, self.k, self.k_post / self.k)
         return (*branches, new)

@@ -287,11 +287,11 @@ def test_paths_reach_one_or_all():
     column = joints(0.002, 0.003, 0.004)
     ways = paths.paths(column)
     one = paths.with_values(column, ways, {"flexure[1].d_y": 0.01, "shear.k": 6e8, "height": 1.6})
-    assert [spring.d_y for spring in one.flexure] == [0.002, 0.01, 0.004]
+    assert [spring.d_y for spring in one.joints("flexure")] == [0.002, 0.01, 0.004]
     assert (one.shear.k, one.height, one.shear.d_y) == (6e8, 1.6, 1e-4)
     every = paths.with_values(column, ways, {"flexure[*].d_y": 2.0, "flexure[0].k_y": 5e7})
-    assert [spring.d_y for spring in every.flexure] == [0.004, 0.006, 0.008]
-    assert [spring.k_y for spring in every.flexure] == [5e7, 6e7, 6e7]
+    assert [spring.d_y for spring in every.joints("flexure")] == [0.004, 0.006, 0.008]
+    assert [spring.k_y for spring in every.joints("flexure")] == [5e7, 6e7, 6e7]
     # What belongs together changes at a time: neither order would do one after the other.
     stiff = paths.with_values(column, ways, {"flexure[2].k_y": 4e8, "flexure[2].k_c": 5e8})
     assert stiff.flexure[2].k_y == 4e8
@@ -301,20 +301,22 @@ def test_paths_reach_one_or_all():
 def test_paths_reach_layers():
     steel, concrete = SteelSpring(k=2e8, f_y=5e5, k_post=1e6), ConcreteSpring(6e9, 4e6, 2e-3, 1e8)
     layers = [(-0.2, concrete), (-0.15, steel), (0.15, steel), (0.2, concrete)]
-    column = replace(joints(0.002), flexure=Layered(axial_load=1e5, layers=layers))
+    column = replace(joints(0.002), flexure=Layered(layers))
     known = free_names(column)
     ways = paths.paths(column)
     assert known["flexure.layers[1].f_y"].unit == "N"
     assert known["flexure.layers[*].f_y"].unit == ""
     assert "flexure.layers[0].f_y" not in known
-    some = {"flexure.layers[*].f_y": 1.1, "flexure.layers[2].f_y": 6e5, "flexure.axial_load": 2e5}
-    spring = paths.with_values(column, ways, some).flexure
+    some = {"flexure.layers[*].f_y": 1.1, "flexure.layers[2].f_y": 6e5, "axial_load": 2e5}
+    changed = paths.with_values(column, ways, some)
+    spring = changed.flexure
     assert [getattr(layer, "f_y", None) for _, layer in spring.layers] == pytest.approx(
         [None, 5.5e5, 6.6e5, None]
     )
     assert [y for y, _ in spring.layers] == [-0.2, -0.15, 0.15, 0.2]
-    assert spring.axial_load == 2e5
-    two = replace(column, n=2, flexure=[column.flexure] * 2)
+    assert changed.axial_load == 2e5
+    other = [(y, replace(layer, f_y=4e5) if layer is steel else layer) for y, layer in layers]
+    two = replace(column, n=2, flexure=[column.flexure, Layered(other)])
     factor = {"flexure[*].layers[*].k": 0.5}
     softer = paths.with_values(two, paths.paths(two), factor).flexure
     assert [layer.k for spring in softer for _, layer in spring.layers] == [3e9, 1e8, 1e8, 3e9] * 2

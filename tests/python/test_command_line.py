@@ -186,7 +186,9 @@ def test_csv_says_version_case_units_and_is_read_by_numpy(run_cli, case_text, tm
     named = np.genfromtxt(path, delimiter=",", names=True, skip_header=3)
     assert named.dtype.names == tuple(names)
     assert np.all(np.isfinite(table))
-    run = rbsdem.cyclic(COLUMN, rbsdem.protocol(np.array([0.005, 0.01]) * 1.6, points=4))
+    run = rbsdem.cyclic(
+        COLUMN, displacement=rbsdem.protocol(np.array([0.005, 0.01]) * 1.6, points=4)
+    )
     assert np.array_equal(table[:, 1], run.displacement)
     assert np.array_equal(table[:, 2], run.force)
     assert np.array_equal(named["moment_1_Nm"], run.moment[:, 0])
@@ -275,8 +277,8 @@ LAYOUTS = {
         "amplitudes = 0.005, 0.01", "amplitudes(1) = 0.005, amplitudes( 2 ) = 0.01"
     ),
     "defaults said": lambda t: (
-        t.replace("height", "n = 1, kinematics = 'small', height")
-        + "&axial load = 0, self_weight = F / &analysis method = 'static' /\n"
+        t.replace("height", "n = 1, kinematics = 'small', axial_load = 0, height")
+        + "&damping mass = 0, tangent = F / &analysis method = 'static' /\n"
         + "&output every = +1 /"
     ),
 }
@@ -332,6 +334,7 @@ def test_quote_within_a_text_is_doubled_or_of_the_other_kind(run_cli, case_text,
 K = "rule = 'bilinear', k = 7e8, d_y = 1e-4, k_post = 8e6"
 E = "rule = 'elastic', k = 1e8"
 H = "height = 1, mass = 1, "
+STATIC = "method = 'static'"
 PROTOCOL = "drive = 'displacement', amplitudes = "
 
 # What is put into the minimal case, and what the message must name.
@@ -343,8 +346,10 @@ STATIC_FAULTS = [
     ({"flexure": "rule = 'takda'"}, ["flexure spring: rule = 'takda'", "mean 'takeda'"]),
     ({"shear": "rule = 'Elastic', k = 1"}, ["rule = 'Elastic'", "mean 'elastic'"]),
     ({"column": "height = 1, mass = 1, kinematics = 'pdleta'"}, ["'pdleta'", "mean 'pdelta'"]),
-    ({"shear": E + ", d_y = 1"}, ["shear spring: d_y is not used by the rule elastic", "remove"]),
-    ({"loading": PROTOCOL + "1, file = 'x.csv'"}, ["file and amplitudes"]),
+    ({"shear": E + ", d_y = 1"},
+     ["line 3", "&shear: d_y is not used by the rule elastic", "remove"]),
+    ({"loading": PROTOCOL + "1, file = 'x.csv'"},
+     ["more than one of file, amplitudes and values", "keep"]),
     ({"analysis": "method = 'static ly'"}, ["method = 'static ly'", "static, auto, rk4"]),
     ({"loading": "drive = 'displacment', amplitudes = 1"}, ["'displacment'", "'displacement'"]),
     ({"loading": PROTOCOL + "1, source = 'protocoll'"}, ["'protocoll'", "mean 'protocol'"]),
@@ -356,7 +361,8 @@ STATIC_FAULTS = [
     ({"column": "height = .true., mass = 6"}, ["height = .true. is not a number"]),
     ({"column": "n = 1.5, height = 1, mass = 1"}, ["n = 1.5 must be a whole number"]),
     ({"column": "n = 99999999999, height = 1, mass = 1"}, ["n = 99999999999 must be a whole"]),
-    ({"axial": "self_weight = 1"}, ["line 6", "self_weight = 1 must be .true. or .false."]),
+    ({"column": H + "self_weight = 1"},
+     ["line 2", "self_weight = 1 must be .true. or .false."]),
     ({"case": "title = minimal"}, ["line 1", "title = minimal must be a text in quotes"]),
     ({"shear": "rule = elastic, k = 1"}, ["rule = elastic must be a text in quotes: 'elastic'"]),
     ({"case": f"title = '{'x' * 600}'"}, ["line 1", "title", "longer than 510"]),
@@ -395,14 +401,16 @@ STATIC_FAULTS = [
     ({"loading": PROTOCOL + "0.1, amplitudes(1) = 0.1"}, ["'amplitudes' stands twice"]),
     ({"loading": "amplitudes(2) = 0.1, amplitudes(2) = 0.2"}, ["'amplitudes' stands twice"]),
     ({"column": ["height = 1.6, mass = 1"] * 2},
-     ["case.nml line 3", "&column stands 2 times", "1 at the most"]),
-    ({"axial": ["load = 1"] * 3}, ["&axial stands 3 times"]),
-    ({"case": ["title = 'a'"] * 2}, ["line 2", "&case stands 2 times"]),
-    ({"shear": [E, E]}, ["line 4", "&shear for joint = 0 stands twice", "first on line 3"]),
+     ["case.nml line 3", "&column stands twice", "it may stand once"]),
+    ({"damping": ["mass = 1"] * 3}, ["line 7", "line 8", "&damping stands twice"]),
+    ({"case": ["title = 'a'"] * 2}, ["line 2", "&case stands twice"]),
+    ({"shear": [E, E]},
+     ["line 4", "&shear without joint stands twice", "first at case.nml line 3"]),
     ({"column": "n = 2, height = 1, mass = 1", "shear": [E + ", joint = 2"] * 2},
      ["&shear for joint = 2 stands twice"]),
     ({"loading": ["drive = 'force', amplitudes = 1"] * 2}, ["several loadings need a dynamic"]),
-    ({"loading": ["drive = 'force', amplitudes = 1"] * 5}, ["&loading stands 5 times; 4"]),
+    ({"loading": ["drive = 'force', amplitudes = 1"] * 5},
+     ["line 9", "&loading stands more than 4 times"]),
     # missing
     ({"column": None}, ["case.nml", "group &column is missing"]),
     ({"shear": None}, ["case.nml", "group &shear is missing"]),
@@ -417,7 +425,7 @@ STATIC_FAULTS = [
     ({"loading": "drive = 'force', source = 'protocol'"}, ["amplitudes are missing"]),
     ({"loading": "drive = 'force', source = 'file'"}, ["file is missing", "path"]),
     ({"column": "n = 2, height = 1, mass = 1", "shear": E + ", joint = 1"},
-     ["case.nml", "joint 2 has no &shear", "joint = 0"]),
+     ["joint 2 has no &shear", "one without joint"]),
     # numbers
     ({"column": "height = NaN, mass = 1"}, ["column: height = NaN", "finite"]),
     ({"column": "height = 1, mass = -inf"}, ["column: mass = -Infinity", "finite"]),
@@ -425,16 +433,17 @@ STATIC_FAULTS = [
     ({"shear": "rule = 'elastic', k = Infinity"}, ["shear spring: k = Infinity", "finite"]),
     ({"loading": PROTOCOL + "0.01, NaN"}, ["amplitudes(2) = NaN", "finite"]),
     ({"loading": PROTOCOL + "1, scale = inf"}, ["scale = Infinity", "finite"]),
-    ({"axial": "load = nan"}, ["axial_load = NaN", "finite"]),
+    ({"column": "height = 1.6, mass = 614.4, axial_load = nan"}, ["axial_load = NaN", "finite"]),
     ({"column": "height = -1.6, mass = 1"}, ["column: height = -1.6 m must be above zero"]),
     ({"column": "height = 1.6, mass = 0"}, ["column: mass = 0 kg must be above zero"]),
-    ({"column": "n = 0, height = 1.6, mass = 1"}, ["column: n = 0 bodies", "1 to 10000"]),
-    ({"column": "n = -3, height = 1.6, mass = 1"}, ["column: n = -3 bodies", "1 to 10000"]),
-    ({"column": "n = 10001, height = 1.6, mass = 1"}, ["column: n = 10001 bodies", "1 to 10000"]),
-    ({"column": "height = 1, mass = 1, mass_damping = -1"}, ["mass_damping = -1", "negative"]),
-    ({"column": "height = 1, mass = 1, stiffness_damping = -1"},
-     ["stiffness_damping = -1", "negative"]),
-    ({"axial": "gravity = -9.8"}, ["gravity = -9.8", "negative"]),
+    ({"column": "n = 0, height = 1.6, mass = 1"}, ["column: n = 0", "1 to 10000"]),
+    ({"column": "n = -3, height = 1.6, mass = 1"}, ["column: n = -3", "1 to 10000"]),
+    ({"column": "n = 10001, height = 1.6, mass = 1"}, ["column: n = 10001", "1 to 10000"]),
+    ({"column": "height = 1, mass = 1", "damping": "mass = -1"},
+     ["damping: mass = -1 1/s", "negative"]),
+    ({"column": "height = 1, mass = 1", "damping": "stiffness = -1"},
+     ["damping: stiffness = -1 s", "negative"]),
+    ({"column": "height = 1.6, mass = 614.4, gravity = -9.8"}, ["gravity = -9.8", "negative"]),
     ({"column": "n = 2, height = 1, mass = 1, lengths = 0.5, 0.6"},
      ["lengths add up to 1.1 m", "height is 1 m"]),
     ({"column": "n = 2, height = 1, masses = 1, 2, 3"}, ["masses has 3 values for n = 2"]),
@@ -444,7 +453,7 @@ STATIC_FAULTS = [
      ["flexure spring: d_y = 1 must be above d_c = 2"]),
     ({"shear": E + ", joint = 2"}, ["line 3", "&shear has joint = 2", "1 to n = 1"]),
     ({"shear": E + ", joint = -1"}, ["line 3", "&shear has joint = -1"]),
-    ({"loading": PROTOCOL + "-0.01"}, ["amplitudes(1) = -0.01 must be above zero"]),
+    ({"loading": PROTOCOL + "-0.01"}, ["amplitudes = -0.01 must be above zero"]),
     ({"loading": PROTOCOL + "0.01, cycles = 0"}, ["cycles = 0 must be 1 or more"]),
     ({"loading": PROTOCOL + "1, 2, cycles = 1, 1, 1"}, ["cycles has 3 values for 2 amplitudes"]),
     ({"loading": PROTOCOL + "0.01, points = 0"}, ["points = 0 must be 1 or more"]),
@@ -454,9 +463,12 @@ STATIC_FAULTS = [
     ({"output": "every = 0"}, ["output: every = 0 must be 1 or more"]),
     ({"analysis": "dt = 0.1"}, ["dt has no meaning for method = 'static'", "rk4"]),
     ({"analysis": "duration = 1"}, ["duration has no meaning for method = 'static'", "rk4"]),
-    ({"loading": "drive = 'ground', amplitudes = 1"}, ["'ground' needs a dynamic", "rk4"]),
-    ({"loading": "drive = 'vertical', amplitudes = 1"}, ["'vertical' needs a dynamic", "rk4"]),
-    ({"loading": "drive = 'axial', amplitudes = 1"}, ["'axial' needs a dynamic", "rk4"]),
+    ({"loading": "drive = 'ground_acceleration', amplitudes = 1", "analysis": STATIC},
+     ["'ground_acceleration' needs a dynamic", "method = 'auto'"]),
+    ({"loading": "drive = 'vertical_acceleration', amplitudes = 1", "analysis": STATIC},
+     ["'vertical_acceleration' needs a dynamic", "method = 'auto'"]),
+    ({"loading": "drive = 'axial_load', amplitudes = 1", "analysis": STATIC},
+     ["'axial_load' needs a dynamic", "method = 'auto'"]),
     # lumped mass, rotary inertia, damping
     ({"column": H + "top_mass = '1'"}, ["line 2", "top_mass = '1' must be a number"]),
     ({"column": H + "top_mass = -1"}, ["top_mass = -1 kg", "negative"]),
@@ -473,36 +485,43 @@ STATIC_FAULTS = [
     ({"column": H + "n = 2, rotary_inertia = 1, NaN"}, ["rotary_inertia(2) = NaN", "finite"]),
     ({"column": H + "n = 2, rotary_inertia(2) = 1"}, ["rotary_inertia(1) is missing"]),
     ({"column": H + "rotary_inertia = 10001*1"}, ["has 10001", "10000 at the most"]),
-    ({"column": H + "tangent_damping = 1"}, ["tangent_damping = 1 must be .true. or .false."]),
-    ({"column": H + "tangent_damping = T"}, ["tangent_damping", "without stiffness_damping"]),
-    ({"column": H + "modal_damping = 5"}, ["modal_damping(1) = 5", "below 1", "per cent"]),
-    ({"column": H + "modal_damping = -0.1"}, ["modal_damping(1) = -0.1", "negative"]),
-    ({"column": H + "modal_damping = NaN"}, ["modal_damping(1) = NaN", "finite"]),
-    ({"column": H + "modal_damping = 3*0.1"}, ["modal_damping has 3 values for 2 modes"]),
-    ({"column": H + "n = 501, modal_damping = 0.1"}, ["modal damping", "500 bodies", "n = 501"]),
-    ({"column": H + "modal_damping = 1501*0.1"}, ["has 1501", "1500 at the most"]),
+    ({"column": H, "damping": "tangent = 1"}, ["tangent = 1 must be .true. or .false."]),
+    ({"column": H, "damping": "tangent = T"}, ["damping: tangent", "without stiffness"]),
+    ({"column": H, "damping": "modal = 5"}, ["damping: modal = 5", "below 1", "per cent"]),
+    ({"column": H, "damping": "modal = -0.1"}, ["damping: modal = -0.1", "negative"]),
+    ({"column": H, "damping": "modal = NaN"}, ["damping: modal = NaN", "finite"]),
+    ({"column": H, "damping": "modal = 3*0.1"}, ["damping: modal has 3 values for 2 modes"]),
+    ({"column": H + "n = 501", "damping": "modal = 0.1"},
+     ["modal damping", "500 bodies", "n = 501"]),
+    ({"column": H, "damping": "modal = 1501*0.1"}, ["has 1501", "1500 at the most"]),
     # loads that follow
-    ({"axial": "load = 1, follows = yes"}, ["line 6", "follows = yes must be .true. or .false."]),
-    ({"axial": "load = 1, follows = .true."}, ["axial_follows", "kinematics = 'finite'"]),
-    ({"loading": "drive = 'force', amplitudes = 1, follows = .true."},
+    ({"column": H + "axial_load = 1, axial_follows = yes"},
+     ["line 2", "axial_follows = yes must be .true. or .false."]),
+    ({"column": H + "axial_load = 1, axial_follows = .true."},
+     ["axial_follows", "kinematics = 'finite'"]),
+    ({"column": H + "force_follows = .true.", "loading": "drive = 'force', amplitudes = 1"},
      ["force_follows", "kinematics = 'finite'"]),
-    ({"loading": PROTOCOL + "1, follows = .true."}, ["follows has no meaning", "'displacement'"]),
-    ({"loading": PROTOCOL + "1, follows = 'T'"}, ["follows = 'T' must be .true. or .false."]),
-    ({"column": H + "kinematics = 'finite'", "axial": "load = 1, follows = .true."},
+    ({"column": H + "kinematics = 'finite', force_follows = .true."},
+     ["loads that follow the top", "dynamic analysis"]),
+    ({"column": H + "force_follows = 'T'"}, ["force_follows = 'T' must be .true. or .false."]),
+    ({"column": H + "kinematics = 'finite', axial_load = 1, axial_follows = .true."},
      ["loads that follow the top", "dynamic analysis"]),
     # openings
-    ({"opening": "k = 1"}, ["axial spring: rule is missing", "compression"]),
-    ({"opening": "rule = 'compresion', k = 1"}, ["'compresion'", "mean 'compression'"]),
-    ({"opening": "rule = 'compression', k = -1"}, ["axial spring: k = -1", "above zero"]),
-    ({"opening": "rule = 'compression', k = NaN"}, ["axial spring: k = NaN", "finite"]),
-    ({"opening": "rule = 'compression', k = 1, d_y = 1"}, ["axial spring: d_y is not used"]),
-    ({"opening": "rule = 'compression', k = 1, stiffness = 1"}, ["line 6", "no 'stiffness'"]),
-    ({"opening": "rule = 'takeda', k_c = 2, d_c = 1, k_y = 1, d_y = 2, k_u = 0"},
+    ({"axial_spring": "k = 1"}, ["axial spring: rule is missing", "compression"]),
+    ({"axial_spring": "rule = 'compresion', k = 1"}, ["'compresion'", "mean 'compression'"]),
+    ({"axial_spring": "rule = 'compression', k = -1"}, ["axial spring: k = -1", "above zero"]),
+    ({"axial_spring": "rule = 'compression', k = NaN"}, ["axial spring: k = NaN", "finite"]),
+    ({"axial_spring": "rule = 'compression', k = 1, d_y = 1"},
+     ["&axial_spring: d_y is not used by the rule compression"]),
+    ({"axial_spring": "rule = 'compression', k = 1, stiffness = 1"}, ["line 6", "no 'stiffness'"]),
+    ({"axial_spring": "rule = 'takeda', k_c = 2, d_c = 1, k_y = 1, d_y = 2, k_u = 0"},
      ["axial spring cannot be of the rule 'takeda'"]),
-    ({"opening": [E, E]}, ["line 7", "&opening for joint = 0 stands twice", "first on line 6"]),
-    ({"column": "n = 2, height = 1, mass = 1", "opening": E + ", joint = 2"},
-     ["joint 1 has no &opening"]),
-    ({"shear": "rule = 'compression', k = 1"}, ["shear spring cannot be", "axial springs"]),
+    ({"axial_spring": [E, E]},
+     ["line 7", "&axial_spring without joint stands twice", "first at case.nml line 6"]),
+    ({"column": "n = 2, height = 1, mass = 1", "axial_spring": E + ", joint = 2"},
+     ["joint 1 has no &axial_spring"]),
+    ({"shear": "rule = 'compression', k = 1"},
+     ["shear spring cannot be", "'compression'", "it is one of elastic, bilinear, takeda"]),
     # settings of the analysis
     ({"analysis": "collapse_drift = 0"}, ["collapse_drift = 0 must be above zero"]),
     ({"analysis": "collapse_drift = NaN"}, ["collapse_drift = NaN", "finite"]),
@@ -534,22 +553,22 @@ STATIC_FAULTS = [
 ]  # fmt: skip
 
 DYNAMIC_FAULTS = [
-    ({"loading": "drive = 'ground', amplitudes = 1"}, ["period is missing", "in s"]),
-    ({"loading": "drive = 'ground', amplitudes = 1, period = 0"}, ["period = 0 s"]),
-    ({"loading": "drive = 'ground', amplitudes = 1, period = 1, unit = 'm'"},
-     ["unit of the drive 'ground' = 'm'", "m/s2, g"]),
+    ({"loading": "drive = 'ground_acceleration', amplitudes = 1"}, ["period is missing", "in s"]),
+    ({"loading": "drive = 'ground_acceleration', amplitudes = 1, period = 0"}, ["period = 0 s"]),
+    ({"loading": "drive = 'ground_acceleration', amplitudes = 1, period = 1, unit = 'm'"},
+     ["unit of the drive 'ground_acceleration' = 'm'", "m/s2, g"]),
     ({"loading": PROTOCOL + "1, period = 1"}, ["'displacement' needs the static analysis"]),
     ({"loading": ["drive = 'force', amplitudes = 1, period = 1"] * 2},
      ["two loadings with drive = 'force'"]),
-    ({"loading": "drive = 'vertical', amplitudes = 1, period = 1, unit = 'N'"},
-     ["unit of the drive 'vertical' = 'N'", "m/s2, g"]),
-    ({"loading": "drive = 'axial', amplitudes = 1, period = 1, unit = 'g'"},
-     ["unit of the drive 'axial' = 'g'", "N, kN"]),
-    ({"loading": ["drive = 'axial', amplitudes = 1, period = 1"] * 2},
-     ["two loadings with drive = 'axial'", "each drive once"]),
-    ({"loading": "drive = 'vertical', amplitudes = 1, period = 1"},
+    ({"loading": "drive = 'vertical_acceleration', amplitudes = 1, period = 1, unit = 'N'"},
+     ["unit of the drive 'vertical_acceleration' = 'N'", "m/s2, g"]),
+    ({"loading": "drive = 'axial_load', amplitudes = 1, period = 1, unit = 'g'"},
+     ["unit of the drive 'axial_load' = 'g'", "N, kN"]),
+    ({"loading": ["drive = 'axial_load', amplitudes = 1, period = 1"] * 2},
+     ["two loadings with drive = 'axial_load'", "each drive once"]),
+    ({"loading": "drive = 'vertical_acceleration', amplitudes = 1, period = 1"},
      ["vertical_acceleration", "'small'", "'pdelta'"]),
-    ({"loading": "drive = 'axial', amplitudes = 1, period = 1"},
+    ({"loading": "drive = 'axial_load', amplitudes = 1, period = 1"},
      ["axial_load", "'small'", "'pdelta'"]),
     ({"analysis": "method = 'rk5'"}, ["method = 'rk5'", "mean 'rk4'"]),
     ({"analysis": "method = 'rk4', events = 'none'"}, ["events = 'none'", "step, located"]),
@@ -618,7 +637,7 @@ def test_fault_of_a_dynamic_case_is_named_with_a_remedy(
         (b"\n&column height\n/", ["line 3", "'height' in &column has no ="]),
         (b"&case title = 'a\0b' /", ["case.nml", "not a text file", "zero byte"]),
         (b"\x7fELF\x01\x02\x03", ["line 1", "control character"]),
-        (b"&column /\n" * 50000, ["&column stands 50000 times"]),
+        (b"&column /\n" * 50000, ["line 2: &column stands twice"]),
     ],
 )
 def test_file_that_is_no_case(run_cli, tmp_path, content, words):
@@ -637,14 +656,15 @@ def test_case_that_is_not_there_or_a_folder(run_cli, tmp_path):
     assert os.listdir(tmp_path) == []
 
 
-def test_case_of_more_than_10_mb_is_refused(run_cli, tmp_path):
-    (tmp_path / "case.nml").write_bytes(b"! a comment\n" * 1_000_000)
-    check_and_run(run_cli, tmp_path, ["case.nml", "1.2e+07 bytes", "10000000"])
+def test_case_of_more_than_100_mb_is_refused(run_cli, tmp_path):
+    with (tmp_path / "case.nml").open("wb") as file:
+        file.truncate(120_000_000)
+    check_and_run(run_cli, tmp_path, ["case.nml", "1.2e+08 bytes", "100000000"])
 
 
 def test_number_of_bodies_out_of_range_does_not_blame_the_springs(run_cli, case_text, tmp_path):
     write(tmp_path, case_text(column="n = 0, height = 1.6, mass = 1"))
-    assert "spring" not in check_and_run(run_cli, tmp_path, ["n = 0 bodies"])
+    assert "spring" not in check_and_run(run_cli, tmp_path, ["n = 0 must"])
 
 
 def test_all_faults_that_stop_the_reading_come_at_once(run_cli, case_text, tmp_path):
@@ -666,19 +686,19 @@ def test_all_faults_that_stop_the_reading_come_at_once(run_cli, case_text, tmp_p
 
 def test_all_faults_of_the_values_come_at_once(run_cli, case_text, tmp_path):
     groups = {
-        "column": "height = -1, mass = 0, kinematics = 'smal', mass_damping = -1",
+        "column": "height = -1, mass = 0, kinematics = 'smal', axial_load = NaN, gravity = -1",
+        "damping": "mass = -1",
         "shear": "rule = 'bilinear', k = -1, d_y = 0, k_post = -1",
         "flexure": "rule = 'takeda'",
-        "axial": "load = NaN, gravity = -1",
-        "loading": "drive = 'ground', file = 'none.csv', unit = 'kN'",
-        "analysis": "dt = 1, duration = 1",
+        "loading": "drive = 'ground_acceleration', file = 'none.csv', unit = 'kN'",
+        "analysis": "method = 'static', dt = 1, duration = 1",
         "output": "every = 0",
     }
     write(tmp_path, case_text(**groups))
-    words = ["height = -1", "mass = 0", "'smal'", "mass_damping = -1", "k = -1", "d_y = 0",
+    words = ["height = -1", "mass = 0", "'smal'", "damping: mass = -1", "k = -1", "d_y = 0",
              "k_post = -1", "k_c is missing", "d_c is missing", "k_y is missing",
              "flexure spring: d_y is missing", "k_u is missing", "axial_load = NaN",
-             "gravity = -1", "'ground' needs", "'kN'", "dt has no", "duration has no",
+             "gravity = -1", "'ground_acceleration' needs", "'kN'", "dt has no", "duration has no",
              "every = 0"]  # fmt: skip
     text = check_and_run(run_cli, tmp_path, words)
     assert len(text.splitlines()) == len(words)
@@ -688,7 +708,10 @@ def test_faults_of_two_history_files_come_at_once_with_those_of_the_column(
     run_cli, dynamic_text, tmp_path
 ):
     (tmp_path / "bad.csv").write_text("time,force_N\n0,1\n1,x\n")
-    loading = ["drive = 'force', file = 'bad.csv'", "drive = 'ground', file = 'none.csv'"]
+    loading = [
+        "drive = 'force', file = 'bad.csv'",
+        "drive = 'ground_acceleration', file = 'none.csv'",
+    ]
     write(tmp_path, dynamic_text(column="height = -1, mass = 1", loading=loading))
     words = ["height = -1", "bad.csv line 3", "none.csv"]
     text = check_and_run(run_cli, tmp_path, words)
@@ -697,7 +720,7 @@ def test_faults_of_two_history_files_come_at_once_with_those_of_the_column(
 
 FAULTY_COLUMNS = [
     {"height": -1.0, "mass": 0.0},
-    {"height": 1.0, "mass": np.nan, "mass_damping": -1.0, "stiffness_damping": -2.0},
+    {"height": 1.0, "mass": np.nan, "damping": rbsdem.Damping(-1.0, -2.0)},
     {"height": 1.0, "mass": 1.0, "n": 2, "lengths": [0.5, 0.6]},
     {"height": 1.0, "mass": None, "n": 3, "masses": [-1.0, 0.0]},
     {"height": 1.0, "mass": 1.0, "n": 0},
@@ -713,12 +736,15 @@ FAULTY_COLUMNS = [
 def test_text_of_an_error_is_the_same_in_python(run_cli, dynamic_text, tmp_path, numbers):
     """Python: errors as exceptions with the same text."""
     entries = []
+    damping = None
     for name, value in numbers.items():
-        if isinstance(value, str):
+        if isinstance(value, rbsdem.Damping):
+            damping = f"mass = {value.mass}, stiffness = {value.stiffness}"
+        elif isinstance(value, str):
             entries.append(f"{name} = '{value}'")
         elif value is not None:
             entries.append(f"{name} = " + ", ".join(map(str, np.atleast_1d(value).tolist())))
-    write(tmp_path, dynamic_text(column=", ".join(entries)))
+    write(tmp_path, dynamic_text(column=", ".join(entries), damping=damping))
     text = faults(run_cli(["check", "case.nml"], tmp_path))
     with pytest.raises(rbsdem.InputError) as error:
         rbsdem.Column(shear=BILINEAR, flexure=TAKEDA, **numbers)
@@ -727,13 +753,12 @@ def test_text_of_an_error_is_the_same_in_python(run_cli, dynamic_text, tmp_path,
     ]
 
 
-# Damping has names of its own in Python.
 FAULTY_DAMPING = [
-    ("modal_damping = 5", 5.0),
-    ("modal_damping = 0.02, -0.1, 1", rbsdem.Damping(modal=[0.02, -0.1, 1.0])),
-    ("modal_damping = 3*0.1", rbsdem.Damping(modal=[0.1] * 3)),
-    ("tangent_damping = T", rbsdem.Damping(tangent=True)),
-    ("mass_damping = -1, stiffness_damping = NaN", rbsdem.Damping(-1.0, np.nan)),
+    ("modal = 5", 5.0),
+    ("modal = 0.02, -0.1, 1", rbsdem.Damping(modal=[0.02, -0.1, 1.0])),
+    ("modal = 3*0.1", rbsdem.Damping(modal=[0.1] * 3)),
+    ("tangent = T", rbsdem.Damping(tangent=True)),
+    ("mass = -1, stiffness = NaN", rbsdem.Damping(-1.0, np.nan)),
 ]
 
 
@@ -741,7 +766,7 @@ FAULTY_DAMPING = [
 def test_text_of_a_damping_error_is_the_same_in_python(
     run_cli, case_text, tmp_path, entries, damping
 ):
-    write(tmp_path, case_text(column="height = 1.6, mass = 614.4, " + entries))
+    write(tmp_path, case_text(damping=entries))
     text = faults(run_cli(["check", "case.nml"], tmp_path))
     with pytest.raises(rbsdem.InputError) as error:
         rbsdem.Column(1.6, 614.4, BILINEAR, TAKEDA, damping=damping)
@@ -806,7 +831,7 @@ def test_times_that_do_not_ascend_are_refused(
 ):
     lines = [f"{t},1.0" for t in times]
     (tmp_path / "g.csv").write_text("time_s,acceleration_m/s2\n" + "\n".join(lines) + "\n")
-    write(tmp_path, dynamic_text(loading="drive = 'ground', file = 'g.csv'"))
+    write(tmp_path, dynamic_text(loading="drive = 'ground_acceleration', file = 'g.csv'"))
     words = ["g.csv", f"row {row} of the times", "ascend strictly", *words]
     check_and_run(run_cli, tmp_path, words)
 
@@ -1048,7 +1073,7 @@ def long_text(dynamic_text, steps: int, every: int) -> str:
     return dynamic_text(
         shear=elastic,
         flexure=elastic,
-        loading="drive = 'ground', file = 'ground.csv'",
+        loading="drive = 'ground_acceleration', file = 'ground.csv'",
         analysis=f"method = 'rk4', dt = {dt}, duration = {(steps - 0.5) * dt!r}",
         output=f"every = {every}",
     )
@@ -1220,9 +1245,12 @@ def test_force_and_ground_motion_together_are_their_sum_on_a_linear_column(
     """Theory section 3: both act on the same linear equations. Times of the two files differ."""
     (tmp_path / "force.csv").write_text("time_s,force_kN\n0,0\n0.01,20\n0.03,-5\n0.04,0\n")
     (tmp_path / "ground.csv").write_text("t,acceleration_g\n0,0\n0.005,0.3\n0.02,-0.2\n0.04,0\n")
-    force, ground = "drive = 'force', file = 'force.csv'", "drive = 'ground', file = 'ground.csv'"
+    force, ground = (
+        "drive = 'force', file = 'force.csv'",
+        "drive = 'ground_acceleration', file = 'ground.csv'",
+    )
     none = "drive = 'force', scale = 0, file = 'force.csv'"
-    still = "drive = 'ground', scale = 0, file = 'ground.csv'"
+    still = "drive = 'ground_acceleration', scale = 0, file = 'ground.csv'"
     parts = {}
     for name, loading in {
         "both": [force, ground], "turned": [ground, force], "a": [force, still], "b": [none, ground]
@@ -1244,6 +1272,7 @@ def test_force_and_ground_motion_together_are_their_sum_on_a_linear_column(
         times,
         force=np.interp(times, [0, 0.01, 0.03, 0.04], [0, 20e3, -5e3, 0]),
         ground_acceleration=9.80665 * np.interp(times, [0, 0.005, 0.02, 0.04], [0, 0.3, -0.2, 0]),
+        method="rk4",
     )
     np.testing.assert_allclose(parts["both"]["displacement_m"], run.displacement, rtol=1e-9)
 
@@ -1256,7 +1285,7 @@ def test_times_that_are_equal_but_for_round_off_make_no_extra_rows(
     (tmp_path / "f.csv").write_text("time_s,force_N\n" + "".join(f"{t},1\n" for t in times))
     (tmp_path / "g.csv").write_text("acceleration_g\n" + "0.1\n" * 11)
     loading = [
-        "drive = 'force', file = 'f.csv'", "drive = 'ground', file = 'g.csv', interval = 0.1"
+        "drive = 'force', file = 'f.csv'", "drive = 'ground_acceleration', file = 'g.csv', interval = 0.1"
     ]  # fmt: skip
     rows = run_rows(run_cli, read_csv, tmp_path, dynamic_text(loading=loading))
     np.testing.assert_allclose(rows["time_s"], [float(t) for t in times], rtol=1e-12)
@@ -1331,9 +1360,11 @@ def test_protocol_of_ground_motion_in_its_units_and_period(
     run_cli, dynamic_text, tmp_path, *, read_csv, unit, factor
 ):
     """A rigid column on an elastic base follows its ground: the base shear is m a_g."""
-    loading = f"drive = 'ground', amplitudes = 2, period = 8, points = 4, unit = '{unit}'"
-    damped = "height = 1.6, mass = 614.4, mass_damping = 700"
-    text = dynamic_text(column=damped, shear=ELASTIC, flexure=ELASTIC, loading=loading)
+    loading = (
+        f"drive = 'ground_acceleration', amplitudes = 2, period = 8, points = 4, unit = '{unit}'"
+    )
+    damped = "mass = 700"
+    text = dynamic_text(damping=damped, shear=ELASTIC, flexure=ELASTIC, loading=loading)
     rows = run_rows(run_cli, read_csv, tmp_path, text)
     assert np.array_equal(rows["time_s"], np.arange(17) / 2)
     expected = -614.4 * factor * triangles([2.0], [1], 1, 4)
@@ -1427,20 +1458,19 @@ def test_axial_load_and_self_weight_soften_an_elastic_column(
     column = f"height = {length}, mass = {mass}, kinematics = "
     weight = 9.80665
     for kinematics, axial, lost in (
-        ("small", f"load = {load}, self_weight = T", 0.0),
+        ("small", f"axial_load = {load}, self_weight = T", 0.0),
         ("pdelta", "", 0.0),
-        ("pdelta", f"load = {load}", load * length),
-        ("pdelta", f"load = {-load}", -load * length),
-        ("pdelta", f"load = {load}, self_weight = .true.",
+        ("pdelta", f"axial_load = {load}", load * length),
+        ("pdelta", f"axial_load = {-load}", -load * length),
+        ("pdelta", f"axial_load = {load}, self_weight = .true.",
          load * length + mass * weight * length / 2),
         ("pdelta", "self_weight = t, gravity = 3.7", mass * 3.7 * length / 2),
-        ("pdelta", f"load = {load}, self_weight = .FALSE.", load * length),
+        ("pdelta", f"axial_load = {load}, self_weight = .FALSE.", load * length),
     ):  # fmt: skip
         text = case_text(
-            column=f"{column}'{kinematics}'",
+            column=f"{column}'{kinematics}', {axial}",
             shear="rule = 'elastic', k = 7e8",
             flexure="rule = 'elastic', k = 2.5e8",
-            axial=axial,
             loading=loading,
         )
         rows = run_rows(run_cli, read_csv, tmp_path, text)
@@ -1486,11 +1516,13 @@ def test_masses_and_lengths_of_each_body(run_cli, case_text, tmp_path):
 
 
 def test_damping_of_the_case_is_that_of_python(run_cli, dynamic_text, tmp_path, read_csv):
-    column = "height = 1.6, mass = 614.4, mass_damping = 30, stiffness_damping = 1e-5"
-    rows = run_rows(run_cli, read_csv, tmp_path, dynamic_text(column=column))
-    damped = rbsdem.Column(1.6, 614.4, BILINEAR, TAKEDA, mass_damping=30.0, stiffness_damping=1e-5)
+    text = dynamic_text(damping="mass = 30, stiffness = 1e-5")
+    rows = run_rows(run_cli, read_csv, tmp_path, text)
+    damped = rbsdem.Column(
+        1.6, 614.4, BILINEAR, TAKEDA, damping=rbsdem.Damping(mass=30.0, stiffness=1e-5)
+    )
     time_, ground = np.arange(17) * 0.00625, triangles([3.0], [1], 1, 4)
-    run = rbsdem.time_history(damped, time_, ground_acceleration=ground)
+    run = rbsdem.time_history(damped, time_, ground_acceleration=ground, method="rk4")
     assert np.array_equal(rows["displacement_m"], run.displacement)
     assert np.array_equal(rows["damping_J"], run.energy["damping"])
     assert run.energy["damping"][-1] > 0.05 * run.energy["input"].max()

@@ -47,24 +47,25 @@ def scaled_spring(spring, force: float, way: float):
 def scaled(column: rbsdem.Column, length: float, mass: float, time: float) -> rbsdem.Column:
     force = mass * length / time**2
 
-    def each(springs, size, way):
-        return None if springs is None else [scaled_spring(s, size, way) for s in springs]
+    def each(name, size, way):
+        return [scaled_spring(s, size, way) for s in column.joints(name)] or None
 
     return replace(
         column,
         height=column.height * length,
         lengths=[value * length for value in column.lengths],
         masses=[value * mass for value in column.masses],
-        shear=each(column.shear, force, length),
-        flexure=each(column.flexure, force * length, 1.0),
-        axial=each(column.axial, force, length),
+        shear=each("shear", force, length),
+        flexure=each("flexure", force * length, 1.0),
+        axial_spring=each("axial_spring", force, length),
         axial_load=column.axial_load * force,
         gravity=column.gravity * length / time**2,
         top_mass=column.top_mass * mass,
         top_inertia=column.top_inertia * mass * length**2,
         depth=column.depth * length,
-        mass_damping=column.mass_damping / time,
-        stiffness_damping=column.stiffness_damping * time,
+        damping=rbsdem.Damping(
+            mass=column.damping.mass / time, stiffness=column.damping.stiffness * time
+        ),
     )
 
 
@@ -79,7 +80,7 @@ def walker(kinematics: str, *, opens: bool = False) -> rbsdem.Column:
     return rbsdem.Column(
         2.25, None, shear, flexure, n=3, lengths=[1.0, 0.5, 0.75], masses=[500.0, 200.0, 300.0],
         kinematics=kinematics, axial_load=2e4, self_weight=True, top_mass=400.0, top_inertia=20.0,
-        depth=0.25, axial=axial if opens else None, mass_damping=0.25, stiffness_damping=2.0**-12,
+        depth=0.25, axial_spring=axial if opens else None, damping=rbsdem.Damping(mass=0.25, stiffness=2.0**-12),
     )  # fmt: skip
 
 
@@ -146,13 +147,15 @@ def test_response_in_other_units(level, method, opens, units):
 def smaller(column: rbsdem.Column, size: float) -> rbsdem.Column:
     """Return the column that yields, cracks and opens at deformations of another size."""
 
-    def each(springs):
-        if springs is None:
-            return None
-        return [scaled_spring(scaled_spring(s, 1.0, size), size, 1.0) for s in springs]
+    def each(name):
+        springs = column.joints(name)
+        return [scaled_spring(scaled_spring(s, 1.0, size), size, 1.0) for s in springs] or None
 
     return replace(
-        column, shear=each(column.shear), flexure=each(column.flexure), axial=each(column.axial)
+        column,
+        shear=each("shear"),
+        flexure=each("flexure"),
+        axial_spring=each("axial_spring"),
     )
 
 

@@ -57,8 +57,8 @@ NAMELISTS = {
     + """&loading drive = 'force', file = 'test.txt', format = 'peer', scale = 0.5 /
 """,
     "joints": """&case title = "three joints, don't mind" /
-&column n = 3, height = 1.6, lengths = 0.4, 0.5, 0.7, masses = 3*200., kinematics = 'pdelta' /
-&axial load = 744e3, self_weight = .true., gravity = 9.81 /
+&column n = 3, height = 1.6, lengths = 0.4, 0.5, 0.7, masses = 3*200., kinematics = 'pdelta',
+         axial_load = 744e3, self_weight = .true., gravity = 9.81 /
 &shear rule = 'elastic', k = 7e8 /
 &shear joint = 2, rule = 'bilinear', k = 7e8, d_y = 1e-4, k_post = 8e6 /
 &flexure joint = 1, rule = 'takeda', k_c = 2.5d8, d_c = 3e-4, k_y = 6e7, d_y = 2.7e-3, k_u = 7e6,
@@ -69,20 +69,21 @@ NAMELISTS = {
 &loading drive = 'displacement', amplitudes(1) = 10, amplitudes(2) = 20, unit = 'mm', points = 2 /
 """,
     "ground": """&case title = 'shaken' /
-&column n = 2, height = 1.6, mass = 614.4, mass_damping = 30.0, stiffness_damping = 1.0e-5 /
+&column n = 2, height = 1.6, mass = 614.4 /
+&damping mass = 30.0, stiffness = 1.0e-5 /
 """
     + SPRINGS
-    + """&loading drive = 'ground', file = 'motion.csv', column = 'acceleration_g',
+    + """&loading drive = 'ground_acceleration', file = 'motion.csv', column = 'acceleration_g',
          time_column = 'time_s' /
 &analysis method = 'rk4', dt = 2.0e-5, duration = 0.01 /
 &output every = 10 /
 """,
-    "both": """&column height = 1.6, mass = 614.4, kinematics = 'finite' /
-&axial load = 1.0e5, self_weight = T /
+    "both": """&column height = 1.6, mass = 614.4, kinematics = 'finite', axial_load = 1.0e5,
+         self_weight = T /
 """
     + SPRINGS
     + """&loading drive = 'force', amplitudes = 20., unit = 'kN', period = 0.004, points = 3 /
-&loading drive = 'ground', file = 'still.csv', interval = 0.001, unit = 'g' /
+&loading drive = 'ground_acceleration', file = 'still.csv', interval = 0.001, unit = 'g' /
 &analysis method = 'rk4', dt = 1.0e-4 /
 """,
 }
@@ -407,7 +408,7 @@ def test_mutated_ground_motions(executable, folder):
         history.write_bytes(text)
         case = folder / f"{i:04d}.nml"
         case.write_text(f"""&column height = 10.0, mass = 1.0e9 /
-{SPRINGS}&loading drive = 'ground', file = '{history.name}', scale = 1.0e-3 /
+{SPRINGS}&loading drive = 'ground_acceleration', file = '{history.name}', scale = 1.0e-3 /
 &analysis method = 'rk4' /
 """)
         output = case.with_suffix(".csv")

@@ -40,7 +40,9 @@ def through_executable(run_cli, case_text, tmp_path, read_csv):
     def read(file: str, drive: str, keys: str = "") -> np.ndarray:
         case = tmp_path / "driven.nml"
         loading = f"drive = '{drive}', file = '{file}', {keys}"
-        case.write_text(case_text(shear=ELASTIC, flexure=ELASTIC, loading=loading))
+        static = "method = 'static'"
+        text = case_text(shear=ELASTIC, flexure=ELASTIC, loading=loading, analysis=static)
+        case.write_text(text)
         result = run_cli(["run", "driven.nml", "-q", "-o", "driven.csv"], tmp_path)
         assert (result.returncode, result.stderr) == (0, "")
         column = {"displacement": "displacement_m", "force": "force_N"}[drive]
@@ -353,7 +355,9 @@ def test_unit_of_the_time_is_not_taken_for_seconds_in_silence(
     run_cli, dynamic_text, tmp_path, read_csv, label
 ):
     (tmp_path / "g.csv").write_text(f"{label},acceleration_g\n0,0.1\n20,0.2\n40,0.1\n")
-    text = dynamic_text(loading="drive = 'ground', file = 'g.csv'", output="every = 1000000")
+    text = dynamic_text(
+        loading="drive = 'ground_acceleration', file = 'g.csv'", output="every = 1000000"
+    )
     (tmp_path / "case.nml").write_text(text)
     result = run_cli(["run", "case.nml", "-q"], tmp_path)
     if result.returncode == 2:
@@ -386,7 +390,7 @@ def test_ground_motion_with_time_and_with_interval(run_cli, dynamic_text, tmp_pa
             cells = {"t": t, "time": t, "time_s": t, "clock": t, "other": 99}
             lines.append(",".join(repr(cells.get(name, v)) for name in names))
         (tmp_path / "g.csv").write_text("\n".join(lines))
-        loading = f"drive = 'ground', file = 'g.csv', {keys}"
+        loading = f"drive = 'ground_acceleration', file = 'g.csv', {keys}"
         (tmp_path / "case.nml").write_text(dynamic_text(loading=loading))
         result = run_cli(["run", "case.nml", "-q"], tmp_path)
         assert (result.returncode, result.stderr) == (0, ""), header

@@ -10,35 +10,37 @@ import pytest
 import rbsdem
 
 CONCRETE = (
-    "rule = 'concrete', k = 2e9, f_peak = 6e5, d_peak = 6e-4, k_fall = 4e7, f_res = 2e5, "
+    "rule = 'concrete', k = 2e9, f_peak = 6e5, d_peak = 6e-4, k_soft = 4e7, f_res = 2e5, "
     "plastic = 1.2, contact = 0.35, misfit = 0.4, wear = 0.03"
 )
 STEEL = (
-    "rule = 'steel', k = 6e8, f_y = 5.4e5, k_post = 6e6, r0 = 8, r1 = 0.83, r2 = 0.42, "
-    "growth = 0.005, endurance = 800"
+    "rule = 'steel', k = 6e8, f_y = 5.4e5, k_post = 6e6, r0 = 8, cr1 = 0.83, cr2 = 0.42, "
+    "isotropic_hardening = 0.005, half_strength_work = 800"
 )
 BLOCK = rbsdem.ConcreteSpring(2e9, 6e5, 6e-4, 4e7, 2e5, 1.2, 0.35, 0.4, 0.03)
 BAR = rbsdem.SteelSpring(6e8, 5.4e5, 6e6, 8, 0.83, 0.42, 0.005, 800)
-LAYERED = "rule = 'layered', axial_load = 7e5"
+LAYERED = "rule = 'layered'"
 PLACES = (-0.15, -0.05, 0.05, 0.15)
+SPRINGS = ["id = 1, " + CONCRETE, "id = 2, " + STEEL]
+LAYERS = "y = -0.15, -0.05, 0.05, 0.15, -0.16, 0.16, spring = 1, 1, 1, 1, 2, 2"
+TWO = "n = 2, height = 1.6, mass = 600, kinematics = 'pdelta', axial_load = 7e5"
 
 Groups = dict[str, str | list[str] | None]
 
 
 def groups(**changes: str | list[str]) -> Groups:
     """Return a case of one layered joint: strips of concrete between two rows of bars."""
-    layers = [f"y = {y}, {CONCRETE}" for y in PLACES] + [f"y = {y}, {STEEL}" for y in (-0.16, 0.16)]
     return {
-        "column": "height = 1.6, mass = 614.4, kinematics = 'pdelta'",
-        "axial": "load = 7e5",
+        "column": "height = 1.6, mass = 614.4, kinematics = 'pdelta', axial_load = 7e5",
         "flexure": LAYERED,
-        "layer": layers,
+        "layer_spring": SPRINGS,
+        "layers": LAYERS,
     } | changes
 
 
 def spring(strips: rbsdem.Spring = BLOCK, bars: rbsdem.Spring = BAR) -> rbsdem.Layered:
     layers = [(y, strips) for y in PLACES] + [(y, bars) for y in (-0.16, 0.16)]
-    return rbsdem.Layered(7e5, tuple(layers))
+    return rbsdem.Layered(tuple(layers))
 
 
 def write(folder: Path, text: str) -> Path:
@@ -48,27 +50,33 @@ def write(folder: Path, text: str) -> Path:
 
 
 ELASTIC = rbsdem.Elastic(1e8)
-LAYERS = groups()["layer"]
 DOORS = {
     "one joint": (groups(), (spring(),)),
+    "without joint: every joint": (groups(column=TWO), (spring(), spring())),
     "joint = 0 is every joint": (
-        groups(column="n = 2, height = 1.6, mass = 600, kinematics = 'pdelta'"),
+        groups(column=TWO, flexure=LAYERED + ", joint = 0", layers="joint = 0, " + LAYERS),
+        (spring(), spring()),
+    ),
+    "joints in a list": (
+        groups(column=TWO, flexure=LAYERED + ", joint = 2, 1", layers="joint = 1, 2, " + LAYERS),
         (spring(), spring()),
     ),
     "layers of the first joint only": (
         groups(
-            column="n = 2, height = 1.6, mass = 600, kinematics = 'pdelta'",
+            column=TWO,
             flexure=[LAYERED + ", joint = 1", "joint = 2, rule = 'elastic', k = 1e8"],
-            layer=[f"joint = 1, {layer}" for layer in LAYERS],
+            layers="joint = 1, " + LAYERS,
         ),
         (spring(), ELASTIC),
     ),
     "one rule, layers of their own": (
         groups(
-            column="n = 2, height = 1.6, mass = 600, kinematics = 'pdelta'",
-            layer=[layer for layer in LAYERS if "steel" not in layer]
-            + ["joint = 1, y = -0.16, " + STEEL, "joint = 1, y = 0.16, " + STEEL]
-            + [f"joint = 2, y = {y}, rule = 'elastic', k = 6e8" for y in (-0.16, 0.16)],
+            column=TWO,
+            layer_spring=["id = 7, rule = 'elastic', k = 6e8", *SPRINGS],
+            layers=[
+                "joint = 2, " + LAYERS.replace("2, 2", "7, 7"),
+                "joint = 1, " + LAYERS,
+            ],
         ),
         (spring(), spring(bars=rbsdem.Elastic(6e8))),
     ),
@@ -93,29 +101,32 @@ def test_layers_through_both_doors(run_cli, case_text, tmp_path, *, read_csv, na
         assert np.array_equal(rows[f"moment_{i + 1}_Nm"], moment)
 
 
-FAULTS = {
-    "unknown rule": ("y = 0, rule = 'concret', k = 1", "did you mean 'concrete'?"),
+THIRD = {
+    "unknown rule": ("id = 3, rule = 'concret', k = 1", "did you mean 'concrete'?"),
     "rule of another kind": (
-        "y = 0, " + CONCRETE.replace("'concrete'", "'takeda'"),
-        "it is one of concrete, steel, elastic, bilinear, compression",
+        "id = 3, rule = 'takeda', k_c = 2, d_c = 1, k_y = 1, d_y = 2, k_u = 0",
+        "it is one of",
     ),
-    "no rule": ("y = 0, k = 1e9", "&layer: rule is missing; it is one of concrete"),
-    "unknown name": ("y = 0, " + STEEL.replace("f_y", "fy"), "has no 'fy'; did you mean 'f_y'?"),
-    "joint out of range": ("y = 0, joint = 2, " + STEEL, "joint = 2; it is 0 for every joint"),
-    "no y": (STEEL, "y of layer 7 is missing; give it a value in m"),
-    "number of another rule": ("y = 0, d_y = 1, " + STEEL, "layer 7: d_y is not used by the rule"),
+    "no rule": ("id = 3, k = 1e9", "rule is missing; it is one of"),
+    "unknown name": (
+        "id = 3, " + STEEL.replace("f_y", "fy"),
+        "line 8: &layer_spring has no 'fy'; did you mean 'f_y'?",
+    ),
+    "no id": (STEEL, "line 8: &layer_spring: id is missing"),
+    "parameter of another rule": (
+        "id = 3, d_y = 1, " + STEEL,
+        "line 8: &layer_spring: d_y is not used by the rule steel",
+    ),
     "value": (
-        "y = 0, " + STEEL.replace("k_post = 6e6", "k_post = 6e9"),
-        "layer 7: k_post = 6e+09 must be below k = 6e+08",
+        "id = 3, " + STEEL.replace("k_post = 6e6", "k_post = 6e9"),
+        "k_post = 6e+09 must be below k = 6e+08",
     ),
-    "y in words": ("y = 'top', " + STEEL, "y = 'top'"),
+    "id in words": ("id = 'three', " + STEEL, "id = 'three' must be a whole number"),
 }
 
 
-@pytest.mark.parametrize("name", FAULTS)
-def test_fault_of_a_layer_is_told(run_cli, case_text, tmp_path, name):
-    layer, said = FAULTS[name]
-    path = write(tmp_path, case_text(**groups(layer=[*LAYERS, layer])))
+def refused(run_cli, path: Path, said: str) -> None:
+    """Both doors tell one fault, with the same words."""
     result = run_cli(["check", path])
     assert result.returncode == 2
     assert said in result.stderr
@@ -125,20 +136,36 @@ def test_fault_of_a_layer_is_told(run_cli, case_text, tmp_path, name):
     assert result.stderr == f"rbsdem: {caught.value}\n"
 
 
+@pytest.mark.parametrize("name", THIRD)
+def test_fault_of_the_spring_of_a_layer_is_told(run_cli, case_text, tmp_path, name):
+    third, said = THIRD[name]
+    layers = LAYERS.replace("y = -0.15", "y = 0, -0.15").replace("spring = 1", "spring = 3, 1")
+    text = case_text(**groups(layer_spring=[*SPRINGS, third], layers=layers))
+    refused(run_cli, write(tmp_path, text), said)
+
+
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"layer": []}, "the layers are missing; give at least two"),
-        ({"layer": ["y = 0, " + STEEL]}, "one layer has no stiffness against rotation"),
-        ({"flexure": "rule = 'elastic', k = 1e8"}, "belongs to no flexural spring"),
-        ({"flexure": "rule = 'layered'"}, "axial_load is missing"),
-        ({"flexure": "rule = 'layered', axial_load = 5e6"}, "cannot carry axial_load = 5e+06 N"),
-        ({"flexure": "rule = 'layered', axial_load = -2e6"}, "cannot carry axial_load = -2e+06 N"),
+        (
+            {"layer_spring": [*SPRINGS, "id = 2, " + CONCRETE]},
+            "line 8: &layer_spring with id = 2 stands twice",
+        ),
+        ({"layers": None}, "the layers are missing"),
+        ({"layers": "y = 0, spring = 2"}, "one layer has no stiffness against rotation"),
+        ({"layers": "spring = 1, 2"}, "&layers needs y and spring"),
+        ({"layers": "y = 0, 1"}, "&layers needs y and spring"),
+        ({"layers": "y = 0, 1, 2, spring = 1, 2"}, "3 values of y and 2 of spring"),
+        ({"layers": "y = 0, 1, spring = 1, 3"}, "there is no &layer_spring with id = 3"),
+        ({"layers": "y = 'top', spring = 1"}, "y = 'top'"),
+        ({"layers": "joint = 2, " + LAYERS}, "joint = 2; joints are 1 to n = 1"),
+        ({"layers": [LAYERS, LAYERS]}, "belong to no flexural spring"),
+        ({"flexure": "rule = 'elastic', k = 1e8"}, "flexural spring"),
+        ({"column": TWO.replace("7e5", "5e6")}, "cannot carry the axial load of 5e+06 N"),
+        ({"column": TWO.replace("7e5", "-2e6")}, "cannot carry the axial load of -2e+06 N"),
     ],
 )
 def test_fault_of_a_layered_joint_is_told(run_cli, case_text, tmp_path, *, changes, said):
     # Bars that harden carry any load, in the end.
     text = case_text(**groups(**changes)).replace("k_post = 6e6", "k_post = 0")
-    result = run_cli(["check", write(tmp_path, text)])
-    assert result.returncode == 2
-    assert said in result.stderr
+    refused(run_cli, write(tmp_path, text), said)

@@ -19,14 +19,14 @@ ROOT = Path(__file__).resolve().parents[2]
 #: Rooms of src/ by floor: a room may use those on lower floors, not its neighbours.
 FLOORS = (
     ("base",),
-    ("case",),
-    ("spec",),
     ("hysteresis",),
     ("column", "section"),
     ("loading",),
+    ("case",),
     ("output",),
     ("solve",),
-    ("io", "flat"),
+    ("io",),
+    ("bindings",),
     ("app",),
 )
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
@@ -38,14 +38,10 @@ ANALYSES = {"modal": 0, "static": 1, "time": 1}
 INNER = {"": (), "modal": (), "static": (), "time": ("modal",)}
 
 #: Files without a module: what f2py reads, and the program.
-NO_MODULE = ("flat/flat.f90", "app/main.f90")
+NO_MODULE = ("bindings/bindings.f90", "app/main.f90")
 
 #: The one generated module; anyone may use it.
 VERSION = ("version.f90.in", "rbs_version")
-
-#: One reader of history files and one of cases serve both doors: the only things of io that flat
-#: may use. A second reader in Python would sooner or later read something else.
-READERS = ("rbs_io_loading_file", "rbs_io_case")
 
 LAPACK = re.compile(
     r"\b(?:call|subroutine|function) +"
@@ -125,8 +121,6 @@ def check_arrows(name: str, code: list[str]) -> Iterator[str]:
         return
     for module in uses(code):
         if not module.startswith("rbs_") or module == VERSION[1]:
-            continue
-        if room == "flat" and module in READERS:
             continue
         other = room_of(module)
         if other not in FLOOR:
@@ -411,10 +405,10 @@ def plant(root: Path, name: str, text: str) -> None:
 
 def good_tree(root: Path) -> None:
     plant(root, "src/base/kinds.f90", KINDS)
-    for room in ("spec", "column", "section", "solve", "io", "app"):
+    for room in ("case", "column", "section", "solve", "io", "app"):
         plant(root, f"src/{room}/thing.f90", GOOD_MODULE.format(module=f"rbs_{room}_thing"))
     plant(root, "src/section.f90", GOOD_MODULE.format(module="rbs_section"))
-    plant(root, "src/flat/flat.f90", "subroutine s()\n implicit none\nend subroutine s\n")
+    plant(root, "src/bindings/bindings.f90", "subroutine s()\n implicit none\nend subroutine s\n")
     plant(root, "src/app/main.f90", "program p\n implicit none\n stop 1\nend program p\n")
     plant(root, "python/rbsdem/_core.py", "from rbsdem import _rbsdem\n")
     plant(root, "python/rbsdem/column.py", "from rbsdem import _core\n")
@@ -446,22 +440,22 @@ BAD = {
         changed(USE, USE + "   use rbs_io_thing, only: thing\n"),
         "arrow from solve",
     ),
-    "base uses spec": (
+    "base uses case": (
         "src/base/kinds.f90",
-        KINDS.replace("   implicit none", "   use rbs_spec_thing, only: thing\n   implicit none"),
-        "arrow from base back to spec",
+        KINDS.replace("   implicit none", "   use rbs_case_thing, only: thing\n   implicit none"),
+        "arrow from base back to case",
     ),
-    "io sees flat": (
+    "io sees bindings": (
         "src/io/thing.f90",
         GOOD_MODULE.format(module="rbs_io_thing").replace(
-            USE, USE + "use rbs_flat_door, only: x\n"
+            USE, USE + "use rbs_bindings_runs, only: x\n"
         ),
-        "arrow from io back to flat",
+        "arrow from io back to bindings",
     ),
-    "flat sees io": (
-        "src/flat/flat.f90",
-        "subroutine s()\n use rbs_io_thing, only: thing\n implicit none\nend subroutine s\n",
-        "arrow from flat back to io",
+    "bindings see app": (
+        "src/bindings/bindings.f90",
+        "subroutine s()\n use rbs_app_thing, only: thing\n implicit none\nend subroutine s\n",
+        "arrow from bindings back to app",
     ),
     "neighbours": (
         "src/column/thing.f90",
@@ -506,7 +500,7 @@ BAD = {
     "no implicit none": (SOLVE, changed("   implicit none\n", ""), "no 'implicit none'"),
     "no private": (SOLVE, changed("   private\n", ""), "no 'private'"),
     "f2py file without implicit none": (
-        "src/flat/flat.f90",
+        "src/bindings/bindings.f90",
         "subroutine s()\nend subroutine s\n",
         "without implicit none",
     ),

@@ -36,7 +36,10 @@ def exact_count(column: rbsdem.Column, omega: Decimal) -> int:
         if i > 0:
             slip += [(2 * i - 2, Decimal(-1)), (2 * i - 1, -length[i - 1] / 2)]
             turn += [(2 * i - 1, Decimal(-1))]
-        for part, spring in ((slip, column.shear[i]), (turn, column.flexure[i])):
+        for part, spring in (
+            (slip, column.joints("shear")[i]),
+            (turn, column.joints("flexure")[i]),
+        ):
             for row, a in part:
                 for place, b in part:
                     matrix[row][place] += Decimal(spring.k) * a * b
@@ -147,7 +150,9 @@ def test_the_dense_eigenproblem_would_not_do():
     """Why the tests above are worth their lines: K x = w M x by LAPACK, the stiffest of them."""
     n = 10
     column = chain([0.2] * n, [10.0] * n, [1e9 * 2e8 / 0.04] * n, [2e8] * n)
-    stiffness = np.diag([s.k for s in column.shear] + [s.k for s in column.flexure])
+    stiffness = np.diag(
+        [s.k for s in column.joints("shear")] + [s.k for s in column.joints("flexure")]
+    )
     dense = eigh(stiffness, rbsdem.mass_matrix(column), eigvals_only=True)
     lowest = rbsdem.modes(column).omega[0]
     assert abs(np.sqrt(abs(dense[0])) / lowest - 1) > 1e-9

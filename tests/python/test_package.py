@@ -110,9 +110,9 @@ def test_signature_is_the_promised_one(one):
         "Bilinear": "(k, d_y, k_post)",
         "Takeda": "(k_c, d_c, k_y, d_y, k_u, b0=0.4, b1=1.0, inner='kc')",
         "Column": "(height, mass, shear, flexure, n=1, axial_load=0.0, kinematics='small', "
-        "lengths=None, masses=None, self_weight=False, gravity=9.80665, mass_damping=0.0, "
-        "stiffness_damping=0.0, axial=None, top_mass=0.0, top_inertia=0.0, depth=0.0, "
-        "rotary_inertia=None, axial_follows=False, force_follows=False, damping=None)",
+        "lengths=None, masses=None, self_weight=False, gravity=9.80665, axial_spring=None, "
+        "top_mass=0.0, top_inertia=0.0, depth=0.0, "
+        "rotary_inertia=None, axial_follows=False, force_follows=False, damping=None, model='')",
     }[one.__name__]
     signature = inspect.signature(one)
     bare = [
@@ -173,7 +173,7 @@ def test_import_is_quick_and_loads_no_plotting():
         "import sys; sys.modules.update(matplotlib=None, scipy=None, rich=None, pandas=None)\n"
         "import rbsdem\n"
         "column = rbsdem.paper_columns()['zahn_7']\n"
-        "print(rbsdem.cyclic(column, [0.01]).force[0] > 0, rbsdem.modes(column).frequency[0] > 0)"
+        "print(rbsdem.cyclic(column, displacement=[0.01]).force[0] > 0, rbsdem.modes(column).frequency[0] > 0)"
     )
     result = subprocess.run(
         [sys.executable, "-W", "error", "-c", code],
@@ -231,34 +231,48 @@ def test_errors_have_one_base_and_are_also_the_builtin_kind():
         lambda: rbsdem.Column(1.0, None, ELASTIC, ELASTIC),
         lambda: rbsdem.Column(1.0, 1.0, ELASTIC, ELASTIC, lengths="ab"),
         lambda: rbsdem.cyclic(COLUMN),
-        lambda: rbsdem.cyclic(COLUMN, [1.0], [1.0]),
-        lambda: rbsdem.cyclic(COLUMN, [np.nan]),
-        lambda: rbsdem.cyclic(COLUMN, [[1.0]]),
-        lambda: rbsdem.cyclic(COLUMN, ["a"]),
-        lambda: rbsdem.cyclic("column", [1.0]),
-        lambda: rbsdem.cyclic(COLUMN, [1.0], every=0),
-        lambda: rbsdem.cyclic(COLUMN, [1.0], every=1.5),
-        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], force=[1.0]),
-        lambda: rbsdem.time_history(COLUMN, [1.0, 0.0], force=[1.0, 1.0]),
-        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], force=[1.0, np.inf]),
-        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], force=[1.0, 1.0], dt=1.0),
+        lambda: rbsdem.cyclic(COLUMN, displacement=[1.0], force=[1.0]),
+        lambda: rbsdem.cyclic(COLUMN, displacement=[np.nan]),
+        lambda: rbsdem.cyclic(COLUMN, displacement=[[1.0]]),
+        lambda: rbsdem.cyclic(COLUMN, displacement=["a"]),
+        lambda: rbsdem.cyclic("column", displacement=[1.0]),
+        lambda: rbsdem.cyclic(COLUMN, displacement=[1.0], every=0),
+        lambda: rbsdem.cyclic(COLUMN, displacement=[1.0], every=1.5),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], force=[1.0], method="rk4"),
+        lambda: rbsdem.time_history(COLUMN, [1.0, 0.0], force=[1.0, 1.0], method="rk4"),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], force=[1.0, np.inf], method="rk4"),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], force=[1.0, 1.0], dt=1.0, method="rk4"),
         lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], force=[1.0, 1.0], method="euler"),
-        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], initial={"speed": 1.0}),
-        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], initial={"slip": [1.0, 2.0]}),
-        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], initial={"opening": [1.0]}),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], initial={"speed": 1.0}, method="rk4"),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], initial={"slip": [1.0, 2.0]}, method="rk4"),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], initial={"opening": [1.0]}, method="rk4"),
         lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], force=[1.0, 1.0], method="static"),
         lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], force=[1.0, 1.0], method="r\u00fcnge"),
-        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], vertical_acceleration=[1.0, 1.0]),
-        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], axial_load=[1.0, 1.0]),
-        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], axial_load=[1.0]),
-        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], axial_load=[]),
-        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], events="sometimes"),
-        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], tolerance=1e-6),
-        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], tolerance="fine", method="rk45"),
-        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], rho_infinity=0.9),
-        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], collapse_drift=0.0),
-        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], allow_unstable="yes"),
-        lambda: rbsdem.cyclic(COLUMN, [0.01], collapse_drift=-0.1),
+        lambda: rbsdem.time_history(
+            COLUMN, [0.0, 1.0], vertical_acceleration=[1.0, 1.0], method="rk4"
+        ),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], axial_load=[1.0, 1.0], method="rk4"),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], axial_load=[1.0], method="rk4"),
+        lambda: rbsdem.time_history(COLUMN, [0.0, 1.0], axial_load=[], method="rk4"),
+        lambda: rbsdem.time_history(
+            COLUMN, [0.0, 1.0], force=[0.0, 0.0], events="sometimes", method="rk4"
+        ),
+        lambda: rbsdem.time_history(
+            COLUMN, [0.0, 1.0], force=[0.0, 0.0], tolerance=1e-6, method="rk4"
+        ),
+        lambda: rbsdem.time_history(
+            COLUMN, [0.0, 1.0], force=[0.0, 0.0], tolerance="fine", method="rk45"
+        ),
+        lambda: rbsdem.time_history(
+            COLUMN, [0.0, 1.0], force=[0.0, 0.0], rho_infinity=0.9, method="rk4"
+        ),
+        lambda: rbsdem.time_history(
+            COLUMN, [0.0, 1.0], force=[0.0, 0.0], collapse_drift=0.0, method="rk4"
+        ),
+        lambda: rbsdem.time_history(
+            COLUMN, [0.0, 1.0], force=[0.0, 0.0], allow_unstable="yes", method="rk4"
+        ),
+        lambda: rbsdem.cyclic(COLUMN, displacement=[0.01], collapse_drift=-0.1),
         lambda: rbsdem.Compression(0.0),
         lambda: rbsdem.Damping(mass="a"),
         lambda: rbsdem.read_case("not there"),
@@ -312,8 +326,8 @@ def test_columns_and_results_survive_pickling():
     column = replace(COLUMN, n=2, kinematics="pdelta", axial_load=1e3)
     back = pickle.loads(pickle.dumps(column))
     assert back == column
-    run = rbsdem.cyclic(column, [0.01, -0.01])
-    again = pickle.loads(pickle.dumps(rbsdem.cyclic(back, [0.01, -0.01])))
+    run = rbsdem.cyclic(column, displacement=[0.01, -0.01])
+    again = pickle.loads(pickle.dumps(rbsdem.cyclic(back, displacement=[0.01, -0.01])))
     assert np.array_equal(run.force, again.force)
     assert run.summary == again.summary
 
@@ -322,7 +336,7 @@ def test_columns_and_results_survive_pickling():
 
 
 def test_records_cannot_be_changed(tmp_path):
-    run = rbsdem.cyclic(COLUMN, [0.001])
+    run = rbsdem.cyclic(COLUMN, displacement=[0.001])
     records = [ELASTIC, BILINEAR, TAKEDA, COLUMN, run, rbsdem.modes(COLUMN), peer_test(tmp_path)]
     records.append(rbsdem.Damping())
     for record in records:
@@ -371,7 +385,7 @@ def test_analyses_leave_their_arrays_alone():
     force = np.sin(60 * time) * 500.0
     arrays = [time, force]
     copies = [array.copy() for array in arrays]
-    rbsdem.time_history(COLUMN, time, force=force, ground_acceleration=force * 1e-3)
+    rbsdem.time_history(COLUMN, time, force=force, ground_acceleration=force * 1e-3, method="rk4")
     rbsdem.cyclic(COLUMN, force=force)
     rbsdem.cyclic(COLUMN, displacement=force * 1e-5)
     TAKEDA.response(force * 1e-5)
@@ -381,7 +395,7 @@ def test_analyses_leave_their_arrays_alone():
 
 def test_arrays_of_any_layout_and_kind_are_taken():
     path = np.array([0.0, 0.004, -0.004, 0.002])
-    expected = rbsdem.cyclic(COLUMN, path).force
+    expected = rbsdem.cyclic(COLUMN, displacement=path).force
     spread = np.zeros((4, 3))
     spread[:, 1] = path
     kinds = [
@@ -394,10 +408,11 @@ def test_arrays_of_any_layout_and_kind_are_taken():
     ]
     path.flags.writeable = False
     for kind in [*kinds, path]:
-        assert np.array_equal(rbsdem.cyclic(COLUMN, kind).force, expected)
+        assert np.array_equal(rbsdem.cyclic(COLUMN, displacement=kind).force, expected)
     whole = rbsdem.Elastic(2).response(np.array([1, -2, 3], dtype=np.int16))
     assert np.array_equal(whole, [2.0, -4.0, 6.0])
-    assert rbsdem.cyclic(COLUMN, []).force.shape == (0,)
+    with pytest.raises(rbsdem.InputError, match="displacement is empty; give at least one point"):
+        rbsdem.cyclic(COLUMN, displacement=[])
     assert TAKEDA.response([]).shape == (0,)
 
 

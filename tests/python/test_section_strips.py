@@ -139,4 +139,6 @@ def test_a_column_with_a_spiral(specimen):
     curvature = np.linspace(0, 0.1, 60)[1:]
     moment = section.moment_curvature(specimen.axial_load, curvature, tension="zero")
     rotation = curvature * 0.2
-    assert np.max(column.flexure[0].response(rotation)) == pytest.approx(np.max(moment), rel=0.2)
+    assert np.max(
+        column.joints("flexure")[0].response(rotation, specimen.axial_load)
+    ) == pytest.approx(np.max(moment), rel=0.2)

@@ -120,7 +120,7 @@ def test_a_slender_column_does_not_know_of_shear_failure():
     d = cycles(SLENDER, 0.005, 0.01, 0.02, 0.03)
     column = peer.column(SLENDER, "layered")
     force = rbsdem.cyclic(column, displacement=d).force
-    assert np.max(np.abs(force)) < 0.7 * column.shear[0].f_y
+    assert np.max(np.abs(force)) < 0.7 * column.joints("shear")[0].f_y
     other = column.with_parameters(shear_endurance=10.0, shear_pinch_force=0.05)
     assert other.recipe.parameters.shear.endurance == 10.0
     assert np.array_equal(rbsdem.cyclic(other, displacement=d).force, force)
@@ -130,8 +130,10 @@ def test_a_squat_column_fails_in_shear():
     d = cycles(SQUAT, 0.005, 0.01, 0.02, 0.03, 0.03, 0.03)
     # An endurance of its own: the test is of the rule, not of fitted numbers.
     column = peer.column(SQUAT, "layered").with_parameters(shear_endurance=100.0)
-    foot = column.shear[0]
-    bending = replace(column, shear=[rbsdem.Elastic(foot.f_c / foot.d_c), *column.shear[1:]])
+    foot = column.joints("shear")[0]
+    bending = replace(
+        column, shear=[rbsdem.Elastic(foot.f_c / foot.d_c), *column.joints("shear")[1:]]
+    )
     force = rbsdem.cyclic(column, displacement=d).force
     strong = rbsdem.cyclic(bending, displacement=d).force
     peak, last = np.max(np.abs(force)), np.max(np.abs(force[-80:]))
@@ -162,7 +164,7 @@ def test_parameters_of_the_shear_spring_can_be_calibrated():
     found = column.parameters
     assert found["shear_strength"].value == parameters().shear.strength
     changed = column.with_parameters(shear_strength=1.5, steel_strength=1.2)
-    at_one = column.shear[0].f_y / parameters().shear.strength
+    at_one = column.joints("shear")[0].f_y / parameters().shear.strength
     assert changed.shear[0].f_y == pytest.approx(1.5 * at_one)
     assert values(changed) == (1.5, 1.2)
     # Both stay as the next ones change.
@@ -222,8 +224,10 @@ def test_shear_failures_of_the_database(peer_folder):
     rows = {"Flexure": [], "other": []}
     for specimen in table:
         test, column = specimen.test(), peer.column(specimen, "layered")
-        foot = column.shear[0]
-        rigid = replace(column, shear=[rbsdem.Elastic(foot.f_c / foot.d_c), *column.shear[1:]])
+        foot = column.joints("shear")[0]
+        rigid = replace(
+            column, shear=[rbsdem.Elastic(foot.f_c / foot.d_c), *column.joints("shear")[1:]]
+        )
         kind = "Flexure" if specimen.failure_mode == "Flexure" else "other"
         if kind == "Flexure" and specimen.span_depth_ratio > 3:
             continue

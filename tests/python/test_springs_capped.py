@@ -512,5 +512,9 @@ def test_axial_springs_cannot_be_capped():
         rbsdem.InputError, match="axial spring cannot be of the rule 'peak_oriented'"
     ):
         rbsdem.Column(
-            2.0, 1e3, rbsdem.Elastic(1e8), rbsdem.Elastic(1e8), axial=rbsdem.PeakOriented(**HAND)
+            2.0,
+            1e3,
+            rbsdem.Elastic(1e8),
+            rbsdem.Elastic(1e8),
+            axial_spring=rbsdem.PeakOriented(**HAND),
         )

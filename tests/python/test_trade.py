@@ -21,7 +21,7 @@ from rbsdem.accuracy import Trade, scene, trade
 from rbsdem.accuracy import command as trade_command
 from rbsdem.accuracy.answer import Answer, Setting, errors_of
 from rbsdem.accuracy.path import at_times, common_interval, reversals
-from rbsdem.accuracy.physics import half_spring, split_bodies
+from rbsdem.accuracy.physics import split_bodies
 from rbsdem.accuracy.rows import seconds_text
 from rbsdem.accuracy.scene import make_scene
 
@@ -286,7 +286,13 @@ def test_collapse_ends_the_comparison():
 def chain(n: int) -> rbsdem.Column:
     spring = rbsdem.Bilinear(2.0e8 * n, 2e-3 / n, 2.0e7 * n)
     return rbsdem.Column(
-        1.6, 614.4, rbsdem.Elastic(7e8 * n), spring, n=n, top_mass=75000.0, stiffness_damping=1e-5
+        1.6,
+        614.4,
+        rbsdem.Elastic(7e8 * n),
+        spring,
+        n=n,
+        top_mass=75000.0,
+        damping=rbsdem.Damping(stiffness=1e-5),
     )
 
 
@@ -399,7 +405,7 @@ def test_effects_of_a_column_with_everything():
         kinematics="pdelta",
         axial_load=744e3,
         self_weight=True,
-        axial=rbsdem.Compression(3e9),
+        axial_spring=rbsdem.Compression(3e9),
         top_mass=75000.0,
         top_inertia=2000.0,
         depth=0.4,
@@ -469,13 +475,22 @@ def test_split_bodies_keeps_mass_height_and_inertia():
         rbsdem.Takeda(10.0, 0.1, 4.0, 1.0, 0.4, b1=0.3),
         rbsdem.Takeda(10.0, 0.1, 4.0, 1.0, 0.4, b1=0.6, inner="kr"),
         rbsdem.Compression(3.0),
+        rbsdem.PeakOriented(1.0, 3.0, 3.0, 3.5, 6.0, 0.2, d_c=0.1, f_c=0.8, lambda_s=40, d_u=20),
+        rbsdem.Pinching(1.0, 3.0, 3.0, 3.5, 6.0, kappa_f=0.3, kappa_d=0.4, lambda_a=50),
+        rbsdem.ConcreteSpring(3.0, 2.0, 1.5, 0.3, contact=0.3, misfit=0.2, wear=0.05),
+        rbsdem.SteelSpring(3.0, 2.0, 0.1, isotropic_hardening=0.01, half_strength_work=90),
+        rbsdem.Layered([(-1.0, rbsdem.SteelSpring(3.0, 2.0, 0.1)), (1.0, rbsdem.Elastic(2.0))]),
     ],
     ids=lambda spring: type(spring).__name__,
 )
 def test_two_half_springs_in_series_are_the_spring(spring):
     path = np.random.default_rng(1).uniform(-4.0, 4.0, 300)
-    half = half_spring(spring)
-    np.testing.assert_allclose(half.response(path / 2), spring.response(path), atol=1e-12)
+    half = spring.split(2)
+    np.testing.assert_allclose(half.response(path / 2), spring.response(path), atol=1e-9)
+    assert spring.split(1) == spring
+    for n in (0, 1.5):
+        with pytest.raises(rbsdem.InputError, match="split: n"):
+            spring.split(n)
 
 
 # ---- faults --------------------------------------------------------------------------------------
@@ -564,12 +579,11 @@ def test_tables_and_figure(shaken):
 
 CASE = """\
 &case title = 'a [short] motion' /
-&column height = 1.6, mass = 614.4, kinematics = 'pdelta', top_mass = 75000 /
-&axial load = 744e3 /
+&column height = 1.6, mass = 614.4, kinematics = 'pdelta', top_mass = 75000, axial_load = 744e3 /
 &shear rule = 'bilinear', k = 7.0387e8, d_y = 1.296e-4, k_post = 8.3185e6 /
 &flexure rule = 'takeda', k_c = 2.5428e8, d_c = 3.1891e-4, k_y = 6.2937e7, d_y = 2.7183e-3,
          k_u = 7.5772e6, b1 = 0.22 /
-&loading drive = 'ground', amplitudes = 3.0, cycles = 2, period = 0.4, points = 20 /
+&loading drive = 'ground_acceleration', amplitudes = 3.0, cycles = 2, period = 0.4, points = 20 /
 &analysis method = 'hht', dt = 0.0025 /
 """
 

@@ -54,7 +54,9 @@ class Case:
 def run_static_bilinear() -> rbsdem.Result:
     column = rbsdem.Column(LENGTH, MASS, BILINEAR, rbsdem.Elastic(2.5428e8))
     drift = np.array([0.0025, 0.005, 0.01]) * LENGTH
-    return rbsdem.cyclic(column, rbsdem.protocol(drift, [1, 2, 1], repeats=2, points=5))
+    return rbsdem.cyclic(
+        column, displacement=rbsdem.protocol(drift, [1, 2, 1], repeats=2, points=5)
+    )
 
 
 def reason_static_bilinear(rows: Rows) -> None:
@@ -103,7 +105,7 @@ def run_static_pdelta() -> rbsdem.Result:
         self_weight=True,
     )
     path = rbsdem.protocol(np.array([5.0, 15.0, 40.0]) / 1000, points=8)
-    return rbsdem.cyclic(column, path)
+    return rbsdem.cyclic(column, displacement=path)
 
 
 def reason_static_pdelta(rows: Rows) -> None:
@@ -207,11 +209,12 @@ def run_rk4_ground() -> rbsdem.Result:
         n=2,
         lengths=[1.2, 0.8],
         masses=[900.0, 500.0],
-        mass_damping=8.0,
-        stiffness_damping=2e-5,
+        damping=rbsdem.Damping(mass=8.0, stiffness=2e-5),
     )
     time, ground = np.loadtxt(HERE / "04-rk4-ground.txt").T
-    return rbsdem.time_history(column, time, ground_acceleration=ground * G, dt=1e-5, every=500)
+    return rbsdem.time_history(
+        column, time, ground_acceleration=ground * G, dt=1e-5, every=500, method="rk4"
+    )
 
 
 def reason_rk4_ground(rows: Rows) -> None:
@@ -261,13 +264,13 @@ def run_rk4_finite() -> rbsdem.Result:
         kinematics="finite",
         axial_load=600.0,
         self_weight=True,
-        mass_damping=0.5,
+        damping=rbsdem.Damping(mass=0.5),
     )
     time = np.arange(13) * (1.5 / 12)
     force = rbsdem.protocol(4.0 * 1000, points=3)
     # Beyond the end of the loading its last value is held.
     time, force = np.append(time, 2.0), np.append(force, force[-1])
-    return rbsdem.time_history(column, time, force=force, dt=1e-3, every=50)
+    return rbsdem.time_history(column, time, force=force, dt=1e-3, every=50, method="rk4")
 
 
 def reason_rk4_finite(rows: Rows) -> None:
@@ -308,9 +311,11 @@ SMOOTH = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, inner
 
 
 def run_rk4_slow() -> rbsdem.Result:
-    column = rbsdem.Column(LENGTH, MASS, BILINEAR, SMOOTH, mass_damping=60.0)
+    column = rbsdem.Column(LENGTH, MASS, BILINEAR, SMOOTH, damping=rbsdem.Damping(mass=60.0))
     force = rbsdem.protocol(np.array([60.0, 130.0]) * 1000, [1, 2], repeats=2, points=10)
-    return rbsdem.time_history(column, np.arange(force.size) * (8.0 / 40), force=force)
+    return rbsdem.time_history(
+        column, np.arange(force.size) * (8.0 / 40), force=force, method="rk4"
+    )
 
 
 def reason_rk4_slow(rows: Rows) -> None:
@@ -337,7 +342,9 @@ FILE_MM = np.array([0.0, 0.4, 2.5, 7.0, 12.0, 11.5])
 
 def run_history_file() -> rbsdem.Result:
     test = rbsdem.read_peer(HERE / "07-history-file.txt")
-    return rbsdem.cyclic(rbsdem.Column(LENGTH, MASS, BILINEAR, TAKEDA), test.displacement * 1.5)
+    return rbsdem.cyclic(
+        rbsdem.Column(LENGTH, MASS, BILINEAR, TAKEDA), displacement=test.displacement * 1.5
+    )
 
 
 def reason_history_file(rows: Rows) -> None:
@@ -461,7 +468,7 @@ def run_rk45_finite() -> rbsdem.Result:
         lengths=[1.2, 0.8],
         top_mass=300.0,
         kinematics="finite",
-        mass_damping=0.3,
+        damping=rbsdem.Damping(mass=0.3),
         axial_load=4e3,
         self_weight=True,
         axial_follows=True,
@@ -524,7 +531,7 @@ def run_contact() -> rbsdem.Result:
         1e3,
         rbsdem.Elastic(1e7),
         rbsdem.Elastic(1e7),
-        axial=rbsdem.Compression(4e6),
+        axial_spring=rbsdem.Compression(4e6),
         self_weight=True,
     )
     ground = np.append(2.5 * G * rbsdem.protocol(1.0, points=2), 0.0)
@@ -595,7 +602,9 @@ def run_static_finite() -> rbsdem.Result:
         axial_load=5e3,
         self_weight=True,
     )
-    return rbsdem.cyclic(column, rbsdem.protocol(np.array([0.3, 0.8]) * LENGTH, points=4))
+    return rbsdem.cyclic(
+        column, displacement=rbsdem.protocol(np.array([0.3, 0.8]) * LENGTH, points=4)
+    )
 
 
 def reason_static_finite(rows: Rows) -> None:
@@ -661,7 +670,7 @@ def run_static_capped() -> rbsdem.Result:
         1.6, 614.4, rbsdem.Elastic(4e8), CAPPED, kinematics="pdelta", axial_load=400e3
     )
     drifts = np.array([0.0025, 0.005, 0.01, 0.02, 0.03, 0.045])
-    return rbsdem.cyclic(column, rbsdem.protocol(drifts * 1.6, cycles=2, points=4))
+    return rbsdem.cyclic(column, displacement=rbsdem.protocol(drifts * 1.6, cycles=2, points=4))
 
 
 def reason_static_capped(rows: Rows) -> None:
@@ -744,17 +753,21 @@ STRIP = rbsdem.ConcreteSpring(
     k=2e9,
     f_peak=0.6e6,
     d_peak=6e-4,
-    k_fall=4e7,
+    k_soft=4e7,
     f_res=0.2e6,
     plastic=1.2,
     contact=0.35,
     misfit=0.4,
     wear=0.03,
 )
-SIDE = rbsdem.SteelSpring(6e8, 5.4e5, 6e6, r0=8, r1=0.83, r2=0.42, growth=0.005, endurance=800)
-MIDDLE = rbsdem.SteelSpring(4e8, 3.6e5, 4e6, r0=8, r1=0.83, r2=0.42, growth=0.005, endurance=800)
+SIDE = rbsdem.SteelSpring(
+    6e8, 5.4e5, 6e6, r0=8, cr1=0.83, cr2=0.42, isotropic_hardening=0.005, half_strength_work=800
+)
+MIDDLE = rbsdem.SteelSpring(
+    4e8, 3.6e5, 4e6, r0=8, cr1=0.83, cr2=0.42, isotropic_hardening=0.005, half_strength_work=800
+)
 STRIPS = [(y, STRIP) for y in (-0.175, -0.125, -0.075, -0.025, 0.025, 0.075, 0.125, 0.175)]
-LAYERED = rbsdem.Layered(700e3, (*STRIPS, (-0.16, SIDE), (0.0, MIDDLE), (0.16, SIDE)))
+LAYERED = rbsdem.Layered((*STRIPS, (-0.16, SIDE), (0.0, MIDDLE), (0.16, SIDE)))
 
 
 def run_static_layered() -> rbsdem.Result:
@@ -762,7 +775,7 @@ def run_static_layered() -> rbsdem.Result:
         1.6, 614.4, rbsdem.Elastic(4e8), LAYERED, kinematics="pdelta", axial_load=700e3
     )
     drifts = np.array([0.0025, 0.005, 0.01, 0.02, 0.03])
-    return rbsdem.cyclic(column, rbsdem.protocol(drifts * 1.6, cycles=2, points=4))
+    return rbsdem.cyclic(column, displacement=rbsdem.protocol(drifts * 1.6, cycles=2, points=4))
 
 
 def reason_static_layered(rows: Rows) -> None:

@@ -122,8 +122,8 @@ def split_bodies(column: Column) -> Column:
         if given is None:
             return None
         if isinstance(given, Spring):
-            return half_spring(given)
-        return [half_spring(spring) for spring in given for _ in range(2)]
+            return given.split(2)
+        return [spring.split(2) for spring in given for _ in range(2)]
 
     return dataclasses.replace(
         column,
@@ -133,18 +133,8 @@ def split_bodies(column: Column) -> Column:
         rotary_inertia=_halves_inertia(column),
         shear=springs(column.shear),
         flexure=springs(column.flexure),
-        axial=springs(column.axial),
+        axial_spring=springs(column.axial_spring),
     )
-
-
-def half_spring(spring: Spring) -> Spring:
-    """Return a spring of half the flexibility: two of them in series are the spring."""
-    changed = {
-        field.name: getattr(spring, field.name) * (2.0 if field.name.startswith("k") else 0.5)
-        for field in dataclasses.fields(spring)
-        if field.name.startswith(("k", "d_"))
-    }
-    return dataclasses.replace(spring, **changed)
 
 
 def _halves_inertia(column: Column) -> list[float] | None:
@@ -184,19 +174,17 @@ def _little_inertia(column: Column) -> Column:
 def variants(scene: Scene, axial: Spring | None) -> Iterator[Variant]:
     """Yield the models to compare with; each has one part changed."""
     column, moving = scene.column, not scene.static
-    undamped = {"damping": None, "mass_damping": 0.0, "stiffness_damping": 0.0}
-    damped = any(getattr(column, name) for name in undamped)
     straight = {"axial_follows": False, "force_follows": False}
     switches: list[tuple[object, str, dict[str, object]]] = [
         (column.axial_load, "no axial load", {"axial_load": 0.0}),
         (column.self_weight, "no self-weight", {"self_weight": False}),
         (any(getattr(column, name) for name in straight), "loads keep direction", straight),
-        (column.axial, "joints do not open", {"axial": None}),
-        (axial and not column.axial, "joints open", {"axial": axial}),
+        (column.axial_spring, "joints do not open", {"axial_spring": None}),
+        (axial and not column.axial_spring, "joints open", {"axial_spring": axial}),
         (moving and column.top_mass, "no top mass", {"top_mass": 0.0, "top_inertia": 0.0}),
         (moving and column.top_inertia, "no inertia of top", {"top_inertia": 0.0}),
         (moving and column.depth, "bodies without depth", {"depth": 0.0}),
-        (moving and damped, "no damping", undamped),
+        (moving and column.damping, "no damping", {"damping": None}),
     ]
     for level in LEVELS:
         if level != column.kinematics:

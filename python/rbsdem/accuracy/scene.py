@@ -19,7 +19,7 @@ from rbsdem.accuracy.path import along, at_times, reversals
 from rbsdem.analysis import cyclic, time_history
 from rbsdem.column import Column
 from rbsdem.errors import AccuracyWarning, InputError, SolveError
-from rbsdem.results import Result
+from rbsdem.result import Result
 
 #: Least number of times at which histories are compared; a loading with fewer is interpolated.
 LEAST_ROWS = 200
@@ -80,7 +80,7 @@ class Scene:
     def keywords(self, setting: Setting, column: Column) -> dict[str, Any]:
         """Return the arguments of `time_history` for a setting."""
         loads: dict[str, Any] = dict(self.loads)
-        if column.kinematics == "small" and column.axial is None:
+        if column.kinematics == "small" and column.axial_spring is None:
             # These loads would have nothing to act on and would be refused.
             loads = {name: load for name, load in loads.items() if name not in VERTICAL}
         names = ("dt", "tolerance", "events", "rho_infinity")

@@ -41,7 +41,7 @@ _PLAIN = {"height": "m", "axial_load": "N"}
 _UNITS = {
     "shear": {"k": "N/m", "d": "m", "f": "N"},
     "flexure": {"k": "N m/rad", "d": "rad", "f": "N m"},
-    "axial": {"k": "N/m", "d": "m", "f": "N"},
+    "axial_spring": {"k": "N/m", "d": "m", "f": "N"},
 }
 
 #: Way to a parameter: names of fields and places in tuples; ``None`` stands for all places.
@@ -76,7 +76,7 @@ def unit_of(way: Way) -> str:
     if len(way) == 1:
         return _PLAIN[name]
     # Layers of a joint are normal springs.
-    kind = "axial" if "layers" in way else str(way[0])
+    kind = "axial_spring" if "layers" in way else str(way[0])
     return _UNITS[kind].get(name.partition("_")[0], "")
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from typing import Literal
 
 from rbsdem import _core
 from rbsdem._core import Array
@@ -28,7 +29,12 @@ class PeerTest:
     force: Array
 
 
-def read_peer(path: str | os.PathLike[str]) -> PeerTest:
+def read_peer(
+    path: str | os.PathLike[str],
+    *,
+    length: Literal["m", "mm", "cm", "in"] | None = None,
+    force: Literal["N", "kN", "MN", "kip"] | None = None,
+) -> PeerTest:
     """Read a history: the PEER text format (millimetres, kilonewtons), or a csv with a header.
 
     Parameters
@@ -36,6 +42,10 @@ def read_peer(path: str | os.PathLike[str]) -> PeerTest:
     path : path-like
         File with columns displacement [mm] and force [kN]; a csv may name other units, such as
         `displacement_m,force_N`.
+    length, force : str, optional
+        Units of the displacements and forces in the file: "m", "mm", "cm", "in" and "N", "kN",
+        "MN", "kip". The default is what the file says, else millimetres and kilonewtons for the
+        PEER format and SI for a csv.
 
     Returns
     -------
@@ -47,4 +57,4 @@ def read_peer(path: str | os.PathLike[str]) -> PeerTest:
     InputError
         If the file cannot be read; the message names file, line and remedy.
     """
-    return PeerTest(*_core.read_history(os.fspath(path)))
+    return PeerTest(*_core.read_history(os.fspath(path), length or "", force or ""))

@@ -127,7 +127,7 @@ def hinge_joint(
             k=max(modulus, secant) * area / concrete_length,
             f_peak=stress * area,
             d_peak=strain * concrete_length,
-            k_fall=max(softening, 1e6) * area / concrete_length,
+            k_soft=max(softening, 1e6) * area / concrete_length,
             f_res=rest * area,
             plastic=hinge.plastic,
             contact=contact,
@@ -154,10 +154,10 @@ def hinge_joint(
             f_y=fy * area,
             k_post=stiffness * max(0.0005, hinge.hardening * (fu - fy) / 0.08 / steel.es),
             r0=by_axial(hinge.r0, hinge.r0_axial),
-            r1=hinge.cr1,
-            r2=hinge.cr2,
-            growth=hinge.isotropic_hardening,
-            endurance=1 / hinge.fatigue if hinge.fatigue > 0 else 0.0,
+            cr1=hinge.cr1,
+            cr2=hinge.cr2,
+            isotropic_hardening=hinge.isotropic_hardening,
+            half_strength_work=1 / hinge.fatigue if hinge.fatigue > 0 else 0.0,
         )
 
     layers += [(y, bar(area, steel)) for y, area, steel in section.bars]
@@ -165,7 +165,7 @@ def hinge_joint(
     uncracked = modulus * strips.inertia
     uncracked += sum(steel.es * (area * y**2) for y, area, steel in section.bars)
     return HingeJoint(
-        Layered(axial_load, tuple(layers)),
+        Layered(tuple(layers)),
         concrete_length,
         min(_STIFFEST, by_axial(hinge.stiffness, hinge.stiffness_axial)) * uncracked,
         hinge.shear_stiffness * modulus / 2.4 * strips.shear_area,

@@ -8,7 +8,7 @@ module rbs_solve_modal_modes
    use rbs_column_band, only: to_joints
    use rbs_column_column, only: column_type
    use rbs_column_frequency, only: frequency_range
-   use rbs_spec_column, only: most_dense
+   use rbs_column_column_record, only: most_dense
    implicit none
    private
 

@@ -22,7 +22,7 @@ module rbs_solve_time_run_dynamic
    use rbs_solve_time_plan, only: time_plan, new_plan, check_times, check_length
    use rbs_solve_time_rk4, only: rk4_stepper, rk4_scheme
    use rbs_solve_time_state, only: stepper_type
-   use rbs_spec_analysis, only: analysis_spec
+   use rbs_case_analysis_record, only: analysis_record
    use rbs_base_check, only: is_given
    implicit none
    private
@@ -41,7 +41,7 @@ contains
    subroutine plan_dynamic(column, analysis, time, loads, plan, error)
       type(column_type), intent(in) :: column
       !> Validated settings
-      type(analysis_spec), intent(in) :: analysis
+      type(analysis_record), intent(in) :: analysis
       !> Times of the loading (m) [s]
       real(wp), intent(in) :: time(:)
       type(loads_type), intent(in) :: loads
@@ -72,7 +72,7 @@ contains
    !> Steps of the method chosen.
    subroutine plan_steps(column, analysis, time, loads, plan, error)
       type(column_type), intent(in) :: column
-      type(analysis_spec), intent(in) :: analysis
+      type(analysis_record), intent(in) :: analysis
       real(wp), intent(in) :: time(:)
       type(loads_type), intent(in) :: loads
       type(time_plan), intent(inout) :: plan
@@ -124,7 +124,7 @@ contains
    !> time, else the cheapest. It is chosen by counts of steps, never by a clock.
    subroutine choose_method(column, analysis, time, plan, error)
       type(column_type), intent(in) :: column
-      type(analysis_spec), intent(in) :: analysis
+      type(analysis_record), intent(in) :: analysis
       real(wp), intent(in) :: time(:)
       type(time_plan), intent(inout) :: plan
       type(error_type), allocatable, intent(out) :: error
@@ -167,7 +167,7 @@ contains
                           progress)
       type(column_type), intent(in) :: column
       !> Validated settings
-      type(analysis_spec), intent(in) :: analysis
+      type(analysis_record), intent(in) :: analysis
       !> From `plan_dynamic`
       type(time_plan), intent(in) :: plan
       !> Times of the loading (m) [s]
@@ -205,7 +205,7 @@ contains
    subroutine new_stepper(stepper, column, analysis, plan)
       class(stepper_type), allocatable, intent(out) :: stepper
       type(column_type), intent(in) :: column
-      type(analysis_spec), intent(in) :: analysis
+      type(analysis_record), intent(in) :: analysis
       type(time_plan), intent(in) :: plan
       type(rk4_stepper), allocatable :: fixed
       type(located_stepper), allocatable :: located

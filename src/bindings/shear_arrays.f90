@@ -1,5 +1,5 @@
 !> The shear of a section between plain arrays and the types of the library.
-module rbs_flat_shear
+module rbs_bindings_shear_arrays
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list
    use rbs_base_kinds, only: wp
@@ -94,4 +94,4 @@ contains
       end do
    end subroutine layer_into_arrays
 
-end module rbs_flat_shear
+end module rbs_bindings_shear_arrays

@@ -1,17 +1,18 @@
 !> From a case file to everything that a run needs: the one reader of both doors.
-module rbs_io_case
+module rbs_io_case_file
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_io_loading_file, only: loading_values
    use rbs_io_namelist, only: read_case
+   use rbs_loading_inline_values, only: inline_values
    use rbs_loading_protocol, only: protocol_values
    use rbs_loading_signal, only: signal_type
    use rbs_solve_check_values, only: check_values
    use rbs_solve_time_loads, only: loads_type
-   use rbs_spec_analysis, only: analysis_spec
-   use rbs_spec_case, only: case_spec
+   use rbs_case_analysis_record, only: analysis_record
+   use rbs_case_case_record, only: case_record
    use rbs_base_check, only: is_given
    implicit none
    private
@@ -33,7 +34,7 @@ contains
    !> Read a case and its loadings; all their faults come back as one error.
    subroutine load_case(path, case, history, error)
       character(len=*), intent(in) :: path
-      type(case_spec), intent(out) :: case
+      type(case_record), intent(out) :: case
       type(case_history), intent(out) :: history
       type(error_type), allocatable, intent(out) :: error
       type(message_list) :: messages
@@ -47,7 +48,7 @@ contains
 
    !> Values of all loadings that are sound in themselves.
    subroutine load_values(case, folder, history, messages)
-      type(case_spec), intent(in) :: case
+      type(case_record), intent(inout) :: case
       character(len=*), intent(in) :: folder
       type(case_history), intent(inout) :: history
       type(message_list), intent(inout) :: messages
@@ -62,14 +63,18 @@ contains
             own = message_list()
             call spec%validate(case%analysis%dynamic(), own)
             if (own%count > 0) cycle                ! reported already
-            if (spec%source == 'protocol') then
+            select case (spec%source)
+            case ('protocol')
                ! The height is in the amplitudes; a wrong one has been reported.
                if (.not. ieee_is_finite(case%column%height)) cycle
                if (case%column%height <= 0.0_wp) cycle
                call protocol_values(spec, case%column%height, time, value, fault)
-            else
-               call loading_values(spec, folder, case%analysis%dynamic(), time, value, fault)
-            end if
+            case ('values')
+               call inline_values(spec, time, value)
+            case default
+               call loading_values(spec, folder, case%analysis%dynamic(), .not. case%analysis%named, time, &
+                                   value, fault)
+            end select
             if (.not. allocated(fault)) call check_values(value, 'loading: '//trim(spec%drive), fault)
             if (allocated(fault)) then
                call messages%add(fault%message)
@@ -80,11 +85,11 @@ contains
             select case (spec%drive)
             case ('force')
                history%loads%force = signal
-            case ('ground')
+            case ('ground_acceleration')
                history%loads%ground = signal
-            case ('vertical')
+            case ('vertical_acceleration')
                history%loads%vertical = signal
-            case ('axial')
+            case ('axial_load')
                history%loads%axial = signal
             case default                            ! a displacement is no load
             end select
@@ -134,7 +139,7 @@ contains
 
    !> End the times where the user wants: earlier, or later with the last value held.
    subroutine cut_duration(spec, history, error)
-      type(analysis_spec), intent(in) :: spec
+      type(analysis_record), intent(in) :: spec
       type(case_history), intent(inout) :: history
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: finish
@@ -143,10 +148,10 @@ contains
       finish = history%time(1) + spec%duration
       if (.not. finish > history%time(1)) then
          call fatal_error(error, bad_input, 'analysis: duration = '//to_text(spec%duration)// &
-                          ' s is lost beside the time of the begin, '//to_text(history%time(1))//' s')
+                          ' s is lost beside the time of the start, '//to_text(history%time(1))//' s')
          return
       end if
       history%time = [pack(history%time, history%time < finish), finish]
    end subroutine cut_duration
 
-end module rbs_io_case
+end module rbs_io_case_file

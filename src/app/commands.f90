@@ -1,5 +1,5 @@
 !> The commands: from a case file to a csv and a summary.
-module rbs_app_run
+module rbs_app_commands
    use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_null_char, c_ptr
    use rbs_app_progress, only: terminal_progress
    use rbs_app_say, only: say
@@ -7,25 +7,27 @@ module rbs_app_run
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
+   use rbs_case_key_list, only: keys_as_json, keys_as_table
+   use rbs_case_text_buffer, only: text_buffer
    use rbs_column_column, only: column_type, small
-   use rbs_io_case, only: case_history, load_case
+   use rbs_io_case_file, only: case_history, load_case
    use rbs_io_csv, only: csv_recorder
    use rbs_io_namelist, only: read_case
    use rbs_output_notes, only: rotation_note
    use rbs_output_row, only: row_labels
-   use rbs_output_summary, only: summary_type, summary_names
+   use rbs_output_summary, only: summary_type, summary_names, summary_units
    use rbs_solve_make_column, only: make_column
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_solve_static_run_static, only: run_static
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: plan_dynamic, run_dynamic
-   use rbs_spec_case, only: case_spec
+   use rbs_case_case_record, only: case_record
    use rbs_version, only: version
    implicit none
    private
 
-   public :: run_case, check_case, show_modes
+   public :: run_case, check_case, show_modes, show_keys
 
    !> Exit code of a run that ended where the user's criterion of collapse was met.
    integer, parameter :: column_collapsed = 3
@@ -50,7 +52,7 @@ contains
       character(len=:), allocatable, intent(in) :: output
       logical, intent(in) :: quiet
       type(error_type), allocatable, intent(out) :: error
-      type(case_spec) :: case
+      type(case_record) :: case
       type(case_history) :: history
       type(column_type) :: column
       type(csv_recorder) :: recorder
@@ -85,7 +87,7 @@ contains
 
    !> No fault of the run: it ended where the user wanted it to.
    subroutine report_collapse(case, recorder, summary, error)
-      type(case_spec), intent(in) :: case
+      type(case_record), intent(in) :: case
       type(csv_recorder), intent(in) :: recorder
       type(summary_type), intent(in) :: summary
       type(error_type), allocatable, intent(out) :: error
@@ -104,7 +106,7 @@ contains
       character(len=*), intent(in) :: path
       logical, intent(in) :: quiet
       type(error_type), allocatable, intent(out) :: error
-      type(case_spec) :: case
+      type(case_record) :: case
       type(case_history) :: history
       type(column_type) :: column
       type(time_plan) :: plan
@@ -125,7 +127,7 @@ contains
    subroutine show_modes(path, error)
       character(len=*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error
-      type(case_spec) :: case
+      type(case_record) :: case
       type(column_type) :: column
       type(modes_type) :: modes
       type(message_list) :: messages
@@ -155,10 +157,24 @@ contains
       call say(trim(line), error)
    end subroutine show_modes
 
+   !> rbsdem keys: everything that a case can say.
+   subroutine show_keys(as_json, error)
+      logical, intent(in) :: as_json
+      type(error_type), allocatable, intent(inout) :: error
+      type(text_buffer) :: buffer
+
+      if (as_json) then
+         call keys_as_json(buffer)
+      else
+         call keys_as_table(buffer)
+      end if
+      call say(buffer%text(:buffer%length - 1), error)
+   end subroutine show_keys
+
    !> Read a case and its loadings; all their faults come back as one error.
    subroutine prepare(path, case, column, history, error)
       character(len=*), intent(in) :: path
-      type(case_spec), intent(out) :: case
+      type(case_record), intent(out) :: case
       type(column_type), intent(out) :: column
       type(case_history), intent(out) :: history
       type(error_type), allocatable, intent(out) :: error
@@ -169,7 +185,7 @@ contains
 
    !> Solve into a csv.
    subroutine solve(case, column, history, path, recorder, summary, quiet, error)
-      type(case_spec), intent(in) :: case
+      type(case_record), intent(in) :: case
       type(column_type), intent(in) :: column
       type(case_history), intent(in) :: history
       character(len=*), intent(in) :: path
@@ -180,14 +196,16 @@ contains
       type(terminal_progress) :: progress
       type(time_plan) :: plan
       type(initial_state) :: at_rest
+      character(len=32), allocatable :: labels(:)
 
       plan%method = 'static'
       if (case%analysis%dynamic()) then
          call plan_dynamic(column, case%analysis, history%time, history%loads, plan, error)
          if (allocated(error)) return
       end if
-      call recorder%open(path, header(case, plan%method), &
-                         row_labels(column%n, column%opens, case%analysis%dynamic()), error)
+      recorder%units = case%units%system()
+      call row_labels(column%n, column%opens, case%analysis%dynamic(), recorder%units, labels, recorder%si)
+      call recorder%open(path, header(case, plan%method), labels, error)
       if (allocated(error)) return
       call progress%start(quiet)
       if (case%analysis%dynamic()) then
@@ -202,23 +220,34 @@ contains
 
    !> Comment lines of the csv.
    function header(case, method) result(lines)
-      type(case_spec), intent(in) :: case
+      type(case_record), intent(in) :: case
       !> The one that is used, where the program chooses
       character(len=*), intent(in) :: method
       character(len=600) :: lines(3)
 
       lines(1) = 'rbsdem '//version
       lines(2) = 'case: '//case%title
-      lines(3) = 'units: SI, in the names of the columns; method: '//trim(method)// &
+      lines(3) = 'units: '//units_text(case)//', in the names of the columns; method: '//trim(method)// &
                  ', kinematics: '//trim(case%column%kinematics)
    end function header
+
+   !> The units of the csv: 'SI', or those that the case names and SI for the rest.
+   function units_text(case) result(text)
+      type(case_record), intent(in) :: case
+      character(len=:), allocatable :: text
+
+      text = 'SI'
+      if (case%units%force /= 'N' .or. case%units%length /= 'm') then
+         text = trim(case%units%force)//', '//trim(case%units%length)//', else SI'
+      end if
+   end function units_text
 
    !> The rows must not go into a file that the case was read from.
    subroutine check_output(file, case_path, case, error)
       !> Where the rows are to go
       character(len=*), intent(in) :: file
       character(len=*), intent(in) :: case_path
-      type(case_spec), intent(in) :: case
+      type(case_record), intent(in) :: case
       type(error_type), allocatable, intent(out) :: error
       character(len=:), allocatable :: input
       integer :: i
@@ -256,7 +285,7 @@ contains
    !> Where the rows go.
    function output_path(case_path, case, output) result(path)
       character(len=*), intent(in) :: case_path
-      type(case_spec), intent(in) :: case
+      type(case_record), intent(in) :: case
       character(len=:), allocatable, intent(in) :: output
       character(len=:), allocatable :: path
       integer :: dot, slash
@@ -274,9 +303,9 @@ contains
       end if
    end function output_path
 
-   !> The figures of a run that say something.
+   !> The figures of a run; those that do not apply to it are left out.
    subroutine print_summary(case, recorder, summary, error)
-      type(case_spec), intent(in) :: case
+      type(case_record), intent(in) :: case
       type(csv_recorder), intent(in) :: recorder
       type(summary_type), intent(in) :: summary
       type(error_type), allocatable, intent(inout) :: error
@@ -288,11 +317,12 @@ contains
       call say('  '//name//'  '//method_text(summary%method, summary%reason), error)
       associate (values => summary%as_array())
          do i = 1, size(values)
-            ! Steps in time that are zero are no figures of the run: a static path has none, and an
-            ! implicit method no stability limit. A collapse is told apart.
-            if (index(summary_names(i), 'step_s') > 0 .and. .not. values(i) > 0.0_wp) cycle
+            ! A static path has no steps in time, and an implicit method no stability limit. A collapse is
+            ! reported apart.
+            if (summary_units(i) == 's' .and. .not. values(i) > 0.0_wp) cycle
             if (summary_names(i) == 'collapsed') cycle
             name = summary_names(i)
+            if (summary_units(i) /= '') name = trim(name)//'_'//summary_units(i)
             call say('  '//name//'  '//to_text(values(i)), error)
          end do
       end associate
@@ -311,7 +341,7 @@ contains
 
    !> What is allowed and perhaps not meant.
    subroutine print_notes(case, column, error)
-      type(case_spec), intent(in) :: case
+      type(case_record), intent(in) :: case
       type(column_type), intent(in) :: column
       type(error_type), allocatable, intent(inout) :: error
 
@@ -333,4 +363,4 @@ contains
       if (text /= '') call say('note: '//text, error)
    end subroutine print_rotation
 
-end module rbs_app_run
+end module rbs_app_commands

@@ -3,7 +3,7 @@
 !> Whole numbers: shape, kind of ties, number of strips, of steels, of bars; place of the steel of each
 !> bar. Reals: the scalars in the order of `section_from_numbers`, five of each steel, y and area of each bar.
 !> The Python side is `rbsdem.section.section`.
-module rbs_flat_section
+module rbs_bindings_section_arrays
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list
    use rbs_base_kinds, only: wp
@@ -106,4 +106,4 @@ contains
                  spring%k_u_found, spring%hinge_length, spring%d_m]
    end function spring_figures
 
-end module rbs_flat_section
+end module rbs_bindings_section_arrays

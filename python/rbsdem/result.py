@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,11 +11,14 @@ from rbsdem import _core
 from rbsdem._core import Array
 from rbsdem.column import Column
 
-#: Names of the energies in the order of a row.
+if TYPE_CHECKING:
+    from rbsdem.case import Case
+
+#: Names of the energies.
 ENERGIES = ("input", "kinetic", "spring", "damping", "axial", "residual")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False, eq=False)
 class Result:
     """Rows of an analysis; arrays of `steps` rows and, per joint, n columns.
 
@@ -50,6 +53,10 @@ class Result:
         Forces of the axial springs, tension positive [N]; None where joints do not open.
     top : ndarray, shape (steps, 2)
         Position (x, y) of the top relative to the ground [m].
+    column : Column
+        The column.
+    case : Case or None
+        The case that was run; None if the analysis was called for the column.
     """
 
     time: Array
@@ -64,31 +71,62 @@ class Result:
     opening: Array
     axial_force: Array | None
     top: Array
+    column: Column
+    case: Case | None = None
+
+    def __repr__(self) -> str:
+        about = self.summary
+        return (
+            f"Result({about['method']}, {self.time.size} rows, {about['status']}, "
+            f"peak displacement {about['peak_displacement']:.4g} m, "
+            f"peak force {about['peak_force']:.4g} N)"
+        )
+
+    def __eq__(self, other: object) -> bool:
+        """Whether another result has the same column, rows and summary, bit for bit."""
+        if not isinstance(other, Result):
+            return NotImplemented
+        return all(
+            _same(getattr(self, field.name), getattr(other, field.name)) for field in fields(self)
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Whether two values are equal; arrays by all of their elements, NaN equal to NaN."""
+    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+        return np.array_equal(one, other, equal_nan=True)
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(_same(one[key], other[key]) for key in one)
+    if isinstance(one, float) and isinstance(other, float):
+        return one == other or (one != one and other != other)
+    return bool(one == other)
 
 
 def result_from_rows(rows: Array, column: Column, summary: dict[str, Any]) -> Result:
-    """Return the result that rows of the Fortran part (`rbs_output_row`) hold, as views."""
-    first, n = _core.ROW_JOINTS, column.n
-    joints = [rows[:, first + i * n : first + (i + 1) * n] for i in range(2 * column.unknowns // n)]
-    if column.axial is None:
-        slip, rotation, shear, moment = joints
-        opening, axial_force = np.zeros(slip.shape), None
-    else:
-        slip, rotation, opening, shear, moment, axial_force = joints
-    energy = {name: rows[:, 3 + i] for i, name in enumerate(ENERGIES)}
-    # Displacement and height of the top are the values 1 and 9 of a row.
-    top = rows[:, 1:10:8]
+    """Return the result that rows of the Fortran part hold, as views."""
+    values: dict[str, Array] = {}
+    at = 0
+    for name in _core.quantities(column.opens)[0]:
+        if name.endswith("*"):
+            values[name[:-1]] = rows[:, at : at + column.n]
+            at += column.n
+        else:
+            values[name] = rows[:, at]
+            at += 1
     return Result(
-        rows[:, 0],
-        rows[:, 1],
-        rows[:, 2],
-        slip,
-        rotation,
-        shear,
-        moment,
-        energy,
-        summary,
-        opening,
-        axial_force,
-        top,
+        time=values["time"],
+        displacement=values["displacement"],
+        force=values["force"],
+        slip=values["slip"],
+        rotation=values["rotation"],
+        shear=values["shear"],
+        moment=values["moment"],
+        energy={name: values[name] for name in ENERGIES},
+        summary=summary,
+        opening=values.get("opening", np.zeros(values["slip"].shape)),
+        axial_force=values.get("axial_force"),
+        top=np.column_stack((values["displacement"], values["top_height"])),
+        column=column,
     )

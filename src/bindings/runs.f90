@@ -1,10 +1,12 @@
-!> Between plain arrays and the types of the library: what the flat procedures call.
-module rbs_flat_door
+!> Analyses from plain arrays into plain arrays: what the procedures for f2py call.
+module rbs_bindings_runs
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
+   use rbs_case_case_record, only: case_record
    use rbs_column_column, only: column_type
+   use rbs_loading_loading_record, only: loading_record
    use rbs_loading_protocol, only: protocol_values
    use rbs_loading_signal, only: signal_type
    use rbs_output_notes, only: rotation_note
@@ -15,13 +17,11 @@ module rbs_flat_door
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: run_dynamic, plan_dynamic
-   use rbs_spec_analysis, only: analysis_spec
-   use rbs_spec_loading, only: loading_spec
    implicit none
    private
 
-   public :: into_rows_static, into_rows_dynamic, make_loads, analysis_from_numbers, &
-             protocol_from_numbers, tell, tell_run
+   public :: into_rows_static, into_rows_dynamic, make_loads, choose_method, protocol_from_numbers, tell, &
+             tell_run
 
    !> Status of a run that needs more rows than it was given room for; 0 to 2 are those of an error.
    integer(c_int), parameter, public :: little_room = 3
@@ -29,42 +29,70 @@ module rbs_flat_door
 contains
 
    !> Static path into an array of rows.
-   subroutine into_rows_static(column, by_force, target_values, every, collapse_drift, rows, count, &
-                               summary, error)
+   subroutine into_rows_static(column, case, by_force, target_values, rows, count, summary, error)
       type(column_type), intent(in) :: column
+      !> Settings of analysis and output
+      type(case_record), intent(inout) :: case
       logical, intent(in) :: by_force
       real(c_double), intent(in) :: target_values(:)
-      integer(c_int), intent(in) :: every
-      real(c_double), intent(in) :: collapse_drift
       real(c_double), intent(inout), target, contiguous :: rows(:, :)
       integer, intent(out) :: count
       type(summary_type), intent(out) :: summary
       type(error_type), allocatable, intent(out) :: error
       type(array_recorder) :: recorder
-      type(analysis_spec) :: analysis
-      type(message_list) :: messages
 
       count = 0
-      analysis%collapse_drift = collapse_drift
-      call analysis%validate(messages)
-      call messages%raise(error)
+      case%analysis%method = 'static'
+      call check_settings(case, error)
       if (allocated(error)) return
       recorder%rows => rows
-      call run_static(column, by_force, target_values, every, collapse_drift, recorder, summary, error)
+      call run_static(column, by_force, target_values, case%output%every, case%analysis%collapse_drift, &
+                      recorder, summary, error)
       count = recorder%count
    end subroutine into_rows_static
 
+   !> Validate what is not the column.
+   subroutine check_settings(case, error)
+      type(case_record), intent(inout) :: case
+      type(error_type), allocatable, intent(out) :: error
+      type(message_list) :: messages
+
+      call case%analysis%validate(messages)
+      call case%output%validate(messages)
+      call messages%raise(error)
+   end subroutine check_settings
+
+   !> The method of an analysis in time, where the user names none, and its settings checked.
+   subroutine choose_method(case, loads, error)
+      type(case_record), intent(inout) :: case
+      type(loads_type), intent(in) :: loads
+      type(error_type), allocatable, intent(out) :: error
+
+      if (case%analysis%method == 'static') then
+         call fatal_error(error, bad_input, &
+                          "analysis: method = 'static' takes no time; call cyclic, or set "// &
+                          "method = 'auto'")
+      else if (case%analysis%method == '' .and. loads%force%acts() .and. .not. &
+               (loads%ground%acts() .or. loads%vertical%acts())) then
+         call fatal_error(error, bad_input, 'analysis: a force with time needs a method that is named: '// &
+                          "method = 'auto', or cyclic for the path without inertia")
+      else
+         if (case%analysis%method == '') case%analysis%method = 'auto'
+         call check_settings(case, error)
+      end if
+   end subroutine choose_method
+
    !> Response in time into an array of rows.
-   subroutine into_rows_dynamic(column, analysis, time, loads, initial_values, opening_given, every, rows, &
-                                count, summary, enough, error)
+   subroutine into_rows_dynamic(column, case, time, loads, initial_values, opening_given, rows, count, &
+                                summary, enough, error)
       type(column_type), intent(in) :: column
-      type(analysis_spec), intent(in) :: analysis
+      !> Settings of analysis and output
+      type(case_record), intent(in) :: case
       real(c_double), intent(in) :: time(:)
       type(loads_type), intent(in) :: loads
       !> Deformations, then velocities (2 unknowns), or nothing: at rest
       real(c_double), intent(in) :: initial_values(:)
       logical, intent(in) :: opening_given
-      integer(c_int), intent(in) :: every
       real(c_double), intent(inout), target, contiguous :: rows(:, :)
       !> Rows kept; without enough room nothing is solved, and it is the number of rows wanted
       integer, intent(out) :: count
@@ -77,11 +105,11 @@ contains
 
       count = 0
       enough = .true.
-      call plan_dynamic(column, analysis, time, loads, plan, error)
+      call plan_dynamic(column, case%analysis, time, loads, plan, error)
       if (allocated(error)) return
-      enough = size(rows, 2) >= plan%rows(every)
+      enough = size(rows, 2) >= plan%rows(case%output%every)
       if (.not. enough) then
-         count = plan%rows(every)
+         count = plan%rows(case%output%every)
          return
       end if
       if (size(initial_values) > 0) then
@@ -90,22 +118,36 @@ contains
          initial%opening_given = opening_given
       end if
       recorder%rows => rows
-      call run_dynamic(column, analysis, plan, time, loads, initial, every, recorder, summary, error)
+      call run_dynamic(column, case%analysis, plan, time, loads, initial, case%output%every, recorder, &
+                       summary, error)
       count = recorder%count
    end subroutine into_rows_dynamic
 
-   !> What acts, from one array each; an array without values is none.
-   subroutine make_loads(loads, time, force, ground, vertical, axial, error)
+   !> What acts, from one column of values for each drive.
+   subroutine make_loads(loads, drives, time, load, error)
       type(loads_type), intent(out) :: loads
-      real(c_double), intent(in) :: time(:), force(:), ground(:), vertical(:), axial(:)
+      !> Names of the drives, separated by blanks
+      character(len=*), intent(in) :: drives
+      real(c_double), intent(in) :: time(:)
+      !> Values (m, drives)
+      real(c_double), intent(in) :: load(:, :)
       type(error_type), allocatable, intent(out) :: error
+      integer :: i, first, last
 
-      call make_signal(loads%force, 'force', time, force, error)
-      if (.not. allocated(error)) call make_signal(loads%ground, 'ground_acceleration', time, ground, error)
-      if (.not. allocated(error)) then
-         call make_signal(loads%vertical, 'vertical_acceleration', time, vertical, error)
-      end if
-      if (.not. allocated(error)) call make_signal(loads%axial, 'axial_load', time, axial, error)
+      first = 1
+      do i = 1, size(load, 2)
+         last = index(drives(first:)//' ', ' ') + first - 2
+         associate (drive => drives(first:last))
+            if (drive == 'force') call make_signal(loads%force, drive, time, load(:, i), error)
+            if (drive == 'ground_acceleration') call make_signal(loads%ground, drive, time, load(:, i), error)
+            if (drive == 'vertical_acceleration') then
+               call make_signal(loads%vertical, drive, time, load(:, i), error)
+            end if
+            if (drive == 'axial_load') call make_signal(loads%axial, drive, time, load(:, i), error)
+         end associate
+         if (allocated(error)) return
+         first = last + 2
+      end do
    end subroutine make_loads
 
    subroutine make_signal(made, name, time, value, error)
@@ -114,7 +156,6 @@ contains
       real(c_double), intent(in) :: time(:), value(:)
       type(error_type), allocatable, intent(out) :: error
 
-      if (size(value) == 0) return
       if (size(value) /= size(time)) then
          call fatal_error(error, bad_input, name//': '//to_text(size(value))//' values for '// &
                           to_text(size(time))//' times; give one for each')
@@ -124,30 +165,6 @@ contains
       made%value = value
    end subroutine make_signal
 
-   !> An analysis in time from its names and its numbers dt, tolerance, rho_infinity, collapse_drift,
-   !> allow_unstable (0 or 1).
-   subroutine analysis_from_numbers(analysis, method, events, numbers, error)
-      type(analysis_spec), intent(out) :: analysis
-      character(len=*), intent(in) :: method, events
-      real(c_double), intent(in) :: numbers(5)
-      type(error_type), allocatable, intent(out) :: error
-      type(message_list) :: messages
-
-      analysis%method = method
-      analysis%events = events
-      analysis%dt = numbers(1)
-      analysis%tolerance = numbers(2)
-      analysis%rho_infinity = numbers(3)
-      analysis%collapse_drift = numbers(4)
-      analysis%allow_unstable = abs(numbers(5)) > 0.0_wp
-      if (analysis%method == 'static') then
-         call messages%add("analysis: method = 'static' takes no time; call cyclic, or set method = 'auto'")
-      else
-         call analysis%validate(messages)
-      end if
-      call messages%raise(error)
-   end subroutine analysis_from_numbers
-
    !> Points of a cyclic protocol, in the unit of the amplitudes.
    subroutine protocol_from_numbers(amplitudes, cycles, repeats, points, values, error)
       real(c_double), intent(in) :: amplitudes(:)
@@ -155,7 +172,7 @@ contains
       !> Filled as far as there are points
       real(c_double), intent(out) :: values(:)
       type(error_type), allocatable, intent(out) :: error
-      type(loading_spec) :: spec
+      type(loading_record) :: spec
       type(message_list) :: messages
       real(wp), allocatable :: time(:), made(:)
 
@@ -206,4 +223,4 @@ contains
       message = note
    end subroutine tell_run
 
-end module rbs_flat_door
+end module rbs_bindings_runs

@@ -9,21 +9,52 @@
 !>              0   d_c  d_y  d_cap          d_u       deformation
 !>
 !> All numbers are positive on both sides.
-module rbs_spec_backbone
+module rbs_hysteresis_backbone_parameters
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unset
    use rbs_base_error, only: message_list
    use rbs_base_text, only: to_text
-   use rbs_base_check, only: is_given, check_positive, check_not_negative
+   use rbs_base_check, only: is_given
+   use rbs_base_keys, only: key_type, above_zero, not_negative, force, deformation
    implicit none
    private
 
-   public :: backbone_spec
+   public :: backbone_parameters, backbone_keys, other_side_keys, from_values
+
+   character(len=*), parameter :: as_positive = 'the same on the negative side; without it as on the positive'
 
    !> Slopes this close to each other are the same.
    real(wp), parameter :: round_off = 1.0e-9_wp
 
-   type :: backbone_spec
+   !> The keys of one side; the optional ones have no default.
+   type(key_type), parameter :: backbone_keys(9) = [ &
+      key_type('d_y', unit=deformation, bound=above_zero, meaning='yield deformation'), &
+      key_type('f_y', unit=force, bound=above_zero, meaning='yield force'), &
+      key_type('d_cap', unit=deformation, bound=above_zero, meaning='deformation at the cap, from d_y on'), &
+      key_type('f_cap', unit=force, bound=above_zero, meaning='largest force, from f_y on'), &
+      key_type('d_pc', unit=deformation, bound=above_zero, &
+               meaning='from the cap along the softening line to where it would have no force left'), &
+      key_type('f_res', unit=force, bound=not_negative, default=0.0_wp, &
+               meaning='residual force, below f_y, which softening does not fall below'), &
+      key_type('d_u', unit=deformation, bound=above_zero, optional=.true., &
+               meaning='deformation beyond which the force falls to zero; without it there is none'), &
+      key_type('d_c', unit=deformation, bound=not_negative, default=0.0_wp, &
+               meaning='cracking deformation; 0: elastic up to yield'), &
+      key_type('f_c', unit=force, bound=not_negative, default=0.0_wp, meaning='cracking force')]
+
+   !> The same for the negative side: positive numbers, as on the positive side where not given.
+   type(key_type), parameter :: other_side_keys(9) = [ &
+      key_type('d_y_neg', unit=deformation, bound=above_zero, optional=.true., meaning=as_positive), &
+      key_type('f_y_neg', unit=force, bound=above_zero, optional=.true., meaning=as_positive), &
+      key_type('d_cap_neg', unit=deformation, bound=above_zero, optional=.true., meaning=as_positive), &
+      key_type('f_cap_neg', unit=force, bound=above_zero, optional=.true., meaning=as_positive), &
+      key_type('d_pc_neg', unit=deformation, bound=above_zero, optional=.true., meaning=as_positive), &
+      key_type('f_res_neg', unit=force, bound=not_negative, optional=.true., meaning=as_positive), &
+      key_type('d_u_neg', unit=deformation, bound=above_zero, optional=.true., meaning=as_positive), &
+      key_type('d_c_neg', unit=deformation, bound=not_negative, optional=.true., meaning=as_positive), &
+      key_type('f_c_neg', unit=force, bound=not_negative, optional=.true., meaning=as_positive)]
+
+   type :: backbone_parameters
       !> Cracking point [m], [N]; zero: uncracked from the start, elastic up to yield
       real(wp) :: d_c = unset, f_c = unset
       !> Yield point [m], [N]
@@ -37,30 +68,28 @@ module rbs_spec_backbone
       !> Deformation beyond which the force falls to zero [m]; `unset`: none
       real(wp) :: d_u = unset
    contains
-      procedure :: validate
+      procedure :: check
       procedure :: stiffness
-   end type backbone_spec
+   end type backbone_parameters
 
 contains
 
-   !> Add a message for every number that does not fit.
-   subroutine validate(self, name, suffix, messages)
-      class(backbone_spec), intent(in) :: self
-      !> Which spring, and what stands behind the names of the numbers
+   !> The parameters of a side from their values in the order of `backbone_keys`.
+   pure type(backbone_parameters) function from_values(value) result(side)
+      real(wp), intent(in) :: value(:)
+
+      side = backbone_parameters(d_y=value(1), f_y=value(2), d_cap=value(3), f_cap=value(4), d_pc=value(5), &
+                                 f_res=value(6), d_u=value(7), d_c=value(8), f_c=value(9))
+   end function from_values
+
+   !> Add a message for every relation that does not hold.
+   subroutine check(self, name, suffix, messages)
+      class(backbone_parameters), intent(in) :: self
+      !> Which spring, and what stands behind the names of the parameters
       character(len=*), intent(in) :: name, suffix
       type(message_list), intent(inout) :: messages
-      logical :: ok(6), ok_u
 
-      call check_positive(self%d_y, name//': d_y'//suffix, '', messages, ok(1))
-      call check_positive(self%f_y, name//': f_y'//suffix, '', messages, ok(2))
-      call check_positive(self%d_cap, name//': d_cap'//suffix, '', messages, ok(3))
-      call check_positive(self%f_cap, name//': f_cap'//suffix, '', messages, ok(4))
-      call check_positive(self%d_pc, name//': d_pc'//suffix, '', messages, ok(5))
-      call check_not_negative(self%f_res, name//': f_res'//suffix, '', messages, ok(6))
-      call check_cracking(self, name, suffix, all(ok(:2)), messages)
-      ok_u = .false.
-      if (is_given(self%d_u)) call check_positive(self%d_u, name//': d_u'//suffix, '', messages, ok_u)
-      if (.not. all(ok)) return
+      call check_cracking(self, name, suffix, messages)
       if (self%d_cap < self%d_y) then
          call wrong('d_cap', self%d_cap, 'must not be below', 'd_y', self%d_y, 'the cap comes after yield')
       end if
@@ -81,8 +110,11 @@ contains
          call wrong('f_res', self%f_res, 'must be below', 'f_y', self%f_y, &
                     'it is what softening leaves of the strength')
       end if
-      if (ok_u .and. self%d_u < self%d_cap) then
-         call wrong('d_u', self%d_u, 'must not be below', 'd_cap', self%d_cap, 'rupture comes after the cap')
+      if (is_given(self%d_u)) then
+         if (self%d_u < self%d_cap) then
+            call wrong('d_u', self%d_u, 'must not be below', 'd_cap', self%d_cap, &
+                       'rupture comes after the cap')
+         end if
       end if
 
    contains
@@ -95,24 +127,18 @@ contains
          call messages%add(name//': '//number//suffix//' = '//to_text(value)//' '//relation//' '//other// &
                            suffix//' = '//to_text(limit)//' ('//reason//')')
       end subroutine wrong
-   end subroutine validate
+   end subroutine check
 
    !> Both numbers of the cracking point or none; before yield, and stiffer than the way to yield.
-   subroutine check_cracking(self, name, suffix, has_yield, messages)
-      class(backbone_spec), intent(in) :: self
+   subroutine check_cracking(self, name, suffix, messages)
+      class(backbone_parameters), intent(in) :: self
       character(len=*), intent(in) :: name, suffix
-      !> Whether the yield point is sound
-      logical, intent(in) :: has_yield
       type(message_list), intent(inout) :: messages
-      logical :: ok(2)
 
-      call check_not_negative(self%d_c, name//': d_c'//suffix, '', messages, ok(1))
-      call check_not_negative(self%f_c, name//': f_c'//suffix, '', messages, ok(2))
-      if (.not. all(ok)) return
       if (self%d_c > 0.0_wp .neqv. self%f_c > 0.0_wp) then
          call messages%add(name//': d_c'//suffix//' = '//to_text(self%d_c)//' and f_c'//suffix//' = '// &
                            to_text(self%f_c)//' are a point together; give both above zero, or none')
-      else if (has_yield .and. self%d_c > 0.0_wp) then
+      else if (self%d_c > 0.0_wp) then
          if (self%d_c >= self%d_y .or. self%f_c >= self%f_y) then
             call messages%add(name//': the cracking point d_c'//suffix//' = '//to_text(self%d_c)//', f_c'// &
                               suffix//' = '//to_text(self%f_c)//' must come before the yield point d_y'// &
@@ -127,10 +153,10 @@ contains
 
    !> Stiffness of the virgin spring on this side [N/m].
    elemental real(wp) function stiffness(self)
-      class(backbone_spec), intent(in) :: self
+      class(backbone_parameters), intent(in) :: self
 
       stiffness = self%f_y/self%d_y
       if (self%d_c > 0.0_wp) stiffness = self%f_c/self%d_c
    end function stiffness
 
-end module rbs_spec_backbone
+end module rbs_hysteresis_backbone_parameters

@@ -23,80 +23,138 @@ subroutine rbs_methods_text(text)
    text = rows
 end subroutine rbs_methods_text
 
-subroutine rbs_check_spring(rule, nn, numbers, inner, status, message)
-   use iso_c_binding, only: c_double, c_int
-   use rbs_base_error, only: error_type, message_list
-   use rbs_flat_door, only: tell
-   use rbs_flat_pack, only: spring_from_numbers
-   use rbs_spec_spring, only: spring_spec
+subroutine rbs_keys(most, text, length)
+   ! The list of all keys as JSON; nothing but its length if there is too little room.
+   use iso_c_binding, only: c_int
+   use rbs_case_key_list, only: keys_as_json
+   use rbs_case_text_buffer, only: text_buffer
    implicit none
-   character(len=*), intent(in) :: rule, inner
+   integer(c_int), intent(in) :: most
+   character(len=most), intent(out) :: text
+   integer(c_int), intent(out) :: length
+   !f2py threadsafe
+   type(text_buffer) :: buffer
+
+   call keys_as_json(buffer)
+   length = buffer%length
+   text = ''
+   if (length <= most) text = buffer%text(:length)
+end subroutine rbs_keys
+
+subroutine rbs_check_spring(statement, nn, number, axial_load, status, message)
+   use iso_c_binding, only: c_double, c_int
+   use rbs_base_error, only: error_type
+   use rbs_bindings_runs, only: tell
+   use rbs_bindings_statements, only: spring_from_statements
+   use rbs_hysteresis_spring_record, only: spring_record
+   implicit none
+   character(len=*), intent(in) :: statement
    integer(c_int), intent(in) :: nn
-   real(c_double), intent(in) :: numbers(nn)
+   real(c_double), intent(in) :: number(nn), axial_load
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
-   type(spring_spec) :: spring
-   type(message_list) :: messages
+   type(spring_record) :: spring
    type(error_type), allocatable :: error
 
-   spring = spring_from_numbers(rule, numbers, inner)
-   call spring%validate(rule//' spring', messages)
-   call messages%raise(error)
+   call spring_from_statements(statement, number, axial_load, spring, error)
    call tell(error, status, message)
 end subroutine rbs_check_spring
 
-subroutine rbs_spring_response(rule, nn, numbers, inner, m, deformation, force)
-   use iso_c_binding, only: c_double, c_int
-   use rbs_flat_pack, only: spring_from_numbers
-   use rbs_hysteresis_springs, only: follow_path
-   implicit none
-   character(len=*), intent(in) :: rule, inner
-   integer(c_int), intent(in) :: nn, m
-   real(c_double), intent(in) :: numbers(nn)
-   real(c_double), intent(in) :: deformation(m)
-   real(c_double), intent(out) :: force(m)
-   !f2py threadsafe
-
-   call follow_path(spring_from_numbers(rule, numbers, inner), deformation, force)
-end subroutine rbs_spring_response
-
-subroutine rbs_check_column(nc, codes, nn, numbers, kinematics, status, message)
+subroutine rbs_spring_response(statement, nn, number, axial_load, m, deformation, force, status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
-   use rbs_column_column, only: column_type
-   use rbs_flat_door, only: tell
-   use rbs_flat_pack, only: column_from_numbers
+   use rbs_bindings_runs, only: tell
+   use rbs_bindings_statements, only: spring_from_statements
+   use rbs_hysteresis_spring_record, only: spring_record
+   use rbs_hysteresis_springs, only: follow_path
    implicit none
-   integer(c_int), intent(in) :: nc, nn, codes(nc)
-   real(c_double), intent(in) :: numbers(nn)
-   character(len=*), intent(in) :: kinematics
+   character(len=*), intent(in) :: statement
+   integer(c_int), intent(in) :: nn, m
+   real(c_double), intent(in) :: number(nn), axial_load
+   real(c_double), intent(in) :: deformation(m)
+   real(c_double), intent(out) :: force(m)
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
+   type(spring_record) :: spring
+   type(error_type), allocatable :: error
+
+   force = 0.0_c_double
+   call spring_from_statements(statement, number, axial_load, spring, error)
+   call tell(error, status, message)
+   if (status == 0) call follow_path(spring, deformation, force)
+end subroutine rbs_spring_response
+
+subroutine rbs_check_column(statement, nn, number, status, message)
+   use iso_c_binding, only: c_double, c_int
+   use rbs_base_error, only: error_type
+   use rbs_bindings_runs, only: tell
+   use rbs_bindings_statements, only: column_from_statements
+   use rbs_case_case_record, only: case_record
+   use rbs_column_column, only: column_type
+   implicit none
+   character(len=*), intent(in) :: statement
+   integer(c_int), intent(in) :: nn
+   real(c_double), intent(in) :: number(nn)
+   integer(c_int), intent(out) :: status
+   character(len=8192), intent(out) :: message
+   !f2py threadsafe
+   type(case_record) :: case
    type(column_type) :: column
    type(error_type), allocatable :: error
 
-   call column_from_numbers(column, codes, numbers, kinematics, error)
+   call column_from_statements(statement, number, column, case, error)
    call tell(error, status, message)
 end subroutine rbs_check_column
 
-subroutine rbs_modes(nc, codes, nn, numbers, kinematics, unknowns, omega, shapes, stable_step, &
-                     status, message)
+subroutine rbs_to_namelist(statement, nn, number, most, text, length, status, message)
+   ! The case as the text of a file; nothing but its length if there is too little room.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
+   use rbs_bindings_runs, only: tell
+   use rbs_bindings_statements, only: case_from_statements
+   use rbs_case_case_record, only: case_record
+   use rbs_case_writer, only: namelist_sink, write_case
+   implicit none
+   character(len=*), intent(in) :: statement
+   integer(c_int), intent(in) :: nn, most
+   real(c_double), intent(in) :: number(nn)
+   character(len=most), intent(out) :: text
+   integer(c_int), intent(out) :: length, status
+   character(len=8192), intent(out) :: message
+   !f2py threadsafe
+   type(case_record) :: case
+   type(namelist_sink) :: sink
+   type(error_type), allocatable :: error
+
+   text = ''
+   length = 0
+   call case_from_statements(statement, number, case, error)
+   call tell(error, status, message)
+   if (status /= 0) return
+   call write_case(case, sink)
+   length = sink%buffer%length
+   if (length <= most) text = sink%buffer%text(:length)
+end subroutine rbs_to_namelist
+
+subroutine rbs_modes(statement, nn, number, unknowns, omega, shapes, stable_step, status, message)
+   use iso_c_binding, only: c_double, c_int
+   use rbs_base_error, only: error_type
+   use rbs_bindings_runs, only: tell
+   use rbs_bindings_statements, only: column_from_statements
+   use rbs_case_case_record, only: case_record
    use rbs_column_column, only: column_type
-   use rbs_flat_door, only: tell
-   use rbs_flat_pack, only: column_from_numbers
    use rbs_solve_modal_modes, only: modes_type, find_modes
    implicit none
-   integer(c_int), intent(in) :: nc, nn, unknowns, codes(nc)
-   real(c_double), intent(in) :: numbers(nn)
-   character(len=*), intent(in) :: kinematics
+   character(len=*), intent(in) :: statement
+   integer(c_int), intent(in) :: nn, unknowns
+   real(c_double), intent(in) :: number(nn)
    real(c_double), intent(out) :: omega(unknowns), shapes(unknowns, unknowns), stable_step
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
+   type(case_record) :: case
    type(column_type) :: column
    type(modes_type) :: modes
    type(error_type), allocatable :: error
@@ -104,7 +162,7 @@ subroutine rbs_modes(nc, codes, nn, numbers, kinematics, unknowns, omega, shapes
    omega = 0.0_c_double
    shapes = 0.0_c_double
    stable_step = 0.0_c_double
-   call column_from_numbers(column, codes, numbers, kinematics, error)
+   call column_from_statements(statement, number, column, case, error)
    if (.not. allocated(error)) call find_modes(column, modes, error)
    call tell(error, status, message)
    if (status /= 0) return
@@ -114,26 +172,28 @@ subroutine rbs_modes(nc, codes, nn, numbers, kinematics, unknowns, omega, shapes
    message = modes%warning
 end subroutine rbs_modes
 
-subroutine rbs_mass_matrix(nc, codes, nn, numbers, kinematics, unknowns, paper, mass, status, message)
+subroutine rbs_mass_matrix(statement, nn, number, unknowns, paper, mass, status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
+   use rbs_bindings_runs, only: tell
+   use rbs_bindings_statements, only: column_from_statements
+   use rbs_case_case_record, only: case_record
    use rbs_column_column, only: column_type
    use rbs_column_mass, only: paper_mass, symmetric_mass
-   use rbs_flat_door, only: tell
-   use rbs_flat_pack, only: column_from_numbers
    implicit none
-   integer(c_int), intent(in) :: nc, nn, unknowns, paper, codes(nc)
-   real(c_double), intent(in) :: numbers(nn)
-   character(len=*), intent(in) :: kinematics
+   character(len=*), intent(in) :: statement
+   integer(c_int), intent(in) :: nn, unknowns, paper
+   real(c_double), intent(in) :: number(nn)
    real(c_double), intent(out) :: mass(unknowns, unknowns)
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
+   type(case_record) :: case
    type(column_type) :: column
    type(error_type), allocatable :: error
 
    mass = 0.0_c_double
-   call column_from_numbers(column, codes, numbers, kinematics, error)
+   call column_from_statements(statement, number, column, case, error)
    call tell(error, status, message)
    if (status /= 0) return
    if (paper /= 0) then
@@ -143,62 +203,75 @@ subroutine rbs_mass_matrix(nc, codes, nn, numbers, kinematics, unknowns, paper, 
    end if
 end subroutine rbs_mass_matrix
 
-subroutine rbs_cyclic(nc, codes, nn, numbers, kinematics, by_force, m, values, every, collapse_drift, &
-                      width, height, rows, kept, figures, method, status, message)
+subroutine rbs_quantities(opens, rows, figures)
+   ! Names of what a row holds, `slip*` for one value a joint, and of the figures of a run.
+   use iso_c_binding, only: c_int
+   use rbs_output_row, only: row_quantities
+   use rbs_output_summary, only: figure_names
+   implicit none
+   integer(c_int), intent(in) :: opens
+   character(len=512), intent(out) :: rows, figures
+   !f2py threadsafe
+
+   rows = row_quantities(opens /= 0)
+   figures = figure_names()
+end subroutine rbs_quantities
+
+subroutine rbs_cyclic(statement, nn, number, by_force, m, values, width, height, rows, kept, nf, figures, &
+                      method, status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
+   use rbs_bindings_runs, only: into_rows_static, tell_run
+   use rbs_bindings_statements, only: column_from_statements
+   use rbs_case_case_record, only: case_record
    use rbs_column_column, only: column_type
-   use rbs_flat_door, only: into_rows_static, tell_run
-   use rbs_flat_pack, only: column_from_numbers
    use rbs_output_summary, only: summary_type
    implicit none
-   integer(c_int), intent(in) :: nc, nn, by_force, m, every, width, height, codes(nc)
-   real(c_double), intent(in) :: numbers(nn), values(m), collapse_drift
-   character(len=*), intent(in) :: kinematics
+   character(len=*), intent(in) :: statement
+   integer(c_int), intent(in) :: nn, by_force, m, width, height, nf
+   real(c_double), intent(in) :: number(nn), values(m)
    real(c_double), intent(inout) :: rows(width, height)
-   real(c_double), intent(out) :: figures(16)
+   real(c_double), intent(out) :: figures(nf)
    integer(c_int), intent(out) :: kept, status
    character(len=220), intent(out) :: method
    character(len=8192), intent(out) :: message
    !f2py threadsafe
+   type(case_record) :: case
    type(column_type) :: column
    type(summary_type) :: summary
    type(error_type), allocatable :: error
 
    kept = 0
-   call column_from_numbers(column, codes, numbers, kinematics, error)
+   call column_from_statements(statement, number, column, case, error)
    if (.not. allocated(error)) then
-      call into_rows_static(column, by_force /= 0, values, every, collapse_drift, rows, kept, summary, error)
+      call into_rows_static(column, case, by_force /= 0, values, rows, kept, summary, error)
    end if
    call tell_run(column, summary, error, figures, method, status, message)
 end subroutine rbs_cyclic
 
-subroutine rbs_time_history(nc, codes, nn, numbers, kinematics, m, time, mf, force, mg, ground, &
-                            mv, vertical, ma, axial, method, events, settings, mi, initial, &
-                            opening_given, every, width, height, rows, kept, figures, used, status, message)
+subroutine rbs_time_history(statement, nn, number, m, time, drives, nd, load, mi, initial, opening_given, &
+                            width, height, rows, kept, nf, figures, used, status, message)
    ! status 3: there is too little room for the rows; `kept` of them are wanted, and nothing was solved.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
+   use rbs_bindings_runs, only: choose_method, into_rows_dynamic, little_room, make_loads, tell_run
+   use rbs_bindings_statements, only: column_from_statements
+   use rbs_case_case_record, only: case_record
    use rbs_column_column, only: column_type
-   use rbs_flat_door, only: analysis_from_numbers, into_rows_dynamic, little_room, make_loads, tell_run
-   use rbs_flat_pack, only: column_from_numbers
    use rbs_output_summary, only: summary_type
    use rbs_solve_time_loads, only: loads_type
-   use rbs_spec_analysis, only: analysis_spec
    implicit none
-   integer(c_int), intent(in) :: nc, nn, m, mf, mg, mv, ma, mi, opening_given, every, width, height
-   integer(c_int), intent(in) :: codes(nc)
-   real(c_double), intent(in) :: numbers(nn), settings(5), time(m), force(mf), ground(mg), vertical(mv)
-   real(c_double), intent(in) :: axial(ma), initial(mi)
-   character(len=*), intent(in) :: kinematics, method, events
+   character(len=*), intent(in) :: statement, drives
+   integer(c_int), intent(in) :: nn, m, nd, mi, opening_given, width, height, nf
+   real(c_double), intent(in) :: number(nn), time(m), load(m, nd), initial(mi)
    real(c_double), intent(inout) :: rows(width, height)
-   real(c_double), intent(out) :: figures(16)
+   real(c_double), intent(out) :: figures(nf)
    integer(c_int), intent(out) :: kept, status
    character(len=220), intent(out) :: used
    character(len=8192), intent(out) :: message
    !f2py threadsafe
+   type(case_record) :: case
    type(column_type) :: column
-   type(analysis_spec) :: analysis
    type(loads_type) :: loads
    type(summary_type) :: summary
    type(error_type), allocatable :: error
@@ -206,74 +279,55 @@ subroutine rbs_time_history(nc, codes, nn, numbers, kinematics, m, time, mf, for
 
    kept = 0
    enough = .true.
-   call column_from_numbers(column, codes, numbers, kinematics, error)
-   if (.not. allocated(error)) call analysis_from_numbers(analysis, method, events, settings, error)
-   if (.not. allocated(error)) call make_loads(loads, time, force, ground, vertical, axial, error)
+   call column_from_statements(statement, number, column, case, error)
+   if (.not. allocated(error)) call make_loads(loads, drives, time, load, error)
+   if (.not. allocated(error)) call choose_method(case, loads, error)
    if (.not. allocated(error)) then
-      call into_rows_dynamic(column, analysis, time, loads, initial, opening_given /= 0, every, rows, kept, &
-                             summary, enough, error)
+      call into_rows_dynamic(column, case, time, loads, initial, opening_given /= 0, rows, kept, summary, &
+                             enough, error)
    end if
    call tell_run(column, summary, error, figures, used, status, message)
    if (.not. enough) status = little_room
 end subroutine rbs_time_history
 
-subroutine rbs_read_case(path, nc, nn, m, codes, numbers, kinematics, title, method, events, settings, &
-                         every, time, values, acting, sizes, status, message)
-   ! Sizes of codes, numbers and time come back in `sizes`; the arrays are filled if theirs are these.
+subroutine rbs_read_case(path, nt, nn, m, statement, number, time, values, acting, sizes, status, message)
+   ! Sizes of statement, number and time come back in `sizes`; the arrays are filled if theirs suffice.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
-   use rbs_flat_case, only: case_arrays, open_case
-   use rbs_flat_door, only: tell
+   use rbs_bindings_case_arrays, only: case_arrays, open_case
+   use rbs_bindings_runs, only: tell
    implicit none
    character(len=*), intent(in) :: path
-   integer(c_int), intent(in) :: nc, nn, m
-   integer(c_int), intent(out) :: codes(nc), every, acting(5), sizes(3), status
-   real(c_double), intent(out) :: numbers(nn), settings(5), time(m), values(m, 5)
-   character(len=16), intent(out) :: kinematics
-   character(len=512), intent(out) :: title
-   character(len=20), intent(out) :: method, events
+   integer(c_int), intent(in) :: nt, nn, m
+   character(len=nt), intent(out) :: statement
+   real(c_double), intent(out) :: number(nn), time(m), values(m, 5)
+   integer(c_int), intent(out) :: acting(5), sizes(3), status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
    type(case_arrays) :: arrays
    type(error_type), allocatable :: error
 
-   codes = 0
-   every = 0
+   statement = ''
    acting = 0
    sizes = 0
-   numbers = 0.0_c_double
-   settings = 0.0_c_double
-   time = 0.0_c_double
-   values = 0.0_c_double
-   kinematics = ''
-   title = ''
-   method = ''
-   events = ''
    call open_case(path, arrays, error)
    call tell(error, status, message)
    if (status /= 0) return
-   sizes = [size(arrays%codes), size(arrays%numbers), size(arrays%time)]
-   if (any(sizes /= [nc, nn, m])) return
-   codes = arrays%codes
-   numbers = arrays%numbers
-   time = arrays%time
-   values = arrays%values
-   acting = arrays%acting
-   kinematics = arrays%case%column%kinematics
-   title = arrays%case%title
-   every = arrays%case%output%every
-   associate (analysis => arrays%case%analysis)
-      method = analysis%method
-      events = analysis%events
-      settings = [analysis%dt, analysis%tolerance, analysis%rho_infinity, analysis%collapse_drift, &
-                  merge(1.0_c_double, 0.0_c_double, analysis%allow_unstable)]
+   associate (from => arrays%statements)
+      sizes = [from%buffer%length, from%count, size(arrays%time)]
+      if (any(sizes > [nt, nn, m])) return
+      statement = from%buffer%text(:sizes(1))
+      number(:sizes(2)) = from%number(:sizes(2))
    end associate
+   time(:sizes(3)) = arrays%time
+   values(:sizes(3), :) = arrays%values
+   acting = arrays%acting
 end subroutine rbs_read_case
 
 subroutine rbs_protocol(na, amplitudes, nc, cycles, repeats, points, m, values, status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
-   use rbs_flat_door, only: protocol_from_numbers, tell
+   use rbs_bindings_runs, only: protocol_from_numbers, tell
    implicit none
    integer(c_int), intent(in) :: na, nc, repeats, points, m
    real(c_double), intent(in) :: amplitudes(na)
@@ -288,13 +342,14 @@ subroutine rbs_protocol(na, amplitudes, nc, cycles, repeats, points, m, values, 
    call tell(error, status, message)
 end subroutine rbs_protocol
 
-subroutine rbs_read_history(path, most, rows, name, displacement, force, status, message)
+subroutine rbs_read_history(path, length_unit, force_unit, most, rows, name, displacement, force, &
+                            status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
-   use rbs_flat_door, only: tell
+   use rbs_bindings_runs, only: tell
    use rbs_io_loading_file, only: read_test
    implicit none
-   character(len=*), intent(in) :: path
+   character(len=*), intent(in) :: path, length_unit, force_unit
    integer(c_int), intent(in) :: most
    real(c_double), intent(out) :: displacement(most), force(most)
    integer(c_int), intent(out) :: rows, status
@@ -303,8 +358,11 @@ subroutine rbs_read_history(path, most, rows, name, displacement, force, status,
    !f2py threadsafe
    type(error_type), allocatable :: error
    character(len=:), allocatable :: test
+   character(len=16) :: units(2)
 
-   call read_test(path, test, rows, displacement, force, error)
+   units(1) = length_unit
+   units(2) = force_unit
+   call read_test(path, units, test, rows, displacement, force, error)
    name = test
    call tell(error, status, message)
 end subroutine rbs_read_history
@@ -323,8 +381,8 @@ end subroutine rbs_kept_rows
 subroutine rbs_check_section(nc, codes, nn, numbers, figures, status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
-   use rbs_flat_door, only: tell
-   use rbs_flat_section, only: section_from_numbers, figures_of_section
+   use rbs_bindings_runs, only: tell
+   use rbs_bindings_section_arrays, only: section_from_numbers, figures_of_section
    use rbs_section_cross_section, only: section_type
    implicit none
    integer(c_int), intent(in) :: nc, nn, codes(nc)
@@ -345,8 +403,8 @@ end subroutine rbs_check_section
 subroutine rbs_axial_capacity(nc, codes, nn, numbers, least, most, status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
-   use rbs_flat_door, only: tell
-   use rbs_flat_section, only: section_from_numbers
+   use rbs_bindings_runs, only: tell
+   use rbs_bindings_section_arrays, only: section_from_numbers
    use rbs_section_balance, only: axial_capacity
    use rbs_section_concrete_law, only: tension_bare
    use rbs_section_resultants, only: section_laws
@@ -373,8 +431,8 @@ subroutine rbs_moment_curvature(nc, codes, nn, numbers, axial_load, tension, con
    ! Curvatures of one sign in rising size.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
-   use rbs_flat_door, only: tell
-   use rbs_flat_section, only: section_from_numbers
+   use rbs_bindings_runs, only: tell
+   use rbs_bindings_section_arrays, only: section_from_numbers
    use rbs_section_balance, only: follow
    use rbs_section_resultants, only: section_laws
    use rbs_section_cross_section, only: section_type
@@ -403,8 +461,8 @@ subroutine rbs_section_events(nc, codes, nn, numbers, axial_load, tension, confi
    ! A column of `points` each for cracking, yield, peak, ultimate and the end; strains: eps_yield, eps_cover.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list
-   use rbs_flat_door, only: tell
-   use rbs_flat_section, only: section_from_numbers, point_numbers
+   use rbs_bindings_runs, only: tell
+   use rbs_bindings_section_arrays, only: section_from_numbers, point_numbers
    use rbs_section_events, only: check_rules, events_type, find_events, rule_type
    use rbs_section_resultants, only: section_laws
    use rbs_section_cross_section, only: section_type
@@ -450,8 +508,8 @@ subroutine rbs_section_flexure(nc, codes, nn, numbers, settings, stiffened, conf
    ! settings: length, axial load, hinge length, factor of the moments, B_0, D_m, eps_yield, eps_cover.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list
-   use rbs_flat_door, only: tell
-   use rbs_flat_section, only: section_from_numbers, point_numbers, spring_figures
+   use rbs_bindings_runs, only: tell
+   use rbs_bindings_section_arrays, only: section_from_numbers, point_numbers, spring_figures
    use rbs_section_events, only: check_rules, rule_type
    use rbs_section_flexural_spring, only: check_hinge, fit_flexural_spring, flexural_spring_type, hinge_type
    use rbs_section_cross_section, only: section_type
@@ -501,8 +559,8 @@ subroutine rbs_section_concrete(nc, codes, nn, numbers, tension, part, m, strain
    ! part: 0 without confinement, 1 core, 2 cover that spalls; compression positive.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
-   use rbs_flat_door, only: tell
-   use rbs_flat_section, only: section_from_numbers
+   use rbs_bindings_runs, only: tell
+   use rbs_bindings_section_arrays, only: section_from_numbers
    use rbs_section_concrete_law, only: concrete_stress
    use rbs_section_resultants, only: laws_type, section_laws
    use rbs_section_cross_section, only: section_type
@@ -536,9 +594,9 @@ subroutine rbs_section_shear(nc, codes, nn, numbers, axial_load, span, tension, 
    ! found, a layer sheared, axial load lost.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
-   use rbs_flat_door, only: tell
-   use rbs_flat_section, only: section_from_numbers
-   use rbs_flat_shear, only: shear_into_arrays
+   use rbs_bindings_runs, only: tell
+   use rbs_bindings_section_arrays, only: section_from_numbers
+   use rbs_bindings_shear_arrays, only: shear_into_arrays
    use rbs_section_cross_section, only: section_type
    implicit none
    integer(c_int), intent(in) :: nc, nn, tension, confined, coupled, layers, m, codes(nc)
@@ -567,7 +625,7 @@ subroutine rbs_layer_response(concrete, tension, stirrup, m, path, states, carri
    ! concrete: fc, ft, ec, eps0; stirrup: rho_z, fy, fu, es, eps_sh, eps_u; path: eps_x and tau; a column of
    ! `states`: eps_z, gamma, sigma_x, sigma_z, tau.
    use iso_c_binding, only: c_double, c_int
-   use rbs_flat_shear, only: layer_into_arrays
+   use rbs_bindings_shear_arrays, only: layer_into_arrays
    implicit none
    integer(c_int), intent(in) :: tension, m
    real(c_double), intent(in) :: concrete(4), stirrup(6), path(2, m)
@@ -584,7 +642,7 @@ subroutine rbs_section_strips(shape, sizes, round_core, m, core, cover, figures,
    use iso_c_binding, only: c_double, c_int
    use rbs_base_check, only: check_name
    use rbs_base_error, only: error_type, message_list
-   use rbs_flat_door, only: tell
+   use rbs_bindings_runs, only: tell
    use rbs_section_shape, only: shape_type
    use rbs_section_shapes, only: new_core, new_shape, shape_names
    use rbs_section_strips, only: cut_strips, strip_centroids, strips_type
@@ -624,7 +682,7 @@ subroutine rbs_concrete_response(numbers, tension, m, strain, stress, status, me
    ! numbers: fc, ft, ec, eps0, eps_spall; without confinement, compression positive.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list
-   use rbs_flat_door, only: tell
+   use rbs_bindings_runs, only: tell
    use rbs_section_concrete_law, only: check_concrete, concrete_stress, concrete_type, plain_concrete
    implicit none
    real(c_double), intent(in) :: numbers(5)
@@ -652,7 +710,7 @@ subroutine rbs_steel_response(numbers, m, strain, stress, status, message)
    ! numbers: fy, fu, es, eps_sh, eps_u.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list
-   use rbs_flat_door, only: tell
+   use rbs_bindings_runs, only: tell
    use rbs_section_steel_law, only: check_steel, steel_stress, steel_type
    implicit none
    real(c_double), intent(in) :: numbers(5)

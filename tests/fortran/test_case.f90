@@ -1,5 +1,5 @@
 !> What is refused, and what the user reads then: the thing, its value, the remedy.
-module test_spec
+module test_case
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf
    use check, only: unit_test, check_close, check_contains, check_equal, check_failed, check_same, &
                     check_true
@@ -9,23 +9,23 @@ module test_spec
    use rbs_case_methods, only: methods
    use rbs_column_column, only: column_type
    use rbs_solve_make_column, only: make_column
-   use rbs_spec_analysis, only: analysis_spec
-   use rbs_spec_case, only: case_spec
+   use rbs_case_analysis_record, only: analysis_record
+   use rbs_case_case_record, only: case_record
    use rbs_base_check, only: is_given
-   use rbs_spec_column, only: column_spec, most_bodies, most_dense
-   use rbs_spec_loading, only: loading_spec, units_of
-   use rbs_spec_spring, only: spring_spec, initial_stiffness
+   use rbs_column_column_record, only: column_record, most_bodies, most_dense
+   use rbs_loading_loading_record, only: loading_record, units_of
+   use rbs_hysteresis_spring_record, only: spring_record
    use rbs_base_units, only: unit_type, to_si, length_units, force_units, acceleration_units
    use samples, only: elastic, bilinear, takeda, bilinear_1, takeda_1, column_1, chain, k_c, d_c, k_y, &
                       d_y, k_u, s_k
    implicit none
    private
 
-   public :: collect_spec
+   public :: collect_case
 
 contains
 
-   subroutine collect_spec(tests)
+   subroutine collect_case(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
       tests = [unit_test('unset is told from any number, NaN included', given), &
@@ -51,19 +51,18 @@ contains
                unit_test('loading: a drive that the analysis cannot take', loading_drive), &
                unit_test('loading: units', loading_units), &
                unit_test('loading: protocol', loading_protocol), &
-               unit_test('loading: a force that follows', loading_follows), &
                unit_test('analysis and output', analysis), &
                unit_test('analysis: settings of the methods', settings), &
                unit_test('analysis: a setting that the method does not use', unused_settings), &
                unit_test('case: all faults at once', all_at_once), &
                unit_test('case: several loadings', several_loadings), &
                unit_test('units: exact decimals', units)]
-   end subroutine collect_spec
+   end subroutine collect_case
 
    !> The messages on a spring hold `part`; an empty part: there are none.
    subroutine expect_spring(error, spec, part)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec), intent(in) :: spec
+      type(spring_record), intent(in) :: spec
       character(len=*), intent(in) :: part
       type(message_list) :: messages
 
@@ -73,22 +72,26 @@ contains
 
    subroutine expect_column(error, spec, part)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec), intent(in) :: spec
+      type(column_record), intent(in) :: spec
       character(len=*), intent(in) :: part
       type(message_list) :: messages
+      type(column_record) :: asked
 
-      call spec%validate(messages)
+      asked = spec
+      call asked%validate(messages)
       call expect(error, messages, part)
    end subroutine expect_column
 
    subroutine expect_loading(error, spec, dynamic, part)
       type(error_type), allocatable, intent(inout) :: error
-      type(loading_spec), intent(in) :: spec
+      type(loading_record), intent(in) :: spec
       logical, intent(in) :: dynamic
       character(len=*), intent(in) :: part
       type(message_list) :: messages
+      type(loading_record) :: asked
 
-      call spec%validate(dynamic, messages)
+      asked = spec
+      call asked%validate(dynamic, messages)
       call expect(error, messages, part)
    end subroutine expect_loading
 
@@ -128,7 +131,7 @@ contains
 
    subroutine spring_rule(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
 
       call expect_spring(error, spec, 'shear spring: rule is missing; it is one of elastic, bilinear, takeda')
       spec%rule = 'takda'
@@ -156,27 +159,27 @@ contains
 
    subroutine spring_takeda_numbers(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
 
       spec = takeda_1('kc')
-      spec%k_c = 0.0_wp
+      call spec%set('k_c', 0.0_wp)
       call expect_spring(error, spec, 'k_c = 0 must be above zero')
       spec = takeda_1('kc')
-      spec%d_c = -1.0_wp
+      call spec%set('d_c', -1.0_wp)
       call expect_spring(error, spec, 'd_c = -1 must be above zero')
       spec = takeda_1('kc')
-      spec%k_y = unset
+      call spec%set('k_y', unset)
       call expect_spring(error, spec, 'k_y is missing')
       spec = takeda_1('kc')
-      spec%k_u = -1.0_wp
+      call spec%set('k_u', -1.0_wp)
       call expect_spring(error, spec, 'k_u = -1 must not be negative')
       spec = takeda_1('kc')
-      spec%b0 = -0.1_wp
+      call spec%set('b0', -0.1_wp)
       call expect_spring(error, spec, 'b0 = -0.1 must not be negative')
       spec = takeda_1('kc')
-      spec%b1 = 0.0_wp
+      call spec%set('b1', 0.0_wp)
       call expect_spring(error, spec, 'b1 = 0 must be above zero')
-      call expect_spring(error, takeda_1('ko'), "inner = 'ko' is not known; it is one of kc, kr, one")
+      call expect_spring(error, takeda_1('ko'), 'inner is not known; it is one of kc kr one')
    end subroutine spring_takeda_numbers
 
    subroutine spring_takeda_order(error)
@@ -201,7 +204,7 @@ contains
    !> Also under floating-point traps: a NaN is never compared.
    subroutine spring_not_finite(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(spring_spec) :: spec
+      type(spring_record) :: spec
       real(wp) :: numbers(7), bad(2)
       integer :: i, j
       character(len=8) :: text(2)
@@ -233,14 +236,18 @@ contains
 
    subroutine spring_stiffness(error)
       type(error_type), allocatable, intent(inout) :: error
+      type(spring_record) :: springs(3)
 
-      call check_close(error, initial_stiffness([elastic(3.0_wp), bilinear_1(), takeda_1('kc')]), &
+      springs(1) = elastic(3.0_wp)
+      springs(2) = bilinear_1()
+      springs(3) = takeda_1('kc')
+      call check_close(error, springs%initial_stiffness(), &
                        [3.0_wp, s_k, k_c], 0.0_wp, 0.0_wp, 'elastic, bilinear, takeda')
    end subroutine spring_stiffness
 
    subroutine column_valid(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec) :: spec
+      type(column_record) :: spec
 
       call expect_column(error, column_1('small'), '')
       call expect_column(error, column_1('finite'), '')
@@ -253,13 +260,13 @@ contains
 
    subroutine column_numbers(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec) :: spec
+      type(column_record) :: spec
 
       spec = column_1('small')
       spec%n = 0
-      call expect_column(error, spec, 'column: n = 0 bodies; it must be from 1 to 10000')
+      call expect_column(error, spec, 'column: n = 0 must be from 1 to 10000')
       spec%n = most_bodies + 1
-      call expect_column(error, spec, 'column: n = 10001 bodies')
+      call expect_column(error, spec, 'column: n = 10001 must be from 1 to 10000')
       spec = column_1('small')
       spec%height = unset
       call expect_column(error, spec, 'column: height is missing; give it a value in m')
@@ -274,16 +281,16 @@ contains
       spec%gravity = -9.81_wp
       call expect_column(error, spec, 'column: gravity = -9.81 m/s2 must not be negative')
       spec = column_1('small')
-      spec%mass_damping = -1.0_wp
-      call expect_column(error, spec, 'column: mass_damping = -1 1/s must not be negative')
+      spec%damping%mass = -1.0_wp
+      call expect_column(error, spec, 'damping: mass = -1 1/s must not be negative')
       spec = column_1('small')
-      spec%stiffness_damping = -1.0_wp
-      call expect_column(error, spec, 'column: stiffness_damping = -1 s must not be negative')
+      spec%damping%stiffness = -1.0_wp
+      call expect_column(error, spec, 'damping: stiffness = -1 s must not be negative')
    end subroutine column_numbers
 
    subroutine column_parts(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec) :: spec
+      type(column_record) :: spec
 
       spec = chain(3, 'small')
       spec%lengths(1) = spec%lengths(1) + 0.1_wp
@@ -301,7 +308,7 @@ contains
 
    subroutine column_springs(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec) :: spec
+      type(column_record) :: spec
 
       spec = chain(3, 'small')
       deallocate (spec%shear)
@@ -310,13 +317,13 @@ contains
       spec%flexure = spec%flexure(:2)
       call expect_column(error, spec, 'column: 2 flexure springs for 3 joints; give one, or one for each')
       spec = chain(3, 'small')
-      spec%flexure(2)%k = -1.0_wp
+      call spec%flexure(2)%set('k', -1.0_wp)
       call expect_column(error, spec, 'flexure spring of joint 2: k = -1 must be above zero')
    end subroutine column_springs
 
    subroutine column_follows(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec) :: spec
+      type(column_record) :: spec
 
       spec = chain(2, 'finite')
       spec%axial_follows = .true.
@@ -331,7 +338,7 @@ contains
 
    subroutine column_inertia(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec) :: spec
+      type(column_record) :: spec
 
       spec = chain(3, 'small')
       spec%top_mass = 500.0_wp
@@ -363,64 +370,64 @@ contains
 
    subroutine column_damping(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec) :: spec
+      type(column_record) :: spec
 
       spec = chain(3, 'small')
-      spec%tangent_damping = .true.
-      call expect_column(error, spec, 'tangent_damping has no meaning without stiffness_damping')
-      spec%stiffness_damping = 1.0e-4_wp
+      spec%damping%tangent = .true.
+      call expect_column(error, spec, 'damping: tangent has no meaning without stiffness; give one')
+      spec%damping%stiffness = 1.0e-4_wp
       call expect_column(error, spec, '')
-      spec%modal_damping = [0.05_wp]
+      spec%damping%modal = [0.05_wp]
       call expect_column(error, spec, '')
-      spec%modal_damping = [0.0_wp, 0.05_wp, 0.999_wp]
+      spec%damping%modal = [0.0_wp, 0.05_wp, 0.999_wp]
       call expect_column(error, spec, '')
-      spec%modal_damping = [0.02_wp, 5.0_wp]
-      call expect_column(error, spec, 'column: modal_damping(2) = 5 must be below 1')
-      spec%modal_damping = [-0.02_wp]
-      call expect_column(error, spec, 'column: modal_damping(1) = -0.02 must not be negative')
-      spec%modal_damping = [ieee_value(1.0_wp, ieee_quiet_nan)]
-      call expect_column(error, spec, 'column: modal_damping(1) = NaN must be a finite number')
-      deallocate (spec%modal_damping)
-      allocate (spec%modal_damping(7), source=0.01_wp)
-      call expect_column(error, spec, 'modal_damping has 7 values for 6 modes')
+      spec%damping%modal = [0.02_wp, 5.0_wp]
+      call expect_column(error, spec, 'damping: modal(2) = 5 must be below 1')
+      spec%damping%modal = [-0.02_wp]
+      call expect_column(error, spec, 'damping: modal = -0.02 must not be negative')
+      spec%damping%modal = [ieee_value(1.0_wp, ieee_quiet_nan)]
+      call expect_column(error, spec, 'damping: modal = NaN must be a finite number')
+      deallocate (spec%damping%modal)
+      allocate (spec%damping%modal(7), source=0.01_wp)
+      call expect_column(error, spec, 'damping: modal has 7 values for 6 modes')
       spec = chain(most_dense + 1, 'small')
-      spec%modal_damping = [0.05_wp]
+      spec%damping%modal = [0.05_wp]
       call expect_column(error, spec, 'up to 500 bodies, not for n = 501')
    end subroutine column_damping
 
    subroutine column_axial(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_spec) :: spec
-      type(spring_spec) :: contact
+      type(column_record) :: spec
+      type(spring_record) :: contact
       integer :: i
 
       contact%rule = 'compression'
-      contact%k = 1.0e9_wp
+      call contact%set('k', 1.0e9_wp)
       spec = chain(3, 'small')
-      allocate (spec%axial(1), source=contact)
+      allocate (spec%axial_spring(1), source=contact)
       call expect_column(error, spec, '')
-      spec%axial(1) = bilinear_1()
+      spec%axial_spring(1) = bilinear_1()
       call expect_column(error, spec, '')
-      spec%axial(1) = takeda_1('kc')
-      call expect_column(error, spec, "column: an axial spring cannot be of the rule 'takeda'")
-      deallocate (spec%axial)
-      allocate (spec%axial(3))
+      spec%axial_spring(1) = takeda_1('kc')
+      call expect_column(error, spec, "column: the axial spring cannot be of the rule 'takeda'")
+      deallocate (spec%axial_spring)
+      allocate (spec%axial_spring(3))
       do i = 1, 3
-         spec%axial(i) = elastic(1.0e9_wp)
+         spec%axial_spring(i) = elastic(1.0e9_wp)
       end do
       call expect_column(error, spec, '')
-      spec%axial(2)%k = 0.0_wp
+      call spec%axial_spring(2)%set('k', 0.0_wp)
       call expect_column(error, spec, 'axial spring of joint 2: k = 0 must be above zero')
-      spec%axial = spec%axial(:2)
-      spec%axial(2)%k = 1.0_wp
+      spec%axial_spring = spec%axial_spring(:2)
+      call spec%axial_spring(2)%set('k', 1.0_wp)
       call expect_column(error, spec, 'column: 2 axial springs for 3 joints')
-      deallocate (spec%axial)
+      deallocate (spec%axial_spring)
       spec%flexure(3) = contact
       call expect_column(error, spec, "the flexure spring cannot be of the rule 'compression'")
    end subroutine column_axial
 
    !> A displacement protocol in drift.
-   type(loading_spec) function drift_protocol() result(spec)
+   type(loading_record) function drift_protocol() result(spec)
       spec%drive = 'displacement'
       spec%source = 'protocol'
       allocate (spec%amplitudes, source=[0.005_wp, 0.01_wp])
@@ -428,7 +435,7 @@ contains
 
    subroutine loading_names(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(loading_spec) :: spec
+      type(loading_record) :: spec
 
       spec = drift_protocol()
       call expect_loading(error, spec, .false., '')
@@ -443,7 +450,7 @@ contains
       spec%file = 'history.txt'
       call expect_loading(error, spec, .false., '')
       spec%amplitudes = [1.0_wp]
-      call expect_loading(error, spec, .false., 'both file and amplitudes are given')
+      call expect_loading(error, spec, .false., 'more than one of file, amplitudes and values are given')
       deallocate (spec%amplitudes)
       spec%format = 'xls'
       call expect_loading(error, spec, .false., "loading: format = 'xls' is not known")
@@ -457,36 +464,25 @@ contains
 
    subroutine loading_drive(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(loading_spec) :: spec
+      type(loading_record) :: spec
 
       spec = drift_protocol()
       spec%period = 1.0_wp
       call expect_loading(error, spec, .true., "drive = 'displacement' needs the static analysis")
-      spec%drive = 'ground'
-      call expect_loading(error, spec, .false., "drive = 'ground' needs a dynamic analysis")
+      spec%drive = 'ground_acceleration'
+      call expect_loading(error, spec, .false., "drive = 'ground_acceleration' needs a dynamic analysis")
       call expect_loading(error, spec, .true., '')
-      spec%drive = 'vertical'
-      call expect_loading(error, spec, .false., "drive = 'vertical' needs a dynamic analysis")
+      spec%drive = 'vertical_acceleration'
+      call expect_loading(error, spec, .false., "drive = 'vertical_acceleration' needs a dynamic analysis")
       call expect_loading(error, spec, .true., '')
-      spec%drive = 'axial'
-      call expect_loading(error, spec, .false., "drive = 'axial' needs a dynamic analysis")
+      spec%drive = 'axial_load'
+      call expect_loading(error, spec, .false., "drive = 'axial_load' needs a dynamic analysis")
       call expect_loading(error, spec, .true., '')
    end subroutine loading_drive
 
-   subroutine loading_follows(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(loading_spec) :: spec
-
-      spec = drift_protocol()
-      spec%follows = .true.
-      call expect_loading(error, spec, .false., "loading: follows has no meaning for drive = 'displacement'")
-      spec%drive = 'force'
-      call expect_loading(error, spec, .false., '')
-   end subroutine loading_follows
-
    subroutine loading_units(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(loading_spec) :: spec
+      type(loading_record) :: spec
 
       spec = drift_protocol()
       spec%unit = 'kN'
@@ -500,14 +496,14 @@ contains
       deallocate (spec%amplitudes)
       call expect_loading(error, spec, .false., "= 'drift' is not known; it is one of m, mm, cm, in")
       call check_equal(error, size(units_of('force')), 4, 'units of force')
-      call check_equal(error, size(units_of('ground')), 4, 'units of acceleration')
-      call check_equal(error, size(units_of('axial')), 4, 'units of axial load')
-      call check_equal(error, size(units_of('vertical')), 4, 'units of vertical acceleration')
+      call check_equal(error, size(units_of('ground_acceleration')), 4, 'units of acceleration')
+      call check_equal(error, size(units_of('axial_load')), 4, 'units of axial load')
+      call check_equal(error, size(units_of('vertical_acceleration')), 4, 'units of vertical acceleration')
    end subroutine loading_units
 
    subroutine loading_protocol(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(loading_spec) :: spec
+      type(loading_record) :: spec
 
       spec = drift_protocol()
       deallocate (spec%amplitudes)
@@ -533,9 +529,9 @@ contains
 
    subroutine analysis(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(analysis_spec) :: spec
+      type(analysis_record) :: spec
       type(message_list) :: messages
-      type(case_spec) :: whole
+      type(case_record) :: whole
       type(message_list) :: of_case
 
       spec%method = 'rk5'
@@ -561,17 +557,19 @@ contains
    !> The settings of an analysis give one message that holds `part`, or none if it is empty.
    subroutine expect_analysis(error, spec, part)
       type(error_type), allocatable, intent(inout) :: error
-      type(analysis_spec), intent(in) :: spec
+      type(analysis_record), intent(in) :: spec
       character(len=*), intent(in) :: part
       type(message_list) :: messages
+      type(analysis_record) :: asked
 
-      call spec%validate(messages)
+      asked = spec
+      call asked%validate(messages)
       call expect(error, messages, part)
    end subroutine expect_analysis
 
    subroutine settings(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(analysis_spec) :: spec
+      type(analysis_record) :: spec
       real(wp) :: nan
       integer :: i
 
@@ -585,12 +583,12 @@ contains
       call expect_analysis(error, spec, 'analysis: collapse_drift = 0 must be above zero')
       spec%collapse_drift = nan
       call expect_analysis(error, spec, 'analysis: collapse_drift = NaN must be a finite number')
-      spec = analysis_spec(method='rk4', events='located', allow_unstable=.true.)
+      spec = analysis_record(method='rk4', events='located', allow_unstable=.true.)
       call expect_analysis(error, spec, '')
       spec%events = 'locatd'
       call expect_analysis(error, spec, "events = 'locatd' is not known; it is one of step, located (did "// &
                            "you mean 'located'?)")
-      spec = analysis_spec(method='auto', tolerance=1.0e-8_wp)
+      spec = analysis_record(method='auto', tolerance=1.0e-8_wp)
       call expect_analysis(error, spec, '')
       spec%method = 'rk45'
       call expect_analysis(error, spec, '')
@@ -600,14 +598,14 @@ contains
       call expect_analysis(error, spec, 'analysis: tolerance = -1 must be from')
       spec%tolerance = nan
       call expect_analysis(error, spec, 'analysis: tolerance = NaN must be a finite number')
-      spec = analysis_spec(method='generalised_alpha', rho_infinity=0.0_wp)
+      spec = analysis_record(method='generalised_alpha', rho_infinity=0.0_wp)
       call expect_analysis(error, spec, '')
       spec%rho_infinity = 1.1_wp
       call expect_analysis(error, spec, 'analysis: rho_infinity = 1.1 must be from 0 to 1')
-      spec = analysis_spec(method='hht', rho_infinity=0.5_wp)
+      spec = analysis_record(method='hht', rho_infinity=0.5_wp)
       call expect_analysis(error, spec, '')
       spec%rho_infinity = 0.4_wp
-      call expect_analysis(error, spec, "rho_infinity of method = 'hht' = 0.4 must be from 0.5 to 1")
+      call expect_analysis(error, spec, "rho_infinity = 0.4 of method = 'hht' must be from 0.5 to 1")
    end subroutine settings
 
    subroutine unused_settings(error)
@@ -617,17 +615,17 @@ contains
       do i = 1, size(methods)
          associate (method => methods(i)%name)
             if (method /= 'rk4') then
-               call expect_analysis(error, analysis_spec(method=method, events='step'), &
+               call expect_analysis(error, analysis_record(method=method, events='step'), &
                                     "events has no meaning for method = '"//trim(method)//"'")
-               call expect_analysis(error, analysis_spec(method=method, allow_unstable=.true.), &
+               call expect_analysis(error, analysis_record(method=method, allow_unstable=.true.), &
                                     "allow_unstable has no meaning for method = '"//trim(method)//"'")
             end if
             if (method /= 'rk45' .and. method /= 'auto') then
-               call expect_analysis(error, analysis_spec(method=method, tolerance=1.0e-6_wp), &
+               call expect_analysis(error, analysis_record(method=method, tolerance=1.0e-6_wp), &
                                     "tolerance has no meaning for method = '"//trim(method)//"'")
             end if
             if (method /= 'hht' .and. method /= 'generalised_alpha') then
-               call expect_analysis(error, analysis_spec(method=method, rho_infinity=0.9_wp), &
+               call expect_analysis(error, analysis_record(method=method, rho_infinity=0.9_wp), &
                                     "rho_infinity has no meaning for method = '"//trim(method)//"'")
             end if
          end associate
@@ -637,14 +635,14 @@ contains
    subroutine all_at_once(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_spec) :: spec
+      type(column_record) :: spec
       type(column_type) :: column
 
       spec = column_1('small')
       spec%height = 0.0_wp
       spec%mass = unset
-      spec%shear(1)%k_post = 2.0_wp*s_k
-      spec%flexure(1)%d_c = ieee_value(1.0_wp, ieee_quiet_nan)
+      call spec%shear(1)%set('k_post', 2.0_wp*s_k)
+      call spec%flexure(1)%set('d_c', ieee_value(1.0_wp, ieee_quiet_nan))
       call make_column(spec, column, outcome)
       call check_failed(error, outcome, bad_input, 'column: height = 0 m must be above zero')
       call check_failed(error, outcome, bad_input, 'column: mass is missing; give it a value in kg')
@@ -654,10 +652,10 @@ contains
 
    subroutine several_loadings(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(case_spec) :: spec
+      type(case_record) :: spec
       type(message_list) :: messages(5)
-      character(len=12), parameter :: drives(4) = ['force       ', 'ground      ', 'vertical    ', &
-                                                   'axial       ']
+      character(len=21), parameter :: drives(4) = [character(len=21) :: &
+         'force', 'ground_acceleration', 'vertical_acceleration', 'axial_load']
       integer :: i
 
       spec%column = column_1('pdelta')
@@ -667,12 +665,13 @@ contains
          spec%loading(i)%drive = 'force'
          spec%loading(i)%period = 1.0_wp
       end do
+      spec%analysis%method = 'static'
       call spec%validate(messages(1))
       call expect(error, messages(1), 'several loadings need a dynamic analysis')
       spec%analysis%method = 'rk4'
       call spec%validate(messages(2))
       call expect(error, messages(2), "two loadings with drive = 'force'")
-      spec%loading(2)%drive = 'ground'
+      spec%loading(2)%drive = 'ground_acceleration'
       spec%loading(2)%unit = 'g'
       call spec%validate(messages(3))
       call expect(error, messages(3), '')
@@ -682,9 +681,9 @@ contains
       end do
       call spec%validate(messages(4))
       call expect(error, messages(4), '')
-      spec%loading(1)%drive = 'axial'
+      spec%loading(1)%drive = 'axial_load'
       call spec%validate(messages(5))
-      call expect(error, messages(5), "two loadings with drive = 'axial'; give each drive once")
+      call expect(error, messages(5), "two loadings with drive = 'axial_load'; give each drive once")
    end subroutine several_loadings
 
    subroutine units(error)
@@ -708,4 +707,4 @@ contains
       end do
    end subroutine units
 
-end module test_spec
+end module test_case

@@ -1,28 +1,25 @@
-!> A case file as plain arrays.
-module rbs_flat_case
+!> A case file as statements and plain arrays, for Python.
+module rbs_bindings_case_arrays
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
-   use rbs_base_kinds, only: wp
+   use rbs_case_case_record, only: case_record
+   use rbs_case_writer, only: statement_sink, write_case
    use rbs_column_column, only: column_type
-   use rbs_flat_pack, only: numbers_from_column
-   use rbs_io_case, only: case_history, load_case
+   use rbs_io_case_file, only: case_history, load_case
+   use rbs_loading_loading_record, only: drive_names
    use rbs_loading_signal, only: signal_type
    use rbs_solve_make_column, only: make_column
-   use rbs_spec_case, only: case_spec
    implicit none
    private
 
    public :: case_arrays, open_case
 
-   !> Drives: displacement, force, ground, vertical, axial.
-   integer, parameter :: drives = 5
+   integer, parameter :: drives = size(drive_names)
 
    type :: case_arrays
-      type(case_spec) :: case
-      !> The column as in `rbs_flat_pack`
-      integer(c_int), allocatable :: codes(:)
-      real(c_double), allocatable :: numbers(:)
-      !> Times (m) [s], and values of the drives (m, drives)
+      !> Title, column, analysis and output; loadings are arrays
+      type(statement_sink) :: statements
+      !> Times (m) [s], and values of the drives in the order of `drive_names` (m, drives)
       real(c_double), allocatable :: time(:), values(:, :)
       !> Which drives there are, 0 or 1
       integer(c_int) :: acting(drives) = 0
@@ -35,16 +32,17 @@ contains
       character(len=*), intent(in) :: path
       type(case_arrays), intent(out) :: arrays
       type(error_type), allocatable, intent(out) :: error
+      type(case_record) :: case
       type(case_history) :: history
       type(column_type) :: column
+      integer :: place
 
-      call load_case(path, arrays%case, history, error)
-      if (.not. allocated(error)) call make_column(arrays%case%column, column, error)
+      call load_case(path, case, history, error)
+      if (.not. allocated(error)) call make_column(case%column, column, error)
       if (allocated(error)) return
-      call numbers_from_column(arrays%case%column, arrays%codes, arrays%numbers)
       arrays%time = history%time
       allocate (arrays%values(size(history%time), drives), source=0.0_c_double)
-      if (arrays%case%analysis%dynamic()) then
+      if (case%analysis%dynamic()) then
          associate (loads => history%loads)
             arrays%acting(2:) = merge(1_c_int, 0_c_int, [loads%force%acts(), loads%ground%acts(), &
                                                          loads%vertical%acts(), loads%axial%acts()])
@@ -54,11 +52,12 @@ contains
             call sample(loads%axial, arrays%time, arrays%values(:, 5))
          end associate
       else
-         associate (place => merge(2, 1, arrays%case%loading(1)%drive == 'force'))
-            arrays%acting(place) = 1
-            arrays%values(:, place) = history%target
-         end associate
+         place = merge(2, 1, case%loading(1)%drive == 'force')
+         arrays%acting(place) = 1
+         arrays%values(:, place) = history%target
       end if
+      case%loadings = 0
+      call write_case(case, arrays%statements)
    end subroutine open_case
 
    !> Values of a signal at common times; its own points come back as they are.
@@ -74,7 +73,7 @@ contains
          do while (at < size(signal%time) .and. signal%time(at) < time(i))
             at = at + 1
          end do
-         if (abs(signal%time(at) - time(i)) > 0.0_wp) then
+         if (abs(signal%time(at) - time(i)) > 0.0_c_double) then
             values(i) = signal%at_time(time(i))
          else
             values(i) = signal%value(at)
@@ -82,4 +81,4 @@ contains
       end do
    end subroutine sample
 
-end module rbs_flat_case
+end module rbs_bindings_case_arrays

@@ -1,0 +1,108 @@
+"""Write the tables of keys in docs/input.md from the list of keys of the program.
+
+    python scripts/key_tables.py            write them
+    python scripts/key_tables.py --check    only say whether they are up to date
+
+A table stands between ``<!-- keys: NAME -->`` and ``<!-- end of keys -->``. NAME is a group of a case
+file, or ``rule`` and the name of a rule. The list is that of ``rbsdem keys --json``.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+DOCUMENT = Path(__file__).resolve().parents[1] / "docs" / "input.md"
+BLOCK = re.compile(r"(<!-- keys: (?P<name>[\w ]+) -->\n).*?(<!-- end of keys -->)", re.DOTALL)
+
+HEAD = "| key | value | unit | allowed | default | meaning |\n| --- | --- | --- | --- | --- | --- |\n"
+
+#: Units of the parameters of a spring: for slip and opening, and for rotation.
+DIMENSIONS = {"force": "N; N m", "deformation": "m; rad", "stiffness": "N/m; N m/rad"}
+
+
+def shown(value: float) -> str:
+    """Return a number as short as it can be."""
+    return f"{value:.12g}"
+
+
+def allowed(key: dict[str, Any]) -> str:
+    """Return the range of a number, or the words that a key takes."""
+    if "choices" in key:
+        return ", ".join(f"`'{word}'`" for word in key["choices"])
+    least, most = key.get("least"), key.get("most")
+    above = ">" if key.get("least_open") else "≥"
+    if most is None:
+        return "" if least is None else f"{above} {shown(least)}"
+    below = "<" if key.get("most_open") else "≤"
+    return f"{above} {shown(least)}, {below} {shown(most)}"
+
+
+def default(key: dict[str, Any]) -> str:
+    """Return what holds where the key is not given."""
+    if "default" not in key:
+        return "none" if key.get("optional") or key["kind"] == "text" else "required"
+    value = key["default"]
+    if isinstance(value, bool):
+        return f"`.{str(value).lower()}.`"
+    return f"`'{value}'`" if isinstance(value, str) else shown(value)
+
+
+def kind(key: dict[str, Any]) -> str:
+    """Return what a key takes: one value of a kind, or several."""
+    word = {"real": "number", "integer": "whole number", "logical": "switch"}.get(
+        key["kind"], key["kind"]
+    )
+    return f"{word}s" if key.get("values", 1) > 1 else word
+
+
+def rows(keys: list[dict[str, Any]]) -> Iterator[str]:
+    """Yield a row for each key; keys one after the other that differ in their names only share it."""
+    last: tuple[str, ...] = ()
+    names: list[str] = []
+    for key in [*keys, {}]:
+        cells = ()
+        if key:
+            unit = key.get("unit", "")
+            cells = (
+                kind(key), DIMENSIONS.get(unit, unit) or "–", allowed(key), default(key),
+                key["meaning"],
+            )  # fmt: skip
+        if cells != last and names:
+            yield f"| {', '.join(names)} | {' | '.join(last)} |\n"
+            names = []
+        if key:
+            names.append(f"`{key['name']}`")
+        last = cells
+
+
+def table(known: dict[str, Any], name: str) -> str:
+    """Return the table of a group, or of a rule."""
+    keys = known["rules"][name[5:]]["keys"] if name.startswith("rule ") else known["groups"][name]
+    return HEAD + "".join(rows(keys))
+
+
+def filled(text: str, known: dict[str, Any]) -> str:
+    """Return a document with its tables as the keys are."""
+    return BLOCK.sub(lambda block: block[1] + table(known, block["name"]) + block[3], text)
+
+
+def main() -> int:
+    """Write the tables, or check them; return 1 if they are not up to date."""
+    command = [sys.executable, "-m", "rbsdem", "keys", "--json"]
+    known = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+    text = DOCUMENT.read_text(encoding="utf-8")
+    new = filled(text, known)
+    if "--check" in sys.argv[1:]:
+        return int(new != text)
+    DOCUMENT.write_text(new, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,386 @@
+!> A record shows its keys: one procedure of the record names each of its components once, with unit,
+!> bounds and meaning, and every use of the list is a visit.
+!>
+!>     collect   the list itself, with defaults: for documentation, hints, and the reader
+!>     put       set one component by name
+!>     check     a message for each value that is missing or out of bounds
+!>     list      the values that differ from the defaults: for the writer
+module rbs_base_key_visitor
+   use rbs_base_check, only: is_given
+   use rbs_base_constants, only: unset, unset_integer
+   use rbs_base_error, only: message_list
+   use rbs_base_keys, only: key_type, bound_type, check_number, find_key, choice_place, choice_name, &
+                            real_kind, integer_kind, logical_kind, word_kind, text_kind, key_length
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text, nearest_name
+   implicit none
+   private
+
+   public :: key_visitor, entry_type
+
+   integer, parameter :: collecting = 1, putting = 2, checking = 3, listing = 4
+
+   !> One key with its value.
+   type :: entry_type
+      character(len=key_length) :: name = ''
+      character(len=1) :: kind = real_kind
+      !> Numbers, whole numbers, or 0 and 1
+      real(wp), allocatable :: number(:)
+      character(len=:), allocatable :: text
+   end type entry_type
+
+   type :: key_visitor
+      !> What the record is, for messages: 'column'
+      character(len=16) :: group = ''
+      !> The list of keys
+      integer :: count = 0
+      type(key_type), allocatable :: keys(:)
+      !> Values that a listing found
+      integer :: listed = 0
+      type(entry_type), allocatable :: entry(:)
+      !> Whether all numbers passed the last check
+      logical :: sound = .true.
+      integer, private :: mode = collecting
+      !> What is put
+      character(len=key_length), private :: wanted = ''
+      real(wp), allocatable, private :: number(:)
+      character(len=:), allocatable, private :: text
+      type(message_list), private :: messages
+   contains
+      procedure :: collect
+      procedure :: put
+      procedure :: start_check
+      procedure :: end_check
+      procedure :: list
+      procedure, private :: real_key, integer_key, logical_key, text_key, long_text_key
+      procedure, private :: real_list_key, integer_list_key
+      !> `call visitor%key(name, component, unit, bound, meaning)`
+      generic :: key => real_key, integer_key, logical_key, real_list_key, integer_list_key
+      !> `call visitor%word(name, component, meaning, choices)`
+      generic :: word => text_key
+      !> `call visitor%long_text(name, component, meaning)`
+      generic :: long_text => long_text_key
+   end type key_visitor
+
+contains
+
+   !> The next visit collects keys; the record must be a new one, as its values are the defaults.
+   subroutine collect(self, group)
+      class(key_visitor), intent(inout) :: self
+      character(len=*), intent(in) :: group
+
+      self%group = group
+      self%mode = collecting
+      self%count = 0
+      if (.not. allocated(self%keys)) allocate (self%keys(24))
+   end subroutine collect
+
+   !> The next visit puts values, or a text, into the component of one key.
+   subroutine put(self, name, number, text)
+      class(key_visitor), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      real(wp), intent(in), optional :: number(:)
+      character(len=*), intent(in), optional :: text
+
+      self%mode = putting
+      self%wanted = name
+      if (present(number)) self%number = number
+      if (present(text)) self%text = text
+   end subroutine put
+
+   !> The next visit checks values.
+   subroutine start_check(self, group)
+      class(key_visitor), intent(inout) :: self
+      character(len=*), intent(in) :: group
+
+      self%group = group
+      self%mode = checking
+      self%sound = .true.
+      self%messages = message_list()
+   end subroutine start_check
+
+   !> Hand over what the check found.
+   subroutine end_check(self, messages)
+      class(key_visitor), intent(in) :: self
+      type(message_list), intent(inout) :: messages
+
+      call messages%join(self%messages)
+   end subroutine end_check
+
+   !> The next visit lists the values that differ from the defaults of the list of keys, which has been
+   !> collected before.
+   subroutine list(self)
+      class(key_visitor), intent(inout) :: self
+
+      self%mode = listing
+      self%listed = 0
+      if (allocated(self%entry)) deallocate (self%entry)
+      allocate (self%entry(self%count))
+   end subroutine list
+
+   subroutine real_key(self, name, x, unit, bound, meaning, optional)
+      class(key_visitor), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      real(wp), intent(inout) :: x
+      character(len=*), intent(in) :: unit, meaning
+      type(bound_type), intent(in) :: bound
+      !> Whether the value may be missing
+      logical, intent(in), optional :: optional
+
+      select case (self%mode)
+      case (putting)
+         if (name == self%wanted) x = self%number(1)
+      case (listing)
+         if (is_given(x)) call add_entry(self, name, [x])
+      case default
+         call meet(self, key_type(name=name, unit=unit, bound=bound, default=x, meaning=meaning, &
+                                  optional=is_optional(optional)), x)
+      end select
+   end subroutine real_key
+
+   subroutine integer_key(self, name, i, unit, bound, meaning, optional)
+      class(key_visitor), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      integer, intent(inout) :: i
+      character(len=*), intent(in) :: unit, meaning
+      type(bound_type), intent(in) :: bound
+      logical, intent(in), optional :: optional
+      real(wp) :: x
+
+      x = unset
+      if (i /= unset_integer) x = i
+      select case (self%mode)
+      case (putting)
+         if (name == self%wanted) i = nint(self%number(1))
+      case (listing)
+         if (is_given(x)) call add_entry(self, name, [x])
+      case default
+         call meet(self, key_type(name=name, kind=integer_kind, unit=unit, bound=bound, default=x, &
+                                  meaning=meaning, optional=is_optional(optional)), x)
+      end select
+   end subroutine integer_key
+
+   subroutine logical_key(self, name, l, meaning)
+      class(key_visitor), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      logical, intent(inout) :: l
+      character(len=*), intent(in) :: meaning
+      real(wp) :: x
+
+      x = merge(1.0_wp, 0.0_wp, l)
+      select case (self%mode)
+      case (putting)
+         if (name == self%wanted) l = abs(self%number(1)) > 0.0_wp
+      case (listing)
+         call add_entry(self, name, [x])
+      case default
+         call meet(self, key_type(name=name, kind=logical_kind, default=x, meaning=meaning))
+      end select
+   end subroutine logical_key
+
+   !> A word or a text of limited length. Without choices it is free; an empty text means: not given.
+   subroutine text_key(self, name, text, meaning, choices)
+      class(key_visitor), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      character(len=*), intent(inout) :: text
+      character(len=*), intent(in) :: meaning
+      character(len=*), intent(in), optional :: choices
+
+      select case (self%mode)
+      case (putting)
+         if (name /= self%wanted) return
+         if (len_trim(self%text) > len(text)) then
+            call self%messages%add(trim(self%group)//': '//name//" = '"//self%text(:min(40, &
+                                   len(self%text)))// &
+                                   "' has "//to_text(len_trim(self%text))//' letters; it has '// &
+                                   to_text(len(text))//' at the most')
+         end if
+         text = self%text
+      case (listing)
+         call add_text(self, name, trim(text))
+      case default
+         call meet_text(self, name, text, meaning, choices)
+      end select
+   end subroutine text_key
+
+   !> A text of any length.
+   subroutine long_text_key(self, name, text, meaning)
+      class(key_visitor), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      character(len=:), allocatable, intent(inout) :: text
+      character(len=*), intent(in) :: meaning
+
+      select case (self%mode)
+      case (putting)
+         if (name == self%wanted) text = trim(self%text)
+      case (listing)
+         if (allocated(text)) call add_text(self, name, text)
+      case default
+         call meet_text(self, name, '', meaning)
+      end select
+   end subroutine long_text_key
+
+   !> A list of numbers; not allocated: not given.
+   subroutine real_list_key(self, name, x, unit, bound, meaning, most)
+      class(key_visitor), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      real(wp), allocatable, intent(inout) :: x(:)
+      character(len=*), intent(in) :: unit, meaning
+      type(bound_type), intent(in) :: bound
+      !> Largest number of values
+      integer, intent(in) :: most
+      type(key_type) :: key
+      integer :: i
+
+      select case (self%mode)
+      case (putting)
+         if (name == self%wanted) x = self%number
+      case (listing)
+         if (allocated(x)) call add_entry(self, name, x)
+      case default
+         key = key_type(name=name, unit=unit, bound=bound, optional=.true., most=most, meaning=meaning)
+         if (self%mode == collecting) call append(self, key)
+         if (self%mode == collecting .or. .not. allocated(x)) return
+         do i = 1, size(x)
+            if (size(x) > 1) key%name = name//'('//to_text(i)//')'
+            key%optional = .false.
+            call check_number(x(i), trim(self%group), key, self%messages, self%sound)
+         end do
+      end select
+   end subroutine real_list_key
+
+   subroutine integer_list_key(self, name, i, unit, bound, meaning, most)
+      class(key_visitor), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      integer, allocatable, intent(inout) :: i(:)
+      character(len=*), intent(in) :: unit, meaning
+      type(bound_type), intent(in) :: bound
+      integer, intent(in) :: most
+      type(key_type) :: key
+      integer :: worst
+
+      select case (self%mode)
+      case (putting)
+         if (name == self%wanted) i = nint(self%number)
+      case (listing)
+         if (allocated(i)) call add_entry(self, name, real(i, wp))
+      case default
+         key = key_type(name=name, kind=integer_kind, unit=unit, bound=bound, optional=.true., most=most, &
+                        meaning=meaning)
+         if (self%mode == collecting) call append(self, key)
+         if (self%mode == collecting .or. .not. allocated(i)) return
+         worst = minval(i)
+         if (real(worst, wp) >= bound%least) worst = maxval(i)
+         call check_number(real(worst, wp), trim(self%group), key, self%messages, self%sound)
+      end select
+   end subroutine integer_list_key
+
+   !> Collect a key, or check its value.
+   subroutine meet(self, key, x)
+      class(key_visitor), intent(inout) :: self
+      type(key_type), intent(in) :: key
+      real(wp), intent(in), optional :: x
+
+      if (self%mode == collecting) then
+         call append(self, key)
+      else if (present(x)) then
+         call check_number(x, trim(self%group), key, self%messages, self%sound)
+      end if
+   end subroutine meet
+
+   subroutine meet_text(self, name, text, meaning, choices)
+      class(key_visitor), intent(inout) :: self
+      character(len=*), intent(in) :: name, text, meaning
+      character(len=*), intent(in), optional :: choices
+      type(key_type) :: key
+
+      key = key_type(name=name, kind=text_kind, default_text=text, optional=.true., meaning=meaning)
+      if (present(choices)) then
+         key%kind = word_kind
+         key%choices = choices
+      end if
+      if (self%mode == collecting) then
+         call append(self, key)
+      else if (present(choices) .and. text /= '') then
+         call check_word(self, key, text)
+      end if
+   end subroutine meet_text
+
+   !> A word must be one of the choices.
+   subroutine check_word(self, key, word)
+      class(key_visitor), intent(inout) :: self
+      type(key_type), intent(in) :: key
+      character(len=*), intent(in) :: word
+      character(len=:), allocatable :: names
+      character(len=len(key%choices)) :: name(16)
+      integer :: i, count
+
+      if (choice_place(key, word) > 0) return
+      self%sound = .false.
+      names = ''
+      do i = 1, size(name)
+         name(i) = choice_name(key, i)
+         if (name(i) == '') exit
+         if (i > 1) names = names//', '
+         names = names//trim(name(i))
+      end do
+      count = i - 1
+      call self%messages%add(trim(self%group)//': '//trim(key%name)//" = '"//trim(word)// &
+                             "' is not known; it is one of "//names//" (did you mean '"// &
+                             nearest_name(word, name(:count))//"'?)")
+   end subroutine check_word
+
+   pure logical function is_optional(optional)
+      logical, intent(in), optional :: optional
+
+      is_optional = .false.
+      if (present(optional)) is_optional = optional
+   end function is_optional
+
+   subroutine append(self, key)
+      class(key_visitor), intent(inout) :: self
+      type(key_type), intent(in) :: key
+      type(key_type), allocatable :: longer(:)
+
+      if (self%count == size(self%keys)) then
+         allocate (longer(2*self%count))
+         longer(:self%count) = self%keys
+         call move_alloc(longer, self%keys)
+      end if
+      self%count = self%count + 1
+      self%keys(self%count) = key
+   end subroutine append
+
+   !> List numbers, unless they are the default.
+   subroutine add_entry(self, name, number)
+      class(key_visitor), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      real(wp), intent(in) :: number(:)
+      integer :: place
+
+      place = find_key(self%keys(:self%count), name)
+      if (self%keys(place)%most == 1) then
+         if (is_given(self%keys(place)%default)) then
+            if (.not. abs(number(1) - self%keys(place)%default) > 0.0_wp) return
+         end if
+      end if
+      self%listed = self%listed + 1
+      self%entry(self%listed)%name = name
+      self%entry(self%listed)%kind = self%keys(place)%kind
+      self%entry(self%listed)%number = number
+   end subroutine add_entry
+
+   subroutine add_text(self, name, text)
+      class(key_visitor), intent(inout) :: self
+      character(len=*), intent(in) :: name, text
+      integer :: place
+
+      place = find_key(self%keys(:self%count), name)
+      if (text == self%keys(place)%default_text) return
+      self%listed = self%listed + 1
+      self%entry(self%listed)%name = name
+      self%entry(self%listed)%kind = text_kind
+      self%entry(self%listed)%text = text
+   end subroutine add_text
+
+end module rbs_base_key_visitor

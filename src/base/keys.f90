@@ -1,0 +1,225 @@
+!> Keys: the names under which a user sets the values of a record, with what is known of each value.
+!>
+!> Reader, writer, validation, documentation and the Python package are driven by lists of keys. This
+!> module knows what a key is; which keys there are is said where the values belong.
+module rbs_base_keys
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use rbs_base_kinds, only: wp
+   use rbs_base_check, only: is_given, check_finite
+   use rbs_base_constants, only: unset
+   use rbs_base_error, only: message_list
+   use rbs_base_text, only: to_text
+   implicit none
+   private
+
+   public :: key_type, bound_type, check_number, bound_text, find_key, choice_place, choice_name
+
+   !> Kinds of values: real number, whole number, logical, word out of a list of choices, free text.
+   character(len=1), parameter, public :: real_kind = 'r', integer_kind = 'i', logical_kind = 'l'
+   character(len=1), parameter, public :: word_kind = 'w', text_kind = 't'
+
+   integer, parameter, public :: key_length = 24, choice_length = 24
+
+   !> Dimensions of the parameters of a spring; the unit depends on the joint that the spring is for.
+   character(len=*), parameter, public :: force = 'force', deformation = 'deformation'
+   character(len=*), parameter, public :: stiffness = 'stiffness'
+
+   !> The range that a number must be in.
+   type :: bound_type
+      real(wp) :: least = -huge(1.0_wp), most = huge(1.0_wp)
+      !> Whether the end of the range itself is excluded
+      logical :: least_open = .false., most_open = .false.
+      !> Whether numbers may be as near to zero as they like: values of histories are
+      logical :: tiny = .false.
+      !> What the message adds, such as '(it is a share)'
+      character(len=40) :: reason = ''
+   end type bound_type
+
+   type(bound_type), parameter, public :: any_number = bound_type()
+   type(bound_type), parameter, public :: any_value = bound_type(tiny=.true.)
+   type(bound_type), parameter, public :: above_zero = bound_type(least=0.0_wp, least_open=.true.)
+   type(bound_type), parameter, public :: not_negative = bound_type(least=0.0_wp)
+   type(bound_type), parameter, public :: one_or_more = bound_type(least=1.0_wp)
+   !> Shares of a whole: from zero to below one, and above zero up to one.
+   type(bound_type), parameter, public :: share_below_one = &
+      bound_type(0.0_wp, 1.0_wp, most_open=.true., reason='(it is a share)')
+   type(bound_type), parameter, public :: share_above_zero = &
+      bound_type(0.0_wp, 1.0_wp, least_open=.true., reason='(it is a share)')
+
+   !> One key. Structure constructors with keywords make the lists of keys readable as tables.
+   type :: key_type
+      character(len=key_length) :: name = ''
+      !> One of the kinds above
+      character(len=1) :: kind = real_kind
+      !> Unit, or dimension of a spring's parameter; empty for a pure number
+      character(len=16) :: unit = ''
+      type(bound_type) :: bound = bound_type()
+      !> Value where the user gives none; `unset`: there is none
+      real(wp) :: default = unset
+      character(len=24) :: default_text = ''
+      !> Whether the value may be missing although it has no default
+      logical :: optional = .false.
+      !> Largest number of values
+      integer :: most = 1
+      !> Words that are allowed, separated by blanks
+      character(len=112) :: choices = ''
+      !> One line for the documentation
+      character(len=128) :: meaning = ''
+   end type key_type
+
+contains
+
+   !> A message if a number is missing where it must be given, not finite, or outside its bounds.
+   subroutine check_number(x, name, key, messages, ok)
+      real(wp), intent(in) :: x
+      !> What the number belongs to: 'shear spring of joint 2'
+      character(len=*), intent(in) :: name
+      type(key_type), intent(in) :: key
+      type(message_list), intent(inout) :: messages
+      !> Unchanged where the number passes, else false
+      logical, intent(inout) :: ok
+      logical :: finite
+
+      if (ieee_is_finite(x)) then
+         ! The common case first. A NaN is never compared: builds with floating-point traps would stop.
+         if (x > key%bound%least .and. x < key%bound%most .and. is_ordinary(x)) return
+         if (key%bound%tiny .and. abs(x) < 1.0_wp) return
+      end if
+      if (key%optional .and. .not. is_given(x)) return
+      call check_finite(x, name//': '//trim(key%name), trim(unit_for_message(key)), messages, finite)
+      if (finite) then
+         if (is_within(x, key%bound)) return
+         call messages%add(trim(name//': '//trim(key%name)//' = '//value_text(x, key)//' '// &
+                                unit_for_message(key))// &
+                           ' '//trim(refusal(x, key%bound)))
+      end if
+      ok = .false.
+   end subroutine check_number
+
+   !> A whole number without an exponent.
+   function value_text(x, key) result(text)
+      real(wp), intent(in) :: x
+      type(key_type), intent(in) :: key
+      character(len=:), allocatable :: text
+
+      if (key%kind == integer_kind .and. abs(x) < huge(1)) then
+         text = to_text(nint(x))
+      else
+         text = to_text(x)
+      end if
+   end function value_text
+
+   !> Dimensions of springs are no units.
+   pure function unit_for_message(key) result(unit)
+      type(key_type), intent(in) :: key
+      character(len=16) :: unit
+
+      unit = key%unit
+      if (unit == force .or. unit == deformation .or. unit == stiffness) unit = ''
+   end function unit_for_message
+
+   !> Whether a number is neither zero nor extreme; false for NaN and for `unset`.
+   elemental logical function is_ordinary(x)
+      real(wp), intent(in) :: x
+
+      is_ordinary = abs(x) > 1.0e-50_wp .and. abs(x) < 1.0e50_wp
+   end function is_ordinary
+
+   elemental logical function is_within(x, bound)
+      real(wp), intent(in) :: x
+      type(bound_type), intent(in) :: bound
+
+      is_within = x >= bound%least .and. x <= bound%most
+      if (bound%least_open .and. .not. x > bound%least) is_within = .false.
+      if (bound%most_open .and. .not. x < bound%most) is_within = .false.
+   end function is_within
+
+   !> Why a number outside its bounds is refused: 'must be above zero'.
+   function refusal(x, bound) result(text)
+      real(wp), intent(in) :: x
+      type(bound_type), intent(in) :: bound
+      character(len=96) :: text
+      logical :: below
+
+      below = x <= bound%least
+      if (bound%least > -huge(1.0_wp) .and. bound%most < huge(1.0_wp) .and. bound%reason == '' .and. &
+          .not. (bound%least_open .or. bound%most_open)) then
+         text = 'must be from '//to_text(bound%least)//' to '//to_text(bound%most)
+      else if (below .and. abs(bound%least) > 0.0_wp) then
+         text = 'must be '//to_text(bound%least)//' or more'
+      else if (below .and. bound%least_open) then
+         text = 'must be above zero'
+      else if (below) then
+         text = 'must not be negative'
+      else if (bound%most_open) then
+         text = 'must be below '//to_text(bound%most)
+      else
+         text = 'must not be above '//to_text(bound%most)
+      end if
+      if (.not. below .or. abs(bound%least) > 0.0_wp) text = trim(text)//' '//bound%reason
+   end function refusal
+
+   !> A range in the documentation: '> 0', '0 to < 1'; empty where every number is allowed.
+   pure function bound_text(bound) result(text)
+      type(bound_type), intent(in) :: bound
+      character(len=48) :: text
+
+      text = ''
+      if (bound%most < huge(1.0_wp)) then
+         if (bound%least_open) text = 'above '
+         text = trim(text)//' '//to_text(bound%least)//' to'
+         if (bound%most_open) text = trim(text)//' below'
+         text = adjustl(trim(text)//' '//to_text(bound%most))
+      else if (bound%least > -huge(1.0_wp)) then
+         text = merge('> ', '>=', bound%least_open)//' '//to_text(bound%least)
+         if (bound%least_open) text = '> '//to_text(bound%least)
+      end if
+   end function bound_text
+
+   !> Place of a key in a list, 0 if it is not there.
+   pure integer function find_key(keys, name) result(place)
+      type(key_type), intent(in) :: keys(:)
+      character(len=*), intent(in) :: name
+
+      do place = 1, size(keys)
+         if (keys(place)%name == name) return
+      end do
+      place = 0
+   end function find_key
+
+   !> Place of a word among the choices of a key, 0 if it is none of them.
+   pure integer function choice_place(key, word) result(place)
+      type(key_type), intent(in) :: key
+      character(len=*), intent(in) :: word
+      character(len=choice_length) :: name
+
+      place = 0
+      if (word == '') return
+      do
+         place = place + 1
+         name = choice_name(key, place)
+         if (name == word) return
+         if (name == '') exit
+      end do
+      place = 0
+   end function choice_place
+
+   !> The choice at a place; blank beyond the last one.
+   pure function choice_name(key, place) result(name)
+      type(key_type), intent(in) :: key
+      integer, intent(in) :: place
+      character(len=choice_length) :: name
+      integer :: i, first, last
+
+      name = ''
+      first = 1
+      do i = 1, place
+         if (first > len(key%choices)) return
+         last = index(key%choices(first:), ' ')
+         if (last <= 1) return
+         if (i == place) name = key%choices(first:first + last - 2)
+         first = first + last
+      end do
+   end function choice_name
+
+end module rbs_base_keys

@@ -1,0 +1,142 @@
+!> How a column, a spring or a case crosses from Python: names of keys as text, values as numbers.
+!>
+!> The text has a line for each group: its name, then its keys, separated by tabs. `key` stands for the
+!> next number, `key:5` for the next five, `key=word` for a text. Keys go through the setter, like those
+!> of a case file.
+module rbs_bindings_statements
+   use, intrinsic :: iso_c_binding, only: c_double
+   use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
+   use rbs_case_case_record, only: case_record
+   use rbs_case_setter, only: setter_type
+   use rbs_column_column, only: column_type
+   use rbs_hysteresis_spring_record, only: spring_record, carries_axial_load
+   use rbs_solve_make_column, only: make_column
+   implicit none
+   private
+
+   public :: put_statements, case_from_statements, column_from_statements, spring_from_statements
+
+   character(len=1), parameter :: tab = achar(9)
+
+contains
+
+   !> Put all groups of a text.
+   subroutine put_statements(text, number, setter, messages)
+      character(len=*), intent(in) :: text
+      real(c_double), intent(in) :: number(:)
+      type(setter_type), intent(inout) :: setter
+      type(message_list), intent(inout) :: messages
+      integer :: first, last, at
+
+      at = 0
+      first = 1
+      do while (first <= len(text))
+         last = index(text(first:), new_line('a'))
+         if (last == 0) last = len(text) - first + 2
+         if (last > 1) call put_group(text(first:first + last - 2), number, at, setter, messages)
+         if (messages%count > 0) return
+         first = first + last
+      end do
+      call setter%finish(messages)
+   end subroutine put_statements
+
+   !> One group.
+   subroutine put_group(line, number, at, setter, messages)
+      character(len=*), intent(in) :: line
+      real(c_double), intent(in) :: number(:)
+      !> Place of the number that was taken last
+      integer, intent(inout) :: at
+      type(setter_type), intent(inout) :: setter
+      type(message_list), intent(inout) :: messages
+      integer :: first, last
+      logical :: ok
+
+      last = index(line, tab)
+      if (last == 0) last = len(line) + 1
+      call setter%open(line(:last - 1), '', messages, ok)
+      do while (ok .and. last <= len(line))
+         first = last + 1
+         last = index(line(first:), tab)
+         if (last == 0) last = len(line) - first + 2
+         last = first + last - 1
+         call put_item(line(first:last - 1), number, at, setter, messages)
+      end do
+   end subroutine put_group
+
+   !> One key with its value.
+   subroutine put_item(item, number, at, setter, messages)
+      character(len=*), intent(in) :: item
+      real(c_double), intent(in) :: number(:)
+      integer, intent(inout) :: at
+      type(setter_type), intent(inout) :: setter
+      type(message_list), intent(inout) :: messages
+      integer :: mark, place, count
+
+      mark = scan(item, '=:')
+      if (mark == 0) mark = len(item) + 1
+      call setter%find(item(:mark - 1), '', place, messages)
+      if (place == 0) return
+      if (mark <= len(item)) then
+         if (item(mark:mark) == '=') then
+            call setter%put_text(place, item(mark + 1:), messages)
+            return
+         end if
+         read (item(mark + 1:), *) count
+      else
+         count = 1
+      end if
+      call setter%put_numbers(place, number(at + 1:at + count))
+      at = at + count
+   end subroutine put_item
+
+   !> A case as it is stated, not validated.
+   subroutine case_from_statements(text, number, case, error)
+      character(len=*), intent(in) :: text
+      real(c_double), intent(in) :: number(:)
+      type(case_record), intent(out) :: case
+      type(error_type), allocatable, intent(out) :: error
+      type(setter_type) :: setter
+      type(message_list) :: messages
+
+      call put_statements(text, number, setter, messages)
+      call messages%raise(error)
+      case = setter%case
+   end subroutine case_from_statements
+
+   !> Validate a column and make it; the rest of the case comes along.
+   subroutine column_from_statements(text, number, column, case, error)
+      character(len=*), intent(in) :: text
+      real(c_double), intent(in) :: number(:)
+      type(column_type), intent(out) :: column
+      type(case_record), intent(out) :: case
+      type(error_type), allocatable, intent(out) :: error
+
+      call case_from_statements(text, number, case, error)
+      if (.not. allocated(error)) call make_column(case%column, column, error)
+   end subroutine column_from_statements
+
+   !> Validate a spring that stands alone, as the only one of the group flexure.
+   subroutine spring_from_statements(text, number, axial_load, spring, error)
+      character(len=*), intent(in) :: text
+      real(c_double), intent(in) :: number(:)
+      !> On the layers, if there are any [N]
+      real(c_double), intent(in) :: axial_load
+      type(spring_record), intent(out) :: spring
+      type(error_type), allocatable, intent(out) :: error
+      type(case_record) :: case
+      type(message_list) :: messages
+
+      call case_from_statements(text, number, case, error)
+      if (allocated(error)) return
+      spring = case%column%flexure(1)
+      spring%axial_load = axial_load
+      call spring%validate(trim(spring%rule)//' spring', messages)
+      call messages%raise(error)
+      if (allocated(error)) return
+      if (.not. carries_axial_load(spring)) then
+         call fatal_error(error, bad_input, 'layered spring: its layers cannot carry the axial load; '// &
+                          'lower it, or give stronger layers')
+      end if
+   end subroutine spring_from_statements
+
+end module rbs_bindings_statements

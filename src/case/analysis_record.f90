@@ -1,0 +1,179 @@
+!> What the user asked of the analysis and of its output.
+module rbs_case_analysis_record
+   use rbs_base_kinds, only: wp
+   use rbs_base_constants, only: unset, unset_integer
+   use rbs_base_error, only: message_list
+   use rbs_base_text, only: to_text
+   use rbs_base_check, only: is_given
+   use rbs_case_methods, only: method_type, methods, method_named, method_choices, quoted_names
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: bound_type, above_zero, one_or_more
+   implicit none
+   private
+
+   public :: analysis_record, output_record
+
+   !> Tolerances of `rk45` that can be met in the arithmetic.
+   type(bound_type), parameter :: possible = bound_type(1.0e-13_wp, 0.1_wp)
+   !> Spectral radii at infinite frequency.
+   type(bound_type), parameter :: radius = bound_type(0.0_wp, 1.0_wp)
+
+   !> How the case is solved.
+   type :: analysis_record
+      !> One of `methods`, see `rbs_case_methods`; empty: not chosen yet
+      character(len=20) :: method = ''
+      !> Whether the user has named the method
+      logical :: named = .true.
+      !> Time step [s]; `unset`: chosen by the method
+      real(wp) :: dt = unset
+      !> End of the analysis [s]; `unset`: the end of the loading
+      real(wp) :: duration = unset
+      character(len=20) :: events = ''
+      real(wp) :: tolerance = unset
+      real(wp) :: rho_infinity = unset
+      real(wp) :: collapse_drift = unset
+      logical :: allow_unstable = .false.
+   contains
+      procedure :: visit => visit_analysis
+      procedure :: dynamic
+      procedure :: known
+      procedure :: validate => validate_analysis
+   end type analysis_record
+
+   !> What is written.
+   type :: output_record
+      !> Path of the csv; not allocated: the case file's name with .csv
+      character(len=:), allocatable :: file
+      integer :: every = unset_integer
+   contains
+      procedure :: visit => visit_output
+      procedure :: validate => validate_output
+   end type output_record
+
+contains
+
+   !> The keys of the analysis.
+   subroutine visit_analysis(self, v)
+      class(analysis_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%word('method', self%method, &
+                  'method; without it static for displacements and forces without time, auto for motions', &
+                  method_choices())
+      call v%key('dt', self%dt, 's', above_zero, 'time step; without it chosen by the method', &
+                 optional=.true.)
+      call v%key('duration', self%duration, 's', above_zero, &
+                 'how long the analysis lasts; without it as long as the loading', optional=.true.)
+      call v%word('events', self%events, &
+                  'rk4: springs change their line at the end of a step (step), or where it ends (located)', &
+                  'step located')
+      call v%key('tolerance', self%tolerance, '', possible, &
+                 'rk45, auto: wanted relative error of a step in energy norm; without it 1e-6', &
+                    optional=.true.)
+      call v%key('rho_infinity', self%rho_infinity, '', radius, &
+                 'hht, generalised_alpha: spectral radius at infinite frequency; without it 0.8', &
+                 optional=.true.)
+      call v%key('collapse_drift', self%collapse_drift, '', above_zero, &
+                 'displacement of the top over the height at which the column counts as collapsed', &
+                 optional=.true.)
+      call v%key('allow_unstable', self%allow_unstable, &
+                 'rk4: take a step beyond the stability limit all the same')
+   end subroutine visit_analysis
+
+   !> The keys of the output.
+   subroutine visit_output(self, v)
+      class(output_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%long_text('file', self%file, 'path of the csv, from the folder of the case')
+      call v%key('every', self%every, '', one_or_more, &
+                 'every n-th point or step is kept, and the last; without it every point of the loading', &
+                 optional=.true.)
+   end subroutine visit_output
+
+   !> Whether the analysis runs in time.
+   pure logical function dynamic(self)
+      class(analysis_record), intent(in) :: self
+
+      type(method_type) :: method
+
+      method = method_named(self%method)
+      dynamic = method%in_time .and. method%name /= ''
+   end function dynamic
+
+   !> Whether the method is one of the table.
+   pure logical function known(self)
+      class(analysis_record), intent(in) :: self
+
+      type(method_type) :: method
+
+      method = method_named(self%method)
+      known = method%name /= ''
+   end function known
+
+   subroutine validate_analysis(self, messages)
+      class(analysis_record), intent(inout) :: self
+      type(message_list), intent(inout) :: messages
+      type(key_visitor) :: v
+      type(method_type) :: method
+
+      call v%start_check('analysis')
+      call self%visit(v)
+      call v%end_check(messages)
+      method = method_named(self%method)
+      if (is_given(self%rho_infinity) .and. v%sound) then
+         if (self%rho_infinity < method%least_rho_infinity) then
+            call messages%add('analysis: rho_infinity = '//to_text(self%rho_infinity)//" of method = '"// &
+                              trim(method%name)//"' must be from "//to_text(method%least_rho_infinity)// &
+                              ' to 1')
+         end if
+      end if
+      call refuse_unused(self, messages)
+   end subroutine validate_analysis
+
+   !> Refuse settings that the method does not take: the user expects something of them.
+   subroutine refuse_unused(self, messages)
+      class(analysis_record), intent(in) :: self
+      type(message_list), intent(inout) :: messages
+      type(method_type) :: method
+
+      method = method_named(self%method)
+      ! A name that is not known has been reported already.
+      if (method%name == '') return
+      call refuse(is_given(self%dt) .and. .not. method%dt, 'dt', methods%dt)
+      call refuse(is_given(self%duration) .and. .not. method%in_time, 'duration', methods%in_time)
+      call refuse(self%events /= '' .and. .not. method%events, 'events', methods%events)
+      call refuse(is_given(self%tolerance) .and. .not. method%tolerance, 'tolerance', methods%tolerance)
+      call refuse(is_given(self%rho_infinity) .and. .not. method%rho_infinity, 'rho_infinity', &
+                  methods%rho_infinity)
+      call refuse(self%allow_unstable .and. .not. method%allow_unstable, 'allow_unstable', &
+                  methods%allow_unstable)
+
+   contains
+
+      subroutine refuse(unused, key, takes)
+         logical, intent(in) :: unused
+         character(len=*), intent(in) :: key
+         !> Which of the methods take the setting
+         logical, intent(in) :: takes(:)
+         character(len=:), allocatable :: names
+
+         if (.not. unused) return
+         call quoted_names(takes, names)
+         call messages%add('analysis: '//key//" has no meaning for method = '"//trim(method%name)// &
+                           "'; remove it or set method = "//names)
+      end subroutine refuse
+
+   end subroutine refuse_unused
+
+   subroutine validate_output(self, messages)
+      class(output_record), intent(inout) :: self
+      type(message_list), intent(inout) :: messages
+      type(key_visitor) :: v
+
+      call v%start_check('output')
+      call self%visit(v)
+      call v%end_check(messages)
+   end subroutine validate_output
+
+end module rbs_case_analysis_record

@@ -1,0 +1,174 @@
+!> A whole case: what a namelist file holds.
+module rbs_case_case_record
+   use rbs_base_error, only: message_list
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_units, only: unit_system, unit_type, length_units, force_units, mass_units
+   use rbs_case_analysis_record, only: analysis_record, output_record
+   use rbs_column_column_record, only: column_record
+   use rbs_loading_loading_record, only: loading_record
+   implicit none
+   private
+
+   public :: case_record, most_loadings
+
+   !> A force, a ground motion in two directions and an axial load may act together.
+   integer, parameter :: most_loadings = 4
+
+   !> Units of the numbers of a case, by name.
+   type :: units_record
+      character(len=8) :: force = 'N', length = 'm', mass = 'kg'
+   contains
+      procedure :: visit => visit_units
+      procedure :: system
+   end type units_record
+
+   !> Everything that a run needs to know.
+   type :: case_record
+      !> One line for the header of the output
+      character(len=:), allocatable :: title
+      type(units_record) :: units
+      type(column_record) :: column
+      !> Number of loadings
+      integer :: loadings = 0
+      type(loading_record) :: loading(most_loadings)
+      type(analysis_record) :: analysis
+      type(output_record) :: output
+   contains
+      procedure :: visit
+      procedure :: settle
+      procedure :: validate
+   end type case_record
+
+contains
+
+   !> The keys of the case itself.
+   subroutine visit(self, v)
+      class(case_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%long_text('title', self%title, 'one line for the header of the output')
+   end subroutine visit
+
+   !> The keys of the units.
+   subroutine visit_units(self, v)
+      class(units_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%word('force', self%force, 'unit of forces in the file and in the csv', 'N kN MN kip')
+      call v%word('length', self%length, 'unit of lengths in the file and in the csv', 'm mm cm in')
+      call v%word('mass', self%mass, 'unit of masses in the file', 'kg t')
+   end subroutine visit_units
+
+   !> The units themselves.
+   pure type(unit_system) function system(self)
+      class(units_record), intent(in) :: self
+
+      system%force = named(force_units, self%force)
+      system%length = named(length_units, self%length)
+      system%mass = named(mass_units, self%mass)
+   end function system
+
+   pure type(unit_type) function named(units, name)
+      type(unit_type), intent(in) :: units(:)
+      character(len=*), intent(in) :: name
+
+      named = units(max(1, findloc(units%name == name, .true., dim=1)))
+   end function named
+
+   !> Fill in what follows from the rest: sources and units of the loadings, the method.
+   subroutine settle(self)
+      class(case_record), intent(inout) :: self
+      logical :: moving, timed
+      integer :: i
+
+      moving = .false.
+      timed = .false.
+      do i = 1, self%loadings
+         associate (loading => self%loading(i))
+            call loading%settle()
+            moving = moving .or. index(loading%drive, 'acceleration') > 0
+            timed = timed .or. ((loading%drive == 'force' .or. loading%drive == 'axial_load') &
+                                .and. loading%has_time())
+            if (loading%unit /= '') cycle
+            select case (loading%drive)
+            case ('force', 'axial_load')
+               if (self%units%force /= 'N') loading%unit = self%units%force
+            case ('displacement')
+               if (self%units%length /= 'm' &
+                   .and. loading%source /= 'protocol') loading%unit = self%units%length
+            case default                            ! accelerations are in m/s2
+            end select
+         end associate
+      end do
+      if (self%analysis%method /= '') return
+      self%analysis%named = .false.
+      if (moving) then
+         self%analysis%method = 'auto'
+      else if (.not. timed) then
+         self%analysis%method = 'static'
+      end if
+   end subroutine settle
+
+   !> Add a message for everything that is wrong with the case.
+   subroutine validate(self, messages)
+      class(case_record), intent(inout) :: self
+      type(message_list), intent(inout) :: messages
+      type(key_visitor) :: v
+      integer :: i, known
+
+      known = messages%count
+      call v%start_check('units')
+      call self%units%visit(v)
+      call v%end_check(messages)
+      ! Without its units no number says anything.
+      if (messages%count > known) return
+      call self%settle()
+      call self%column%validate(messages)
+      if (self%analysis%method == '') then
+         call messages%add("analysis: the loading has times, so method must be named: 'static' for the "// &
+                           "path without inertia, or 'auto' for the response in time")
+         return
+      end if
+      do i = 1, self%loadings
+         ! What a loading needs depends on the method; a method that is not known is told of below.
+         if (.not. self%analysis%known()) exit
+         call self%loading(i)%validate(self%analysis%dynamic(), messages)
+      end do
+      call check_together(self, messages)
+      call self%analysis%validate(messages)
+      call check_static(self, messages)
+      call self%output%validate(messages)
+   end subroutine validate
+
+   !> What a static path cannot take, found before the path starts (in the words of the solver).
+   subroutine check_static(self, messages)
+      type(case_record), intent(in) :: self
+      type(message_list), intent(inout) :: messages
+
+      if (self%analysis%dynamic() .or. self%column%kinematics /= 'finite') return
+      if (.not. (self%column%axial_follows .or. self%column%force_follows)) return
+      call messages%add('column: loads that follow the top (axial_follows, force_follows) have no '// &
+                        'potential, and a static path could miss the loss of stability; use a '// &
+                        'dynamic analysis')
+   end subroutine check_static
+
+   !> Loadings that cannot act together.
+   subroutine check_together(self, messages)
+      type(case_record), intent(in) :: self
+      type(message_list), intent(inout) :: messages
+      integer :: i
+
+      if (self%loadings < 2) return
+      if (.not. self%analysis%dynamic()) then
+         call messages%add('loading: several loadings need a dynamic analysis; with method = '// &
+                           "'static' give one")
+         return
+      end if
+      do i = 2, self%loadings
+         if (all(self%loading(:i - 1)%drive /= self%loading(i)%drive)) cycle
+         call messages%add("loading: two loadings with drive = '"//trim(self%loading(i)%drive)// &
+                           "'; give each drive once")
+      end do
+   end subroutine check_together
+
+end module rbs_case_case_record

@@ -1,0 +1,210 @@
+!> The list of all keys, as JSON for other programs and as a table for readers.
+module rbs_case_key_list
+   use rbs_base_check, only: is_given
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: key_type, bound_text, choice_name, choice_length, real_kind, integer_kind, &
+                            logical_kind, word_kind
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: exact_text, to_text
+   use rbs_case_case_record, only: case_record
+   use rbs_case_setter, only: group_names, unit_in_group
+   use rbs_case_spring_entry, only: keys_of_group, is_spring_group
+   use rbs_case_text_buffer, only: text_buffer
+   use rbs_hysteresis_registry, only: rule_names, keys_of, places_of
+   implicit none
+   private
+
+   public :: keys_as_json, keys_as_table
+
+contains
+
+   !> The keys that a group has besides the parameters of a rule.
+   subroutine group_keys(group, keys)
+      character(len=*), intent(in) :: group
+      type(key_type), allocatable, intent(out) :: keys(:)
+      type(case_record) :: new
+      type(key_visitor) :: v
+
+      if (is_spring_group(group)) then
+         keys = keys_of_group(group)
+         return
+      end if
+      call v%collect(group)
+      select case (group)
+      case ('case')
+         call new%visit(v)
+      case ('units')
+         call new%units%visit(v)
+      case ('column')
+         call new%column%visit(v)
+      case ('damping')
+         call new%column%damping%visit(v)
+      case ('loading')
+         call new%loading(1)%visit(v)
+      case ('analysis')
+         call new%analysis%visit(v)
+      case default
+         call new%output%visit(v)
+      end select
+      keys = v%keys(:v%count)
+   end subroutine group_keys
+
+   !> {"groups": {name: [key, ...]}, "rules": {name: {"places": [...], "keys": [key, ...]}}}
+   subroutine keys_as_json(buffer)
+      type(text_buffer), intent(inout) :: buffer
+      type(key_type), allocatable :: keys(:)
+      integer :: i
+
+      call buffer%append('{"groups": {')
+      do i = 1, size(group_names)
+         call group_keys(group_names(i), keys)
+         if (i > 1) call buffer%append(',')
+         call buffer%append(new_line('a')//'  "'//trim(group_names(i))//'": [')
+         call append_keys(buffer, keys)
+         call buffer%append(']')
+      end do
+      call buffer%append(new_line('a')//'}, "rules": {')
+      do i = 1, size(rule_names)
+         call keys_of(rule_names(i), keys)
+         if (i > 1) call buffer%append(',')
+         call buffer%append(new_line('a')//'  "'//trim(rule_names(i))//'": {"places": "'// &
+                            trim(places_of(rule_names(i)))//'", "keys": [')
+         call append_keys(buffer, keys)
+         call buffer%append(']}')
+      end do
+      call buffer%append(new_line('a')//'}}'//new_line('a'))
+   end subroutine keys_as_json
+
+   subroutine append_keys(buffer, keys)
+      type(text_buffer), intent(inout) :: buffer
+      type(key_type), intent(in) :: keys(:)
+      integer :: i
+
+      do i = 1, size(keys)
+         if (i > 1) call buffer%append(',')
+         call buffer%append(new_line('a')//'    ')
+         call append_key(buffer, keys(i))
+      end do
+   end subroutine append_keys
+
+   !> One key; what says nothing is left out.
+   subroutine append_key(buffer, key)
+      type(text_buffer), intent(inout) :: buffer
+      type(key_type), intent(in) :: key
+      character(len=choice_length) :: choice
+      integer :: i
+
+      call buffer%append('{"name": "'//trim(key%name)//'", "kind": "'//trim(kind_name(key%kind))//'"')
+      if (key%unit /= '') call buffer%append(', "unit": "'//trim(key%unit)//'"')
+      if (key%bound%least > -huge(1.0_wp)) then
+         call buffer%append(', "least": '//trim(exact_text(key%bound%least)))
+         if (key%bound%least_open) call buffer%append(', "least_open": true')
+      end if
+      if (key%bound%most < huge(1.0_wp)) then
+         call buffer%append(', "most": '//trim(exact_text(key%bound%most)))
+         if (key%bound%most_open) call buffer%append(', "most_open": true')
+      end if
+      if (key%kind == word_kind) then
+         call buffer%append(', "choices": [')
+         do i = 1, len(key%choices)
+            choice = choice_name(key, i)
+            if (choice == '') exit
+            if (i > 1) call buffer%append(', ')
+            call buffer%append('"'//trim(choice)//'"')
+         end do
+         call buffer%append(']')
+      end if
+      if (default_of(key) /= '') then
+         if (key%kind == real_kind .or. key%kind == integer_kind .or. key%kind == logical_kind) then
+            call buffer%append(', "default": '//trim(default_of(key)))
+         else
+            call buffer%append(', "default": "'//trim(default_of(key))//'"')
+         end if
+      end if
+      if (key%optional) call buffer%append(', "optional": true')
+      if (key%most > 1) call buffer%append(', "values": '//to_text(key%most))
+      call buffer%append(', "meaning": "'//trim(key%meaning)//'"}')
+   end subroutine append_key
+
+   pure function kind_name(kind) result(name)
+      character(len=1), intent(in) :: kind
+      character(len=8) :: name
+
+      select case (kind)
+      case (real_kind)
+         name = 'real'
+      case (integer_kind)
+         name = 'integer'
+      case (logical_kind)
+         name = 'logical'
+      case (word_kind)
+         name = 'word'
+      case default
+         name = 'text'
+      end select
+   end function kind_name
+
+   !> The default as text; blank where there is none.
+   pure function default_of(key) result(text)
+      type(key_type), intent(in) :: key
+      character(len=32) :: text
+
+      text = key%default_text
+      if (text /= '' .or. .not. is_given(key%default)) return
+      select case (key%kind)
+      case (logical_kind)
+         text = merge('true ', 'false', abs(key%default) > 0.0_wp)
+      case (word_kind)
+         text = choice_name(key, nint(key%default))
+      case default
+         text = exact_text(key%default)
+      end select
+   end function default_of
+
+   !> Groups and rules, a line for each key: name, kind, unit, bounds, default, meaning.
+   subroutine keys_as_table(buffer)
+      type(text_buffer), intent(inout) :: buffer
+      type(key_type), allocatable :: keys(:)
+      integer :: i
+
+      do i = 1, size(group_names)
+         call group_keys(group_names(i), keys)
+         call buffer%append('&'//trim(group_names(i))//new_line('a'))
+         call append_rows(buffer, keys)
+      end do
+      do i = 1, size(rule_names)
+         call keys_of(rule_names(i), keys)
+         call buffer%append("rule = '"//trim(rule_names(i))//"' ("//trim(places_of(rule_names(i)))//')'// &
+                            new_line('a'))
+         call append_rows(buffer, keys)
+      end do
+   end subroutine keys_as_table
+
+   subroutine append_rows(buffer, keys)
+      type(text_buffer), intent(inout) :: buffer
+      type(key_type), intent(in) :: keys(:)
+      character(len=24) :: name
+      character(len=8) :: kind
+      character(len=16) :: unit
+      character(len=32) :: default
+      character(len=48) :: bound
+      integer :: i
+
+      do i = 1, size(keys)
+         name = keys(i)%name
+         kind = kind_name(keys(i)%kind)
+         if (keys(i)%most > 1) kind = 'list'
+         unit = keys(i)%unit
+         default = default_of(keys(i))
+         bound = bound_text(keys(i)%bound)
+         if (keys(i)%kind == word_kind) bound = 'see meaning'
+         call buffer%append('  '//name//kind//' '//unit(:12)//bound(:18)//default(:12)// &
+                            trim(keys(i)%meaning))
+         if (keys(i)%kind == word_kind .and. keys(i)%choices /= '') then
+            call buffer%append(': '//trim(keys(i)%choices))
+         end if
+         call buffer%append(new_line('a'))
+      end do
+   end subroutine append_rows
+
+end module rbs_case_key_list

@@ -1,0 +1,312 @@
+!> Springs as they are stated: once each, with the joints or the layers that refer to them.
+module rbs_case_spring_entry
+   use rbs_base_check, only: check_name
+   use rbs_base_error, only: message_list
+   use rbs_base_keys, only: key_type, integer_kind, word_kind, above_zero, any_number, not_negative, &
+                            one_or_more
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_column_column_record, only: column_record, most_bodies
+   use rbs_hysteresis_registry, only: rule_names, suits
+   use rbs_hysteresis_rule, only: in_layer
+   use rbs_hysteresis_spring_record, only: spring_record
+   implicit none
+   private
+
+   public :: spring_entry, entry_list, keys_of_group, is_spring_group, place_springs
+
+   !> Most layers of a joint.
+   integer, parameter :: most_layers = 10000
+
+   type(key_type), parameter :: joint_key = &
+      key_type('joint', kind=integer_kind, bound=not_negative, optional=.true., most=most_bodies, &
+               meaning='joints that have this spring, from the ground up; without it all that are not named')
+   type(key_type), parameter :: rule_key = key_type('rule', kind=word_kind, meaning='name of the rule')
+   type(key_type), parameter :: id_key = &
+      key_type('id', kind=integer_kind, bound=above_zero, &
+               meaning='number by which layers refer to the spring')
+   type(key_type), parameter :: layers_keys(3) = [ &
+      joint_key, &
+      key_type('y', unit='m', bound=any_number, most=most_layers, &
+               meaning='distances from the middle of the section, positive where positive rotation opens'), &
+      key_type('spring', kind=integer_kind, bound=one_or_more, most=most_layers, &
+               meaning='id of the spring of each layer')]
+
+   !> One group that states a spring, or that refers to layers.
+   type :: spring_entry
+      !> 'shear', 'flexure', 'axial_spring', 'layer_spring' or 'layers'
+      character(len=16) :: group = ''
+      !> For messages: 'case.nml line 4: ' or blank
+      character(len=80) :: where = ''
+      !> Joints; not allocated: those without a spring of their own
+      integer, allocatable :: joint(:)
+      !> Number of a spring for layers
+      integer :: id = 0
+      type(spring_record) :: spring
+      !> layers: distances [m] and springs
+      real(wp), allocatable :: y(:)
+      integer, allocatable :: layer(:)
+   end type spring_entry
+
+   type :: entry_list
+      integer :: count = 0
+      type(spring_entry), allocatable :: entry(:)
+   contains
+      procedure :: add
+   end type entry_list
+
+contains
+
+   !> Make room for one more entry.
+   subroutine add(self, group, where)
+      class(entry_list), intent(inout) :: self
+      character(len=*), intent(in) :: group, where
+      type(spring_entry), allocatable :: longer(:)
+
+      if (.not. allocated(self%entry)) allocate (self%entry(8))
+      if (self%count == size(self%entry)) then
+         allocate (longer(2*self%count))
+         longer(:self%count) = self%entry
+         call move_alloc(longer, self%entry)
+      end if
+      self%count = self%count + 1
+      self%entry(self%count)%group = group
+      self%entry(self%count)%where = where
+   end subroutine add
+
+   pure logical function is_spring_group(group)
+      character(len=*), intent(in) :: group
+
+      select case (group)
+      case ('shear', 'flexure', 'axial_spring', 'layer_spring', 'layers')
+         is_spring_group = .true.
+      case default
+         is_spring_group = .false.
+      end select
+   end function is_spring_group
+
+   !> The keys that a group has besides the parameters of its rule.
+   pure function keys_of_group(group) result(keys)
+      character(len=*), intent(in) :: group
+      type(key_type), allocatable :: keys(:)
+
+      select case (group)
+      case ('layers')
+         keys = layers_keys
+      case ('layer_spring')
+         keys = [id_key, rule_key]
+      case default
+         keys = [joint_key, rule_key]
+      end select
+   end function keys_of_group
+
+   !> Give the springs to the joints of a column.
+   subroutine place_springs(list, column, messages)
+      type(entry_list), intent(in) :: list
+      type(column_record), intent(inout) :: column
+      type(message_list), intent(inout) :: messages
+      type(entry_list) :: whole
+      integer :: known
+
+      whole = list
+      if (list%count > 0) then
+         known = messages%count
+         call check_ids(list, messages)
+         if (messages%count == known) call fill_layers(whole, column%n, messages)
+      end if
+      call place_group(whole, 'shear', column%n, column%shear, messages)
+      call place_group(whole, 'flexure', column%n, column%flexure, messages)
+      call place_group(whole, 'axial_spring', column%n, column%axial_spring, messages)
+   end subroutine place_springs
+
+   !> The springs of layers: a number must stand for one spring, which must have a rule.
+   subroutine check_ids(list, messages)
+      type(entry_list), intent(in) :: list
+      type(message_list), intent(inout) :: messages
+      character(len=:), allocatable :: name
+      integer :: i, j, place
+
+      do i = 1, list%count
+         if (list%entry(i)%group /= 'layer_spring') cycle
+         name = trim(adjustl(trim(list%entry(i)%where)//' &layer_spring: '))
+         if (.not. any(rule_names == list%entry(i)%spring%rule)) then
+            call check_name(list%entry(i)%spring%rule, pack(rule_names, suits(rule_names, in_layer)), &
+                            name//' rule', messages, place)
+         end if
+         if (list%entry(i)%id == 0) then
+            call messages%add(name//' id is missing; give each spring of layers a number of its own')
+            cycle
+         end if
+         do j = 1, i - 1
+            if (list%entry(j)%group /= 'layer_spring' .or. list%entry(j)%id /= list%entry(i)%id) cycle
+            call messages%add(adjustl(trim(list%entry(i)%where)//' &layer_spring with id = '// &
+                                      to_text(list%entry(i)%id)// &
+                                              ' stands twice; give each a number of its own'))
+            exit
+         end do
+      end do
+   end subroutine check_ids
+
+   !> Springs of one kind of joint: one for all, or one for each.
+   subroutine place_group(list, group, n, springs, messages)
+      type(entry_list), intent(in) :: list
+      character(len=*), intent(in) :: group
+      integer, intent(in) :: n
+      type(spring_record), allocatable, intent(out) :: springs(:)
+      type(message_list), intent(inout) :: messages
+      integer :: of_joint(max(n, 1)), i, j, rest, known
+
+      if (list%count == 0) return
+      if (.not. any(list%entry(:list%count)%group == group)) return
+      of_joint = 0
+      rest = 0
+      known = messages%count
+      do i = 1, list%count
+         associate (entry => list%entry(i))
+            if (entry%group /= group) cycle
+            if (.not. allocated(entry%joint)) then
+               if (rest > 0) call twice(entry, list%entry(rest), group, messages)
+               rest = i
+               cycle
+            end if
+            do j = 1, size(entry%joint)
+               if (entry%joint(j) < 1 .or. entry%joint(j) > n) then
+                  call messages%add(trim(entry%where)//' &'//group//' has joint = '// &
+                                    to_text(entry%joint(j))// &
+                                    '; joints are 1 to n = '//to_text(n))
+               else if (of_joint(entry%joint(j)) > 0) then
+                  call twice(entry, list%entry(of_joint(entry%joint(j))), group, messages, entry%joint(j))
+               else
+                  of_joint(entry%joint(j)) = i
+               end if
+            end do
+         end associate
+      end do
+      if (messages%count > known) return
+      if (all(of_joint == 0)) then
+         springs = [list%entry(rest)%spring]
+         return
+      end if
+      i = findloc(of_joint, 0, dim=1)
+      if (i > 0 .and. rest == 0) then
+         call messages%add('joint '//to_text(i)//' has no &'//group// &
+                           '; give it one, or one without joint, which is for all others')
+         return
+      end if
+      allocate (springs(n))
+      do i = 1, n
+         springs(i) = list%entry(merge(of_joint(i), rest, of_joint(i) > 0))%spring
+      end do
+   end subroutine place_group
+
+   !> Two springs for one joint.
+   subroutine twice(entry, first, group, messages, joint)
+      type(spring_entry), intent(in) :: entry, first
+      character(len=*), intent(in) :: group
+      type(message_list), intent(inout) :: messages
+      integer, intent(in), optional :: joint
+      character(len=:), allocatable :: text
+
+      text = trim(entry%where)//' &'//group
+      if (present(joint)) then
+         text = text//' for joint = '//to_text(joint)
+      else
+         text = text//' without joint'
+      end if
+      text = text//' stands twice'
+      if (first%where /= '') text = text//', first at '//first%where(:len_trim(first%where) - 1)
+      call messages%add(adjustl(text//'; remove one'))
+   end subroutine twice
+
+   !> Give the layers to the layered springs of flexure.
+   subroutine fill_layers(list, n, messages)
+      type(entry_list), intent(inout) :: list
+      integer, intent(in) :: n
+      type(message_list), intent(inout) :: messages
+      type(entry_list) :: made
+      integer :: i, j
+
+      if (.not. any(list%entry(:list%count)%group == 'layers')) return
+      do i = 1, list%count
+         if (list%entry(i)%group /= 'layers') cycle
+         made = entry_list()
+         do j = 1, list%count
+            if (list%entry(j)%group /= 'flexure' .or. list%entry(j)%spring%rule /= 'layered') cycle
+            call share_joints(list%entry(j), list%entry(i), n, made)
+         end do
+         if (made%count == 0) then
+            call messages%add(adjustl(trim(list%entry(i)%where)// &
+                              ' &layers belong to no flexural spring with '// &
+                                      "rule = 'layered'; remove them, or choose that rule for the spring"))
+            cycle
+         end if
+         do j = 1, made%count
+            call set_layers(list, made%entry(j)%spring, list%entry(i), messages)
+            call list%add('flexure', made%entry(j)%where)
+            list%entry(list%count) = made%entry(j)
+         end do
+      end do
+   end subroutine fill_layers
+
+   !> Take the joints that layers name out of a spring, and make a spring of its own for them.
+   subroutine share_joints(entry, layers, n, made)
+      type(spring_entry), intent(inout) :: entry
+      type(spring_entry), intent(in) :: layers
+      integer, intent(in) :: n
+      type(entry_list), intent(inout) :: made
+      integer :: i
+
+      if (allocated(entry%spring%y)) return         ! has its layers
+      call made%add('flexure', entry%where)
+      made%entry(made%count) = entry
+      if (.not. allocated(layers%joint)) then
+         entry%group = 'taken'
+      else if (.not. allocated(entry%joint)) then
+         made%entry(made%count)%joint = layers%joint
+         entry%joint = pack([(i, i=1, n)], [(all(layers%joint /= i), i=1, n)])
+         if (size(entry%joint) == 0) entry%group = 'taken'
+      else
+         made%entry(made%count)%joint = pack(entry%joint, [(any(layers%joint == entry%joint(i)), &
+                                                            i=1, size(entry%joint))])
+         entry%joint = pack(entry%joint, [(all(layers%joint /= entry%joint(i)), i=1, size(entry%joint))])
+         if (size(entry%joint) == 0) entry%group = 'taken'
+         if (size(made%entry(made%count)%joint) == 0) made%count = made%count - 1
+      end if
+   end subroutine share_joints
+
+   !> Put the layers into a spring.
+   subroutine set_layers(list, spring, layers, messages)
+      type(entry_list), intent(in) :: list
+      type(spring_record), intent(inout) :: spring
+      type(spring_entry), intent(in) :: layers
+      type(message_list), intent(inout) :: messages
+      integer, allocatable :: entry(:)
+      integer :: i, j
+
+      if (.not. allocated(layers%y) .or. .not. allocated(layers%layer)) then
+         call messages%add(adjustl(trim(layers%where)// &
+                           ' &layers needs y and spring, one value of each for '// &
+                                   'each layer'))
+         return
+      else if (size(layers%y) /= size(layers%layer)) then
+         call messages%add(adjustl(trim(layers%where)//' &layers has '//to_text(size(layers%y))// &
+                                   ' values of y and '//to_text(size(layers%layer))// &
+                                   ' of spring; give one of each for each layer'))
+         return
+      end if
+      allocate (entry(size(layers%y)))
+      do i = 1, size(layers%y)
+         do j = 1, list%count
+            if (list%entry(j)%group == 'layer_spring' .and. list%entry(j)%id == layers%layer(i)) exit
+         end do
+         if (j > list%count) then
+            call messages%add(adjustl(trim(layers%where)//' &layers: there is no &layer_spring with id = '// &
+                                      to_text(layers%layer(i))))
+            return
+         end if
+         entry(i) = j
+      end do
+      call spring%set_layers(layers%y, list%entry(entry)%spring)
+   end subroutine set_layers
+
+end module rbs_case_spring_entry

@@ -1,0 +1,263 @@
+!> What the user asked of the column: geometry, mass, joints, axial load, damping.
+module rbs_column_column_record
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use rbs_base_constants, only: unset, standard_gravity
+   use rbs_base_error, only: message_list
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: bound_type, any_number, above_zero, not_negative
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text, list_of
+   use rbs_hysteresis_registry, only: rule_names, suits
+   use rbs_hysteresis_rule, only: in_shear, in_flexure, in_axial
+   use rbs_hysteresis_spring_record, only: spring_record
+   implicit none
+   private
+
+   public :: column_record, damping_record, most_bodies, most_dense, most_modes
+
+   character(len=*), parameter :: kinematics_names = 'small pdelta finite'
+
+   !> Every row holds four numbers or more for each body: more bodies are a slip of the pen.
+   integer, parameter :: most_bodies = 10000
+
+   !> What needs dense matrices (mode shapes, modal damping) takes seconds with this number of bodies and
+   !> grows with its cube.
+   integer, parameter :: most_dense = 500
+
+   !> A column that takes modal damping has no more modes.
+   integer, parameter :: most_modes = 3*most_dense
+
+   !> Damping ratios are below critical.
+   type(bound_type), parameter :: ratio = &
+      bound_type(0.0_wp, 1.0_wp, most_open=.true., reason='(critical); it is a ratio, not per cent')
+
+   !> Viscous damping.
+   type :: damping_record
+      !> In proportion to the mass [1/s], and to the stiffness of each joint [s]
+      real(wp) :: mass = 0.0_wp, stiffness = 0.0_wp
+      !> Whether that is the stiffness of the present line, else the initial one
+      logical :: tangent = .false.
+      !> Damping ratios of the modes of the uncracked column: one for all, or those of the first ones
+      real(wp), allocatable :: modal(:)
+   contains
+      procedure :: visit => visit_damping
+   end type damping_record
+
+   !> A column of `n` rigid bodies; joint i is at the bottom of body i, counted from the ground.
+   type :: column_record
+      integer :: n = 1
+      real(wp) :: height = unset
+      real(wp) :: mass = unset
+      !> Lengths [m] and masses [kg] of the bodies (n); not allocated: all lengths equal, masses in
+      !> proportion to the lengths
+      real(wp), allocatable :: lengths(:), masses(:)
+      character(len=16) :: kinematics = 'small'
+      !> At the top, compression positive [N]
+      real(wp) :: axial_load = 0.0_wp
+      logical :: self_weight = .false.
+      real(wp) :: gravity = standard_gravity
+      !> Whether the axial load, and the lateral force, turn with the top body (`finite` only)
+      logical :: axial_follows = .false., force_follows = .false.
+      real(wp) :: top_mass = 0.0_wp, top_inertia = 0.0_wp
+      real(wp) :: depth = 0.0_wp
+      !> One for all bodies or n; not allocated: m (l^2 + depth^2)/12 [kg m2]
+      real(wp), allocatable :: rotary_inertia(:)
+      !> Which model made the column, and the version of its parameters; for the record only
+      character(len=64) :: model = ''
+      type(damping_record) :: damping
+      !> Springs: one for every joint, or n; axial ones are tension positive, without them joints do not
+      !> open
+      type(spring_record), allocatable :: shear(:), flexure(:), axial_spring(:)
+   contains
+      procedure :: visit
+      procedure :: validate
+   end type column_record
+
+contains
+
+   !> The keys of a column.
+   subroutine visit(self, v)
+      class(column_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%key('n', self%n, '', bound_type(1.0_wp, real(most_bodies, wp)), 'number of rigid bodies')
+      call v%key('height', self%height, 'm', above_zero, 'height of the column')
+      call v%key('mass', self%mass, 'kg', above_zero, &
+                 'mass of the column, in proportion to the lengths; not needed with masses', &
+                 optional=allocated(self%masses))
+      call v%key('lengths', self%lengths, 'm', above_zero, &
+                 'lengths of the bodies from the ground up; without them all are equal', most_bodies)
+      call v%key('masses', self%masses, 'kg', above_zero, 'masses of the bodies from the ground up', &
+                 most_bodies)
+      call v%word('kinematics', self%kinematics, &
+                  'small rotations, the same with second-order work of the axial load, or exact rotations', &
+                  kinematics_names)
+      call v%key('axial_load', self%axial_load, 'N', any_number, &
+                 'axial load at the top, compression positive')
+      call v%key('self_weight', self%self_weight, 'whether the weight of the bodies acts')
+      call v%key('gravity', self%gravity, 'm/s2', not_negative, 'acceleration of gravity for the weight')
+      call v%key('axial_follows', self%axial_follows, &
+                 'whether the axial load turns with the top body (finite)')
+      call v%key('force_follows', self%force_follows, &
+                 'whether the lateral force turns with the top body (finite)')
+      call v%key('top_mass', self%top_mass, 'kg', not_negative, &
+                 'mass lumped at the top; its weight belongs to the axial load')
+      call v%key('top_inertia', self%top_inertia, 'kg m2', not_negative, 'its rotary inertia about the top')
+      call v%key('depth', self%depth, 'm', not_negative, &
+                 'depth of the section: adds m depth^2/12 to the rotary inertia of every body')
+      call v%key('rotary_inertia', self%rotary_inertia, 'kg m2', above_zero, &
+                 'rotary inertia about the centroid, one for all bodies or one for each', most_bodies)
+      call v%word('model', self%model, 'model and version that made the column; kept for the record')
+   end subroutine visit
+
+   !> The keys of the damping.
+   subroutine visit_damping(self, v)
+      class(damping_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%key('mass', self%mass, '1/s', not_negative, 'damping in proportion to the mass')
+      call v%key('stiffness', self%stiffness, 's', not_negative, &
+                 'damping in proportion to the stiffness of each joint')
+      call v%key('tangent', self%tangent, &
+                 'whether that is the stiffness of the present line, else the initial one')
+      call v%key('modal', self%modal, '', ratio, &
+                 'damping ratios: one for all modes, or one for each of the first modes', most_modes)
+   end subroutine visit_damping
+
+   !> Add a message for everything that is wrong with the column.
+   subroutine validate(self, messages)
+      class(column_record), intent(inout) :: self
+      type(message_list), intent(inout) :: messages
+      type(key_visitor) :: v
+
+      call v%start_check('column')
+      call self%visit(v)
+      call v%end_check(messages)
+      if (allocated(self%lengths)) call check_count('lengths', size(self%lengths), self%n, messages)
+      if (allocated(self%masses)) call check_count('masses', size(self%masses), self%n, messages)
+      if (allocated(self%lengths)) call check_sum(self, messages)
+      if (self%kinematics /= 'finite' .and. (self%axial_follows .or. self%force_follows)) then
+         call messages%add('column: a load that follows the top (axial_follows, force_follows) needs '// &
+                           "kinematics = 'finite'; remove it or change the kinematics")
+      end if
+      call check_inertia(self, messages)
+      call v%start_check('damping')
+      call self%damping%visit(v)
+      call v%end_check(messages)
+      call check_damping(self, messages)
+      call check_springs(self%shear, 'shear', in_shear, self%n, messages)
+      call check_springs(self%flexure, 'flexure', in_flexure, self%n, messages)
+      if (allocated(self%axial_spring)) then
+         call check_springs(self%axial_spring, 'axial', in_axial, self%n, messages)
+      end if
+   end subroutine validate
+
+   !> Two statements on rotary inertia contradict each other.
+   subroutine check_inertia(self, messages)
+      type(column_record), intent(in) :: self
+      type(message_list), intent(inout) :: messages
+      logical :: given
+
+      if (.not. allocated(self%rotary_inertia)) return
+      given = .false.
+      if (ieee_is_finite(self%depth)) given = self%depth > 0.0_wp
+      if (given) then
+         call messages%add('column: both depth and rotary_inertia are given; keep the one that is meant')
+      end if
+      if (size(self%rotary_inertia) /= 1 .and. size(self%rotary_inertia) /= self%n) then
+         call messages%add('column: rotary_inertia has '//to_text(size(self%rotary_inertia))// &
+                           ' values for n = '//to_text(self%n)//' bodies; give one, or one for each')
+      end if
+   end subroutine check_inertia
+
+   !> Damping that has something to act on, and matrices that can be handled.
+   subroutine check_damping(self, messages)
+      type(column_record), intent(in) :: self
+      type(message_list), intent(inout) :: messages
+      integer :: modes
+      logical :: given
+
+      given = .false.
+      if (ieee_is_finite(self%damping%stiffness)) given = self%damping%stiffness > 0.0_wp
+      if (self%damping%tangent .and. .not. given) then
+         call messages%add('damping: tangent has no meaning without stiffness; give one')
+      end if
+      if (.not. allocated(self%damping%modal)) return
+      modes = merge(3, 2, allocated(self%axial_spring))*self%n
+      if (size(self%damping%modal) > modes) then
+         call messages%add('damping: modal has '//to_text(size(self%damping%modal))// &
+                           ' values for '//to_text(modes)//' modes; give one for all, or one for each '// &
+                           'of the first modes')
+      end if
+      if (self%n > most_dense) then
+         call messages%add('damping: modal damping needs all modes, which are there for up to '// &
+                           to_text(most_dense)//' bodies, not for n = '//to_text(self%n)// &
+                           '; use mass and stiffness damping')
+      end if
+   end subroutine check_damping
+
+   !> Lengths and masses: one for each body.
+   subroutine check_count(name, count, n, messages)
+      character(len=*), intent(in) :: name
+      integer, intent(in) :: count, n
+      type(message_list), intent(inout) :: messages
+
+      if (count == n) return
+      call messages%add('column: '//name//' has '//to_text(count)//' values for n = '//to_text(n)// &
+                        ' bodies; give one for each')
+   end subroutine check_count
+
+   subroutine check_sum(self, messages)
+      type(column_record), intent(in) :: self
+      type(message_list), intent(inout) :: messages
+      real(wp) :: total
+
+      if (.not. ieee_is_finite(self%height) .or. .not. all(ieee_is_finite(self%lengths))) return
+      if (.not. self%height > 0.0_wp) return
+      total = sum(self%lengths)
+      if (abs(total - self%height) > 1.0e-9_wp*self%height) then
+         call messages%add('column: the lengths add up to '//to_text(total)//' m, the height is '// &
+                           to_text(self%height)//' m; make them equal')
+      end if
+   end subroutine check_sum
+
+   subroutine check_springs(springs, name, place, n, messages)
+      type(spring_record), intent(in), allocatable :: springs(:)
+      !> For messages: 'shear'
+      character(len=*), intent(in) :: name
+      !> Where they stand, see `rbs_hysteresis_rule`
+      character(len=*), intent(in) :: place
+      integer, intent(in) :: n
+      type(message_list), intent(inout) :: messages
+      integer :: i
+
+      if (.not. allocated(springs)) then
+         call messages%add('column: the '//name//' spring is missing; give one for every joint')
+      else if (size(springs) == 1) then
+         call check_spring(springs(1), name//' spring', name, place, messages)
+      else if (size(springs) /= n) then
+         call messages%add('column: '//to_text(size(springs))//' '//name//' springs for '// &
+                           to_text(n)//' joints; give one, or one for each joint')
+      else
+         do i = 1, size(springs)
+            ! Equal springs have equal faults; they are told once.
+            if (i > 1) then
+               if (springs(i)%same_as(springs(i - 1))) cycle
+            end if
+            call check_spring(springs(i), name//' spring of joint '//to_text(i), name, place, messages)
+         end do
+      end if
+   end subroutine check_springs
+
+   subroutine check_spring(spring, full_name, name, place, messages)
+      type(spring_record), intent(in) :: spring
+      character(len=*), intent(in) :: full_name, name, place
+      type(message_list), intent(inout) :: messages
+
+      call spring%validate(full_name, messages)
+      if (suits(spring%rule, place) .or. .not. any(rule_names == spring%rule)) return
+      call messages%add('column: the '//name//" spring cannot be of the rule '"//trim(spring%rule)// &
+                        "'; it is one of "//list_of(pack(rule_names, suits(rule_names, place))))
+   end subroutine check_spring
+
+end module rbs_column_column_record

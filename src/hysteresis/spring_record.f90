@@ -1,0 +1,275 @@
+!> What the user asked of one spring: its rule and the parameters of the rule.
+!>
+!> Deformation is slip [m], rotation [rad] or opening [m], force is shear [N], moment [N m] or axial
+!> force [N].
+module rbs_hysteresis_spring_record
+   use rbs_base_check, only: is_given, check_finite, check_name
+   use rbs_base_constants, only: unset
+   use rbs_base_error, only: message_list
+   use rbs_base_keys, only: key_type, word_kind, check_number, choice_name, find_key
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text, list_of
+   use rbs_hysteresis_layered, only: layered_rule
+   use rbs_hysteresis_registry, only: rule_names, new_rule, keys_of, suits
+   use rbs_hysteresis_rule, only: rule_type, rule_length, most_parameters, in_layer
+   use rbs_hysteresis_segment, only: segment
+   implicit none
+   private
+
+   public :: spring_record, carries_axial_load
+
+   !> The place of a rule among `rule_names`, stored for layers.
+   integer, parameter :: no_rule = 0
+
+   !> One spring. Layers belong to the rule `layered` alone.
+   type :: spring_record
+      !> One of `rule_names`
+      character(len=rule_length) :: rule = ''
+      !> Parameters in the order of the keys of the rule; a word is stored as its place among the choices;
+      !> `unset`: not given
+      real(wp) :: value(most_parameters) = unset
+      !> Axial load that the layers share, compression positive; the column sets it [N]
+      real(wp) :: axial_load = 0.0_wp
+      !> Distances of the layers from the middle of the section (layers) [m]
+      real(wp), allocatable :: y(:)
+      !> Rules of the layers, by their place among `rule_names` (layers), and parameters (most_parameters,
+      !> layers)
+      integer, allocatable :: layer_rule(:)
+      real(wp), allocatable :: layer_value(:, :)
+   contains
+      procedure :: set
+      procedure :: get
+      procedure :: set_layers
+      procedure :: layer
+      procedure :: validate
+      procedure :: make
+      procedure :: initial_stiffness
+      procedure :: same_as
+   end type spring_record
+
+contains
+
+   !> Set a parameter by name. A name that the rule does not have leaves the record as it is.
+   subroutine set(self, name, value)
+      class(spring_record), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      real(wp), intent(in) :: value
+      type(key_type), allocatable :: keys(:)
+      integer :: place
+
+      call keys_of(self%rule, keys)
+      place = find_key(keys, name)
+      if (place > 0) self%value(place) = value
+   end subroutine set
+
+   !> A parameter by name, its default where none was given; `unset` if the rule does not have it.
+   impure elemental real(wp) function get(self, name)
+      class(spring_record), intent(in) :: self
+      character(len=*), intent(in) :: name
+      type(key_type), allocatable :: keys(:)
+      integer :: place
+
+      get = unset
+      call keys_of(self%rule, keys)
+      place = find_key(keys, name)
+      if (place == 0) return
+      get = self%value(place)
+      if (.not. is_given(get)) get = keys(place)%default
+   end function get
+
+   !> Give a joint its layers.
+   pure subroutine set_layers(self, y, spring)
+      class(spring_record), intent(inout) :: self
+      !> Distances from the middle of the section [m], and the spring of each layer (layers)
+      real(wp), intent(in) :: y(:)
+      type(spring_record), intent(in) :: spring(:)
+      integer :: i
+
+      self%y = y
+      if (allocated(self%layer_rule)) deallocate (self%layer_rule, self%layer_value)
+      allocate (self%layer_rule(size(y)), self%layer_value(most_parameters, size(y)))
+      do i = 1, size(y)
+         self%layer_rule(i) = max(findloc(rule_names == spring(i)%rule, .true., dim=1), no_rule)
+         self%layer_value(:, i) = spring(i)%value
+      end do
+   end subroutine set_layers
+
+   !> The spring of a layer.
+   pure type(spring_record) function layer(self, i)
+      class(spring_record), intent(in) :: self
+      !> Number of the layer
+      integer, intent(in) :: i
+
+      if (self%layer_rule(i) /= no_rule) layer%rule = rule_names(self%layer_rule(i))
+      layer%value = self%layer_value(:, i)
+   end function layer
+
+   !> The parameters with the defaults of the rule where none is given.
+   pure subroutine whole_values(self, keys, value)
+      class(spring_record), intent(in) :: self
+      type(key_type), intent(in) :: keys(:)
+      real(wp), intent(out) :: value(most_parameters)
+      integer :: i
+
+      value = self%value
+      do i = 1, size(keys)
+         if (.not. is_given(value(i))) value(i) = keys(i)%default
+      end do
+   end subroutine whole_values
+
+   !> Add a message for every parameter that the rule does not allow.
+   recursive subroutine validate(self, name, messages)
+      class(spring_record), intent(in) :: self
+      !> Which spring: 'shear spring of joint 2'
+      character(len=*), intent(in) :: name
+      type(message_list), intent(inout) :: messages
+      type(key_type), allocatable :: keys(:)
+      class(rule_type), allocatable :: rule
+      real(wp) :: value(most_parameters)
+      integer :: i, place
+      logical :: ok
+
+      call new_rule(rule, self%rule)
+      if (.not. allocated(rule)) then
+         call check_name(self%rule, rule_names, name//': rule', messages, place)
+         return
+      end if
+      keys = rule%keys()
+      call whole_values(self, keys, value)
+      ok = .true.
+      do i = 1, size(keys)
+         if (keys(i)%kind == word_kind) then
+            if (choice_name(keys(i), nint(value(i))) /= '') cycle
+            call messages%add(name//': '//trim(keys(i)%name)//' is not known; it is one of '// &
+                              trim(keys(i)%choices))
+            ok = .false.
+         else
+            call check_number(value(i), name, keys(i), messages, ok)
+         end if
+      end do
+      if (ok) then
+         call rule%set(value)
+         call rule%check(name, messages)
+      end if
+      if (self%rule == 'layered') then
+         call validate_layers(self, name, messages)
+      else if (allocated(self%y)) then
+         call messages%add(name//': layers are not used by the rule '//trim(self%rule)// &
+                           '; remove them or choose the rule layered')
+      end if
+   end subroutine validate
+
+   recursive subroutine validate_layers(self, name, messages)
+      type(spring_record), intent(in) :: self
+      character(len=*), intent(in) :: name
+      type(message_list), intent(inout) :: messages
+      type(spring_record) :: layer
+      logical :: ok
+      integer :: i
+
+      if (.not. allocated(self%y)) then
+         call messages%add(name//': the layers are missing; give at least two')
+         return
+      end if
+      if (size(self%y) < 2) then
+         call messages%add(name//': one layer has no stiffness against rotation; give at least two')
+      end if
+      do i = 1, size(self%y)
+         call check_finite(self%y(i), name//': y of layer '//to_text(i), 'm', messages, ok)
+         layer = self%layer(i)
+         if (.not. suits(layer%rule, in_layer)) then
+            call messages%add(name//': layer '//to_text(i)//" has the rule '"//trim(layer%rule)// &
+                              "'; it is one of "//list_of(pack(rule_names, suits(rule_names, in_layer))))
+         else if (same_as_before(self, i)) then
+            cycle                                   ! its faults have been told
+         else
+            call layer%validate(name//': layer '//to_text(i), messages)
+         end if
+         ! One table for all layers: a slip is likely in all of them.
+         if (messages%count > 20) return
+      end do
+   end subroutine validate_layers
+
+   !> Whether the layer before has the same spring.
+   pure logical function same_as_before(self, i)
+      type(spring_record), intent(in) :: self
+      integer, intent(in) :: i
+
+      same_as_before = .false.
+      if (i == 1) return
+      if (self%layer_rule(i) /= self%layer_rule(i - 1)) return
+      same_as_before = all(same_bits(self%layer_value(:, i), self%layer_value(:, i - 1)))
+   end function same_as_before
+
+   !> Whether two numbers are the same, without comparing a NaN.
+   elemental logical function same_bits(a, b)
+      use, intrinsic :: iso_fortran_env, only: int64
+      real(wp), intent(in) :: a, b
+
+      same_bits = transfer(a, 0_int64) == transfer(b, 0_int64)
+   end function same_bits
+
+   !> Whether another spring has the same rule and parameters.
+   pure logical function same_as(self, other)
+      class(spring_record), intent(in) :: self
+      type(spring_record), intent(in) :: other
+
+      same_as = self%rule == other%rule .and. all(same_bits(self%value, other%value)) .and. &
+                (allocated(self%y) .eqv. allocated(other%y))
+      if (.not. same_as .or. .not. allocated(self%y)) return
+      same_as = size(self%y) == size(other%y)
+      if (same_as) same_as = all(same_bits(self%y, other%y)) .and. all(self%layer_rule == other%layer_rule)
+      if (same_as) same_as = all(same_bits(self%layer_value, other%layer_value))
+   end function same_as
+
+   !> The rule with its parameters, of a spring that has been validated.
+   recursive subroutine make(self, rule)
+      class(spring_record), intent(in) :: self
+      class(rule_type), allocatable, intent(out) :: rule
+      type(key_type), allocatable :: keys(:)
+      type(spring_record) :: layer
+      real(wp) :: value(most_parameters)
+      integer :: i
+
+      call new_rule(rule, self%rule)
+      keys = rule%keys()
+      call whole_values(self, keys, value)
+      call rule%set(value)
+      select type (rule)
+      type is (layered_rule)
+         rule%axial_load = self%axial_load
+         rule%y = self%y
+         allocate (rule%slot(size(self%y)))
+         do i = 1, size(self%y)
+            layer = self%layer(i)
+            call layer%make(rule%slot(i)%rule)
+         end do
+      end select
+   end subroutine make
+
+   !> Stiffness of the virgin spring, of the stiffer side if they differ [N/m or N m/rad].
+   impure elemental real(wp) function initial_stiffness(self)
+      class(spring_record), intent(in) :: self
+      class(rule_type), allocatable :: rule
+
+      call self%make(rule)
+      initial_stiffness = rule%initial_stiffness()
+   end function initial_stiffness
+
+   !> Whether the layers of a spring can carry its axial load; all other springs carry none.
+   logical function carries_axial_load(self)
+      type(spring_record), intent(in) :: self
+      class(rule_type), allocatable :: rule
+      type(segment) :: line
+
+      carries_axial_load = .true.
+      if (self%rule /= 'layered') return
+      call self%make(rule)
+      call rule%start(line)
+      select type (rule)
+      type is (layered_rule)
+         carries_axial_load = rule%carries
+      end select
+   end function carries_axial_load
+
+end module rbs_hysteresis_spring_record

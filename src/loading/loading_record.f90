@@ -1,0 +1,213 @@
+!> What the user asked of one loading: what is driven, and where its values come from.
+module rbs_loading_loading_record
+   use rbs_base_kinds, only: wp
+   use rbs_base_constants, only: unset
+   use rbs_base_error, only: message_list
+   use rbs_base_text, only: to_text
+   use rbs_base_check, only: is_given, check_name
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: any_number, any_value, above_zero, one_or_more
+   use rbs_base_units, only: unit_type, length_units, force_units, acceleration_units
+   implicit none
+   private
+
+   public :: loading_record, drive_names, units_of
+
+   character(len=21), parameter :: drive_names(5) = [character(len=21) :: &
+      'displacement', 'force', 'ground_acceleration', 'vertical_acceleration', 'axial_load']
+   character(len=8), parameter :: source_names(3) = ['file    ', 'protocol', 'values  ']
+
+   !> Most values that a case file itself may hold for one loading; longer histories stand in files.
+   integer, parameter :: most_amplitudes = 1000, most_values = 1000000
+
+   !> One loading of a case.
+   type :: loading_record
+      !> What is prescribed, one of `drive_names`: displacement of the top [m], lateral force at the top
+      !> [N], acceleration of the ground, horizontal or (upward positive) vertical [m/s2], or axial load
+      !> besides the constant one, compression positive [N]
+      character(len=24) :: drive = ''
+      !> One of `source_names`
+      character(len=16) :: source = ''
+      character(len=:), allocatable :: file
+      character(len=16) :: format = 'auto'
+      character(len=64) :: column = ''
+      character(len=64) :: time_column = ''
+      character(len=16) :: unit = ''
+      real(wp) :: scale = 1.0_wp
+      real(wp) :: interval = unset
+      real(wp), allocatable :: amplitudes(:)
+      integer, allocatable :: cycles(:)
+      integer :: repeats = 1
+      integer :: points = 25
+      real(wp) :: period = unset
+      real(wp), allocatable :: time(:), values(:)
+   contains
+      procedure :: visit
+      procedure :: settle
+      procedure :: has_time
+      procedure :: validate
+   end type loading_record
+
+contains
+
+   !> The keys of a loading.
+   subroutine visit(self, v)
+      class(loading_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%word('drive', self%drive, 'what is prescribed', &
+                  'displacement force ground_acceleration vertical_acceleration axial_load')
+      call v%word('source', self%source, 'where the values come from; without it from what is given', &
+                  'file protocol values')
+      call v%long_text('file', self%file, 'path of a history, from the folder of the case')
+      call v%word('format', self%format, 'format of the file', 'auto peer csv')
+      call v%word('column', self%column, &
+                  'name or number of the column with the values; without it the one named after the drive')
+      call v%word('time_column', self%time_column, &
+                  'name or number of the column with the time; without it the one named time')
+      call v%word('unit', self%unit, 'unit of the values; drift is displacement over height')
+      call v%key('scale', self%scale, '', any_number, 'factor on the values')
+      call v%key('interval', self%interval, 's', above_zero, &
+                 'time from row to row where the file has no column of times', optional=.true.)
+      call v%key('amplitudes', self%amplitudes, '', above_zero, 'amplitudes of a protocol, one a step', &
+                 most_amplitudes)
+      call v%key('cycles', self%cycles, '', one_or_more, &
+                 'cycles at each amplitude: one for all, or one for each; without it 1', most_amplitudes)
+      call v%key('repeats', self%repeats, '', one_or_more, 'how often the whole protocol is run')
+      call v%key('points', self%points, '', one_or_more, 'points on a quarter of a cycle')
+      call v%key('period', self%period, 's', above_zero, &
+                 'duration of a cycle in a dynamic analysis', optional=.true.)
+      call v%key('time', self%time, 's', any_value, 'times of the values', most_values)
+      call v%key('values', self%values, '', any_value, 'the values themselves', most_values)
+   end subroutine visit
+
+   !> Find the source where it is not named.
+   subroutine settle(self)
+      class(loading_record), intent(inout) :: self
+
+      if (self%source /= '') return
+      if (allocated(self%values)) self%source = 'values'
+      if (allocated(self%amplitudes)) self%source = 'protocol'
+      if (allocated(self%file)) self%source = 'file'
+   end subroutine settle
+
+   !> Whether the loading says when its values act. Whether a file has a column of times is seen when it is
+   !> read.
+   elemental logical function has_time(self)
+      class(loading_record), intent(in) :: self
+
+      has_time = is_given(self%interval) .or. is_given(self%period) .or. allocated(self%time) .or. &
+                 self%time_column /= ''
+   end function has_time
+
+   !> The units that the values of a drive may have.
+   function units_of(drive) result(units)
+      character(len=*), intent(in) :: drive
+      type(unit_type), allocatable :: units(:)
+
+      select case (drive)
+      case ('displacement')
+         units = length_units
+      case ('force', 'axial_load')
+         units = force_units
+      case default
+         units = acceleration_units
+      end select
+   end function units_of
+
+   !> Add a message for everything that is wrong with the loading.
+   subroutine validate(self, dynamic, messages)
+      class(loading_record), intent(inout) :: self
+      !> Whether the analysis runs in time
+      logical, intent(in) :: dynamic
+      type(message_list), intent(inout) :: messages
+      type(key_visitor) :: v
+      integer :: drive, source
+
+      call v%start_check('loading')
+      call self%visit(v)
+      call v%end_check(messages)
+      if (self%drive == '') call check_name(self%drive, drive_names, 'loading: drive', messages, drive)
+      if (self%source == '') call check_name(self%source, source_names, 'loading: source', messages, source)
+      drive = findloc(drive_names == self%drive, .true., dim=1)
+      if (.not. dynamic .and. drive > 2) then
+         call messages%add("loading: drive = '"//trim(self%drive)//"' needs a dynamic analysis; set "// &
+                           "method = 'auto' in the group analysis")
+      end if
+      if (dynamic .and. self%drive == 'displacement') then
+         call messages%add("loading: drive = 'displacement' needs the static analysis; set "// &
+                           "method = 'static' in the group analysis, or drive = 'force'")
+      end if
+      if (drive > 0) call check_unit(self, messages)
+      if (count([allocated(self%file), allocated(self%amplitudes), allocated(self%values)]) > 1) then
+         call messages%add('loading: more than one of file, amplitudes and values are given; keep '// &
+                           'the one that is meant')
+      end if
+      select case (self%source)
+      case ('file')
+         if (.not. allocated(self%file)) then
+            call messages%add('loading: file is missing; give the path of the history')
+         end if
+      case ('protocol')
+         call validate_protocol(self, dynamic, messages)
+      case ('values')
+         call validate_values(self, dynamic, messages)
+      case default                                  ! reported already
+      end select
+   end subroutine validate
+
+   !> The unit must be one of the drive's; a protocol of displacements may also be in drift.
+   subroutine check_unit(self, messages)
+      type(loading_record), intent(in) :: self
+      type(message_list), intent(inout) :: messages
+      type(unit_type), allocatable :: units(:)
+      character(len=8), allocatable :: names(:)
+      integer :: place
+
+      if (self%unit == '') return
+      units = units_of(self%drive)
+      names = units%name
+      if (self%drive == 'displacement' .and. self%source == 'protocol') names = ['drift   ', names]
+      call check_name(self%unit, names, "loading: unit of the drive '"//trim(self%drive)//"'", &
+                      messages, place)
+   end subroutine check_unit
+
+   subroutine validate_protocol(self, dynamic, messages)
+      type(loading_record), intent(in) :: self
+      logical, intent(in) :: dynamic
+      type(message_list), intent(inout) :: messages
+
+      if (.not. allocated(self%amplitudes)) then
+         call messages%add('loading: amplitudes are missing; give one for each step of the protocol')
+         return
+      end if
+      if (allocated(self%cycles)) then
+         if (size(self%cycles) /= 1 .and. size(self%cycles) /= size(self%amplitudes)) then
+            call messages%add('loading: cycles has '//to_text(size(self%cycles))//' values for '// &
+                              to_text(size(self%amplitudes))//' amplitudes; give one, or one for each')
+         end if
+      end if
+      if (dynamic .and. .not. is_given(self%period)) then
+         call messages%add('loading: period is missing; give it a value in s')
+      end if
+   end subroutine validate_protocol
+
+   subroutine validate_values(self, dynamic, messages)
+      type(loading_record), intent(in) :: self
+      logical, intent(in) :: dynamic
+      type(message_list), intent(inout) :: messages
+
+      if (.not. allocated(self%values)) then
+         call messages%add('loading: values are missing; give one for each point')
+      else if (allocated(self%time)) then
+         if (size(self%time) /= size(self%values)) then
+            call messages%add('loading: '//to_text(size(self%values))//' values for '// &
+                              to_text(size(self%time))//' times; give one for each')
+         end if
+      else if (dynamic .and. .not. is_given(self%interval)) then
+         call messages%add('loading: a dynamic analysis needs the times of the values; give time, one '// &
+                           'for each value, or interval')
+      end if
+   end subroutine validate_values
+
+end module rbs_loading_loading_record

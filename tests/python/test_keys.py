@@ -1,0 +1,317 @@
+"""One list of keys: dataclasses, keywords of the analyses, documents and messages agree with it."""
+
+from __future__ import annotations
+
+import importlib.util
+import inspect
+import json
+import re
+from collections.abc import Callable
+from dataclasses import MISSING, fields
+from types import ModuleType, UnionType
+from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
+
+import pytest
+from conftest import REPOSITORY
+
+import rbsdem
+from rbsdem import _core, analysis
+from rbsdem.damping import Damping
+from rbsdem.springs import SPRINGS
+
+KEYS = _core.keys()
+RULES = KEYS["rules"]
+NO_VALUE = object()
+
+Key = dict[str, Any]
+
+
+def group(name: str) -> dict[str, Key]:
+    return {key["name"]: key for key in KEYS["groups"][name]}
+
+
+def words(hint: Any) -> set[str]:
+    """Words of a Literal, also where None is allowed too."""
+    if get_origin(hint) in (Union, UnionType):
+        return set().union(*(words(one) for one in get_args(hint)))
+    return set(get_args(hint)) if get_origin(hint) is Literal else set()
+
+
+def default_of(key: Key) -> Any:
+    """The default that Python gives: that of the key, None for what may be missing."""
+    if "default" in key:
+        return key["default"]
+    return None if key.get("optional") else NO_VALUE
+
+
+def agree(kind: type, keys: dict[str, Key], apart: set[str]) -> None:
+    """Fields of a dataclass and keys: the same names, defaults and words."""
+    hints = get_type_hints(kind)
+    own = {field.name: field for field in fields(kind) if field.init and field.name not in apart}
+    assert set(own) == set(keys)
+    for name, field in own.items():
+        default = NO_VALUE if field.default is MISSING else field.default
+        assert default == default_of(keys[name]), name
+        assert words(hints[name]) == set(keys[name].get("choices", ())), name
+
+
+# ---- Python ------------------------------------------------------------------------------------
+
+
+def test_every_rule_has_a_class():
+    assert set(SPRINGS) == set(RULES)
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_parameters_of_a_spring_are_the_keys_of_its_rule(rule):
+    keys = {key["name"]: key for key in RULES[rule]["keys"]}
+    agree(SPRINGS[rule], keys, {"layers"} if rule == "layered" else set())
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_places_of_a_rule_are_where_a_column_takes_it(rule):
+    """`suits` of the Fortran part, seen through the door of a column."""
+    values = GOOD.get(rule)
+    if values is None:
+        values = {"layers": [(-0.1, rbsdem.Elastic(1e8)), (0.1, rbsdem.Elastic(1e8))]}
+    spring, elastic = SPRINGS[rule](**values), rbsdem.Elastic(1e8)
+    taken = set()
+    column = {"height": 1, "mass": 1, "shear": elastic, "flexure": elastic}
+    for place, made in {
+        "shear": lambda: {"shear": spring},
+        "flexure": lambda: {"flexure": spring},
+        "axial": lambda: {"axial_spring": spring},
+        "layer": lambda: {"flexure": rbsdem.Layered([(-0.1, spring), (0.1, elastic)])},
+    }.items():
+        try:
+            rbsdem.Column(**(column | made()))
+            taken.add(place)
+        except rbsdem.InputError:
+            pass
+    assert taken == set(RULES[rule]["places"].split())
+
+
+#: Values that each rule takes.
+CAPPED = {"d_y": 1e-3, "f_y": 1e5, "d_cap": 1e-2, "f_cap": 1.2e5, "d_pc": 0.1}
+GOOD = {
+    "elastic": {"k": 1e8},
+    "bilinear": {"k": 1e8, "d_y": 1e-3, "k_post": 1e6},
+    "takeda": {"k_c": 2e8, "d_c": 1e-3, "k_y": 1e8, "d_y": 2e-3, "k_u": 1e6},
+    "compression": {"k": 1e8},
+    "peak_oriented": CAPPED,
+    "pinching": CAPPED | {"kappa_f": 0.5, "kappa_d": 0.5},
+    "concrete": {"k": 1e9, "f_peak": 1e6, "d_peak": 2e-3, "k_soft": 1e8},
+    "steel": {"k": 1e9, "f_y": 1e6, "k_post": 1e7},
+}
+
+
+def test_fields_of_a_column_are_the_keys_of_its_group():
+    column = group("column")
+    column["mass"] = {"name": "mass", "kind": "real"}  # Python asks for it, or for None
+    column["model"] = column["model"] | {"default": ""}  # no text is an empty one
+    agree(rbsdem.Column, column, {"shear", "flexure", "axial_spring", "damping", "recipe"})
+
+
+def test_fields_of_damping_are_the_keys_of_its_group():
+    agree(Damping, group("damping"), set())
+
+
+def keywords(function: Callable[..., Any]) -> dict[str, inspect.Parameter]:
+    return dict(inspect.signature(function, eval_str=False).parameters)
+
+
+def test_keywords_of_the_analyses_are_the_keys_of_their_groups():
+    settings = group("analysis") | {"every": group("output")["every"]}
+    loads = set(group("loading")["drive"]["choices"])
+    known = keywords(rbsdem.cyclic) | keywords(rbsdem.time_history)
+    # The end of the times is the duration; the rest has no key.
+    assert set(known) == (set(settings) | loads | {"column", "time", "initial"}) - {"duration"}
+    for name in set(settings) & set(known):
+        default = known[name].default
+        assert default == (False if settings[name]["kind"] == "logical" else None), name
+    hints = get_type_hints(rbsdem.time_history)
+    assert words(hints["events"]) == set(settings["events"]["choices"])
+    assert words(hints["method"]) == set(settings["method"]["choices"]) - {"static"}
+    assert set(analysis.METHODS) == words(hints["method"])
+
+
+def test_drives_of_a_case_are_the_loads_of_python():
+    drives = group("loading")["drive"]["choices"]
+    assert set(drives) <= {field.name for field in fields(rbsdem.Case)}
+
+
+# ---- the executable, the documents ---------------------------------------------------------------
+
+
+def test_executable_prints_the_same_list(run_cli):
+    printed = run_cli(["keys", "--json"])
+    assert (printed.returncode, printed.stderr) == (0, "")
+    assert json.loads(printed.stdout) == KEYS
+    table = run_cli(["keys"]).stdout.splitlines()
+    names = [line.split()[0] for line in table if line.startswith("  ")]
+    lists = [*KEYS["groups"].values(), *(rule["keys"] for rule in RULES.values())]
+    assert names == [key["name"] for keys in lists for key in keys]
+
+
+def test_every_key_says_what_it_means():
+    for keys in [*KEYS["groups"].values(), *(rule["keys"] for rule in RULES.values())]:
+        assert len({key["name"] for key in keys}) == len(keys)
+        for key in keys:
+            assert re.fullmatch(r"[a-z]\w*", key["name"])
+            assert len(key["meaning"]) > 5, key["name"]
+            assert key["kind"] in ("real", "integer", "logical", "word", "text")
+
+
+def tables() -> ModuleType:
+    """The script that writes the tables of the documents."""
+    path = REPOSITORY / "scripts" / "key_tables.py"
+    spec = importlib.util.spec_from_file_location("key_tables", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_tables_of_the_input_reference_are_those_of_the_keys():
+    """To mend it: python scripts/key_tables.py."""
+    script = tables()
+    text = script.DOCUMENT.read_text("utf-8")
+    assert script.filled(text, KEYS) == text
+    shown = {found["name"] for found in script.BLOCK.finditer(text)}
+    # &flexure and &axial_spring have the keys of &shear, and layered joints have no parameters.
+    assert KEYS["groups"]["shear"] == KEYS["groups"]["flexure"] == KEYS["groups"]["axial_spring"]
+    assert shown == (
+        set(KEYS["groups"]) - {"flexure", "axial_spring"}
+        | {f"rule {name}" for name in RULES if name != "layered"}
+    )
+
+
+def test_tables_of_the_rules_name_every_key_and_default():
+    """docs/rules.md says more of each parameter; names and defaults are those of the program."""
+    text = (REPOSITORY / "docs" / "rules.md").read_text("utf-8")
+    sections = re.split(r"^## \d+\. ", text, flags=re.MULTILINE)
+    found = {section.split("\n", 1)[0]: section for section in sections}
+    for title, rules in {
+        "Parameters": ("peak_oriented", "pinching"),
+        "Concrete": ("concrete",),
+        "Steel": ("steel",),
+    }.items():
+        keys = {key["name"]: key for rule in rules for key in RULES[rule]["keys"]}
+        named = set()
+        table = re.search(r"^\| name \|.*?(?=\n\n)", found[title], re.MULTILINE | re.DOTALL)
+        assert table, title
+        for row in table[0].splitlines()[2:]:
+            first, meaning = row.strip("| ").split(" | ")[:2]
+            names = re.findall(r"`([\w…]+)`", first)
+            if names == ["…_neg"]:
+                names = [name for name in keys if name.endswith("_neg")]
+            named |= set(names)
+            said = re.search(r"defaults? ([\d., ]+\d|\d)", meaning)
+            numbers = re.findall(r"\d[\d.]*", said[1]) if said else []
+            known = [keys[name]["default"] for name in names if "default" in keys[name]]
+            if len(numbers) == 1:
+                assert {float(numbers[0])} == set(known), row
+            elif numbers:
+                assert [float(number) for number in numbers] == known, row
+            else:
+                assert not any(known), row
+        assert named == set(keys), title
+
+
+# ---- said once -----------------------------------------------------------------------------------
+
+
+def test_no_list_of_keys_stands_beside_the_keys():
+    """The seam between Python and Fortran passes names on; it knows no parameter of a rule."""
+    seam = [REPOSITORY / "python" / "rbsdem" / "_core.py"]
+    seam += sorted((REPOSITORY / "src" / "bindings").glob("*.f90"))
+    parameters = {key["name"] for rule in RULES.values() for key in rule["keys"]}
+    others = {
+        key["name"] for name in ("column", "damping", "analysis") for key in KEYS["groups"][name]
+    }
+    for path in seam:
+        if path.stem in ("section_arrays", "shear_arrays"):
+            continue  # arrays of sections, no keys
+        quoted = set(re.findall(r"""["'](\w+)["']""", path.read_text("utf-8")))
+        assert not quoted & (parameters - {"c", "k"}), path.name
+        assert len(quoted & others) < 3, path.name
+
+
+# ---- old names -----------------------------------------------------------------------------------
+
+OLD = [
+    ({"axial": "load = 1"}, "the group &axial is now part of &column: axial_load"),
+    ({"opening": "rule = 'elastic', k = 1"}, "the group &opening is now &axial_spring"),
+    ({"layer": "y = 0"}, "the group &layer is now &layer_spring"),
+    (
+        {"column": "height = 1, mass = 1, mass_damping = 1"},
+        "the key 'mass_damping' of &column is now 'mass' of the group &damping",
+    ),
+    (
+        {"column": "height = 1, mass = 1, modal_damping = 0.1"},
+        "the key 'modal_damping' of &column is now 'modal' of the group &damping",
+    ),
+    (
+        {"loading": "drive = 'force', amplitudes = 1, follows = T"},
+        "the key 'follows' of &loading is now 'force_follows' of the group &column",
+    ),
+    (
+        {"flexure": "rule = 'layered', axial_load = 1"},
+        "the key 'axial_load' of &flexure is now 'axial_load' of the group &column",
+    ),
+    (
+        {"axial_spring": "rule = 'concrete', k_fall = 1"},
+        "the key 'k_fall' of &axial_spring is now 'k_soft'",
+    ),
+    (
+        {"layer_spring": "id = 1, rule = 'steel', growth = 1"},
+        "the key 'growth' of &layer_spring is now 'isotropic_hardening'",
+    ),
+]
+
+
+@pytest.mark.parametrize(("changes", "text"), OLD, ids=[text for _, text in OLD])
+def test_old_name_in_a_case_says_the_new_one(run_cli, case_text, tmp_path, changes, text):
+    (tmp_path / "case.nml").write_text(case_text(**changes))
+    result = run_cli(["check", "case.nml"], tmp_path)
+    assert result.returncode == 2
+    assert text in result.stderr
+
+
+@pytest.mark.parametrize("old", ["ground", "vertical", "axial"])
+def test_old_drive_in_a_case_says_the_new_one(run_cli, case_text, tmp_path, old):
+    new = {"ground": "ground_acceleration", "vertical": "vertical_acceleration"}
+    loading = f"drive = '{old}', amplitudes = 1, period = 1"
+    (tmp_path / "case.nml").write_text(case_text(loading=loading))
+    result = run_cli(["check", "case.nml"], tmp_path)
+    assert result.returncode == 2
+    assert f"drive = '{old}' is now '{new.get(old, 'axial_load')}'" in result.stderr
+
+
+SPRING = rbsdem.Elastic(1e8)
+OLD_PYTHON = [
+    (lambda: rbsdem.Column(1, 1, SPRING, SPRING, axial=SPRING), "axial is now axial_spring"),
+    (
+        lambda: rbsdem.Column(1, 1, SPRING, SPRING, mass_damping=1.0),
+        r"mass_damping is now damping=Damping\(mass=",
+    ),
+    (
+        lambda: rbsdem.Column(1, 1, SPRING, SPRING, stiffness_damping=1.0),
+        r"stiffness_damping is now damping=Damping\(stiffness=",
+    ),
+    (lambda: rbsdem.ConcreteSpring(2, 1, 1, k_fall=1), "k_fall is now k_soft"),
+    (lambda: rbsdem.SteelSpring(2, 1, 1, r1=0.9), "r1 is now cr1"),
+    (lambda: rbsdem.SteelSpring(2, 1, 1, growth=1), "growth is now isotropic_hardening"),
+    (lambda: rbsdem.SteelSpring(2, 1, 1, endurance=1), "endurance is now half_strength_work"),
+    (
+        lambda: rbsdem.Layered(layers=[(0, SPRING), (1, SPRING)], axial_load=1.0),
+        "axial_load is now the axial load of the column",
+    ),
+]
+
+
+@pytest.mark.parametrize(("call", "text"), OLD_PYTHON, ids=[text for _, text in OLD_PYTHON])
+def test_old_name_in_python_says_the_new_one(call, text):
+    with pytest.raises(rbsdem.InputError, match=text):
+        call()

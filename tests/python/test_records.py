@@ -1,0 +1,152 @@
+"""Columns, cases and results as values: short repr, equality, pickle and copy."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+import rbsdem
+
+SHEAR = rbsdem.Bilinear(7.0387e8, 1.296e-4, 8.3185e6)
+FLEXURE = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
+LAYERS = rbsdem.Layered(
+    [
+        *((y, rbsdem.ConcreteSpring(4e9, 1.2e6, 6e-4, 8e7)) for y in np.linspace(-0.2, 0.2, 40)),
+        (-0.16, rbsdem.SteelSpring(8e8, 7e5, 8e6)),
+        (0.16, rbsdem.SteelSpring(8e8, 7e5, 8e6)),
+    ]
+)
+COLUMN = rbsdem.Column(
+    3.0, None, [SHEAR, rbsdem.Elastic(1e9), SHEAR], [LAYERS, FLEXURE, FLEXURE], n=3,
+    masses=[300.0, 200.0, 100.0], axial_load=7e5, kinematics="pdelta", damping=0.05,
+    rotary_inertia=[30.0, 20.0, 10.0], top_mass=1e3, model="layered 2026.1",
+)  # fmt: skip
+OPEN = rbsdem.Column(
+    2.0, 500.0, SHEAR, FLEXURE, n=2, kinematics="finite", axial_load=1e5,
+    axial_spring=[rbsdem.Compression(1e9), rbsdem.Elastic(1e9)], damping=rbsdem.Damping(0.1, 1e-5),
+)  # fmt: skip
+BIG = rbsdem.Column(1e3, 1e6, rbsdem.Elastic(1e9), rbsdem.Elastic(1e9), n=10_000)
+PATH = 3.0 * rbsdem.protocol([0.005, 0.01], points=3)
+TIME = np.linspace(0.0, 0.05, 11)
+MOTION = np.sin(200 * TIME)
+CASE = rbsdem.Case(
+    "pushed", COLUMN, "static", np.arange(float(PATH.size)), PATH, None, None, None, None,
+    {"every": 2},
+)  # fmt: skip
+
+
+def results() -> dict[str, rbsdem.Result]:
+    return {
+        "cyclic": rbsdem.cyclic(COLUMN, displacement=PATH),
+        "time_history": rbsdem.time_history(OPEN, TIME, ground_acceleration=MOTION),
+        "case": CASE.run(),
+    }
+
+
+def failed() -> rbsdem.Result:
+    plastic = rbsdem.Bilinear(1e6, 1e-3, 0.0)
+    with pytest.raises(rbsdem.SolveError) as caught:
+        rbsdem.cyclic(rbsdem.Column(1.6, 1.0, plastic, rbsdem.Elastic(1e6)), force=[500.0, 2e3])
+    return caught.value.result
+
+
+RECORDS = {"column": COLUMN, "open": OPEN, "big": BIG, "case": CASE} | results()
+RECORDS |= {"failed": failed()}
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_repr_is_short(name):
+    assert len(repr(RECORDS[name])) < 200
+    assert "\n" not in repr(RECORDS[name])
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_pickle_and_copy_keep_everything(name):
+    one = RECORDS[name]
+    for again in (pickle.loads(pickle.dumps(one)), copy.copy(one), copy.deepcopy(one)):
+        assert type(again) is type(one)
+        assert (again == one) is True
+        assert (again != one) is False
+        assert repr(again) == repr(one)
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_equality_is_true_or_false_for_anything(name):
+    one = RECORDS[name]
+    for other in (None, 3, "text", np.zeros(3), COLUMN if one is not COLUMN else OPEN):
+        assert (one.__eq__(other)) in (False, NotImplemented)
+    assert [one] == [one]
+    assert one in [one]
+
+
+@pytest.mark.parametrize("name", ["cyclic", "time_history", "case"])
+def test_runs_that_are_repeated_are_equal(name):
+    assert results()[name] == RECORDS[name]
+
+
+def test_every_field_of_a_result_counts_for_equality():
+    one = RECORDS["time_history"]
+    for field in fields(one):
+        value = getattr(one, field.name)
+        if isinstance(value, np.ndarray):
+            other = value.copy()
+            other.flat[-1] = np.nextafter(other.flat[-1], np.inf)
+        elif field.name == "energy":
+            other = value | {"input": value["input"] + 1.0}
+        elif field.name == "summary":
+            other = value | {"steps": value["steps"] + 1}
+        else:
+            other = {"column": COLUMN, "case": CASE}[field.name]
+        assert (replace(one, **{field.name: other}) == one) is False, field.name
+
+
+def test_every_field_of_a_case_counts_for_equality():
+    changes = {
+        "title": "pulled", "column": OPEN, "method": "auto", "time": CASE.time + 1.0,
+        "displacement": -PATH, "force": PATH, "ground_acceleration": PATH,
+        "vertical_acceleration": PATH, "axial_load": PATH, "settings": {},
+    }  # fmt: skip
+    assert set(changes) == {field.name for field in fields(CASE)}
+    for name, value in changes.items():
+        assert (replace(CASE, **{name: value}) == CASE) is False, name
+
+
+def test_result_knows_its_column_and_its_case():
+    assert RECORDS["cyclic"].column is COLUMN
+    assert RECORDS["cyclic"].case is None
+    assert RECORDS["case"].column == COLUMN
+    assert RECORDS["case"].case is CASE
+    other = CASE.run(replace(COLUMN, top_mass=2e3))
+    assert other.column.top_mass == 2e3
+    assert other.case is CASE
+
+
+def test_columns_are_keys_of_dictionaries():
+    same = replace(COLUMN)
+    assert same == COLUMN
+    assert len({COLUMN: 1, same: 2, OPEN: 3}) == 2
+
+
+def test_equal_springs_of_all_joints_are_one():
+    column = rbsdem.Column(1.0, 1.0, [SHEAR] * 3, (FLEXURE, replace(FLEXURE), FLEXURE), n=3)
+    assert column.shear is SHEAR
+    assert column.flexure == FLEXURE
+    assert column == rbsdem.Column(1.0, 1.0, SHEAR, FLEXURE, n=3)
+    assert column.joints("shear") == (SHEAR,) * 3
+    assert column.joints("axial_spring") == ()
+    assert COLUMN.joints("flexure") == (LAYERS, FLEXURE, FLEXURE)
+
+
+def test_a_changed_copy_is_checked_anew():
+    with pytest.raises(rbsdem.InputError, match="height = -1 m must be above zero"):
+        replace(COLUMN, height=-1.0)
+    with pytest.raises(rbsdem.InputError, match="cannot carry the axial load"):
+        replace(
+            COLUMN,
+            flexure=rbsdem.Layered([(y, rbsdem.Compression(1e8)) for y in (-0.1, 0.1)]),
+            axial_load=-1e3,
+        )
