@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from rbsdem.errors import InputError
 
 Kind = TypeVar("Kind")
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def renamed(**names: str) -> Callable[[type[Kind]], type[Kind]]:
@@ -27,9 +28,13 @@ def renamed(**names: str) -> Callable[[type[Kind]], type[Kind]]:
     return change
 
 
-def renamed_keywords(**names: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+def renamed_keywords(**names: str) -> Callable[[Function], Function]:
     """Do the same for a function."""
-    return lambda function: _watch(function, function.__name__, names)
+
+    def change(function: Function) -> Function:
+        return cast(Function, _watch(function, function.__name__, names))
+
+    return change
 
 
 def _watch(function: Callable[..., Any], name: str, names: dict[str, str]) -> Callable[..., Any]:

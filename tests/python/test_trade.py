@@ -444,7 +444,7 @@ def test_effects_of_a_column_with_everything():
 
 
 def test_joints_that_open_can_be_tried():
-    found = trade(PAPER, displacement=CYCLES, axial=rbsdem.Elastic(2.4e9))
+    found = trade(PAPER, displacement=CYCLES, axial_spring=rbsdem.Elastic(2.4e9))
     assert effect_of(found, "joints open").matters is not None
 
 
@@ -514,7 +514,8 @@ def test_two_half_springs_in_series_are_the_spring(spring):
         ({"displacement": CYCLES, "repeats": 0}, "repeats = 0"),
         ({"displacement": CYCLES, "methods": ["euler"]}, "'euler' is not known"),
         ({"displacement": CYCLES, "methods": []}, "methods is empty"),
-        ({"displacement": CYCLES, "axial": 3.0}, "axial = 3.0 must be a spring"),
+        ({"displacement": CYCLES, "axial_spring": 3.0}, "axial_spring = 3.0 must be a spring"),
+        ({"displacement": CYCLES, "axial": 3.0}, "trade: axial is now axial_spring"),
     ],
 )
 def test_bad_input(arguments, words):

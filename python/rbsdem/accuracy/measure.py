@@ -9,6 +9,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
+from rbsdem._renamed import renamed_keywords
 from rbsdem.accuracy.answer import Run
 from rbsdem.accuracy.ladder import Budget, checked_methods, climb, ladders, own_setting, probe
 from rbsdem.accuracy.outcome import Trade
@@ -27,12 +28,13 @@ __all__ = ["trade"]
 SETTINGS_SHARE, REFERENCE_SHARE = 0.4, 0.75
 
 
+@renamed_keywords(axial="axial_spring")
 def trade(
     column: Column,
     time: ArrayLike | None = None,
+    *,
     force: ArrayLike | None = None,
     ground_acceleration: ArrayLike | None = None,
-    *,
     displacement: ArrayLike | None = None,
     vertical_acceleration: ArrayLike | None = None,
     axial_load: ArrayLike | None = None,
@@ -42,7 +44,7 @@ def trade(
     tolerance: float | None = None,
     budget: float = 60.0,
     digits: float = 8.0,
-    axial: Spring | None = None,
+    axial_spring: Spring | None = None,
     collapse_drift: float | None = None,
     repeats: int = 3,
     progress: bool = False,
@@ -83,7 +85,7 @@ def trade(
         begun is finished.
     digits : float, optional
         Digits to which the two methods of the reference should agree.
-    axial : Spring, optional
+    axial_spring : Spring, optional
         Axial spring of the joints. If the joints of the column do not open, it shows whether
         their opening matters.
     collapse_drift : float, optional
@@ -110,8 +112,8 @@ def trade(
     """
     _check(tolerance, budget, digits, repeats)
     wanted = checked_methods(methods)
-    if axial is not None and not isinstance(axial, Spring):
-        raise InputError(f"trade: axial = {axial!r} must be a spring")
+    if axial_spring is not None and not isinstance(axial_spring, Spring):
+        raise InputError(f"trade: axial_spring = {axial_spring!r} must be a spring")
     loads = {
         "displacement": displacement,
         "force": force,
@@ -131,7 +133,7 @@ def trade(
         _need_one(runs)
         reference = find_reference(scene, look, runs, clock, REFERENCE_SHARE, digits, told)
         known = reference if isinstance(reference, Reference) else None
-        physics = find_physics(scene, look, known, runs, clock, tolerance, axial, told)
+        physics = find_physics(scene, look, known, runs, clock, tolerance, axial_spring, told)
     notes = [f"reference: {reference}"] if known is None else []
     if isinstance(physics, str):
         notes.append(f"physics: {physics}")
