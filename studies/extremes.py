@@ -60,7 +60,8 @@ def below_the_limit() -> Row:
             [0.0, steps * dt],
             dt=dt,
             every=steps // 4,
-            initial={"slip": start[:n], "rotation": start[n:]}, method="rk4",
+            initial={"slip": start[:n], "rotation": start[n:]},
+            method="rk4",
         )
         total = run.energy["kinetic"] + run.energy["spring"]
         found.append(f"{share} n={n}: {total[-1] / total[0] - 1:+.0e}")
@@ -84,7 +85,9 @@ def above_the_limit() -> Row:
         except rbsdem.InputError:
             pass
         try:
-            rbsdem.time_history(column, [0, 1e6 * dt], dt=dt, initial=start, allow_unstable=True, method="rk4")
+            rbsdem.time_history(
+                column, [0, 1e6 * dt], dt=dt, initial=start, allow_unstable=True, method="rk4"
+            )
             raise AssertionError("not stopped")
         except rbsdem.SolveError as error:
             steps = error.result.summary["steps"]
@@ -118,7 +121,8 @@ def many_bodies() -> Row:
     """Solve one to 5000 bodies: static and implicit."""
     found = []
     for n in (1, 10, 100, 1000, 5000):
-        column = chain(n, axial_load=1e5, kinematics="pdelta", top_mass=1e4, damping=rbsdem.Damping(stiffness=2e-3))
+        damping = rbsdem.Damping(stiffness=2e-3)
+        column = chain(n, axial_load=1e5, kinematics="pdelta", top_mass=1e4, damping=damping)
         begin = time.perf_counter()
         rbsdem.cyclic(column, force=[1e4])
         middle = time.perf_counter()
@@ -222,7 +226,8 @@ def huge_damping() -> Row:
 
 def long_record() -> Row:
     """Run one hour at 0.005 s."""
-    column = chain(10, kinematics="pdelta", axial_load=1e5, damping=rbsdem.Damping(mass=0.5), top_mass=1e4)
+    damping = rbsdem.Damping(mass=0.5)
+    column = chain(10, kinematics="pdelta", axial_load=1e5, damping=damping, top_mass=1e4)
     times = np.arange(0, 3600.001, 0.005)
     motion = np.random.default_rng(2).normal(size=times.size)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

@@ -164,7 +164,8 @@ def free_vibration() -> tuple[str, str, str, str]:
                 column,
                 time,
                 initial={"slip": start[:n], "rotation": start[n:]},
-                dt=time[1] / count, method="rk4",
+                dt=time[1] / count,
+                method="rk4",
             )
             steps.append(run.summary["time_step"])
             errors.append(relative(np.hstack([run.slip, run.rotation]), exact))
@@ -202,7 +203,9 @@ def shaken(parts: int) -> rbsdem.Result:
     time = np.linspace(0.0, 1.0, 101)
     ground = 392.0 * np.sin(8 * np.pi * time) * np.exp(-2 * time)
     column = rbsdem.paper_columns()[KEY]
-    return rbsdem.time_history(column, time, ground_acceleration=ground, dt=0.01 / parts, method="rk4")
+    return rbsdem.time_history(
+        column, time, ground_acceleration=ground, dt=0.01 / parts, method="rk4"
+    )
 
 
 def nonlinear_order() -> tuple[str, str, str, str]:
@@ -238,7 +241,8 @@ def rk4_energy_linear() -> tuple[str, str, str, str]:
                 time,
                 force=force,
                 initial={"slip": start[:3], "rotation": start[3:]},
-                dt=time[1] / count, method="rk4",
+                dt=time[1] / count,
+                method="rk4",
             )
             residuals.append(run.summary["relative_energy_residual"])
         found.append(f"{residuals[0]:.0e}, order {slope(1 / parts, residuals):.2f}")
@@ -268,7 +272,10 @@ def highest_mode() -> tuple[str, str, str, str]:
     start = 1e-4 * modes.shapes[:, 1] / np.max(np.abs(modes.shapes[:, 1]))
     period = 2 * np.pi / modes.omega[1]
     run = rbsdem.time_history(
-        column, [0.0, 100 * period], initial={"slip": start[:1], "rotation": start[1:]}, method="rk4"
+        column,
+        [0.0, 100 * period],
+        initial={"slip": start[:1], "rotation": start[1:]},
+        method="rk4",
     )
     total = run.energy["kinetic"] + run.energy["spring"]
     share = run.summary["time_step"] * modes.omega[1]
@@ -393,7 +400,9 @@ def finite_to_small() -> tuple[str, str, str, str]:
         for size in sizes:
             start = {"slip": [0.05 * size], "rotation": [size]}
             runs = [
-                rbsdem.time_history(column, np.linspace(0, 2, 41), initial=start, dt=1e-3, method="rk4")
+                rbsdem.time_history(
+                    column, np.linspace(0, 2, 41), initial=start, dt=1e-3, method="rk4"
+                )
                 for column in (finite, other)
             ]
             differences.append(relative(runs[0].displacement, runs[1].displacement))

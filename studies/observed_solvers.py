@@ -61,7 +61,7 @@ def located_order() -> Row:
         limit = rbsdem.modes(yielding(n)[0]).stable_step
         steps = [0.02 / np.ceil(0.02 / (0.5 * limit * share)) for share in (1 / 2, 1 / 4, 1 / 8)]
         for events in ("located", "step"):
-            errors = errors_of(n, [{"dt": dt, "events": events} for dt in steps])
+            errors = errors_of(n, [{"method": "rk4", "dt": dt, "events": events} for dt in steps])
             found.append(f"{events} {slope(steps, errors):.1f} (to {errors[-1]:.0e})")
     return (
         "RK4 through yielding and unloading, events located or at the end of a step",
@@ -113,7 +113,9 @@ def finite_chain_energy() -> Row:
     start = {"slip": [0.01, 0.02, -0.01], "rotation": [0.5, -0.3, 0.4]}
     steps, residuals, largest = [4e-4, 2e-4, 1e-4], [], 0.0
     for dt in steps:
-        run = rbsdem.time_history(column, np.linspace(0, 1, 101), initial=start, dt=dt, method="rk4")
+        run = rbsdem.time_history(
+            column, np.linspace(0, 1, 101), initial=start, dt=dt, method="rk4"
+        )
         residuals.append(run.summary["relative_energy_residual"])
         largest = run.summary["peak_rotation"]
     return (
