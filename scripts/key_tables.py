@@ -3,8 +3,8 @@
     python scripts/key_tables.py            write them
     python scripts/key_tables.py --check    only say whether they are up to date
 
-A table stands between ``<!-- keys: NAME -->`` and ``<!-- end of keys -->``. NAME is a group of a case
-file, or ``rule`` and the name of a rule. The list is that of ``rbsdem keys --json``.
+A table stands between ``<!-- keys: NAME -->`` and ``<!-- end of keys -->``. NAME is a group of a
+case file, or ``rule`` and the name of a rule. The list is that of ``rbsdem keys --json``.
 """
 
 from __future__ import annotations
@@ -20,7 +20,9 @@ from typing import Any
 DOCUMENT = Path(__file__).resolve().parents[1] / "docs" / "input.md"
 BLOCK = re.compile(r"(<!-- keys: (?P<name>[\w ]+) -->\n).*?(<!-- end of keys -->)", re.DOTALL)
 
-HEAD = "| key | value | unit | allowed | default | meaning |\n| --- | --- | --- | --- | --- | --- |\n"
+HEAD = (
+    "| key | value | unit | allowed | default | meaning |\n| --- | --- | --- | --- | --- | --- |\n"
+)
 
 #: Units of the parameters of a spring: for slip and opening, and for rotation.
 DIMENSIONS = {"force": "N; N m", "deformation": "m; rad", "stiffness": "N/m; N m/rad"}
@@ -62,7 +64,7 @@ def kind(key: dict[str, Any]) -> str:
 
 
 def rows(keys: list[dict[str, Any]]) -> Iterator[str]:
-    """Yield a row for each key; keys one after the other that differ in their names only share it."""
+    """Yield a row for each key; neighbours that differ in their names only share one."""
     last: tuple[str, ...] = ()
     names: list[str] = []
     for key in [*keys, {}]:

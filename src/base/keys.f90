@@ -89,7 +89,7 @@ contains
       call check_finite(x, name//': '//trim(key%name), trim(unit_for_message(key)), messages, finite)
       if (finite) then
          if (is_within(x, key%bound)) return
-         call messages%add(trim(name//': '//trim(key%name)//' = '//value_text(x, key)//' '// &
+         call messages%add(trim(name//': '//trim(key%name)//' = '//trim(value_text(x, key))//' '// &
                                 unit_for_message(key))// &
                            ' '//trim(refusal(x, key%bound)))
       end if
@@ -100,7 +100,7 @@ contains
    function value_text(x, key) result(text)
       real(wp), intent(in) :: x
       type(key_type), intent(in) :: key
-      character(len=:), allocatable :: text
+      character(len=32) :: text
 
       if (key%kind == integer_kind .and. abs(x) < huge(1)) then
          text = to_text(nint(x))

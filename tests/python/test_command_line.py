@@ -1285,7 +1285,8 @@ def test_times_that_are_equal_but_for_round_off_make_no_extra_rows(
     (tmp_path / "f.csv").write_text("time_s,force_N\n" + "".join(f"{t},1\n" for t in times))
     (tmp_path / "g.csv").write_text("acceleration_g\n" + "0.1\n" * 11)
     loading = [
-        "drive = 'force', file = 'f.csv'", "drive = 'ground_acceleration', file = 'g.csv', interval = 0.1"
+        "drive = 'force', file = 'f.csv'",
+        "drive = 'ground_acceleration', file = 'g.csv', interval = 0.1",
     ]  # fmt: skip
     rows = run_rows(run_cli, read_csv, tmp_path, dynamic_text(loading=loading))
     np.testing.assert_allclose(rows["time_s"], [float(t) for t in times], rtol=1e-12)

@@ -98,7 +98,8 @@ CASES = {
     ),
     "axial load": (
         {
-            "column": "height = 1.6, mass = 614.4, kinematics = 'pdelta', axial_load = 744e3, self_weight = T, gravity = 9.81",
+            "column": "height = 1.6, mass = 614.4, kinematics = 'pdelta', "
+            "axial_load = 744e3, self_weight = T, gravity = 9.81",
         },
         {"kinematics": "pdelta", "axial_load": 744e3, "self_weight": True, "gravity": 9.81},
         {},
@@ -361,7 +362,8 @@ def test_faults_of_a_case_are_those_of_check(run_cli, case_text, tmp_path):
         ),
         case_text(loading=None),
         case_text(
-            column="height = 1.6, mass = 1e3, kinematics = 'finite', axial_load = 1e3, axial_follows = T",
+            column="height = 1.6, mass = 1e3, kinematics = 'finite', axial_load = 1e3, "
+            "axial_follows = T",
         ),
         "no case",
         "",
@@ -401,7 +403,8 @@ def test_case_of_10000_bodies_is_read_in_seconds(run_cli, case_text, tmp_path):
     n = 10_000
     lengths = ", ".join(["0.0016"] * n)
     text = case_text(
-        column=f"n = {n}, height = 16, lengths = {lengths}, mass = 6e3, kinematics = 'pdelta', axial_load = 1e3",
+        column=f"n = {n}, height = 16, lengths = {lengths}, mass = 6e3, "
+        "kinematics = 'pdelta', axial_load = 1e3",
         shear=[f"joint = {i + 1}, rule = 'elastic', k = {1e12 + i}" for i in range(n)],
         flexure=[f"joint = {i + 1}, rule = 'elastic', k = {1e12 + i}" for i in range(n)],
         axial_spring="rule = 'elastic', k = 1e12",

@@ -32,7 +32,7 @@ COLUMN = {
     "height": 2.0, "mass": None, "n": 2,
     "shear": rbsdem.Elastic(1e8), "flexure": rbsdem.Elastic(1e8),
     "lengths": [0.9, 1.1], "masses": [300.0, 200.0], "axial_load": 1e4, "gravity": 9.8,
-    "top_mass": 100.0, "top_inertia": 3.0, "rotary_inertia": [30.0, 20.0], 
+    "top_mass": 100.0, "top_inertia": 3.0, "rotary_inertia": [30.0, 20.0],
     "damping": rbsdem.Damping(0.1, 1e-5), "kinematics": "pdelta", "self_weight": True,
 }  # fmt: skip
 
@@ -147,7 +147,9 @@ def test_number_of_a_case(run_cli, dynamic_text, tmp_path, group, name, word):
             "rule": "'takeda'", "k_c": "2.5e8", "d_c": "3e-4", "k_y": "6e7", "d_y": "2.7e-3",
             "k_u": "7.5e6",
         },
-        "loading": {"drive": "'ground_acceleration'", "amplitudes": "3.0", "period": "0.1", "points": "4"},
+        "loading": {
+            "drive": "'ground_acceleration'", "amplitudes": "3.0", "period": "0.1", "points": "4",
+        },
         "analysis": {"method": "'rk4'", "dt": "1e-4"},
     }  # fmt: skip
     groups[group][name] = word

@@ -80,7 +80,8 @@ def walker(kinematics: str, *, opens: bool = False) -> rbsdem.Column:
     return rbsdem.Column(
         2.25, None, shear, flexure, n=3, lengths=[1.0, 0.5, 0.75], masses=[500.0, 200.0, 300.0],
         kinematics=kinematics, axial_load=2e4, self_weight=True, top_mass=400.0, top_inertia=20.0,
-        depth=0.25, axial_spring=axial if opens else None, damping=rbsdem.Damping(mass=0.25, stiffness=2.0**-12),
+        depth=0.25, axial_spring=axial if opens else None,
+        damping=rbsdem.Damping(mass=0.25, stiffness=2.0**-12),
     )  # fmt: skip
 
 

@@ -71,8 +71,8 @@ def test_finite_chain_against_hamiltons_equations(opens, follows):
     expected = reference.solve(times, q, v)
     for method, tolerance in (("rk45", 1e-8), ("rk4", 1e-7)):
         run = rbsdem.time_history(
-            column, times, force=loads[0], ground_acceleration=loads[1], method=method, initial=as_initial(q, v, 3),
-            vertical_acceleration=loads[2], axial_load=loads[3],
+            column, times, force=loads[0], ground_acceleration=loads[1], method=method,
+            initial=as_initial(q, v, 3), vertical_acceleration=loads[2], axial_load=loads[3],
             **({"tolerance": 1e-10} if method == "rk45" else {"dt": 1e-4}),
         )  # fmt: skip
         assert run.summary["peak_rotation"] > 0.4
@@ -161,7 +161,8 @@ def test_rigid_translation_goes_on_for_ever(level):
     column = floating(kinematics=level)
     run = rbsdem.time_history(
         column, [0.0, 10.0], dt=1e-3, every=100,
-        initial={"slip_velocity": [2.0, 0.0, 0.0], "opening_velocity": [3.0, 0.0, 0.0]}, method="rk4",
+        initial={"slip_velocity": [2.0, 0.0, 0.0], "opening_velocity": [3.0, 0.0, 0.0]},
+        method="rk4",
     )  # fmt: skip
     np.testing.assert_allclose(run.slip[:, 0], 2.0 * run.time, rtol=1e-12)
     np.testing.assert_allclose(run.opening[:, 0], 3.0 * run.time, rtol=1e-12)
