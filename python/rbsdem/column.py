@@ -48,6 +48,10 @@ class Column:
     axial_load : float, optional
         Axial load at the top, compression positive [N]. It takes part with `kinematics` "pdelta"
         and "finite", and where the joints open.
+    axial_height : float, optional
+        Height at which the axial load acts [m], by default that of the column. The load leans with
+        the column: its second-order moments are in proportion to this height. `kinematics`
+        "pdelta" only.
     kinematics : {"small", "pdelta", "finite"}, optional
         Linear in slips and rotations (paper, eqs 1-3, 5); the same with the second-order work of
         the axial load; exact rotations (paper, eq 4 corrected, for any n).
@@ -102,6 +106,7 @@ class Column:
     axial_follows: bool = False
     force_follows: bool = False
     damping: float | Damping | None = None
+    axial_height: float | None = None
     model: str = ""
 
     def __post_init__(self) -> None:
@@ -115,6 +120,8 @@ class Column:
             put(name, _core.switch(getattr(self, name), f"column: {name}"))
         if self.mass is not None:
             put("mass", _core.number(self.mass, "column: mass"))
+        if self.axial_height is not None:
+            put("axial_height", _core.number(self.axial_height, "column: axial_height"))
         for name in _LISTS:
             if getattr(self, name) is not None:
                 put(name, _parts(getattr(self, name), name))
@@ -165,7 +172,7 @@ class Column:
     def _state(self) -> _core.Statement:
         """Return the keys of the column, as the groups of a case file."""
         own: dict[str, Any] = {"n": self.n, "kinematics": str(self.kinematics)}
-        own |= {name: getattr(self, name) for name in (*_NUMBERS, "mass", *_LISTS)}
+        own |= {name: getattr(self, name) for name in (*_NUMBERS, "mass", "axial_height", *_LISTS)}
         own |= {name: True for name in _SWITCHES if getattr(self, name)}
         own |= {"model": _core.Text(self.model)} if self.model else {}
         parts = [_core.group("column", own)]

@@ -5,6 +5,7 @@
 !> clockwise, so that a positive one moves the top to +x. A mass lumped at the top is part of the last
 !> body: it moves its centroid and adds to its inertia, and costs nothing.
 module rbs_column_column
+   use rbs_base_constants, only: unset
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column_record, only: column_record
@@ -43,6 +44,8 @@ module rbs_column_column
       !> Axial load at the top, compression positive [N], and acceleration of gravity that gives the bodies
       !> their weight, 0 without self-weight [m/s2]
       real(wp) :: axial_load = 0.0_wp, gravity = 0.0_wp
+      !> Height at which the axial load acts over the height of the column
+      real(wp) :: axial_lever = 1.0_wp
       !> Weight of the bodies (n) [N]
       real(wp), allocatable :: weight(:)
       !> Axial force of load and weight for the rotation of body i, and across the slip of joint i,
@@ -141,7 +144,8 @@ contains
 
       n = column%n
       column%axial_load = spec%axial_load
-      dead = merge(0.0_wp, column%axial_load, column%axial_follows)
+      if (spec%axial_height > unset) column%axial_lever = spec%axial_height/spec%height
+      dead = merge(0.0_wp, column%axial_load*column%axial_lever, column%axial_follows)
       if (spec%self_weight) column%gravity = spec%gravity
       above(n + 1) = 0.0_wp
       do i = n, 1, -1

@@ -54,6 +54,8 @@ module rbs_column_column_record
       character(len=16) :: kinematics = 'small'
       !> At the top, compression positive [N]
       real(wp) :: axial_load = 0.0_wp
+      !> Height at which it acts [m]; `unset`: at the top
+      real(wp) :: axial_height = unset
       logical :: self_weight = .false.
       real(wp) :: gravity = standard_gravity
       !> Whether the axial load, and the lateral force, turn with the top body (`finite` only)
@@ -94,6 +96,9 @@ contains
                   kinematics_names)
       call v%key('axial_load', self%axial_load, 'N', any_number, &
                  'axial load at the top, compression positive')
+      call v%key('axial_height', self%axial_height, 'm', above_zero, &
+                 'height at which the axial load acts and leans with the column (pdelta); by default '// &
+                 'the top', optional=.true.)
       call v%key('self_weight', self%self_weight, 'whether the weight of the bodies acts')
       call v%key('gravity', self%gravity, 'm/s2', not_negative, 'acceleration of gravity for the weight')
       call v%key('axial_follows', self%axial_follows, &
@@ -140,6 +145,7 @@ contains
          call messages%add('column: a load that follows the top (axial_follows, force_follows) needs '// &
                            "kinematics = 'finite'; remove it or change the kinematics")
       end if
+      call check_axial_height(self, messages)
       call check_inertia(self, messages)
       call v%start_check('damping')
       call self%damping%visit(v)
@@ -151,6 +157,21 @@ contains
          call check_springs(self%axial_spring, 'axial', in_axial, self%n, messages)
       end if
    end subroutine validate
+
+   !> A lever of the axial load is known to the second-order moments of joints that do not open.
+   subroutine check_axial_height(self, messages)
+      type(column_record), intent(in) :: self
+      type(message_list), intent(inout) :: messages
+
+      if (.not. ieee_is_finite(self%axial_height)) return
+      if (.not. self%axial_height > unset) return
+      if (self%kinematics /= 'pdelta') then
+         call messages%add("column: axial_height needs kinematics = 'pdelta', not '"// &
+                           trim(self%kinematics)//"'; remove it or change the kinematics")
+      else if (allocated(self%axial_spring)) then
+         call messages%add('column: axial_height cannot stand with axial springs; remove one of them')
+      end if
+   end subroutine check_axial_height
 
    !> Two statements on rotary inertia contradict each other.
    subroutine check_inertia(self, messages)

@@ -175,6 +175,7 @@ def test_a_section_makes_the_column_of_the_specimen(model):
     column = SECTION.column(1.6, axial_load=1.2e6, model=model)
     drawn = peer.column(SPECIMEN, model)
     assert (column.height, column.n, column.kinematics) == (1.6, drawn.n, "pdelta")
+    assert column.model == {"layered": "layered 2026.1", "paper": "paper"}[model]
     assert column.axial_load == drawn.axial_load
     assert column.mass == pytest.approx(0.4 * 0.4 * 1.6 * 2400)
     force = rbsdem.cyclic(column, displacement=LOOP).force
@@ -242,6 +243,11 @@ def test_changed_parameters_are_named_as_changed():
     column = SECTION.column(1.6, axial_load=1.2e6)
     changed = column.with_parameters(steel_strength=1.0)
     assert (column.version, changed.version) == ("2026.1", "2026.1 changed")
+    assert (column.model, changed.model) == ("layered 2026.1", "layered 2026.1 changed")
+    assert "model = 'layered 2026.1'" in column.to_namelist()
+    assert repr(column) == (
+        "LayeredColumn(height=1.6, n=2, axial_load=1.2e+06, model='layered 2026.1')"
+    )
     back = changed.with_parameters(steel_strength=parameters().hinge.steel_strength)
     assert back == column
 
@@ -288,8 +294,9 @@ KEPT = {
     "depth": {"depth": 0.4},
     "rotary_inertia": {"rotary_inertia": 3.0},
     "damping": {"damping": 0.05},
-    "axial_follows": {"kinematics": "finite", "axial_follows": True},
+    "axial_height": {"axial_height": 2.0},
     "model": {"model": "mine"},
+    "axial_follows": {"kinematics": "finite", "axial_follows": True},
     "force_follows": {"kinematics": "finite", "force_follows": True},
 }
 # With the height and the number of bodies the springs are others; joints that open have no layers.
@@ -311,9 +318,9 @@ def test_other_parameters_keep_what_was_replaced(name):
     )
     for field in fields(column):
         same = getattr(changed, field.name) == getattr(column, field.name)
-        made = field.name in ("shear", "flexure", "lengths", "recipe")
+        made = field.name in ("shear", "flexure", "lengths", "model", "recipe")
         assert same or made, field.name
-    if name in ("shear", "flexure", "lengths"):
+    if name in ("shear", "flexure", "lengths", "model"):
         assert getattr(changed, name) == getattr(column, name)
     assert changed != column
 

@@ -147,9 +147,18 @@ def _within(
             f"calibrate: bounds of {name}: {ends[0]:g} to {ends[1]:g} leave out the start "
             f"{start:g}; move the bounds, or start from another column"
         )
+    if not parameters.recipe:
+        least, most = paths.ends(parameters.column, parameters.ways[name])
+        if ends[0] < least or ends[1] > most:
+            side = f"below {least:g}" if ends[0] < least else f"above {most:g}"
+            raise InputError(
+                f"calibrate: bounds of {name}: {ends[0]:g} to {ends[1]:g} go {side}, which the "
+                "column refuses; move the bound"
+            )
     try:
         if one is None:
-            return Parameter(start, *ends, paths.unit_of(parameters.ways[name]), name)
+            unit = paths.unit_of(parameters.column, parameters.ways[name])
+            return Parameter(start, *ends, unit, name)
         return replace(one, low=ends[0], high=ends[1])
     except InputError as error:
         raise InputError(f"calibrate: bounds of {name}: {error}") from None

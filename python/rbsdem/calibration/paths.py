@@ -7,15 +7,18 @@ path depends on. Where there are several springs, ``flexure[*].k_y`` is a factor
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
 
+from rbsdem import _core
 from rbsdem.column import Column
 from rbsdem.parameter import Parameter
+from rbsdem.springs import Spring
 
 #: A spring is found within a factor of this, unless its rule says otherwise.
 REACH = 5.0
@@ -23,9 +26,9 @@ REACH = 5.0
 #: Lengths and loads were measured: they may be off by this share.
 MEASURED = 0.2
 
-#: Names with a range of their own. Exponents of unloading stiffness are reported from 0 (none) to
-#: 0.5, the ratio B_1 from 0.1 to 1 (paper, table 3; Otani 1981), the exponent of deterioration from
-#: 1 to 2 (Ibarra, Medina, Krawinkler 2005).
+#: Names with a range of their own, within the bounds of their keys. Exponents of unloading
+#: stiffness are reported from 0 (none) to 0.5, the ratio B_1 from 0.1 to 1 (paper, table 3; Otani
+#: 1981), the exponent of deterioration from 1 to 2 (Ibarra, Medina, Krawinkler 2005).
 LIMITS = {
     "b0": (0.0, 1.0),
     "b1": (0.02, 1.0),
@@ -37,12 +40,11 @@ LIMITS = {
 #: Stiffnesses after yield, which may vanish.
 AFTER_YIELD = ("k_u", "k_post")
 
-_PLAIN = {"height": "m", "axial_load": "N"}
-_UNITS = {
-    "shear": {"k": "N/m", "d": "m", "f": "N"},
-    "flexure": {"k": "N m/rad", "d": "rad", "f": "N m"},
-    "axial_spring": {"k": "N/m", "d": "m", "f": "N"},
-}
+_PLAIN = ("height", "axial_load")
+#: Units of the quantities that the keys of springs name.
+_NORMAL = {"stiffness": "N/m", "deformation": "m", "force": "N"}
+_TURNING = {"stiffness": "N m/rad", "deformation": "rad", "force": "N m"}
+_UNITS = {"shear": _NORMAL, "flexure": _TURNING, "axial_spring": _NORMAL}
 
 #: Way to a parameter: names of fields and places in tuples; ``None`` stands for all places.
 Way = tuple[str | int | None, ...]
@@ -58,6 +60,10 @@ def paths(column: Column) -> dict[str, Way]:
         springs = getattr(column, kind)
         if springs is not None:
             found |= {f"{kind}{name}": (kind, *way) for name, way in _below(springs)}
+        if isinstance(springs, Spring) and column.n > 1:
+            # Joints that have the same spring may get different ones.
+            several = (springs,) * column.n
+            found |= {f"{kind}{name}": (kind, *way) for name, way in _below(several)}
     return found
 
 
@@ -65,19 +71,45 @@ def parameter(column: Column, name: str, way: Way) -> Parameter | None:
     """Return the parameter at a path with bounds from physics; None if they have to be given."""
     value = value_at(column, way)
     bounds = default_bounds("" if None in way else str(way[-1]), value, len(way) == 1)
-    return None if bounds is None else Parameter(value, *bounds, unit_of(way), name)
+    if bounds is None:
+        return None
+    least, most = ends(column, way)
+    return Parameter(value, max(bounds[0], least), min(bounds[1], most), unit_of(column, way), name)
 
 
-def unit_of(way: Way) -> str:
-    """Return the unit of the parameter at a path, told by the first letter of its name."""
-    if None in way or way[-1] in LIMITS:
-        return ""
-    name = str(way[-1])
-    if len(way) == 1:
-        return _PLAIN[name]
+def unit_of(column: Column, way: Way) -> str:
+    """Return the unit of the parameter at a path; empty for a factor."""
+    unit = str(_key(column, way).get("unit") or "")
     # Layers of a joint are normal springs.
-    kind = "axial_spring" if "layers" in way else str(way[0])
-    return _UNITS[kind].get(name.partition("_")[0], "")
+    return (_NORMAL if "layers" in way else _UNITS.get(str(way[0]), {})).get(unit, unit)
+
+
+def ends(column: Column, way: Way) -> tuple[float, float]:
+    """Return the least and the largest value that the key of a parameter takes."""
+    key = _key(column, way)
+    least, most = key.get("least"), key.get("most")
+    return (
+        -math.inf if least is None else float(least),
+        math.inf if most is None else float(most),
+    )
+
+
+def _key(column: Column, way: Way) -> dict[str, Any]:
+    """Return the key of the parameter at a path, as `rbsdem keys` has it; empty for a factor."""
+    if None in way:
+        return {}
+    rule = ""
+    for place in range(1, len(way)):
+        rule = getattr(_get(column, way[:place]), "rule", rule)
+    return _keys_of(rule).get(str(way[-1]), {})
+
+
+@cache
+def _keys_of(rule: str) -> dict[str, dict[str, Any]]:
+    """Return the keys of a rule by name; without a rule those of the column."""
+    known = _core.keys()
+    keys = known["rules"][rule]["keys"] if rule else known["groups"]["column"]
+    return {key["name"]: key for key in keys}
 
 
 def default_bounds(name: str, value: float, measured: bool) -> tuple[float, float] | None:
@@ -108,7 +140,27 @@ def with_values(column: Column, ways: Mapping[str, Way], values: Mapping[str, fl
         If the column refuses them.
     """
     # Springs check what belongs together: all parameters of one object change at a time.
-    return _changed(column, {ways[name]: value for name, value in values.items()})
+    changes: dict[str, dict[Way, float]] = {}
+    for name, value in values.items():
+        way = ways[name]
+        changes.setdefault(str(way[0]), {})[way[1:]] = value
+    return replace(
+        column,
+        **{
+            name: _changed_part(column, getattr(column, name), ways)
+            for name, ways in changes.items()
+        },
+    )
+
+
+def _changed_part(column: Column, part: Any, changes: dict[Way, float]) -> Any:
+    """Change a field of the column; a spring of all joints is spread where single ones change."""
+    single = {way: value for way, value in changes.items() if way and not isinstance(way[0], str)}
+    if isinstance(part, Spring) and single:
+        common = {way: value for way, value in changes.items() if way not in single}
+        spring = _changed(part, common) if common else part
+        return _changed((spring,) * column.n, single)
+    return _changed(part, changes)
 
 
 def settle(
@@ -186,7 +238,11 @@ def _spring(item: Any) -> Any:
 
 def _get(part: Any, way: Way) -> Any:
     for step in way:
-        part = _spring(part[step]) if isinstance(step, int) else getattr(part, str(step), None)
+        if isinstance(step, int):
+            # One spring for all joints is that of each.
+            part = part if isinstance(part, Spring) else _spring(part[step])
+        else:
+            part = getattr(part, str(step), None)
     return part
 
 

@@ -106,14 +106,13 @@ def make_column(
     axial_load = _core.number(axial_load, "axial_load")
     if mass is None:
         mass = section.gross_area * height * CONCRETE_DENSITY
-    top = 1.0
-    if axial_height is not None:
-        axial_height = _core.number(axial_height, "axial_height")
-        if not axial_height > 0:
-            raise InputError(f"axial_height = {axial_height:g} m must be above zero")
-        top = axial_height / height
-    # The load at the top that has the second-order moment of the one at its height.
-    common = {"mass": mass, "axial_load": axial_load * top, "kinematics": "pdelta"}
+    common = {
+        "mass": mass,
+        "axial_load": axial_load,
+        # At the top it needs no height, so that the column can be given other kinematics.
+        "axial_height": None if axial_height == height else axial_height,
+        "kinematics": "pdelta",
+    }
     if model == "paper":
         given = {
             "version": version,
@@ -167,7 +166,9 @@ def _paper(
             height, axial_load, yield_rule="first", hinge_length=part / _lumping(n), shear="none"
         )
         flexure += [above.flexure] * (n - 1)
-    return Column(height, shear=shear, flexure=flexure, n=n, lengths=lengths, **common)
+    return Column(
+        height, shear=shear, flexure=flexure, n=n, lengths=lengths, model="paper", **common
+    )
 
 
 def _parts(height: float, hinge_length: float, n: int) -> tuple[tuple[float, ...], float]:
@@ -206,7 +207,7 @@ class LayeredModel:
     height : float
         From the foot to the lateral load [m].
     axial_load : float
-        That the sections carry, compression positive [N].
+        Axial load for which its springs are made, compression positive [N].
     n : int
         Number of bodies.
     parameters : ModelParameters
@@ -236,8 +237,8 @@ class LayeredModel:
         )
 
     @cached_property
-    def made(self) -> dict[str, tuple[Spring, ...] | tuple[float, ...]]:
-        """The arguments of `rbsdem.Column` that the model makes: shear, flexure, lengths.
+    def made(self) -> dict[str, tuple[Spring, ...] | tuple[float, ...] | str]:
+        """The arguments of `rbsdem.Column` that the model makes: shear, flexure, lengths, model.
 
         Elastic joints stand at the middles of n - 1 equal parts above the hinge. All slip is at the
         foot: where the column fails in shear is where it bends most.
@@ -258,6 +259,7 @@ class LayeredModel:
             "shear": (foot, *[rigid] * (n - 1)),
             "flexure": (joint.spring, *[Elastic(stiffness)] * (n - 1)),
             "lengths": lengths,
+            "model": f"layered {self.parameters.label}",
         }
 
 
@@ -282,7 +284,7 @@ _FREE = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class LayeredColumn(Column):
     """A column on a layered hinge that knows how it was made.
 
@@ -301,6 +303,12 @@ class LayeredColumn(Column):
                 "a LayeredColumn is made by rbsdem.section.Section.column or rbsdem.peer.column"
             )
         super().__post_init__()
+
+    def __repr__(self) -> str:
+        return (
+            f"LayeredColumn(height={self.height:g}, n={self.n}, axial_load={self.axial_load:g}, "
+            f"model={self.model!r})"
+        )
 
     @property
     def version(self) -> str:
@@ -354,7 +362,7 @@ class LayeredColumn(Column):
         return replace(self, recipe=recipe, **made)
 
     def _kept(self, field: str) -> bool:
-        """Whether springs or lengths were replaced, so that they are no longer the model's."""
+        """Whether what the model made was replaced by something else."""
         return bool(getattr(self, field) != self._recipe.made[field])
 
     @property

@@ -171,8 +171,10 @@ contains
       associate (column => self%column)
          if (self%second_order) then
             if (self%acts(vertical) .or. self%acts(axial)) then
-               result%axial_body = column%axial_body + load(axial) + load(vertical)*column%lifted_body
-               result%axial_joint = column%axial_joint + load(axial) + load(vertical)*column%lifted_joint
+               result%axial_body = column%axial_body + load(axial)*column%axial_lever &
+                                   + load(vertical)*column%lifted_body
+               result%axial_joint = column%axial_joint + load(axial)*column%axial_lever &
+                                    + load(vertical)*column%lifted_joint
             end if
             call second_order_forces(n, column%length, result%axial_body, result%axial_joint, q(:n), &
                                      q(n + 1:2*n), result%f(:n), result%second_order)
@@ -339,8 +341,8 @@ contains
       turning = 0.0_wp
       rising = 0.0_wp
       do i = 1, n
-         body = load(axial) + load(vertical)*self%column%lifted_body(i)
-         joint = load(axial) + load(vertical)*self%column%lifted_joint(i)
+         body = load(axial)*self%column%axial_lever + load(vertical)*self%column%lifted_body(i)
+         joint = load(axial)*self%column%axial_lever + load(vertical)*self%column%lifted_joint(i)
          if (self%second_order) watt = watt + joint*(v(i)*rotation + q(i)*turning)
          rotation = rotation + q(n + i)
          turning = turning + v(n + i)
