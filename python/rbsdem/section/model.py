@@ -17,7 +17,7 @@ from rbsdem.parameter import Parameter
 from rbsdem.section.hinge import HingeJoint, hinge_joint
 from rbsdem.section.parameters import ModelParameters, parameters
 from rbsdem.section.shear_model import shear_spring
-from rbsdem.springs import Bilinear, Elastic, Spring
+from rbsdem.springs import Elastic, Spring
 
 if TYPE_CHECKING:
     from rbsdem.section.section import Section
@@ -160,7 +160,7 @@ def _paper(
     lengths = None
     if n > 1:
         # Each joint has its share of the slip, and the curvature of its part.
-        shear = _share(shear, n)
+        shear = shear.split(n)
         lengths, part = _parts(height, springs.hinge_length, n)
         above = section.springs(
             height, axial_load, yield_rule="first", hinge_length=part / _lumping(n), shear="none"
@@ -187,13 +187,6 @@ def _lumping(n: int) -> float:
     1 - 1/(4 m^2) with m joints in the middles of m parts and the moment of a force at the top.
     """
     return 1 - 0.25 / (n - 1) ** 2
-
-
-def _share(spring: Bilinear | Elastic, n: int) -> Bilinear | Elastic:
-    """Return one of n equal springs in series that together are the given one."""
-    if isinstance(spring, Elastic):
-        return Elastic(n * spring.k)
-    return replace(spring, k=n * spring.k, d_y=spring.d_y / n, k_post=n * spring.k_post)
 
 
 @dataclass(frozen=True)
