@@ -11,8 +11,10 @@ from types import ModuleType
 # Old name: new name.
 MOVED = {
     "rbsdem.trade": "rbsdem.accuracy",
+    "rbsdem.results": "rbsdem.result",
     "rbsdem.loops": "rbsdem.comparison (loop_metrics is rbsdem.compare)",
     "rbsdem.cycles": "rbsdem.comparison",
+    "rbsdem.calibration.parameter": "rbsdem.parameter",
     "rbsdem.peer.blind": "rbsdem.section.model",
     "rbsdem.peer.layers": "rbsdem.section.hinge",
     "rbsdem.peer.shear": "rbsdem.section.shear_model",
