@@ -20,9 +20,7 @@ from typing import Any
 DOCUMENT = Path(__file__).resolve().parents[1] / "docs" / "input.md"
 BLOCK = re.compile(r"(<!-- keys: (?P<name>[\w ]+) -->\n).*?(<!-- end of keys -->)", re.DOTALL)
 
-HEAD = (
-    "| key | value | unit | allowed | default | meaning |\n| --- | --- | --- | --- | --- | --- |\n"
-)
+HEAD = "| key | value | unit | allowed | default | meaning |\n" + "| --- " * 6 + "|\n"
 
 #: Units of the parameters of a spring: for slip and opening, and for rotation.
 DIMENSIONS = {"force": "N; N m", "deformation": "m; rad", "stiffness": "N/m; N m/rad"}
@@ -64,7 +62,7 @@ def kind(key: dict[str, Any]) -> str:
 
 
 def rows(keys: list[dict[str, Any]]) -> Iterator[str]:
-    """Yield a row for each key; neighbours that differ in their names only share one."""
+    """Yield the rows; keys one after the other that differ in their names only share one."""
     last: tuple[str, ...] = ()
     names: list[str] = []
     for key in [*keys, {}]:

@@ -58,7 +58,8 @@ case_file static_small <<'NML'
 &loading drive = 'force', unit = 'kN', amplitudes = 50, 100, 150, cycles = 2 /
 NML
 case_file static_pdelta <<'NML'
-&column n = 4, height = 1.6, mass = 614.4, kinematics = 'pdelta', axial_load = 744e3, self_weight = .true. /
+&column n = 4, height = 1.6, mass = 614.4, kinematics = 'pdelta',
+   axial_load = 744e3, self_weight = .true. /
 &loading drive = 'displacement', amplitudes = 0.0025, 0.01, 0.03, cycles = 2, 1, 2 /
 NML
 case_file dynamic_chain <<'NML'
@@ -75,6 +76,18 @@ case_file dynamic_finite <<'NML'
 &damping stiffness = 1e-6 /
 &loading drive = 'force', unit = 'kN', amplitudes = 150, period = 0.2 /
 &analysis method = 'rk4', dt = 1e-4 /
+NML
+# Springs of its own: layers that refer to springs, other units, values in the text.
+cat >"$work/layers.nml" <<'NML'
+&units force = 'kN', length = 'mm' /
+&column n = 3, height = 1600, mass = 614.4, kinematics = 'pdelta', axial_load = 700 /
+&shear rule = 'elastic', k = 400 /
+&flexure joint = 1, 3, rule = 'layered' /
+&flexure rule = 'elastic', k = 2e8 /
+&layer_spring id = 1, rule = 'concrete', k = 4000, f_peak = 1200, d_peak = 0.6, k_soft = 80 /
+&layer_spring id = 2, rule = 'steel', k = 800, f_y = 700, k_post = 8, r0 = 8 /
+&layers joint = 1, 3, y = -150, -50, 50, 150, -160, 160, spring = 1, 1, 1, 1, 2, 2 /
+&loading drive = 'displacement', values = 0, 8, -8, 16, -16, 0 /
 NML
 case_file capacity <<'NML'
 &column height = 1.6, mass = 614.4, kinematics = 'pdelta', axial_load = 8e6 /
@@ -94,12 +107,13 @@ for suite in $suites; do
 done
 
 rbsdem="$build/src/app/rbsdem"
-for name in static_small static_pdelta dynamic_chain dynamic_finite; do
+for name in static_small static_pdelta dynamic_chain dynamic_finite layers; do
     watch "rbsdem run $name" 0 "$rbsdem" run "$work/$name.nml" --output "$work/$name.csv"
 done
 watch 'rbsdem run, beyond the capacity' 1 "$rbsdem" run "$work/capacity.nml" --output "$work/capacity.csv"
 watch 'rbsdem modes' 0 "$rbsdem" modes "$work/static_pdelta.nml"
 watch 'rbsdem check' 0 "$rbsdem" check "$work/dynamic_chain.nml"
 watch 'rbsdem check, bad input' 2 "$rbsdem" check "$work/refused.nml"
+watch 'rbsdem keys' 0 "$rbsdem" keys --json
 watch 'rbsdem run, no such file' 2 "$rbsdem" run "$work/nowhere.nml"
 exit "$failed"

@@ -15,16 +15,19 @@ ruff check .
 ruff format --check -q .
 fortitude check -q
 
-say "Fortran tests, built alone as for use"
+say "the Fortran part alone can be set up"
 [ -e build/fortran/build.ninja ] || meson setup build/fortran >/dev/null
-meson test -C build/fortran --quiet --print-errorlogs
+
+# One build serves the package, its tests and these.
+say "Fortran tests, optimised as for use"
+meson test -C build/python --quiet --print-errorlogs
 
 say "leaks, one run of each analysis"
-bash scripts/memory.sh build/fortran
+bash scripts/memory.sh build/python
 
 say "Python tests, fuzzing, regression; examples of the documentation"
 export MPLBACKEND=Agg
-python -m pytest -q -n 2
+python -m pytest -q -n 2 --dist worksteal
 python scripts/check_docs.py
 
 say "editable install"
@@ -34,8 +37,13 @@ install_rbsdem --editable .
 (cd / && rbsdem --version && python -c 'import rbsdem; rbsdem.paper_columns()')
 install_rbsdem .
 
-say "all of it once more with bounds checks and floating-point traps"
+# Tests that only read Python, or that call what other tests call too, see nothing new there.
+say "what calls Fortran once more, with bounds checks and floating-point traps"
+apart=()
+for name in examples imports layers package metrics compare peer_drawing peer_predict peer_specimens trade; do
+    apart+=(--ignore "tests/python/test_$name.py")
+done
 python -m pip install -q --disable-pip-version-check --no-build-isolation --no-deps --upgrade \
     --target build/checked-site -Cbuild-dir=build/checked -Csetup-args=-Dchecked=true .
 meson test -C build/checked --quiet --print-errorlogs
-PYTHONPATH="$root/build/checked-site" python -m pytest -q -n 2 --ignore tests/python/test_examples.py
+PYTHONPATH="$root/build/checked-site" python -m pytest -q -n 2 --dist worksteal "${apart[@]}"

@@ -125,8 +125,8 @@ class Statement(NamedTuple):
     """Groups of keys with their values, on their way to or from Fortran.
 
     `text` has a line for each group: its name, then its keys, separated by tabs. ``key`` stands for
-    the next number, ``key:5`` for the next five, ``key=word`` for a text; see
-    `rbs_bindings_statements`.
+    the next number, ``key:5`` for the next five, ``key=word`` for a text (the module
+    `rbs_bindings_statements`).
     """
 
     text: str

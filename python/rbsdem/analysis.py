@@ -72,7 +72,7 @@ def modes(column: Column) -> Modes:
     return Modes(omega, omega / (2 * np.pi), shapes, stable_step)
 
 
-def mass_matrix(column: Column, form: str = "symmetric") -> Array:
+def mass_matrix(column: Column, form: Literal["symmetric", "paper"] = "symmetric") -> Array:
     """Return the mass matrix for small rotations, shape (2n, 2n), or (3n, 3n) with openings.
 
     Parameters

@@ -227,8 +227,8 @@ def _springs(springs: Any, name: str, n: int) -> Spring | tuple[Spring, ...]:
         if not isinstance(spring, Spring):
             raise InputError(
                 f"column: {name} = {spring!r} must be a spring (Elastic, Bilinear, Takeda, "
-                "PeakOriented, Pinching, Layered; Compression as axial spring) or a sequence of "
-                "them"
+                "PeakOriented, Pinching, Layered; Compression as axial spring) or a "
+                "sequence of them"
             )
     if not several:
         raise InputError(f"column: {name} is empty; give one spring, or one for each joint")

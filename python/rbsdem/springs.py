@@ -6,6 +6,7 @@ below are those of a shear spring.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
@@ -436,7 +437,7 @@ class Layered(Spring):
     """
 
     rule: ClassVar[str] = "layered"
-    layers: tuple[tuple[float, Spring], ...]
+    layers: Sequence[tuple[float, Spring]]
 
     def __post_init__(self) -> None:
         try:

@@ -14,6 +14,7 @@ program unit_tests
    use test_layered, only: collect_layered
    use test_linalg, only: collect_linalg
    use test_modal, only: collect_modal
+   use test_peak_oriented, only: collect_peak_oriented
    use test_protocol, only: collect_protocol
    use test_results, only: collect_results
    use test_run, only: collect_run
@@ -46,7 +47,7 @@ program unit_tests
       procedure(collect_interface), pointer, nopass :: collect => null()
    end type suite_type
 
-   type(suite_type) :: suites(28)
+   type(suite_type) :: suites(29)
    character(len=80) :: wanted, pattern
    integer :: i, run, failed, found
 
@@ -54,7 +55,9 @@ program unit_tests
               suite_type('linalg', collect_linalg), &
              suite_type('case', collect_case), suite_type('segment', collect_segment), &
              suite_type('bilinear', collect_bilinear), suite_type('takeda', collect_takeda), &
-             suite_type('capped', collect_capped), suite_type('concrete', collect_concrete), &
+             suite_type('capped', collect_capped), &
+             suite_type('peak_oriented', collect_peak_oriented), &
+             suite_type('concrete', collect_concrete), &
              suite_type('steel', collect_steel), suite_type('layered', collect_layered), &
              suite_type('springs', collect_springs), suite_type('column', collect_column), &
              suite_type('chain', collect_chain), &

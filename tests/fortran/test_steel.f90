@@ -25,7 +25,7 @@ contains
       tests = [unit_test('Menegotto and Pinto 1973: virgin branch at the ends of the chords', virgin), &
                unit_test('Menegotto and Pinto 1973: branch after a reversal', reversed), &
                unit_test('Filippou, Popov and Bertero 1983: strength grows with the reach', growth), &
-               unit_test('endurance: half of the strength', endurance), &
+               unit_test('endurance: half of the strength, a fifth', endurance), &
                unit_test('elastic range: no trace', elastic_range), &
                unit_test('small cycles close and never overshoot', small_cycles), &
                unit_test('a small cycle leaves no trace', closed), &
@@ -128,6 +128,9 @@ contains
       call spec%set('half_strength_work', plastic)
       call follow_path(spec, [20.0_wp, -400.0_wp], g)
       call check_close(error, g(2) - f(2), 0.5_wp, 3.0e-3_wp, 0.0_wp, 'half')
+      call spec%set('half_strength_work', 0.5_wp*plastic)
+      call follow_path(spec, [20.0_wp, -400.0_wp], g)
+      call check_close(error, g(2) - f(2), 0.8_wp, 3.0e-3_wp, 0.0_wp, 'a fifth after twice the work')
    end subroutine endurance
 
    subroutine elastic_range(error)

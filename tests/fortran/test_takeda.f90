@@ -43,7 +43,8 @@ contains
                unit_test('property 6: the mirror path, to the last bit', mirror), &
                unit_test('property 9: the work from the virgin state is never negative', work_positive), &
                unit_test('property 8: 3000 nested loops close exactly', nested_loops), &
-               unit_test('6000 nested peaks: the oldest are forgotten, without a jump', forgotten_peaks)]
+               unit_test('6000 nested peaks: the oldest are forgotten, without a jump', forgotten_peaks), &
+               unit_test('partial unloading does not fill the memory', partial_unloading)]
    end subroutine collect_takeda
 
    !> Backbone force at a positive deformation.
@@ -282,13 +283,18 @@ contains
 
    subroutine exact_return(error)
       type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: f(4)
+      real(wp) :: f(4), k_in(3)
+      integer :: i
 
-      call follow_path(takeda_1('kc'), [4.0_wp, -4.0_wp, 4.0_wp, 3.0_wp]*d_y, f)
-      call check_close(error, f(4), f_4 - k_r4*d_y, 1.0e-12_wp, 0.0_wp, 'K_r, not K_in')
-      call follow_path(takeda_1('kc'), [4.0_wp*d_y, -4.0_wp*d_y, nearest(4.0_wp*d_y, -1.0_wp), 3.0_wp*d_y], f)
-      call check_close(error, f(4), f_4 - min(b1*k_c, k_r4)*d_y, 1.0e-12_wp, 0.0_wp, &
-                       'K_in one number below the peak')
+      k_in = [min(b1*k_c, k_r4), max(b1*k_r4, slope_4), k_r4]
+      do i = 1, 3
+         call follow_path(takeda_1(inner(i)), [4.0_wp, -4.0_wp, 4.0_wp, 3.9_wp]*d_y, f)
+         call check_close(error, f(4), f_4 - k_r4*0.1_wp*d_y, 1.0e-12_wp, 0.0_wp, inner(i)//': K_r, not K_in')
+         call follow_path(takeda_1(inner(i)), [4.0_wp*d_y, -4.0_wp*d_y, nearest(4.0_wp*d_y, -1.0_wp), &
+                                               3.9_wp*d_y], f)
+         call check_close(error, f(4), f_4 - k_in(i)*0.1_wp*d_y, 1.0e-12_wp, 0.0_wp, &
+                          inner(i)//': K_in one number below the peak')
+      end do
    end subroutine exact_return
 
    !> Turn a few numbers beyond a crossing of zero force, where force and way are round-off: their
@@ -550,5 +556,28 @@ contains
       call spring%move(1, 0.0_wp)
       call check_close(error, spring%force(1), -122632.372_wp, 0.0_wp, 1.0e-3_wp, 'S4, last point')
    end subroutine forgotten_peaks
+
+   !> More often than peaks are remembered: the open ones from before are all still there.
+   subroutine partial_unloading(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp), parameter :: nest(7) = [4.0_wp, -4.0_wp, 3.0_wp, -3.0_wp, 2.0_wp, -2.0_wp, 1.0_wp]*d_y
+      type(spring_array) :: spring
+      real(wp) :: f(9)
+      integer :: j
+
+      call follow_path(takeda_1('kc'), [nest, 2.5_wp*d_y, 3.5_wp*d_y], f)
+      call spring%create([takeda_1('kc')])
+      do j = 1, size(nest)
+         call spring%move(1, nest(j))
+      end do
+      do j = 1, 5000
+         call spring%move(1, 0.95_wp*d_y)
+         call spring%move(1, 1.0_wp*d_y)
+      end do
+      call spring%move(1, 2.5_wp*d_y)
+      call check_same(error, spring%force(1), f(8), 'toward the peak at 3')
+      call spring%move(1, 3.5_wp*d_y)
+      call check_same(error, spring%force(1), f(9), 'toward the peak at 4')
+   end subroutine partial_unloading
 
 end module test_takeda

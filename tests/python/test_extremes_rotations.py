@@ -213,7 +213,8 @@ def measure_bounces(method: str, bounces: int, stiffness: float) -> tuple[float,
     mass, g, height = 50.0, 9.80665, 0.01
     column = rbsdem.Column(
         1.0, mass, rbsdem.Elastic(1e6), rbsdem.Elastic(1e6),
-        axial_spring=rbsdem.Compression(stiffness), self_weight=True, gravity=g,
+        axial_spring=rbsdem.Compression(stiffness),
+        self_weight=True, gravity=g,
     )  # fmt: skip
     omega = np.sqrt(stiffness / mass)
     speed = np.sqrt(2 * g * height)
@@ -253,8 +254,8 @@ def test_body_lifts_off_where_the_ground_falls_faster_than_it(method, push):
     stiffness, mass, g = 1e8, 50.0, 9.80665
     column = rbsdem.Column(
         1.0, mass, rbsdem.Elastic(1e6), rbsdem.Elastic(1e6),
-        axial_spring=rbsdem.Compression(stiffness), self_weight=True, gravity=g,
-        damping=rbsdem.Damping(stiffness=1e-4, tangent=True),
+        axial_spring=rbsdem.Compression(stiffness),
+        self_weight=True, gravity=g, damping=rbsdem.Damping(stiffness=1e-4, tangent=True),
     )  # fmt: skip
     times = np.linspace(0.0, 0.5, 51)
     fall = -push * g * np.minimum(times / 0.1, 1.0)

@@ -151,15 +151,6 @@ def test_nest_of_inner_loops_closes_peak_by_peak(name, peaks):
     assert measure_decay(name, peaks)[0] < 100
 
 
-def test_beyond_4096_open_peaks_the_oldest_are_forgotten():
-    """The one exception, told in the documentation: then the way back cuts their corners."""
-    spring = TAKEDA["kc"]
-    worst, count = measure_decay("takeda kc", 6000)
-    assert 0 < count < 4000
-    size = 10 * spring.d_y
-    assert worst * EPS * spring.k_c * size < 0.03 * np.max(spring.response(np.array([size])))
-
-
 # ---- steps that are nothing ----------------------------------------------------------------------
 
 

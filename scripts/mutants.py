@@ -1,0 +1,645 @@
+"""Change the program in 40 listed ways, one at a time, and see which test notices each change.
+
+    python scripts/mutants.py [--work DIR] [--results FILE] [--only NAME ...]
+    python scripts/mutants.py --table FILE ...
+
+Every mutant is a slip that a programmer could make: a factor left out, a sign, a bound, a wrong
+index. The tree is copied once to a working folder and built there. Then each mutant in turn is
+applied, built and tested, first by the suites of unit tests in Fortran, the likely ones first, and,
+if these pass, by the tests in Python. A mutant that no test notices has survived: a behaviour is
+not proved.
+
+The results are kept in a json file, so that a run can be stopped and taken up again; remove the
+file (or name another one) to begin anew. `--table` prints such files as a table in Markdown. The
+exit code is 1 if a mutant has survived.
+
+It needs the virtual environment that scripts/test.sh makes, and takes about half an hour.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+
+# Tests in Python that are run first where the Fortran suites notice nothing.
+NEAR = {
+    "src/hysteresis": "test_springs test_springs_capped test_layered_reference",
+    "src/column": "test_column test_physics",
+    "src/solve": "test_static test_dynamics",
+    "src/section": "test_section test_section_springs",
+    "src/output": "test_static test_dynamics",
+    "src/base": "test_doors test_command_line",
+    "src/case": "test_doors test_command_line",
+    "src/io": "test_command_line test_doors",
+}
+
+# A test that takes longer than this is caught in a loop, which counts as noticed [s].
+SUITE_TIMEOUT, PYTHON_TIMEOUT = 300, 1800
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One change.
+
+    Attributes
+    ----------
+    name : str
+        Its name in the table.
+    file : str
+        The file that is changed, from the root.
+    old, new : str
+        Text that stands there once, and what replaces it.
+    breaks : str
+        What is wrong then.
+    tests : str
+        Suites (or files of tests/python without their ending) that are run first.
+    """
+
+    name: str
+    file: str
+    old: str
+    new: str
+    breaks: str
+    tests: str
+
+
+MUTANTS = (
+    # Rules of hysteresis
+    Mutant(
+        "takeda-yield-aim",
+        "src/hysteresis/takeda.f90",
+        "if (yield%f/(yield%d - zero) > self%peak(s)%f/(self%peak(s)%d - zero))",
+        "if (yield%f > self%peak(s)%f)",
+        "reloading",
+        "takeda",
+    ),
+    Mutant(
+        "takeda-inner-bound",
+        "src/hysteresis/takeda.f90",
+        "k_in = min(k_in, k_r)",
+        "k_in = min(k_in, self%k_c)",
+        "inner-loops",
+        "takeda",
+    ),
+    Mutant(
+        "takeda-closed-loop",
+        "src/hysteresis/takeda.f90",
+        "self%open%count = place - 1",
+        "self%open%count = place",
+        "memory",
+        "takeda",
+    ),
+    Mutant(
+        "capped-energy-spent",
+        "src/hysteresis/deterioration.f90",
+        "left = capacity - (self%spent + energy)",
+        "left = capacity - self%spent",
+        "deterioration",
+        "capped",
+    ),
+    Mutant(
+        "capped-softening-share",
+        "src/hysteresis/peak_oriented.f90",
+        "backbone%softening = backbone%softening*(1.0_wp - softening)",
+        "backbone%softening = backbone%softening*(1.0_wp - strength)",
+        "softening",
+        "capped",
+    ),
+    Mutant(
+        "capped-residual",
+        "src/hysteresis/backbone.f90",
+        "self%strength = max(self%strength, b%f_res/b%f_y)",
+        "self%strength = max(self%strength, b%f_res/b%f_cap)",
+        "residual",
+        "capped",
+    ),
+    Mutant(
+        "pinching-break",
+        "src/hysteresis/pinching.f90",
+        "d = (1.0_wp - self%kappa_d)*max(permanent, 0.0_wp)",
+        "d = self%kappa_d*max(permanent, 0.0_wp)",
+        "pinching",
+        "capped",
+    ),
+    Mutant(
+        "steel-fatigue",
+        "src/hysteresis/steel.f90",
+        "strength = strength/(1.0_wp + (plastic/self%half_strength_work)**2)",
+        "strength = strength/(1.0_wp + plastic/self%half_strength_work)",
+        "fatigue",
+        "steel",
+    ),
+    Mutant(
+        "steel-roundness",
+        "src/hysteresis/steel.f90",
+        "xi = abs(merge(self%highest, self%lowest, s > 0) - new%d_a)/d_y",
+        "xi = abs(merge(self%highest, self%lowest, s < 0) - new%d_a)/d_y",
+        "roundness",
+        "steel",
+    ),
+    Mutant(
+        "concrete-wear",
+        "src/hysteresis/concrete.f90",
+        "min(1.0_wp, 0.5_wp*self%c_u/self%d_peak)",
+        "min(1.0_wp, self%c_u/self%d_peak)",
+        "wear",
+        "concrete",
+    ),
+    Mutant(
+        "concrete-widest-crack",
+        "src/hysteresis/concrete.f90",
+        "self%widest = max(self%widest, self%c_p - c)",
+        "self%widest = self%c_p - c",
+        "contact",
+        "concrete",
+    ),
+    Mutant(
+        "layered-first-stiffness",
+        "src/hysteresis/layered.f90",
+        "initial_stiffness = sum(k*self%y**2) - sum(k*self%y)**2/sum(k)",
+        "initial_stiffness = sum(k*self%y**2)",
+        "stiffness",
+        "layered",
+    ),
+    Mutant(
+        "layered-rest",
+        "src/hysteresis/layered.f90",
+        "rotation = line%end_toward(direction) + self%rest",
+        "rotation = line%end_toward(direction)",
+        "asymmetry",
+        "layered",
+    ),
+    Mutant(
+        "springs-restored-work",
+        "src/hysteresis/springs.f90",
+        "self%work = journal%work",
+        "self%work = max(self%work, journal%work)",
+        "restore",
+        "springs",
+    ),
+    Mutant(
+        "springs-work-of-a-pair",
+        "src/hysteresis/springs.f90",
+        "work = work + (f0 + k*(0.5_wp*(to + d) - d0))*(to - d)",
+        "work = work + (f0 + k*(to - d0))*(to - d)",
+        "energy",
+        "static",
+    ),
+    # The column
+    Mutant(
+        "critical-load-of-slip",
+        "src/column/axial.f90",
+        "tau = multiple*turning(i) + multiple**2*sliding(i)",
+        "tau = multiple*turning(i) + multiple*sliding(i)",
+        "buckling",
+        "column modal",
+    ),
+    Mutant(
+        "own-inertia-of-the-top",
+        "src/column/column.f90",
+        "+ spec%top_inertia + own*shift*column%upper(n)",
+        "+ spec%top_inertia",
+        "inertia",
+        "column",
+    ),
+    Mutant(
+        "weight-above-a-centroid",
+        "src/column/column.f90",
+        "column%axial_body = dead + column%gravity*(column%mass/2.0_wp + above(2:))",
+        "column%axial_body = dead + column%gravity*(column%mass + above(2:))",
+        "self-weight",
+        "column",
+    ),
+    Mutant(
+        "load-of-layered-joints",
+        "src/column/column.f90",
+        "column%spring(n + 1:2*n)%axial_load = column%compression",
+        "column%spring(n + 1:2*n)%axial_load = column%axial_load",
+        "self-weight",
+        "column layered",
+    ),
+    Mutant(
+        "geometric-band",
+        "src/column/band.f90",
+        "band(1, t - 2) = band(1, t - 2) + 2.0_wp*force*column%upper(i - 1)",
+        "band(1, t - 2) = band(1, t - 2) + force*column%upper(i - 1)",
+        "p-delta",
+        "band",
+    ),
+    Mutant(
+        "coriolis",
+        "src/column/finite.f90",
+        "separation = bottom(2) - below(2) + 2.0_wp*v(i)*spin_below + slip*turn_below",
+        "separation = bottom(2) - below(2) + v(i)*spin_below + slip*turn_below",
+        "finite-rotations",
+        "finite",
+    ),
+    # Solving
+    Mutant(
+        "steps-in-an-interval",
+        "src/solve/time/plan.f90",
+        "parts = max(aint((time(2:) - time(:m - 1))/step*(1.0_wp - whole)) + 1.0_wp, 1.0_wp)",
+        "parts = max(aint((time(2:) - time(:m - 1))/step) + 1.0_wp, 1.0_wp)",
+        "steps",
+        "time_plan",
+    ),
+    Mutant(
+        "generalised-alpha",
+        "src/solve/time/implicit.f90",
+        "alpha_f = rho/(rho + 1.0_wp)",
+        "alpha_f = 1.0_wp/(rho + 1.0_wp)",
+        "order",
+        "implicit",
+    ),
+    Mutant(
+        "corner-of-the-loading",
+        "src/solve/time/located.f90",
+        "corner = state%loads%corner_after(state%time) - state%time",
+        "corner = state%loads%corner_after(state%time)",
+        "order",
+        "steppers",
+    ),
+    Mutant(
+        "modal-damping",
+        "src/solve/modal/damping.f90",
+        "sqrt(2.0_wp*ratio*modes%omega(j))",
+        "sqrt(ratio*modes%omega(j))",
+        "damping",
+        "modal",
+    ),
+    Mutant(
+        "limit-of-a-yielded-column",
+        "src/solve/modal/modes.f90",
+        "remaining = merge(column%mass_damping, c, column%tangent_damping)",
+        "remaining = merge(c, column%mass_damping, column%tangent_damping)",
+        "stability",
+        "modal",
+    ),
+    Mutant(
+        "energy-at-the-start",
+        "src/solve/static/path.f90",
+        "row(row_residual) = row(row_input) + self%at_begin - row(row_spring) - row(row_axial)",
+        "row(row_residual) = row(row_input) - row(row_spring) - row(row_axial)",
+        "energy",
+        "static run",
+    ),
+    Mutant(
+        "collapse-to-one-side",
+        "src/solve/static/path.f90",
+        "summary%collapsed = abs(self%displacement)/height >= collapse_drift",
+        "summary%collapsed = self%displacement/height >= collapse_drift",
+        "collapse",
+        "static run",
+    ),
+    # The section
+    Mutant(
+        "core-instead-of-shell",
+        "src/section/resultants.f90",
+        "force = force + (stress_core - stress)*strips%core_area(i)",
+        "force = force + stress_core*strips%core_area(i)",
+        "confinement",
+        "section",
+    ),
+    Mutant(
+        "arches-between-bars",
+        "src/section/confinement.f90",
+        "arches(section, b_c, d_c)/(6.0_wp*core)",
+        "arches(section, b_c, d_c)/(3.0_wp*core)",
+        "confinement",
+        "section",
+    ),
+    Mutant(
+        "moment-factor",
+        "src/section/flexural_spring.f90",
+        "m_u = hinge%moment_factor*spring%ultimate%moment",
+        "m_u = spring%ultimate%moment",
+        "hardening",
+        "section",
+    ),
+    # The case and its files
+    Mutant(
+        "units-out-of-si",
+        "src/base/units.f90",
+        "if (unit(i:i) == '/') power = -direction",
+        "if (unit(i:i) == '/') power = -1",
+        "units",
+        "case text",
+    ),
+    Mutant(
+        "group-twice",
+        "src/case/setter.f90",
+        "else if (self%seen(place)) then",
+        "else if (.false.) then",
+        "refusal",
+        "case",
+    ),
+    Mutant(
+        "unit-of-a-moment",
+        "src/case/setter.f90",
+        "si = merge('N m', 'N  ', group == 'flexure')",
+        "si = 'N'",
+        "units",
+        "case",
+    ),
+    Mutant(
+        "quote-in-a-text",
+        "src/io/namelist_scan.f90",
+        "if (text(length + 1:length + 1) /= text(1:1)) return",
+        "return",
+        "scanner",
+        "case",
+    ),
+    # What is told of a run
+    Mutant(
+        "peak-to-one-side",
+        "src/output/summary.f90",
+        "if (abs(force) > abs(self%peak_force)) then",
+        "if (force > abs(self%peak_force)) then",
+        "peaks",
+        "results",
+    ),
+    # Python
+    Mutant(
+        "energy-of-a-half-cycle",
+        "python/rbsdem/comparison/cycles.py",
+        "share = swing[at - 1] / (swing[at - 1] - swing[at])",
+        "share = 1.0",
+        "energy",
+        "test_metrics test_compare",
+    ),
+    Mutant(
+        "peak-of-the-core",
+        "python/rbsdem/section/hinge.py",
+        "core_peak = peak * (1 + 5 * (gain - 1))",
+        "core_peak = peak * (1 + 5 * gain)",
+        "confinement",
+        "test_section_strips test_peer_predict",
+    ),
+    Mutant(
+        "groups-of-errors",
+        "python/rbsdem/calibration/determined.py",
+        "inverse @ (scores.T @ scores) @ inverse * (several.size / (several.size - 1.0))",
+        "inverse @ (scores.T @ scores) @ inverse",
+        "standard-error",
+        "test_calibration",
+    ),
+    Mutant(
+        "steps-that-divide",
+        "python/rbsdem/accuracy/ladder.py",
+        "parts = max(math.ceil(look.interval / longest * (1 - 1e-12)), 1)",
+        "parts = max(math.floor(look.interval / longest * (1 - 1e-12)), 1)",
+        "steps",
+        "test_trade",
+    ),
+)
+
+
+class MutantError(Exception):
+    """The tree cannot be prepared, or a mutant does not fit it."""
+
+
+def run(command: list[str], cwd: Path, timeout: float, **environment: str) -> tuple[int, str]:
+    """Run a command and return its exit code and what it said; -1 where it did not end in time."""
+    try:
+        done = subprocess.run(
+            command,
+            cwd=cwd,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            check=False,
+            timeout=timeout,
+            env=os.environ | environment,
+        )
+    except subprocess.TimeoutExpired:
+        return -1, "no end"
+    return done.returncode, done.stdout + done.stderr
+
+
+class Tree:
+    """A copy of the tree with a build of its own.
+
+    Parameters
+    ----------
+    work : Path
+        Folder of the copy.
+    venv : Path
+        Virtual environment with the build requirements and the packages for tests.
+    """
+
+    def __init__(self, work: Path, venv: Path) -> None:
+        self.source, self.build, self.site = work / "tree", work / "build", work / "site"
+        self.python = venv / "bin" / "python"
+        # Names of the unit tests, "suite: name"
+        self.names: list[str] = []
+        self.path = f"{venv / 'bin'}{os.pathsep}{os.environ['PATH']}"
+
+    def prepare(self) -> None:
+        """Copy what git knows, as it is in the folder, and build it."""
+        listed = subprocess.run(
+            ["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True
+        ).stdout.splitlines()
+        for name in listed:
+            target = self.source / name
+            content = (ROOT / name).read_bytes()
+            if not target.is_file() or target.read_bytes() != content:
+                target.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(ROOT / name, target)
+        for path in (self.source / "tests").rglob("*.py"):
+            if str(path.relative_to(self.source)) not in listed:
+                path.unlink()
+        if not (self.build / "build.ninja").is_file():
+            setup = ["meson", "setup", str(self.build), str(self.source), "-Dpython=enabled"]
+            # Built faster; what a test sees is the same.
+            self._must(
+                [*setup, "-Doptimization=1", "-Dpython.platlibdir=/", "-Dpython.purelibdir=/"]
+            )
+        self.make("tests/fortran/unit_tests")
+        self.install()
+
+    def _must(self, command: list[str]) -> None:
+        code, text = run(command, self.source, 3600, PATH=self.path)
+        if code != 0:
+            raise MutantError(f"{' '.join(command)}:\n{text[-3000:]}")
+
+    def make(self, *targets: str) -> None:
+        """Build what has changed."""
+        self._must(["ninja", "-C", str(self.build), *targets])
+
+    def install(self) -> None:
+        """Put the package where the tests in Python find it."""
+        self.make()
+        command = ["meson", "install", "--no-rebuild", "--quiet", "-C", str(self.build)]
+        self._must([*command, "--destdir", str(self.site)])
+
+    def fails_suite(self, *suite: str) -> tuple[str, str]:
+        """Return suite and name of the first test that fails, blank if none does."""
+        program = self.build / "tests" / "fortran" / "unit_tests"
+        code, text = run([str(program), *suite], self.source, SUITE_TIMEOUT, PATH=self.path)
+        if code == 0:
+            self.names += [line[2:].strip() for line in text.splitlines() if line[:2] == "ok"]
+            return "", ""
+        for line in text.splitlines():
+            if line.startswith("FAIL"):
+                failed = line.removeprefix("FAIL").strip()
+                # Names and messages both may hold colons.
+                known = [name for name in self.names if failed.startswith(name)]
+                name, _, test = max(known, key=len, default=failed).partition(": ")
+                return name, test
+        return "".join(suite) or "unit_tests", "does not end well"
+
+    def fails_python(self, *paths: str) -> str:
+        """Return the first test in Python that fails, blank if none does."""
+        command = [str(self.python), "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *paths]
+        environment = {
+            "PATH": self.path,
+            "PYTHONPATH": str(self.site),
+            "MPLBACKEND": "Agg",
+            "RBSDEM_PEER_DIR": str(ROOT.parent / "shared" / "peer"),
+        }
+        code, text = run(command, self.source, PYTHON_TIMEOUT, **environment)
+        if code == 0:
+            return ""
+        failed = [line for line in text.splitlines() if line.startswith(("FAILED", "ERROR"))]
+        if not failed:
+            return "pytest::does not end well"
+        test = failed[0].split(" - ")[0].split(maxsplit=1)[1].removeprefix("tests/python/")
+        if "::" not in test:
+            raise MutantError(f"{test} cannot be read:\n{text[-2000:]}")
+        return test
+
+    @contextlib.contextmanager
+    def changed(self, mutant: Mutant) -> Iterator[None]:
+        """Apply a mutant, and take it away again."""
+        path = self.source / mutant.file
+        text = path.read_text("utf-8") if path.is_file() else ""
+        if text.count(mutant.old) != 1:
+            raise MutantError(
+                f"{mutant.name}: its text stands {text.count(mutant.old)} times in {mutant.file}"
+            )
+        path.write_text(text.replace(mutant.old, mutant.new), "utf-8")
+        try:
+            yield
+        finally:
+            path.write_text(text, "utf-8")
+
+
+def verdict(tree: Tree, mutant: Mutant) -> dict[str, str]:
+    """Return which test notices a mutant; both texts are blank if it survives."""
+    with tree.changed(mutant):
+        if mutant.file.startswith("src/"):
+            tree.make("tests/fortran/unit_tests")
+            folder = "/".join(mutant.file.split("/")[:2])
+            return in_fortran(tree, mutant.tests.split()) or in_python(tree, NEAR[folder].split())
+        return in_python(tree, mutant.tests.split())
+
+
+def in_fortran(tree: Tree, likely: list[str]) -> dict[str, str]:
+    """Return the first failure of the suites, the likely ones first; empty if there is none."""
+    for suite in [*((name,) for name in likely), ()]:
+        name, test = tree.fails_suite(*suite)
+        if name:
+            return {"suite": name, "test": test}
+    return {}
+
+
+def in_python(tree: Tree, likely: list[str]) -> dict[str, str]:
+    """Return the first failure of the tests in Python, the likely files first."""
+    tree.install()
+    first = [f"tests/python/{name}.py" for name in likely]
+    for paths in ([first] if first else []) + [["tests/regression", "tests/python"]]:
+        if test := tree.fails_python(*paths):
+            file, _, name = test.partition("::")
+            return {"suite": file, "test": name}
+    return {"suite": "", "test": ""}
+
+
+def check_unchanged(tree: Tree, results: dict[str, dict[str, str]]) -> None:
+    """Refuse results of tests that fail without a mutant too: they have noticed nothing."""
+    name, test = tree.fails_suite()
+    if name:
+        raise MutantError(f"without a mutant {name}: {test} fails already")
+    found = results.values()
+    tests = {
+        ("" if "/" in x["suite"] else "tests/python/") + f"{x['suite']}::{x['test']}"
+        for x in found
+        if x["suite"].endswith(".py")
+    }
+    if tests and (test := tree.fails_python(*sorted(tests))):
+        raise MutantError(f"without a mutant {test} fails already")
+
+
+def table(files: list[Path]) -> str:
+    """Return results as a table in Markdown, a column for each file."""
+    every = [json.loads(file.read_text("utf-8")) for file in files]
+    heads = "".join(f" noticed {file.stem} by |" for file in files)
+    lines = [f"| mutant | file | breaks |{heads}", "|---|---|---|" + "---|" * len(files)]
+    for mutant in MUTANTS:
+        cells = [f"`{mutant.name}`", f"`{mutant.file}`", mutant.breaks]
+        for results in every:
+            found = results.get(mutant.name)
+            if found is None:
+                cells.append("not run")
+            elif not found["suite"]:
+                cells.append("**nothing**")
+            else:
+                cells.append(f"{found['suite']}: {found['test']}")
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def main() -> int:
+    """Run the mutants that have no result yet."""
+    parser = argparse.ArgumentParser(
+        description="Change the program in listed ways and see which test notices each change."
+    )
+    parser.add_argument("--work", type=Path, default=ROOT / "build" / "mutants")
+    parser.add_argument("--venv", type=Path, default=ROOT / ".venv")
+    parser.add_argument("--results", type=Path, help="json file; by default in the working folder")
+    parser.add_argument("--only", nargs="+", metavar="NAME", help="these mutants, done or not")
+    parser.add_argument(
+        "--table", nargs="+", type=Path, metavar="FILE", help="print these results and stop"
+    )
+    given = parser.parse_args()
+    if given.table:
+        print(table(given.table))
+        return 0
+    file = given.results or given.work / "results.json"
+    results = json.loads(file.read_text("utf-8")) if file.is_file() else {}
+    unknown = set(given.only or ()) - {mutant.name for mutant in MUTANTS}
+    if unknown:
+        print(f"mutants: there is no {', '.join(sorted(unknown))}", file=sys.stderr)
+        return 2
+    try:
+        tree = Tree(given.work.resolve(), given.venv.resolve())
+        tree.prepare()
+        check_unchanged(tree, results)
+        for mutant in MUTANTS:
+            if mutant.name not in given.only if given.only else mutant.name in results:
+                continue
+            results[mutant.name] = found = verdict(tree, mutant)
+            print(f"{mutant.name}: {found['suite']} {found['test']}".rstrip(": "), flush=True)
+            file.write_text(json.dumps(results, indent=1) + "\n", "utf-8")
+        tree.make("tests/fortran/unit_tests")
+        tree.install()
+        check_unchanged(tree, results)
+    except MutantError as failure:
+        print(f"mutants: {failure}", file=sys.stderr)
+        return 2
+    survived = [name for name, found in results.items() if not found["suite"]]
+    print(f"{len(results)} mutants, {len(survived)} survived {' '.join(survived)}")
+    return 1 if survived else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,194 @@
+!> The peak-oriented and the pinching spring: the sequences by hand of docs/rules.md.
+module test_peak_oriented
+   use check, only: unit_test, check_close
+   use rbs_base_error, only: error_type
+   use rbs_base_kinds, only: wp
+   use rbs_hysteresis_spring_record, only: spring_record
+   use rbs_hysteresis_springs, only: follow_path
+   implicit none
+   private
+
+   public :: collect_peak_oriented
+
+   !> What the excursion from zero to 2 and back to zero force dissipates, 94.5.
+   real(wp), parameter :: energy = 50.0_wp + 105.0_wp - 0.5_wp*110.0_wp**2/100.0_wp
+
+   real(wp), parameter :: close = 1.0e-12_wp
+
+contains
+
+   subroutine collect_peak_oriented(tests)
+      type(unit_test), allocatable, intent(out) :: tests(:)
+
+      tests = [unit_test('backbone, residual and rupture', backbone), &
+               unit_test('cracking: unloading aims at the cracking point of the other side', cracking), &
+               unit_test('unloading, reloading to yield, to the peaks, past the cap', sequence), &
+               unit_test('reloading takes the steeper way over the last turn', last_turn), &
+               unit_test('pinching: the break, with and without a permanent deformation', pinching), &
+               unit_test('strength deteriorates', strength), &
+               unit_test('the softening line deteriorates', softening), &
+               unit_test('the unloading stiffness deteriorates where the side turns back', unloading), &
+               unit_test('the target of reloading moves outward', target)]
+   end subroutine collect_peak_oriented
+
+   !> Elastic 100 up to (1, 100), cap (3, 120), softening with -10 to the residual 20 at 13.
+   type(spring_record) function hand(rule) result(spec)
+      character(len=*), intent(in) :: rule
+
+      spec%rule = rule
+      call spec%set('d_y', 1.0_wp)
+      call spec%set('f_y', 100.0_wp)
+      call spec%set('d_cap', 3.0_wp)
+      call spec%set('f_cap', 120.0_wp)
+      call spec%set('d_pc', 12.0_wp)
+      call spec%set('f_res', 20.0_wp)
+   end function hand
+
+   !> Forces along a path against those by hand.
+   subroutine expect(error, spec, d, by_hand, what)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_record), intent(in) :: spec
+      real(wp), intent(in) :: d(:), by_hand(:)
+      character(len=*), intent(in) :: what
+      real(wp) :: f(size(d))
+
+      call follow_path(spec, d, f)
+      call check_close(error, f, by_hand, close, 1.0e-10_wp, what)
+   end subroutine expect
+
+   subroutine backbone(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp), parameter :: d(7) = [0.5_wp, 1.0_wp, 2.0_wp, 3.0_wp, 8.0_wp, 13.0_wp, 20.0_wp]
+      real(wp), parameter :: f(7) = [50.0_wp, 100.0_wp, 110.0_wp, 120.0_wp, 70.0_wp, 20.0_wp, 20.0_wp]
+      type(spring_record) :: spec
+
+      spec = hand('peak_oriented')
+      call expect(error, spec, d, f, 'positive side')
+      call expect(error, spec, -d, -f, 'negative side')
+      call spec%set('d_u', 15.0_wp)
+      call expect(error, spec, [13.0_wp, 20.0_wp, 15.0_wp, 15.1_wp, 0.0_wp], &
+                  [20.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], 'torn')
+      call expect(error, spec, [15.0_wp, 15.1_wp, 15.15_wp, 15.1_wp, 15.15_wp], &
+                  [20.0_wp, 10.0_wp, 5.0_wp, 0.0_wp, 5.0_wp], 'tearing')
+   end subroutine backbone
+
+   !> From (0.6, 70) with (70 + 40)/(0.6 + 0.2).
+   subroutine cracking(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_record) :: spec
+
+      spec = hand('peak_oriented')
+      call spec%set('d_c', 0.2_wp)
+      call spec%set('f_c', 40.0_wp)
+      call expect(error, spec, [0.1_wp, 0.2_wp, 0.6_wp, 1.0_wp], [20.0_wp, 40.0_wp, 70.0_wp, 100.0_wp], &
+                  'backbone')
+      call expect(error, spec, [0.6_wp, 0.4_wp, -0.2_wp, -0.6_wp], [70.0_wp, 42.5_wp, -40.0_wp, -70.0_wp], &
+                  'unloading')
+   end subroutine cracking
+
+   subroutine sequence(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      ! Zero force at 2 - 110/100; from there to the yield point at -1; from -0.9 to the peak at 2.
+      call expect(error, hand('peak_oriented'), &
+                  [2.0_wp, 1.5_wp, 2.0_wp, 0.9_wp, 0.45_wp, -1.0_wp, -2.0_wp, 0.0_wp, 2.0_wp, 8.0_wp, &
+                   7.3_wp, -2.0_wp], &
+                  [110.0_wp, 60.0_wp, 110.0_wp, 0.0_wp, -100.0_wp*0.45_wp/1.9_wp, -100.0_wp, -110.0_wp, &
+                   110.0_wp*0.9_wp/2.9_wp, 110.0_wp, 70.0_wp, 0.0_wp, -110.0_wp], 'forces')
+   end subroutine sequence
+
+   !> After an inner cycle reloading goes first to where it turned back, then to the peak.
+   subroutine last_turn(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: turn, zero, back, again
+
+      turn = 110.0_wp/2.9_wp*1.9_wp
+      zero = 1.0_wp - turn/100.0_wp
+      back = -110.0_wp/(2.0_wp + zero)*(0.5_wp + zero)
+      again = -0.5_wp - back/100.0_wp
+      call expect(error, hand('peak_oriented'), &
+                  [2.0_wp, -2.0_wp, 1.0_wp, -0.5_wp, 0.5_wp, 1.0_wp, 1.5_wp, 2.0_wp], &
+                  [110.0_wp, -110.0_wp, turn, back, turn*(0.5_wp - again)/(1.0_wp - again), turn, &
+                   0.5_wp*(turn + 110.0_wp), 110.0_wp], 'forces')
+   end subroutine last_turn
+
+   !> Peak (2, 110) on both sides: permanent 0.9, break at 0.45 with 0.4 of the straight line.
+   subroutine pinching(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_record) :: spec
+      real(wp) :: break_force
+
+      spec = hand('pinching')
+      call spec%set('kappa_f', 0.4_wp)
+      call spec%set('kappa_d', 0.5_wp)
+      break_force = 0.4_wp*110.0_wp/2.9_wp*1.35_wp
+      call expect(error, spec, [2.0_wp, -2.0_wp, 0.0_wp, 0.45_wp, 1.225_wp, 2.0_wp], &
+                  [110.0_wp, -110.0_wp, break_force*0.9_wp/1.35_wp, break_force, &
+                   0.5_wp*(break_force + 110.0_wp), 110.0_wp], 'both sides loaded')
+      ! A side that has not yielded breaks at zero deformation.
+      break_force = 0.4_wp*100.0_wp/1.9_wp*0.9_wp
+      call expect(error, spec, [2.0_wp, 0.0_wp, -0.5_wp, -1.0_wp], &
+                  [110.0_wp, -break_force, -0.5_wp*(break_force + 100.0_wp), -100.0_wp], 'one side loaded')
+   end subroutine pinching
+
+   !> lambda = 10: the other side has 1 - beta of its strength, hardening 10 (1 - beta).
+   subroutine strength(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_record) :: spec
+      real(wp) :: c, left
+      integer :: i
+
+      do i = 0, 1
+         c = 1.0_wp + 0.5_wp*i
+         spec = hand('peak_oriented')
+         call spec%set('lambda_s', 10.0_wp)
+         call spec%set('c', c)
+         left = 1.0_wp - (energy/(1000.0_wp - energy))**c
+         call expect(error, spec, [2.0_wp, -2.0_wp, -2.5_wp], &
+                     [110.0_wp, -left*(100.0_wp + 10.0_wp*(2.0_wp - left)), &
+                      -left*(100.0_wp + 10.0_wp*(2.5_wp - left))], 'forces')
+      end do
+   end subroutine strength
+
+   subroutine softening(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_record) :: spec
+      real(wp) :: left
+
+      spec = hand('peak_oriented')
+      call spec%set('lambda_c', 10.0_wp)
+      left = 1.0_wp - energy/(1000.0_wp - energy)
+      call expect(error, spec, [2.0_wp, -8.0_wp], [110.0_wp, -(150.0_wp*left - 80.0_wp)], 'forces')
+   end subroutine softening
+
+   !> Reckoned where the side turns back, from what is not given back.
+   subroutine unloading(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_record) :: spec
+      real(wp) :: k
+
+      spec = hand('peak_oriented')
+      call spec%set('lambda_k', 10.0_wp)
+      k = 100.0_wp*(1.0_wp - energy/(1000.0_wp - energy))
+      call expect(error, spec, [2.0_wp, 1.5_wp, 1.0_wp, 1.8_wp, 2.0_wp, 2.1_wp], &
+                  [110.0_wp, 110.0_wp - 0.5_wp*k, 110.0_wp - k, 110.0_wp - 0.2_wp*k, 110.0_wp, 111.0_wp], &
+                  'forces')
+   end subroutine unloading
+
+   !> Target of the side that is entered: from 2 to 2 (1 + beta), on the backbone.
+   subroutine target(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_record) :: spec
+      real(wp) :: second, reached, slope
+
+      spec = hand('peak_oriented')
+      call spec%set('lambda_a', 10.0_wp)
+      ! The second excursion, from 0.9 over (-1, -100) to (-2, -110), and back to zero force.
+      second = 0.5_wp*1.9_wp*100.0_wp + 105.0_wp - 0.5_wp*110.0_wp**2/100.0_wp
+      reached = 2.0_wp*(1.0_wp + second/(1000.0_wp - energy - second))
+      slope = (100.0_wp + 10.0_wp*(reached - 1.0_wp))/(reached + 0.9_wp)
+      call expect(error, spec, [2.0_wp, -2.0_wp, 1.0_wp], &
+                  [110.0_wp, -110.0_wp, slope*1.9_wp], 'forces')
+   end subroutine target
+
+end module test_peak_oriented

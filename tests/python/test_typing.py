@@ -1,0 +1,135 @@
+"""A user's program like that of the README passes ``mypy --strict``; slips are found by it."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import REPOSITORY
+
+pytest.importorskip("mypy", reason="the extra 'test' brings mypy")
+
+PROGRAM = '''
+"""A column, pushed and shaken."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+import rbsdem
+
+
+def pushed(column: rbsdem.Column) -> rbsdem.Result:
+    """Follow a cyclic test."""
+    drifts = rbsdem.protocol([0.0025, 0.005, 0.01, 0.02], cycles=2)
+    return rbsdem.cyclic(column, displacement=column.height * drifts)
+
+
+shear = rbsdem.Bilinear(k=7.0387e8, d_y=1.2960e-4, k_post=8.3185e6)
+flexure = rbsdem.Takeda(
+    k_c=2.5428e8, d_c=3.1891e-4, k_y=6.2937e7, d_y=2.7183e-3, k_u=7.5772e6, b1=0.22, inner="kc"
+)
+column = rbsdem.Column(1.6, 614.4, shear, flexure, axial_load=744e3, kinematics="pdelta")
+result = pushed(column)
+peak: float = result.summary["peak_force"]
+worst = float(np.max(np.abs(result.rotation[:, 0])))
+print(peak, worst, result.column.height, result.case, result.energy["spring"][-1])
+
+time = np.arange(0.0, 2.0, 0.01)
+motion = 0.1 * np.sin(31.4 * time)
+pier = replace(column, top_mass=75e3, damping=rbsdem.Damping.rayleigh(0.03, 2.0, 50.0), n=2)
+shaken = rbsdem.time_history(pier, time, ground_acceleration=motion, collapse_drift=0.2)
+forced = rbsdem.time_history(
+    pier, time, force=1e3 * motion, method="newmark", dt=0.005, initial={"slip": [0.0, 0.0]}
+)
+located = rbsdem.time_history(pier, time, force=motion, method="rk4", events="located", every=2)
+print(shaken.summary["method"], forced.top[-1, 0], located.time.size, shaken == forced)
+print(rbsdem.modes(pier).frequency[0], rbsdem.mass_matrix(pier)[0, 0])
+
+layers = rbsdem.Layered([(-0.1, rbsdem.SteelSpring(8e8, 7e5, 8e6)), (0.1, rbsdem.Elastic(1e8))])
+print(layers.response([0.001, -0.001], axial_load=1e4)[-1], layers.split(2), shear.split(2).k)
+print([spring.response([1e-3])[0] for spring in pier.joints("flexure")])
+
+section = rbsdem.RectangularSection(
+    width=0.4,
+    depth=0.4,
+    concrete=rbsdem.Concrete(fc=46.5e6),
+    layout=rbsdem.Layout(12, 0.016, rbsdem.Steel(fy=446e6, fu=702e6)),
+    ties=rbsdem.Ties(0.007, 0.085, rbsdem.Steel(fy=364e6), legs=4),
+    cover=0.013,
+)
+springs = section.springs(1.6, axial_load=744e3)
+assert springs.shear is not None
+made = rbsdem.Column(1.6, 614.4, springs.shear, springs.flexure, axial_load=744e3)
+print(pushed(made).summary["status"], pushed(section.column(1.6, axial_load=744e3)).force[-1])
+
+Path("column.nml").write_text(column.to_namelist() + "&loading drive = 'force', amplitudes = 1e3 /")
+case = rbsdem.read_case("column.nml")
+print(case.run(every=2).displacement[-1], case.column == column, case.to_namelist())
+
+try:
+    rbsdem.cyclic(column, force=[1e5, 1e5])
+except rbsdem.SolveError as error:
+    print(error, error.result)
+except rbsdem.InputError as error:
+    print(error)
+'''
+
+SLIPS = [
+    ('rbsdem.Column(1.6, 1.0, s, s, kinematics="finit")', "arg-type"),
+    ('rbsdem.Takeda(2, 1, 1, 2, 0, inner="k_c")', "arg-type"),
+    ("rbsdem.cyclic(c, [0.1])", "call-arg"),  # loads are keywords
+    ('rbsdem.time_history(c, [0.0, 1.0], force=[0.0, 1.0], method="rk5")', "arg-type"),
+    ('rbsdem.time_history(c, [0.0], force=[0.0], method="rk4", events="never")', "arg-type"),
+    ('c.joints("bending")', "arg-type"),
+    ("rbsdem.Column(1.6, 1.0, s, s, axial=s)", "call-arg"),
+    ("rbsdem.cyclic(c, displacement=[0.1]).forces", "attr-defined"),
+    ('rbsdem.mass_matrix(c, "papers")', "arg-type"),
+]
+
+
+def mypy(folder: Path, *texts: str) -> subprocess.CompletedProcess[str]:
+    """Check programs; the first one is program.py."""
+    names = ["program.py", *(f"program_{i}.py" for i in range(1, len(texts)))]
+    for name, text in zip(names, texts, strict=True):
+        (folder / name).write_text(text, "utf-8")
+    return subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", *names],
+        cwd=folder,
+        env=os.environ | {"MYPY_CACHE_DIR": str(folder / "cache")},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+
+
+def test_program_of_a_user_is_typed_and_runs(tmp_path):
+    readme = (REPOSITORY / "README.md").read_text("utf-8")
+    blocks = re.findall(r"^```python\n(.*?)^```$", readme, re.MULTILINE | re.DOTALL)
+    assert len(blocks) >= 2
+    checked = mypy(tmp_path, PROGRAM, *blocks)
+    assert checked.stdout + checked.stderr == ""
+    assert checked.returncode == 0
+    run = subprocess.run(
+        [sys.executable, "-W", "error", "program.py"],
+        cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert (run.returncode, run.stderr) == (0, "")
+
+
+def test_slips_of_a_user_are_found(tmp_path):
+    """What the types say: loads by keyword, words out of a list, names that are there."""
+    head = "import rbsdem\ns = rbsdem.Elastic(1.0)\nc = rbsdem.Column(1.6, 1.0, s, s)\n"
+    lines = head + "".join(f"{slip}\n" for slip, _ in SLIPS)
+    said = mypy(tmp_path, lines).stdout.splitlines()
+    first = head.count("\n") + 1
+    for number, (slip, kind) in enumerate(SLIPS, first):
+        own = [line for line in said if line.startswith(f"program.py:{number}: error")]
+        assert own, slip
+        assert any(kind in line or "misc" in line for line in own), (slip, own)
