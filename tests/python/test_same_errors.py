@@ -70,7 +70,7 @@ def entries(values: dict[str, Any]) -> str:
 
 
 def faulty_values() -> Iterator[tuple[str, dict[str, float]]]:
-    """Every parameter of every rule: not finite, beyond meaning, on the wrong side of its bounds."""
+    """Yield each parameter of each rule: not finite, extreme, on the wrong side of its bounds."""
     for rule, good in GOOD.items():
         for key in _core.keys()["rules"][rule]["keys"]:
             if key["kind"] != "real":
