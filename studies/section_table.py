@@ -51,7 +51,7 @@ def numbers(springs: Any) -> list[float]:
 def table() -> None:
     """Print every number of every column."""
     printed = paper_columns()
-    print("| number | column | table 3 | computed | over table 3 | over the reference |")
+    print("| parameter | column | table 3 | computed | over table 3 | over the reference |")
     print("| --- | --- | ---: | ---: | ---: | ---: |")
     found = {key: numbers(paper.springs()) for key, paper in paper_sections().items()}
     for i, row in enumerate(ROWS):

@@ -41,16 +41,16 @@ except ImportError:
 
 BESIDE = Path(__file__).resolve().parents[3] / "shared" / "peer"
 
-# A leg between two reversal points gets this many rows, about as many as in the histories; they
-# follow half a cosine, for a test also slows down where it turns.
+# Number of rows between two reversal points, about as many as in the histories. They follow half a
+# cosine, because a test also slows down where it turns.
 ROWS_PER_LEG = 30
 
 # Seconds for one row of a test in RK4. The first natural period is about 0.01 s elastic and 0.06 s
-# after yield. There is no damping in equation 4, so the column runs on where the force turns, by a
-# length in proportion to its speed: 0.05 s leave 2 to 4 % of the peak displacement, 0.1 s 1 to 2 %.
+# after yield. There is no damping in equation 4, so the column overshoots where the force turns, in
+# proportion to its speed: 0.05 s leave 2 to 4 % of the peak displacement, 0.1 s 1 to 2 %.
 ROW_TIME = 0.1
 
-# RK4 step as a share of the largest stable one: the higher mode only has to stay quiet.
+# RK4 step as a share of the largest stable one; the higher mode only has to stay small.
 STEP_SHARE = 0.5
 
 Vector = NDArray[np.float64]
@@ -117,12 +117,12 @@ def by_force(drive: Drive, column: rbsdem.Column, row_time: float) -> tuple[Run,
     small = dataclasses.replace(column, axial_load=0.0, kinematics="small")
     finite = dataclasses.replace(column, axial_load=0.0, kinematics="finite")
     at = np.arange(len(drive.force)) * row_time
-    begin = time.perf_counter()
+    start = time.perf_counter()
     static = rbsdem.cyclic(small, force=drive.force)
     # A whole number of steps in a row, so that results come at the rows.
     dt = row_time / math.ceil(row_time / (STEP_SHARE * rbsdem.modes(finite).stable_step))
     dynamic = rbsdem.time_history(finite, at, force=drive.force, dt=dt, method="rk4")
-    seconds = time.perf_counter() - begin
+    seconds = time.perf_counter() - start
 
     model = np.interp(at, dynamic.time, dynamic.displacement)
     difference = np.max(np.abs(model - static.displacement)) / np.max(np.abs(static.displacement))
@@ -142,9 +142,9 @@ def by_displacement(drive: Drive, column: rbsdem.Column) -> tuple[Run, float]:
     Returns the run and the seconds that the analysis took.
     """
     pdelta = dataclasses.replace(column, kinematics="pdelta")
-    begin = time.perf_counter()
+    start = time.perf_counter()
     static = rbsdem.cyclic(pdelta, displacement=drive.displacement)
-    seconds = time.perf_counter() - begin
+    seconds = time.perf_counter() - start
 
     if drive.full:
         scores = rbsdem.compare(static, (drive.displacement, drive.force))
@@ -172,15 +172,15 @@ QUANTITIES = (
 
 
 def print_histories(console: Console, measured: dict[str, Drive]) -> None:
-    """Say which measured rows are used."""
+    """Print which measured rows are used."""
     console.print("[bold]Measured histories[/bold]")
     for key, drive in measured.items():
         line = f"  {rbsdem.paper_sections()[key].specimen:<20}{drive.source}"
         console.print(line, markup=False, soft_wrap=True)
     if not all(drive.full for drive in measured.values()):
         console.print(
-            "  Of reversal points, the rms error below is that at the points alone; the other\n"
-            "  numbers of the test are those of its full history (data/measured_loops.csv).\n"
+            "  With reversal points, the rms error below is taken at these points alone; the\n"
+            "  other values of the test are those of its full history (data/measured_loops.csv).\n"
             f"  To use the full histories: --peer DIR or {FOLDER_VARIABLE}; data/README.md."
         )
     console.print()

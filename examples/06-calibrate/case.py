@@ -3,7 +3,7 @@
     python examples/06-calibrate/case.py [--no-plot]
 
 The full history is taken from the folder that RBSDEM_PEER_DIR names; without it, the reversal
-points that come with rbsdem stand in, which tell the strength but little of the way between.
+points that come with rbsdem are used, which show the strength but little of the loop between them.
 """
 
 import sys

@@ -3,7 +3,7 @@
     python examples/07-blind/case.py [--no-plot]
 
 The full history is taken from the folder that RBSDEM_PEER_DIR names; without it, the reversal
-points that come with rbsdem drive the column and stand for the test.
+points that come with rbsdem drive the column and represent the test.
 """
 
 import sys
@@ -15,7 +15,7 @@ from rbsdem import peer
 
 KEY = "tanaka_park_5"
 
-# What a drawing tells, in SI units.
+# What the drawing shows, in SI units.
 specimen = peer.Specimen(
     name="Tanaka and Park 1990, No. 5",
     section="rectangular",
@@ -48,7 +48,7 @@ rows = zip(test.displacement, test.force, result.force, strict=True)
 for d, measured, computed in list(rows)[::step]:
     print(f"{1e3 * d:7.1f} mm   test {1e-3 * measured:7.1f} kN   model {1e-3 * computed:7.1f} kN")
 
-# How the number of bodies, and one parameter of the model, change the largest force.
+# Effect of the number of bodies, and of one parameter of the model, on the largest force.
 print()
 for n in (2, 4, 8):
     again = rbsdem.cyclic(peer.column(specimen, n=n), displacement=test.displacement)
@@ -57,7 +57,7 @@ weaker = rbsdem.cyclic(column.with_parameters(steel_strength=1.0), displacement=
 print(f"bars as strong as measured: {weaker.summary['peak_force'] * 1e-3:.1f} kN")
 
 if "--no-plot" not in sys.argv:
-    # Way points between the turning points, so that the loop is drawn round.
+    # Points between the turning points, so that the loop is drawn smoothly.
     path = np.interp(
         np.linspace(0, 1, 4000), np.linspace(0, 1, len(result.force)), test.displacement
     )
