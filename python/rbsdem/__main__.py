@@ -1,6 +1,6 @@
-"""The command `rbsdem`: hands over to the executable that was built with the package.
+"""The command `rbsdem`: starts the executable that was built with the package.
 
-`rbsdem trade` and `rbsdem peer` are done here, by Python.
+`rbsdem trade` and `rbsdem peer` are run by Python.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The only importer of the compiled extension.
 
-Numbers go in as plain arrays, a status and a message come back; here they become exceptions.
+Names and values go in; arrays, a status and a message come back. A status becomes an exception here.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from rbsdem.errors import InputError, SolveError
 
 Array = NDArray[np.float64]
 
-#: Marks a number that is not given (the constant `unset` of the Fortran part).
+#: Stands for a number that is not given (the constant `unset` of the Fortran part).
 UNSET = -float(np.finfo(np.float64).max)
 
 #: The same for a whole number.
@@ -32,10 +32,10 @@ BEYOND_MEANING = 1e50
 _ANALYSIS_FAILED = 1
 _LITTLE_ROOM = 3
 
-#: Figures of a run that are whole numbers.
+#: Summary values that are whole numbers.
 _COUNTS = ("steps", "rows", "events", "cut_steps")
 
-#: Letters of the name of a method; why the program chose it comes behind.
+#: Length of the name of a method; the reason for the program's choice follows it.
 _METHOD_LENGTH = 20
 
 
@@ -63,8 +63,8 @@ def number(value: Any, name: str) -> float:
 def word(value: Any) -> str:
     """Return a name for the Fortran part, which knows valid names and refuses all others.
 
-    Without runs of blanks, as Fortran reads only the first letters of a long word, and without
-    letters that f2py does not take.
+    Repeated blanks are removed, as Fortran reads only the start of a long word. Characters that
+    f2py does not take are replaced.
     """
     return " ".join(str(value).split()).encode("ascii", "replace").decode()
 
@@ -118,7 +118,7 @@ def finite_vector(values: ArrayLike, name: str) -> Array:
 
 
 class Text(str):
-    """A text of the user, which crosses as it is; other strings are words that Fortran knows."""
+    """A text of the user, passed on unchanged; other strings are words known to Fortran."""
 
 
 class Statement(NamedTuple):
@@ -159,12 +159,12 @@ def group(name: str, values: Mapping[str, Any]) -> Statement:
 
 
 def _one_line(text: str) -> str:
-    """Return a text without what separates the keys and groups of a statement."""
-    return "".join(letter if letter.isprintable() else " " for letter in text)
+    """Return a text without the characters that separate keys and groups of a statement."""
+    return "".join(character if character.isprintable() else " " for character in text)
 
 
 def _crossing(statement: Statement) -> tuple[bytes, list[float]]:
-    """Return a statement for f2py, which takes no letters beyond ASCII but all bytes."""
+    """Return a statement for f2py, which takes bytes but no characters beyond ASCII."""
     return statement.text.encode("utf-8", "replace"), statement.numbers
 
 
@@ -213,7 +213,7 @@ def keys() -> dict[str, Any]:
 
 @cache
 def quantities(opens: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return the names of what a row holds, an asterisk behind those of joints, and of figures."""
+    """Return the names of the values of a row (joints: with an asterisk) and of a summary."""
     rows, figures = _rbsdem.rbs_quantities(int(opens))
     return tuple(_text(rows).split()), tuple(_text(figures).split())
 
@@ -232,7 +232,7 @@ def spring_response(statement: Statement, axial_load: float, deformation: Array)
     return force
 
 
-#: Rows, figures, the error that ended a run early and what is to be noted of it.
+#: Rows, summary values, the error that ended a run early, and a note on its accuracy.
 Run = tuple[Array, dict[str, Any], SolveError | None, str]
 
 
@@ -253,7 +253,7 @@ def to_namelist(statement: Statement) -> str:
 
 
 def modes(column: Statement, unknowns: int) -> tuple[Array, Array, float, str]:
-    """Return circular frequencies, shapes (one a column), the stable step of RK4, and a note."""
+    """Return circular frequencies, shapes (one in each column), the stable step of RK4, a note."""
     omega, shapes, stable_step, status, message = _rbsdem.rbs_modes(*_crossing(column), unknowns)
     _raise(status, message)
     return omega, shapes, stable_step, _text(message)
@@ -294,9 +294,9 @@ def time_history(
 ) -> Run:
     """March through time.
 
-    How many rows there will be is known to the Fortran part only, once it has planned the steps.
-    Without `every`, and without a step that does not divide the intervals, there is one for each of
-    `time`; else a first call asks for more room.
+    Only the Fortran part knows the number of rows, after it has planned the steps. Without `every`
+    there is one row for each of `time`, unless the step does not divide the intervals. Where there
+    is not enough room, the first call returns the number of rows and a second one computes them.
     """
     for name, values in loads.items():
         if values.size != time.size:
@@ -328,18 +328,18 @@ def read_case(path: str) -> tuple[Statement, Array, Array, NDArray[np.int32]]:
     """Return a case file as statement, times, values of the five drives, and which of them act."""
     raw = os.fsencode(_path(path))
     size = os.path.getsize(path) if os.path.isfile(path) else 0
-    # More than most cases need; a second call has the room that the first one asked for.
+    # Enough room for most cases; if not, a second call has the room that the first one asked for.
     sizes = (4 * size + 1024, size // 2 + 64, size // 4 + 4096)
     while True:
         text, numbers, time, values, acting, wanted, status, message = _rbsdem.rbs_read_case(
             raw, *sizes
         )
         _raise(status, message)
-        letters, count, rows = (int(number) for number in wanted)
-        if letters <= sizes[0] and count <= sizes[1] and rows <= sizes[2]:
-            statement = Statement(text[:letters].decode("utf-8"), numbers[:count].tolist())
+        length, count, rows = (int(number) for number in wanted)
+        if length <= sizes[0] and count <= sizes[1] and rows <= sizes[2]:
+            statement = Statement(text[:length].decode("utf-8"), numbers[:count].tolist())
             return statement, time[:rows].copy(), values[:rows], acting
-        sizes = (letters, count, rows)
+        sizes = (length, count, rows)
 
 
 def protocol(amplitudes: Array, cycles: NDArray[np.int32], repeats: int, points: int) -> Array:
@@ -356,33 +356,33 @@ def protocol(amplitudes: Array, cycles: NDArray[np.int32], repeats: int, points:
 def read_history(path: str, length: str, force: str) -> tuple[str, Array, Array]:
     """Return name, displacements [m] and forces [N] of a history file.
 
-    `length` and `force` are the units of the file; empty: those that the file names.
+    `length` and `force` are the units of the file; empty strings mean those given in the file.
     """
     path = _path(path)
     # No row is shorter than two digits, a separator and an end of line.
     most = os.path.getsize(path) // 4 + 1 if os.path.isfile(path) else 1
     if most > np.iinfo(np.int32).max:
         raise InputError(f"{path}: the file is too large")
-    # As bytes: f2py takes no letters beyond ASCII.
+    # As bytes: f2py takes no characters beyond ASCII.
     answer = _rbsdem.rbs_read_history(os.fsencode(path), word(length), word(force), most)
     rows, name, displacement, force, status, message = answer
     _raise(status, message)
     return _text(name), displacement[:rows].copy(), force[:rows].copy()
 
 
-#: A section on its way to Fortran (`rbs_flat_section`): whole numbers and reals.
+#: A section for Fortran (`rbs_bindings_section_arrays`): whole numbers and reals.
 PackedSection = tuple[NDArray[np.int32], Array]
 
 
 def check_section(section: PackedSection) -> Array:
-    """Return what follows from a section, or raise `InputError` for everything wrong with it."""
+    """Return derived values of a section, or raise `InputError` with all that is wrong with it."""
     figures, status, message = _rbsdem.rbs_check_section(*section)
     _raise(status, message)
     return figures
 
 
 def axial_capacity(section: PackedSection) -> tuple[float, float]:
-    """Return least (tension) and largest axial load without bending."""
+    """Return the least (tension) and the largest axial load without bending."""
     least, most, status, message = _rbsdem.rbs_axial_capacity(*section)
     _raise(status, message)
     return least, most
@@ -412,7 +412,7 @@ def section_concrete(section: PackedSection, tension: int, part: int, strain: Ar
 def moment_curvature(
     section: PackedSection, axial_load: float, tension: int, confined: bool, curvature: Array
 ) -> tuple[Array, Array]:
-    """Return moments and strains for curvatures of one sign in rising size."""
+    """Return moments and strains for curvatures of one sign in ascending order of size."""
     moment, strain, status, message = _rbsdem.rbs_moment_curvature(
         *section, axial_load, tension, int(confined), curvature
     )
@@ -429,7 +429,7 @@ def section_events(
     ultimate: str,
     strains: Array,
 ) -> tuple[Array, bool]:
-    """Return cracking, yield, peak, ultimate and end, one a column, and whether N was lost."""
+    """Return cracking, yield, peak, ultimate and end (columns), and whether N was lost."""
     points, lost, status, message = _rbsdem.rbs_section_events(
         *section, axial_load, tension, int(confined), word(yielding), word(ultimate), strains
     )
@@ -445,7 +445,7 @@ def section_flexure(
     yielding: str,
     ultimate: str,
 ) -> tuple[Array, Array]:
-    """Return the points of the diagram, one a column, and the numbers of the flexural spring."""
+    """Return the points of the diagram (columns) and the parameters of the flexural spring."""
     points, figures, status, message = _rbsdem.rbs_section_flexure(
         *section, settings, int(stiffened), int(confined), word(yielding), word(ultimate)
     )
@@ -476,10 +476,10 @@ def section_shear(
 def section_strips(
     shape: str, sizes: list[float], round_core: bool, number: int
 ) -> tuple[Array, Array, Array]:
-    """Return centroids and areas of core and of cover in strips, and figures of the whole section.
+    """Return centroids and areas of strips of core and cover, and values of the whole section.
 
-    `sizes` are width, depth, and by how much those of the core are smaller; the figures are area,
-    second moment and shear area.
+    `sizes` are width and depth of the section and the amounts by which those of the core are
+    smaller; the values are area, second moment of area and shear area.
     """
     core, cover, figures, status, message = _rbsdem.rbs_section_strips(
         word(shape), sizes, int(round_core), number
@@ -491,18 +491,18 @@ def section_strips(
 def layer_response(
     concrete: list[float], tension: int, stirrup: list[float], path: Array
 ) -> tuple[Array, Array]:
-    """Return states of a layer along a path (a column each), and whether they carry the stress."""
+    """Return the states of a layer along a path (columns), and whether they carry the stress."""
     return _rbsdem.rbs_layer_response(concrete, tension, stirrup, path)
 
 
 def _path(path: str) -> str:
     if not path or "\0" in path:
-        raise InputError(f"{path!r} is no path of a file")
+        raise InputError(f"{path!r} is not the path of a file")
     return path
 
 
 def _empty_rows(shape: tuple[int, bool], rows: int) -> Array:
-    """Return the array that Fortran fills, one row of the result a column."""
+    """Return the array that Fortran fills; each column is a row of the result."""
     bodies, opens = shape
     names = quantities(opens)[0]
     joints = sum(name.endswith("*") for name in names)
@@ -512,7 +512,7 @@ def _empty_rows(shape: tuple[int, bool], rows: int) -> Array:
 def _finish(
     rows: Array, kept: int, figures: Array, method: bytes, status: int, message: bytes
 ) -> Run:
-    """Cut the rows to those kept; turn bad input into an exception, a failure into an error."""
+    """Keep the rows that were filled; raise wrong input, return a failed analysis as an error."""
     error, note = None, ""
     if status == _ANALYSIS_FAILED:
         error = SolveError(_text(message))

@@ -1,4 +1,4 @@
-"""Force-displacement curves as functions take them: an object with both, or a pair of arrays."""
+"""Force-displacement curves as arguments: an object with both, or a pair of arrays."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def pair(curve: Any, name: str) -> tuple[Any, Any]:
     curve : Curve
         The object or the pair.
     name : str
-        What messages call it.
+        Its name in messages.
 
     Raises
     ------
@@ -53,16 +53,16 @@ def pair(curve: Any, name: str) -> tuple[Any, Any]:
 
 
 def columns(names: tuple[str, ...], *values: ArrayLike, least: int = 2) -> list[Array]:
-    """Return arrays of finite numbers, all of one length.
+    """Return arrays of finite numbers, all of the same length.
 
     Parameters
     ----------
     names : tuple of str
-        What messages call the arrays.
+        Names of the arrays in messages.
     *values : array_like, shape (rows,)
         The arrays.
     least : int, default 2
-        How many rows there must be.
+        Smallest number of rows.
 
     Raises
     ------

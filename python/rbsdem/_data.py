@@ -30,11 +30,11 @@ def text(name: str) -> str:
 
 
 def notes(name: str) -> list[str]:
-    """Return the lines of a file that begin with #, without it: what the file is and its source."""
+    """Return the comment lines of a file without #: what the file is, and its source."""
     return [line.lstrip("# ") for line in text(name).splitlines() if line.startswith("#")]
 
 
 def rows(name: str) -> list[dict[str, str]]:
-    """Return the rows of a csv file by the names of its header."""
+    """Return the rows of a csv file as mappings from the names in its header."""
     lines = [line for line in text(name).splitlines() if not line.startswith("#")]
     return list(csv.DictReader(lines))

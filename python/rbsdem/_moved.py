@@ -1,4 +1,4 @@
-"""Modules that have a new name: importing an old one raises an error that says the new one."""
+"""Modules with a new name: importing the old one raises an error that gives the new one."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from importlib.abc import MetaPathFinder
 from importlib.machinery import ModuleSpec
 from types import ModuleType
 
-# Old name: new name.
+# From old to new names.
 MOVED = {
     "rbsdem.trade": "rbsdem.accuracy",
     "rbsdem.results": "rbsdem.result",
@@ -29,7 +29,7 @@ MOVED = {
 
 
 class MovedFinder(MetaPathFinder):
-    """Asked by Python for a module that no other finder has found."""
+    """Finder that Python asks for a module if no other finder has found it."""
 
     def find_spec(
         self,
@@ -37,7 +37,7 @@ class MovedFinder(MetaPathFinder):
         path: Sequence[str] | None = None,
         target: ModuleType | None = None,
     ) -> ModuleSpec | None:
-        """Raise `ImportError` for a module that has moved; leave all others alone."""
+        """Raise `ImportError` for a module that has moved; return None for all others."""
         if fullname in MOVED:
             raise ImportError(f"the module {fullname} is now {MOVED[fullname]}", name=fullname)
         return None

@@ -1,4 +1,4 @@
-"""Packages that only figures and tables need, and the message if one is not installed."""
+"""Packages that may be missing, and the message if one of them is needed."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 
 def need_matplotlib() -> None:
-    """Raise `ImportError` with the way to get matplotlib if it is not installed."""
+    """Raise `ImportError` with the installation command if matplotlib is not installed."""
     try:
         import matplotlib  # noqa: PLC0415
     except ImportError as error:
@@ -17,7 +17,7 @@ def need_matplotlib() -> None:
 
 
 def need_rich() -> Any:
-    """Return rich, or raise `ImportError` with the way to get it."""
+    """Return rich, or raise `ImportError` with the installation command."""
     try:
         import rich.box  # noqa: PLC0415
         import rich.progress  # noqa: PLC0415
@@ -30,7 +30,7 @@ def need_rich() -> Any:
 
 
 def need_jinja2() -> Any:
-    """Return jinja2, or raise `ImportError` with the way to get it."""
+    """Return jinja2, or raise `ImportError` with the installation command."""
     try:
         import jinja2  # noqa: PLC0415
     except ImportError as error:
@@ -41,7 +41,7 @@ def need_jinja2() -> Any:
 
 
 def escaped(text: str) -> str:
-    """Return a text in which rich finds no markup."""
+    """Return a text with the markup of rich escaped."""
     from rich.markup import escape  # noqa: PLC0415
 
     return escape(text)

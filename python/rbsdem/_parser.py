@@ -1,4 +1,4 @@
-"""What the commands that Python does share: how they read their arguments."""
+"""The parser of arguments for the commands that are written in Python."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ __all__ = ["CommandParser"]
 
 
 class CommandParser(argparse.ArgumentParser):
-    """A parser whose errors begin with the program's name, as all others.
+    """A parser whose errors start with the name of the program, as all errors do.
 
     Parameters
     ----------
     command : str
-        The word behind `rbsdem`.
+        Name of the command, the word after `rbsdem`.
     description, epilog : str
-        Texts of the help, printed as they stand.
+        Texts of the help, printed unchanged.
     """
 
     def __init__(self, command: str, description: str, epilog: str) -> None:
@@ -29,6 +29,6 @@ class CommandParser(argparse.ArgumentParser):
         self._command = command
 
     def error(self, message: str) -> None:
-        """Print the message and end with the code of wrong input."""
+        """Print the message and exit with the code for wrong input."""
         sys.stderr.write(f"rbsdem: {self._command}: {message}\n")
         sys.exit(2)

@@ -1,4 +1,4 @@
-"""Parameters that have a new name: giving an old one raises an error that says the new one."""
+"""Parameters with a new name: the old name raises an error that gives the new one."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def renamed(**names: str) -> Callable[[type[Kind]], type[Kind]]:
-    """Make a class name the new parameter where an old one is given.
+    """Make a class raise an error with the new name if an old parameter is given.
 
     Parameters
     ----------
     **names : str
-        What the message says for each old name: the new name, or where it went.
+        For each old name what the message gives: the new name, or what takes its place.
     """
 
     def change(kind: type[Kind]) -> type[Kind]:

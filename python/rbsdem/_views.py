@@ -1,9 +1,9 @@
-"""Who draws a record, and who makes a table of it.
+"""The functions that draw a record or make a table of it.
 
-A record (a comparison, a diagram, the rows of a trade) does not know its views. Its methods `plot`,
-`table` and the like ask here, and the module that draws the record registers its functions here. So
-imports go one way: this module <- records <- views. The package of a record imports its views,
-which registers them.
+A record (a comparison, a diagram, the rows of a trade) does not import its views. The module that
+draws a record registers its functions here, and the methods `plot`, `table` and others of the
+record look them up here. So imports go one way: this module <- records <- views. The package of a
+record imports its views, which registers them.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _FUNCTIONS: dict[tuple[type, str], Callable[..., Any]] = {}
 
 
 def view_of(kind: type, name: str) -> Callable[[Function], Function]:
-    """Register the function below as a view of a record.
+    """Register the decorated function as a view of a record.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def view_of(kind: type, name: str) -> Callable[[Function], Function]:
 
 
 def view(record: object, name: str, *arguments: Any, **options: Any) -> Any:
-    """Return what the view of a record returns, given the record and the arguments."""
+    """Call the view of a record with the record and the arguments, and return its result."""
     for kind in type(record).__mro__:
         if (kind, name) in _FUNCTIONS:
             return _FUNCTIONS[kind, name](record, *arguments, **options)

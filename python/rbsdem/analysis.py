@@ -36,7 +36,7 @@ class Modes:
     omega, frequency : ndarray, shape (2n,), or (3n,) where the joints open
         Circular frequencies [rad/s] and frequencies [Hz], ascending.
     shapes : ndarray, shape (2n, 2n) or (3n, 3n)
-        Shapes in (slip 1..n, relative rotation 1..n, opening 1..n), one a column, with
+        Shapes in (slip 1..n, relative rotation 1..n, opening 1..n), one in each column, with
         shape' M shape = 1.
     stable_step : float
         Longest step for which RK4 is stable, damping included [s].
@@ -54,7 +54,7 @@ def modes(column: Column) -> Modes:
     Parameters
     ----------
     column : Column
-        Up to 500 bodies. The axial load counts with `kinematics` "pdelta" and "finite".
+        Up to 500 bodies. The axial load takes part with `kinematics` "pdelta" and "finite".
 
     Raises
     ------
@@ -64,7 +64,8 @@ def modes(column: Column) -> Modes:
     Warns
     -----
     AccuracyWarning
-        If the axial load is so near the critical one that low frequencies hang on its last digits.
+        If the axial load is so close to the critical one that low frequencies depend on its last
+        digits.
     """
     omega, shapes, stable_step, note = _core.modes(_checked(column)._statement, column.unknowns)
     if note:
@@ -98,18 +99,18 @@ def cyclic(
 ) -> Result:
     """Follow the static path of a column through displacements of the top, or lateral forces.
 
-    Exact for `kinematics` "small" and "pdelta": the column goes from event to event (end of a line
-    of a spring) without increments or tolerance. With "finite" each increment is solved for
-    equilibrium, events included. The path begins at zero.
+    The path is exact for `kinematics` "small" and "pdelta": it goes from event to event (a spring
+    reaches the end of its line) without increments or tolerance. With "finite" each increment is
+    solved for equilibrium, and events are located. The path starts at zero.
 
     Parameters
     ----------
     column : Column
         The column.
     displacement, force : array_like, shape (m,)
-        What is driven, exactly one of the two: displacement of the top [m] or lateral force [N].
+        The loading, exactly one of the two: displacement of the top [m] or lateral force [N].
     every : int, optional
-        Every n-th point is kept, and the last; without it all are.
+        Keep every n-th point and the last one. By default all points are kept.
     collapse_drift : float, optional
         Displacement of the top over the height at which the column counts as collapsed: the path
         ends there, and `summary["status"]` is "collapsed".
@@ -124,8 +125,8 @@ def cyclic(
     InputError
         For bad input.
     SolveError
-        If the path cannot be carried on (a force beyond the capacity); its attribute `result` holds
-        the path up to there, with the last good state as last row.
+        If the path cannot be continued (a force beyond the capacity); its attribute `result` holds
+        the path up to that point, with the last good state as its last row.
 
     Warns
     -----
@@ -181,57 +182,60 @@ def time_history(
     ground_acceleration : array_like, shape (m,), optional
         Acceleration of the ground [m/s2], linear between the times.
     dt : float, optional
-        Step [s]. If it divides every interval of `time`, rows are kept at `time`; else the steps
-        run from the first to the last time and a row is kept after each. Without `dt` the method
-        chooses; with "rk4" every interval is cut into equal steps not longer than a fifth of the
-        stability limit.
+        Step [s]. If it divides every interval of `time`, rows are kept at `time`; otherwise the
+        steps run from the first to the last time and a row is kept after each. Without `dt` the
+        method chooses the step; "rk4" divides every interval into equal steps not longer than a
+        fifth of the stability limit.
     method : {"auto", "rk4", "rk45", "newmark", "hht", "generalised_alpha"}, optional
-        The choice of the program, which `summary["method"]` and `summary["reason"]` tell; classical
-        Runge-Kutta with fixed step (the paper's scheme); Runge-Kutta 5(4) with error control;
-        implicit methods: average acceleration, Hilber-Hughes-Taylor, generalised-alpha. The default
-        is "auto" with ground motion; with a lateral force alone the method must be named.
+        "auto" lets the program choose; `summary["method"]` and `summary["reason"]` report its
+        choice. "rk4" is classical Runge-Kutta with a fixed step (the paper's scheme), "rk45"
+        Runge-Kutta 5(4) with error control. The others are implicit: average acceleration,
+        Hilber-Hughes-Taylor, generalised-alpha. The default is "auto" with ground motion; with a
+        lateral force alone the method must be named.
     initial : mapping, optional
         State at the start: "slip" [m], "rotation" [rad], "opening" [m], and "slip_velocity",
-        "rotation_velocity", "opening_velocity", each of shape (n,). The springs get there from
-        zero. Without "opening" the joints start in equilibrium under axial load and weight.
+        "rotation_velocity", "opening_velocity", each of shape (n,). The springs are loaded
+        from zero to this state. Without "opening" the joints start in equilibrium under axial load
+        and weight.
     vertical_acceleration : array_like, shape (m,), optional
         Vertical acceleration of the ground, upward positive [m/s2].
     axial_load : array_like, shape (m,), optional
         Axial load at the top besides that of the column, compression positive [N].
     events : {"step", "located"}, optional
-        "rk4": whether a spring changes its line at the end of a step (the default), or the step is
-        cut where the line ends.
+        For "rk4": a spring changes its line at the end of a step ("step", the default), or the step
+        is cut where the line ends ("located").
     tolerance : float, optional
-        "rk45" and "auto": wanted relative error of a step, in energy norm. The default is 1e-6.
+        For "rk45" and "auto": allowed relative error of a step in the energy norm. The default is
+        1e-6.
     rho_infinity : float, optional
-        "hht" and "generalised_alpha": spectral radius at infinite frequency, 1 without numerical
-        damping. The default is 0.8.
+        For "hht" and "generalised_alpha": spectral radius at infinite frequency; 1 means no
+        numerical damping. The default is 0.8.
     collapse_drift : float, optional
         Displacement of the top over the height at which the column counts as collapsed: the
         analysis ends there, and `summary["status"]` is "collapsed".
     allow_unstable : bool, optional
-        "rk4": take a `dt` beyond the stability limit all the same.
+        For "rk4": accept a `dt` beyond the stability limit.
     every : int, optional
-        Every n-th step is kept, and the last. Without it rows are kept as said for `dt`.
+        Keep every n-th step and the last one. By default rows are kept as described for `dt`.
 
     Returns
     -------
     Result
-        A row for each time kept, the first one at the start.
+        A row for each time kept; the first row is the start.
 
     Raises
     ------
     InputError
         For bad input, and for a step beyond the stability limit; the message gives the limit.
     SolveError
-        If the motion loses all bounds, or a step does not converge; its attribute `result` holds
-        the rows up to there.
+        If the motion grows without bounds, or a step does not converge; its attribute `result`
+        holds the rows up to that point.
 
     Warns
     -----
     AccuracyWarning
         If a body turns by more than 0.1 rad with `kinematics` "small" or "pdelta", and if vertical
-        loads have nothing to act on.
+        loads have no effect on the column.
     """
     given = {
         "force": force,
@@ -296,7 +300,7 @@ def _loading(values: ArrayLike, name: str) -> Array:
 def _initial_state(initial: Mapping[str, ArrayLike] | None, column: Column) -> tuple[Array, bool]:
     """Return deformations and velocities at the start, and whether openings are given.
 
-    An empty array stands for a column at rest.
+    An empty array means a column at rest.
     """
     if not initial:
         return _NONE, False

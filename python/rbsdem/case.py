@@ -1,4 +1,4 @@
-"""Cases of the executable, read into Python by the same reader."""
+"""Case files of the executable, read into Python by the same reader."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Case:
     method : str
         "static", or a method of `time_history`.
     time : ndarray, shape (m,)
-        Times of all loadings [s]; the number of the point in a static analysis.
+        Times of all loadings [s]; in a static analysis the numbers of the points.
     displacement, force : ndarray, shape (m,), or None
         Displacement of the top [m] or lateral force [N].
     ground_acceleration, vertical_acceleration : ndarray, shape (m,), or None
@@ -69,7 +69,7 @@ class Case:
         Returns
         -------
         Result
-            Of `cyclic` or `time_history`, with their exceptions.
+            The result of `cyclic` or `time_history`; their exceptions are raised too.
         """
         column = self.column if column is None else column
         loads = {name: getattr(self, name) for name in _DRIVES if getattr(self, name) is not None}
@@ -88,7 +88,7 @@ class Case:
     def to_namelist(self) -> str:
         """Return the text of a case file, from which the same case comes back.
 
-        Histories stand in the text itself, with all their digits.
+        Histories are written into the text itself, with all their digits.
         """
         head = {"title": _core.Text(self.title) if self.title else None}
         parts = [_core.group("case", head), self.column._statement]
@@ -106,7 +106,7 @@ class Case:
         return _core.to_namelist(_core.Statement("\n".join(part.text for part in parts), numbers))
 
     def __eq__(self, other: object) -> bool:
-        """Whether another case has the same column, histories and settings, bit for bit."""
+        """Return whether another case has the same column, histories and settings, bit for bit."""
         if not isinstance(other, Case):
             return NotImplemented
         return all(
@@ -120,19 +120,19 @@ class Case:
 
 
 def read_case(path: str | os.PathLike[str]) -> Case:
-    """Read a case of the executable, its histories included.
+    """Read a case file of the executable, with its histories.
 
-    Loadings at different times come on common ones, by straight lines between their points.
+    Loadings given at different times are interpolated linearly to common times.
 
     Parameters
     ----------
     path : str or path
-        Path of the namelist file; paths of histories start from its folder.
+        Path of the namelist file; paths of histories are relative to its folder.
 
     Raises
     ------
     InputError
-        With a line for everything that is wrong, as `rbsdem check` finds it.
+        With a line for each error, as `rbsdem check` reports them.
     """
     statement, time, values, acting = _core.read_case(os.fspath(path))
     found: dict[str, dict[str, Any]] = {}
@@ -142,7 +142,7 @@ def read_case(path: str | os.PathLike[str]) -> Case:
             found[name] = given
     settings = _typed("analysis", found.get("analysis", {}))
     settings |= _typed("output", found.get("output", {}))
-    # The histories end there already, and the csv is that of the executable.
+    # The histories already end at the duration; the csv file is for the executable only.
     for name in ("duration", "file"):
         settings.pop(name, None)
     column = _typed("column", found["column"])
@@ -161,7 +161,7 @@ def read_case(path: str | os.PathLike[str]) -> Case:
 
 
 def _typed(group: str, given: dict[str, Any]) -> dict[str, Any]:
-    """Return values in the types of their keys: whole numbers and switches cross as numbers."""
+    """Return values in the types of their keys; whole numbers and switches arrive as floats."""
     types = {"integer": int, "logical": bool}
     typed = {}
     for key in _core.keys()["groups"][group]:
@@ -177,7 +177,7 @@ def _typed(group: str, given: dict[str, Any]) -> dict[str, Any]:
 
 
 class _Springs:
-    """Springs of a case, as its groups state them."""
+    """The springs of a case, collected from its groups."""
 
     def __init__(self) -> None:
         self.stated: dict[str, list[dict[str, Any]]] = {
@@ -185,7 +185,7 @@ class _Springs:
         }
 
     def take(self, group: str, given: dict[str, Any]) -> bool:
-        """Keep a group of springs; return whether it is one."""
+        """Keep the group if it is one of springs; return whether it is."""
         if group in self.stated:
             self.stated[group].append(given)
         return group in self.stated
@@ -222,7 +222,7 @@ def _several(value: float | list[float]) -> list[float]:
 
 
 def _joints(given: dict[str, Any]) -> tuple[int, ...]:
-    """Return the joints that a group names; none: all."""
+    """Return the joints that a group names; an empty tuple means all joints."""
     return tuple(int(joint) for joint in _several(given.get("joint", [])))
 
 

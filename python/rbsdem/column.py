@@ -46,15 +46,15 @@ class Column:
     n : int, optional
         Number of bodies, up to 10000.
     axial_load : float, optional
-        Axial load at the top, compression positive [N]. It takes part with `kinematics` "pdelta"
-        and "finite", and where the joints open.
+        Axial load at the top, compression positive [N]. It acts with `kinematics` "pdelta" and
+        "finite", and at every level on axial springs and layered joints.
     axial_height : float, optional
         Height at which the axial load acts [m], by default that of the column. The load leans with
         the column: its second-order moments are in proportion to this height. `kinematics`
         "pdelta" only.
     kinematics : {"small", "pdelta", "finite"}, optional
-        Linear in slips and rotations (paper, eqs 1-3, 5); the same with the second-order work of
-        the axial load; exact rotations (paper, eq 4 corrected, for any n).
+        "small" is linear in slips and rotations (paper, eqs 1-3, 5); "pdelta" adds the second-order
+        work of the axial load; "finite" has exact rotations (paper, eq 4 corrected, for any n).
     lengths, masses : array_like, shape (n,), optional
         Lengths [m], adding up to the height, and masses [kg] of the bodies.
     self_weight : bool, optional
@@ -63,23 +63,23 @@ class Column:
         Acceleration of gravity for the weight [m/s2].
     axial_spring : Spring or sequence of n Spring, optional
         Axial springs of the joints, opening and tension positive: `Elastic`, `Bilinear` or
-        `Compression`. Without them joints do not open.
+        `Compression`. Without them the joints do not open.
     top_mass, top_inertia : float, optional
-        Mass lumped at the top [kg] and its rotary inertia about the top [kg m2]. Its weight belongs
-        to `axial_load`.
+        Mass lumped at the top [kg] and its rotary inertia about the top [kg m2]. Its weight must be
+        part of `axial_load`.
     depth : float, optional
         Depth of the section [m]; it adds m depth^2/12 to the rotary inertia of every body.
     rotary_inertia : float or array_like, shape (n,), optional
-        Rotary inertia of the bodies about their centroids [kg m2], one for all or for each, in
-        place of m (l^2 + depth^2)/12.
+        Rotary inertia of the bodies about their centroids [kg m2], one value for all or one for
+        each, in place of m (l^2 + depth^2)/12.
     axial_follows, force_follows : bool, optional
         Whether the axial load, and the lateral force, turn with the top body; `kinematics` "finite"
         only.
     damping : float or Damping, optional
         Viscous damping; a number is the damping ratio of every mode.
     model : str, optional
-        Which model made the column, and the version of its parameters ("layered 2026.1"); for the
-        record only.
+        The model that made the column and the version of its parameters ("layered 2026.1"). It has
+        no effect on the analysis.
 
     Raises
     ------
@@ -131,7 +131,7 @@ class Column:
             put("axial_spring", _springs(self.axial_spring, "axial_spring", self.n))
         if self.damping is not None and not isinstance(self.damping, Damping):
             put("damping", Damping(modal=_core.number(self.damping, "column: damping")))
-        # Once for all analyses: what is frozen does not change.
+        # Once for all analyses, as a frozen column does not change.
         put("_statement", self._state())
         _core.check_column(self._statement)
 
@@ -158,7 +158,7 @@ class Column:
         Parameters
         ----------
         name : {"shear", "flexure", "axial_spring"}
-            Which springs; empty for axial springs that are not there.
+            Which springs. Without axial springs the result for them is empty.
         """
         springs = getattr(self, name)
         if springs is None:
@@ -190,7 +190,7 @@ class Column:
 def _springs_statement(
     springs: Spring | Sequence[Spring] | None, name: str, ids: dict[Spring, int]
 ) -> Iterator[_core.Statement]:
-    """Yield the springs of one kind of joint, equal ones once, with the joints that have them."""
+    """Yield the springs of one kind, equal springs once, with the joints that have them."""
     if springs is None:
         return
     if isinstance(springs, Spring):
@@ -206,7 +206,7 @@ def _springs_statement(
 
 
 def _parts(values: ArrayLike, name: str) -> tuple[float, ...]:
-    """Return one number for each body; one for all of them is allowed for rotary inertia."""
+    """Return one number for each body; for rotary inertia one number for all is allowed."""
     parts = _core.vector(
         np.atleast_1d(values) if name == "rotary_inertia" else values, f"column: {name}"
     )
@@ -216,7 +216,7 @@ def _parts(values: ArrayLike, name: str) -> tuple[float, ...]:
 
 
 def _springs(springs: Any, name: str, n: int) -> Spring | tuple[Spring, ...]:
-    """Return one spring, or a tuple of them; equal springs at all joints are one."""
+    """Return one spring if all joints have equal ones, otherwise a tuple of springs."""
     if isinstance(springs, Spring):
         return springs
     try:

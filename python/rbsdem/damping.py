@@ -14,7 +14,7 @@ from rbsdem.errors import InputError
 
 @dataclass(frozen=True)
 class Damping:
-    """Damping in proportion to mass and stiffness, and of single modes; the parts add up.
+    """Damping in proportion to mass and stiffness, and of modes; the parts add up.
 
     Parameters
     ----------
@@ -23,11 +23,11 @@ class Damping:
     stiffness : float, optional
         Damping in proportion to the stiffness of each joint [s].
     tangent : bool, optional
-        Whether that is the stiffness of the line that a spring is on, else the initial one. With
-        the initial one a joint that yields keeps the damping of one that does not.
+        Whether to use the present stiffness of the springs instead of the initial one. With the
+        initial stiffness, a joint keeps its damping when it yields.
     modal : float or sequence of float, optional
-        Damping ratios of the modes of the uncracked column: one for all, or those of the first
-        modes. At most 500 bodies.
+        Damping ratios of the modes of the uncracked column: one for all modes, or one for each
+        of the first modes. At most 500 bodies.
 
     Raises
     ------
@@ -53,7 +53,7 @@ class Damping:
         ratios = _core.vector(self.modal, "damping: modal")
         if ratios.size == 0:
             raise InputError("damping: modal is empty; give a ratio, or None")
-        # One ratio is for all modes, in a list or not.
+        # A single ratio is for all modes, whether it is in a list or not.
         modal = ratios.tolist()[0] if ratios.size == 1 else tuple(ratios.tolist())
         object.__setattr__(self, "modal", modal)
 
@@ -61,9 +61,9 @@ class Damping:
     def rayleigh(
         cls, ratio: float, frequency_1: float, frequency_2: float, tangent: bool = False
     ) -> Damping:
-        """Return the damping of mass and stiffness that has a ratio at two frequencies.
+        """Return damping by mass and stiffness that has a given ratio at two frequencies.
 
-        Between the frequencies the ratio is smaller, beyond them larger.
+        Between these frequencies the ratio is smaller, outside them it is larger.
 
         Parameters
         ----------
@@ -72,7 +72,7 @@ class Damping:
         frequency_1, frequency_2 : float
             Two different frequencies [Hz].
         tangent : bool, optional
-            As of `Damping`.
+            As for `Damping`.
 
         Raises
         ------
@@ -95,7 +95,7 @@ class Damping:
                 f"damping: frequency_1 and frequency_2 are both {frequency_1} Hz; "
                 "they must be different"
             )
-        # ratio = mass / (2 omega) + stiffness omega / 2 at both.
+        # ratio = mass / (2 omega) + stiffness omega / 2 at both frequencies.
         stiffness = 2.0 * ratio / (omega[0] + omega[1])
         return cls(mass=stiffness * omega[0] * omega[1], stiffness=stiffness, tangent=tangent)
 

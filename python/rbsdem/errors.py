@@ -15,11 +15,11 @@ class RbsdemError(Exception):
 
 
 class InputError(RbsdemError, ValueError):
-    """What was asked for cannot be: the message names the object, its value and a remedy."""
+    """The input is wrong: the message names the object, its value and a remedy."""
 
 
 class SolveError(RbsdemError, RuntimeError):
-    """An analysis of valid input could not be carried to its end.
+    """An analysis of valid input could not be completed.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class SolveError(RbsdemError, RuntimeError):
     Attributes
     ----------
     result : rbsdem.Result or None
-        The path up to the point that was reached; None if there is none.
+        The path up to that point; None if no path was computed.
     """
 
     def __init__(self, message: str = "", result: Result | None = None) -> None:
@@ -39,9 +39,9 @@ class SolveError(RbsdemError, RuntimeError):
         self.result = result
 
     def __reduce__(self) -> tuple[type[SolveError], tuple[str, Result | None]]:
-        """Keep `result` when the error crosses a process (pickle)."""
+        """Keep `result` when the error is sent to another process (pickle)."""
         return type(self), (str(self), self.result)
 
 
 class AccuracyWarning(UserWarning):
-    """A result of valid input that may mislead: the message says why, and what to use instead."""
+    """A result of valid input may mislead: the message says why, and what to use instead."""

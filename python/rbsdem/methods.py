@@ -9,12 +9,12 @@ from rbsdem import _core
 
 @dataclass(frozen=True)
 class Method:
-    """What is known of a method.
+    """The facts of a method.
 
     Attributes
     ----------
     name : str
-        As in `time_history(method=...)` and in a case file.
+        Name in `time_history(method=...)` and in a case file.
     order : int
         Order of accuracy; 0 for "static" and "auto".
     kind : {"static", "choice", "explicit", "implicit"}
@@ -26,8 +26,8 @@ class Method:
     finite : bool
         Whether it takes `kinematics="finite"`.
     limit_share, period_share : float
-        Its own step in shares of the stability limit of "rk4" and of the longest natural period; 0
-        if it does not depend on that. That of "rk45" is its longest one.
+        The step that the method chooses, as a share of the stability limit of "rk4" and of the
+        longest natural period; 0 if it does not depend on that. For "rk45" it is the longest step.
     """
 
     name: str
@@ -57,6 +57,6 @@ METHODS = {
     for row in _core.methods()
 }
 
-#: Names of the methods in time, and of those among them whose steps are implicit.
+#: Names of the methods in time, and of those of them that are implicit.
 IN_TIME = tuple(name for name, method in METHODS.items() if method.kind != "static")
 IMPLICIT = tuple(name for name, method in METHODS.items() if method.kind == "implicit")

@@ -1,4 +1,4 @@
-"""A parameter that a calibration may change: its value, its bounds, what it is."""
+"""A parameter that a calibration may change: its value, its bounds and its meaning."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ __all__ = ["Parameter", "Recipe", "is_recipe"]
 class Parameter:
     """A parameter with the range in which it has a meaning.
 
-    Where both bounds are positive, the parameter is searched on a logarithmic scale: half and twice
-    are then equally far away, as is fit for stiffnesses, strengths and lengths.
+    If both bounds are positive, the parameter is searched on a logarithmic scale, on which half and
+    twice the value are equally far away. This suits stiffnesses, strengths and lengths.
 
     Parameters
     ----------
@@ -32,12 +32,12 @@ class Parameter:
     unit : str, optional
         Unit, as in "N/m"; empty for a bare number.
     what : str, optional
-        What it is, for reports.
+        Its meaning, for reports.
 
     Raises
     ------
     InputError
-        If a number is not finite, the bounds are reversed, or the value is outside them.
+        If a value or bound is not finite, the bounds are reversed, or the value is outside them.
     """
 
     value: float
@@ -69,7 +69,7 @@ class Parameter:
         return self.low > 0
 
     def place(self, value: float) -> float:
-        """Return where a value is between the bounds, from 0 to 1."""
+        """Return the place of a value between the bounds, from 0 to 1."""
         if self.logarithmic:
             return math.log(value / self.low) / math.log(self.high / self.low)
         return (value - self.low) / (self.high - self.low)
@@ -85,7 +85,7 @@ class Parameter:
         return min(max(value, self.low), self.high)
 
     def per_place(self, value: float) -> float:
-        """Return how fast the value grows with its place [unit]."""
+        """Return the derivative of the value with respect to its place [unit]."""
         if self.logarithmic:
             return value * math.log(self.high / self.low)
         return self.high - self.low
@@ -100,9 +100,9 @@ class Recipe(Protocol):
         """The parameters, by name."""
 
     def with_parameters(self, **values: float) -> Column:
-        """Return the column that other values of them make; the values not named stay."""
+        """Return the column with other values; values that are not named are kept."""
 
 
 def is_recipe(column: Any) -> bool:
-    """Return whether a column tells by itself what may be changed."""
+    """Return whether a column offers its own parameters for a calibration."""
     return isinstance(column, Recipe) and isinstance(column.parameters, Mapping)

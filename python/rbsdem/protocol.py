@@ -1,4 +1,4 @@
-"""Built-in cyclic loading protocol."""
+"""Cyclic loading protocol."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ def protocol(
     repeats: int = 1,
     points: int = 25,
 ) -> Array:
-    """Full cycles 0, +a, 0, -a, 0 of growing (or any) amplitudes.
+    """Return full cycles 0, +a, 0, -a, 0 of given amplitudes.
 
     Parameters
     ----------
     amplitudes : array_like, shape (k,)
-        Amplitude of each step of the protocol, in the unit of what is driven.
+        Amplitude of each step of the protocol, in the unit of the driven quantity.
     cycles : int or sequence of k int, optional
         Cycles at each amplitude.
     repeats : int, optional
-        How often the whole is run.
+        How often the whole protocol is repeated.
     points : int, optional
         Points on a quarter of a cycle.
 
     Returns
     -------
     ndarray, shape (4 points sum(cycles) repeats + 1,)
-        The path, beginning at zero.
+        The path, which starts at zero.
 
     Raises
     ------

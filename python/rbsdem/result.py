@@ -21,12 +21,12 @@ ENERGIES = ("input", "kinetic", "spring", "damping", "axial", "residual")
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Result:
-    """Rows of an analysis; arrays of `steps` rows and, per joint, n columns.
+    """Rows of an analysis: arrays with a row for each kept step and a column for each joint.
 
     Attributes
     ----------
     time : ndarray, shape (steps,)
-        Time [s]; the number of the row in a static analysis.
+        Time [s]; in a static analysis the number of the point.
     displacement : ndarray, shape (steps,)
         Displacement of the top relative to the ground [m].
     force : ndarray, shape (steps,)
@@ -38,20 +38,20 @@ class Result:
     energy : dict of ndarray, shape (steps,)
         Energies [J]: "input" (work of lateral force and ground motion), "kinetic", "spring"
         (stored and dissipated), "damping", "axial" (potential of axial load and weight), and
-        "residual", what is left of input + energy at the begin - all others.
+        "residual", which is input + energy at the start minus the other energies.
     summary : dict
-        What was done: "analysis" ("static" or "dynamic"), "driven" (static), "kinematics",
+        What was done: "analysis" ("static" or "dynamic"), "driven" (static), "kinematics", the
         "method" that was used and, if the program chose it, the "reason"; "status": "completed",
         "collapsed" (`collapse_drift` was reached) or "failed" (the result of a `SolveError`).
-        Figures of the run: steps, rows, events (lines of springs left), time_step and stable_step
+        Values: steps, rows, events (how often a spring left its line), time_step and stable_step
         [s], peak_displacement [m], peak_force [N], displacement_at_peak_force [m], energies at the
-        end [J], energy_residual [J] and relative_energy_residual (largest over the rows kept),
-        peak_rotation (largest absolute rotation of a body over the rows kept [rad]), cut_steps
-        (cut at an event, for accuracy, or because they did not converge).
+        end [J], energy_residual [J] and relative_energy_residual (largest of the kept rows),
+        peak_rotation (largest absolute rotation of a body in the kept rows [rad]), cut_steps
+        (steps cut at an event, for accuracy, or because they did not converge).
     opening : ndarray, shape (steps, n)
-        Opening of the joints [m]; zero where they do not open.
+        Opening of the joints [m]; zero if they do not open.
     axial_force : ndarray, shape (steps, n), or None
-        Forces of the axial springs, tension positive [N]; None where joints do not open.
+        Forces of the axial springs, tension positive [N]; None if joints do not open.
     top : ndarray, shape (steps, 2)
         Position (x, y) of the top relative to the ground [m].
     column : Column
@@ -84,7 +84,7 @@ class Result:
         )
 
     def __eq__(self, other: object) -> bool:
-        """Whether another result has the same column, rows and summary, bit for bit."""
+        """Return whether another result has the same column, rows and summary, bit for bit."""
         if not isinstance(other, Result):
             return NotImplemented
         return all(
@@ -95,7 +95,7 @@ class Result:
 
 
 def _same(one: Any, other: Any) -> bool:
-    """Whether two values are equal; arrays by all of their elements, NaN equal to NaN."""
+    """Return whether two values are equal; arrays by all elements, with NaN equal to NaN."""
     if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
         return np.array_equal(one, other, equal_nan=True)
     if isinstance(one, dict) and isinstance(other, dict):
@@ -106,7 +106,7 @@ def _same(one: Any, other: Any) -> bool:
 
 
 def result_from_rows(rows: Array, column: Column, summary: dict[str, Any]) -> Result:
-    """Return the result that rows of the Fortran part hold, as views."""
+    """Return the result whose arrays are views of rows of the Fortran part."""
     values: dict[str, Array] = {}
     at = 0
     for name in _core.quantities(column.opens)[0]:

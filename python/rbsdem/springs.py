@@ -29,13 +29,13 @@ SPRINGS: dict[str, type[Spring]] = {}
 
 @dataclass(frozen=True)
 class Spring:
-    """What all springs share."""
+    """Base of all springs."""
 
     #: Name of the rule in the Fortran part.
     rule: ClassVar[str] = ""
 
     def __init_subclass__(cls) -> None:
-        """List the class under its rule."""
+        """Enter the class in the list of springs under its rule."""
         SPRINGS[cls.rule] = cls
 
     def __post_init__(self) -> None:
@@ -54,7 +54,7 @@ class Spring:
         self._check()
 
     def _check(self) -> None:
-        """Raise `InputError` for parameters that the rule does not allow."""
+        """Raise `InputError` if the rule does not allow the parameters."""
         _core.check_spring(self.statement("flexure"), 0.0)
 
     def statement(self, group: str, **place: Any) -> _core.Statement:
@@ -65,7 +65,7 @@ class Spring:
         group : str
             "shear", "flexure", "axial_spring" or "layer_spring".
         **place
-            Keys that say where the spring stands: `joint` or `id`.
+            Keys that place the spring: `joint` or `id`.
         """
         if "_own" not in self.__dict__:
             own = {"rule": self.rule} | {name: getattr(self, name) for name in _names(type(self))}
@@ -75,12 +75,12 @@ class Spring:
         return _core.Statement(head.text + own.text, head.numbers + own.numbers)
 
     def split(self, n: int) -> Self:
-        """Return one of n equal springs in series that together are this one.
+        """Return one of n equal springs that in series are equivalent to this one.
 
         Parameters
         ----------
         n : int
-            How many there are: each has n times the stiffness and 1/n of the deformations.
+            Number of springs; each has n times the stiffness and 1/n of the deformations.
 
         Raises
         ------
@@ -102,13 +102,13 @@ class Spring:
     def response(self, deformation: ArrayLike) -> Array:
         """Return the force along a path of deformation.
 
-        The path starts at the virgin state (zero) and runs straight from point to point; the force
-        at a point is exact and does not depend on further points in between.
+        The path starts at the virgin state (zero) and goes straight from point to point; the force
+        at a point is exact and does not depend on points in between.
 
         Parameters
         ----------
         deformation : array_like, shape (m,)
-            Deformations, one after the other [m or rad].
+            Deformations in sequence [m or rad].
 
         Returns
         -------
@@ -118,7 +118,7 @@ class Spring:
         Raises
         ------
         InputError
-            If the array has not one dimension or holds a value that is not finite.
+            If the array does not have one dimension, or contains a value that is not finite.
         """
         return self._response(deformation, 0.0)
 
@@ -131,7 +131,7 @@ class Spring:
 
 @cache
 def _names(kind: type[Spring]) -> tuple[str, ...]:
-    """Return the parameters of a rule, as its class has them."""
+    """Return the names of the parameters of a rule, in the order of its class."""
     return tuple(field.name for field in fields(kind) if field.name != "layers")
 
 
@@ -193,10 +193,10 @@ class Takeda(Spring):
     b0 : float, optional
         Exponent of the outer unloading stiffness K_r = K_0 (d_y/|D_m|)^b0.
     b1 : float, optional
-        Factor of the inner unloading stiffness. The default of 1 leaves K_r (Takeda 1970).
+        Factor of the inner unloading stiffness. With the default of 1 it is K_r (Takeda 1970).
     inner : {"kc", "kr", "one"}, optional
-        Inner unloading stiffness: b1 k_c, b1 K_r, or K_r. Always between the secant to the zero
-        crossing of the excursion and K_r.
+        Inner unloading stiffness: b1 k_c, b1 K_r, or K_r. It is always kept between the secant to
+        the zero crossing of the excursion and K_r.
 
     Raises
     ------
@@ -220,7 +220,8 @@ class PeakOriented(Spring):
     """Spring with a capped backbone, peak-oriented reloading and cyclic deterioration.
 
     Ibarra, Medina, Krawinkler 2005 (Earthquake Eng. Struct. Dyn. 34, 1489-1511), with a cracking
-    point and an unloading stiffness that may fall with ductility. ``docs/rules.md`` has its lines.
+    point and an unloading stiffness that may decrease with ductility. ``docs/rules.md`` describes
+    its lines.
 
     Parameters
     ----------
@@ -229,24 +230,25 @@ class PeakOriented(Spring):
     d_cap, f_cap : float
         Capping point, the largest force [m], [N]; from `d_y`, `f_y` on.
     d_pc : float
-        From the cap along the softening line to where it would have no force left [m].
+        Deformation from the cap to where the softening line reaches zero force [m].
     f_res : float, optional
-        Residual force, which softening does not fall below [N]; from 0 to below `f_y`.
+        Residual force, at which softening ends [N]; from 0 to below `f_y`.
     d_u : float, optional
-        Deformation beyond which the force falls to zero [m]. The default is none.
+        Deformation beyond which the force falls to zero [m]. By default it never does.
     d_c, f_c : float, optional
-        Cracking point [m], [N]. The default of 0 is elastic up to yield.
+        Cracking point [m], [N]. With the default of 0 the spring is elastic up to yield.
     b0 : float, optional
         Exponent of the unloading stiffness K_0 (d_y/|D_m|)^b0, K_0 = (f_c + f_y)/(d_c + d_y).
     lambda_s, lambda_c, lambda_k, lambda_a : float, optional
-        Energy that deterioration lasts for, over f_y d_y (mean of both sides): of the strength, of
-        the softening line, of the unloading stiffness, of the target of reloading. 0: none.
+        Dissipated energy at which deterioration is complete, over f_y d_y (mean of both sides): of
+        the strength, of the softening line, of the unloading stiffness, of the target of reloading.
+        0 means no deterioration.
     c : float, optional
-        Exponent of deterioration: an excursion that dissipates E takes the share
+        Exponent of deterioration: an excursion that dissipates E reduces the quantity by the share
         (E/(lambda f_y d_y - sum E))^c.
     d_y_neg, f_y_neg, d_cap_neg, f_cap_neg, d_pc_neg, f_res_neg, d_u_neg, d_c_neg, f_c_neg : float
-        The backbone of the negative side, as positive numbers. What is not given is as on the
-        positive side.
+        The backbone of the negative side, as positive numbers. A value that is not given is that of
+        the positive side.
 
     Raises
     ------
@@ -283,7 +285,7 @@ class PeakOriented(Spring):
 
 @dataclass(frozen=True, kw_only=True)
 class Pinching(PeakOriented):
-    """The peak-oriented spring with pinched reloading, for shear cracks and slip of bars.
+    """Peak-oriented spring with pinched reloading, for shear cracks and slip of bars.
 
     Parameters
     ----------
@@ -294,11 +296,11 @@ class Pinching(PeakOriented):
         The break is at the deformation (1 - kappa_d) times the permanent deformation of the peak;
         above 0, up to 1.
     d_y, f_y, d_cap, f_cap, d_pc, f_res, d_u, d_c, f_c, b0 : float
-        As of `PeakOriented`, by name.
+        As for `PeakOriented`, by keyword.
     lambda_s, lambda_c, lambda_k, lambda_a, c : float, optional
-        As of `PeakOriented`.
+        As for `PeakOriented`.
     d_y_neg, f_y_neg, d_cap_neg, f_cap_neg, d_pc_neg, f_res_neg, d_u_neg, d_c_neg, f_c_neg : float
-        As of `PeakOriented`.
+        As for `PeakOriented`.
 
     Raises
     ------
@@ -319,7 +321,7 @@ class Compression(Spring):
     ----------
     k : float
         Stiffness in compression [N/m]. Opening and tension are positive: the force is k w for
-        w < 0, else 0.
+        w < 0 and 0 otherwise.
 
     Raises
     ------
@@ -336,20 +338,20 @@ class Compression(Spring):
 class ConcreteSpring(Spring):
     """Concrete across a joint: crushes in compression, opens without tension, closes gradually.
 
-    For axial springs and the layers of `Layered`. Opening and tension are positive, so that it
-    works at negative deformations; the parameters here are positive.
+    For axial springs and the layers of `Layered`. Opening and tension are positive, so compression
+    is at negative deformations; the parameters are given as positive numbers.
 
     Parameters
     ----------
     k : float
         Initial stiffness [N/m].
     f_peak, d_peak : float
-        Largest compression [N] and the closing there [m]; the curve up to it is that of Popovics
-        (1973), so `f_peak` is below k d_peak.
+        Largest compression [N] and the closing there [m]. The curve up to it is that of Popovics
+        (1973), so `f_peak` must be below k d_peak.
     k_soft : float
-        Slope of softening behind the peak [N/m], as a positive number.
+        Slope of softening beyond the peak [N/m], as a positive number.
     f_res : float, optional
-        Force that softening leaves [N].
+        Residual force after softening [N].
     plastic : float, optional
         Factor of the plastic closing of Karsan and Jirsa (1969).
     contact : float, optional
@@ -380,7 +382,7 @@ class ConcreteSpring(Spring):
 @renamed(r1="cr1", r2="cr2", growth="isotropic_hardening", endurance="half_strength_work")
 @dataclass(frozen=True)
 class SteelSpring(Spring):
-    """Steel that yields round: the curve of Menegotto and Pinto (1973) as straight lines.
+    """Steel with a rounded yield curve, that of Menegotto and Pinto (1973) as straight lines.
 
     Parameters
     ----------
@@ -391,13 +393,13 @@ class SteelSpring(Spring):
     k_post : float
         Stiffness of hardening [N/m], from 0 to below `k`.
     r0, cr1, cr2 : float, optional
-        Roundness R = r0 (1 - cr1 xi/(cr2 + xi)) of a branch, xi the plastic excursion over the
-        yield deformation; cr1 is below 1.
+        Roundness R = r0 (1 - cr1 xi/(cr2 + xi)) of a branch, where xi is the plastic excursion over
+        the yield deformation; cr1 is below 1.
     isotropic_hardening : float, optional
-        Share by which the strength has grown when the deformation has reached from -d_y to d_y
-        (Filippou, Popov and Bertero 1983); with the power 0.8 of the reach.
+        Share by which the strength has grown when the deformations have covered the range from -d_y
+        to d_y (Filippou, Popov and Bertero 1983). It grows with the power 0.8 of that range.
     half_strength_work : float, optional
-        Plastic work over f_y d_y at which the strength of new branches is half; 0: it stays.
+        Plastic work over f_y d_y at which the strength of new branches is halved. 0 means no loss.
 
     Raises
     ------
@@ -419,7 +421,7 @@ class SteelSpring(Spring):
 @renamed(axial_load="the axial load of the column: Column(axial_load=...)")
 @dataclass(frozen=True, repr=False)
 class Layered(Spring):
-    """A joint as layers: normal springs across it that share the axial load of the column.
+    """A joint made of layers: normal springs across it that share the axial load of the column.
 
     For flexural springs. Layer i opens by w + y_i theta; the opening w at the middle of the section
     follows from the equilibrium of the axial load. Positive rotation opens layers at positive y.
@@ -463,7 +465,7 @@ class Layered(Spring):
         return f"Layered({len(self.layers)} layers)"
 
     def _check(self) -> None:
-        # The axial load is that of the column, which checks whether the layers can carry it.
+        # The column checks whether the layers can carry its axial load.
         _core.check_spring(self._alone(), 0.0)
 
     def _alone(self) -> _core.Statement:
@@ -478,15 +480,15 @@ class Layered(Spring):
         Parameters
         ----------
         ids : dict
-            Numbers of the springs of layers; new ones are put in.
+            Ids of the springs of layers; new springs are added.
         **place
-            `joint`, if the layers are not those of all joints.
+            `joint`, unless all joints have these layers.
         """
         spring = [ids.setdefault(spring, len(ids) + 1) for _, spring in self.layers]
         return _core.group("layers", place | {"y": [y for y, _ in self.layers], "spring": spring})
 
     def split(self, n: int) -> Self:
-        """Return one of n equal springs in series: the layers are split, their places stay."""
+        """Return one of n equal springs in series: the layers are split and keep their places."""
         return replace(self, layers=tuple((y, spring.split(n)) for y, spring in self.layers))
 
     def response(self, deformation: ArrayLike, axial_load: float = 0.0) -> Array:
@@ -495,7 +497,7 @@ class Layered(Spring):
         Parameters
         ----------
         deformation : array_like, shape (m,)
-            Rotations, one after the other [rad].
+            Rotations in sequence [rad].
         axial_load : float, optional
             Axial load that the layers share, compression positive [N].
 
@@ -517,7 +519,7 @@ class Layered(Spring):
 
 
 def layer_springs(ids: dict[Spring, int]) -> _core.Statement:
-    """Return the springs of layers by their numbers, each once."""
+    """Return the springs of layers as groups of a case, each once, with their ids."""
     parts = [spring.statement("layer_spring", id=number) for spring, number in ids.items()]
     return _core.Statement(
         "\n".join(part.text for part in parts), [x for part in parts for x in part.numbers]

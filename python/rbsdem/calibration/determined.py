@@ -1,11 +1,12 @@
-"""What a test says about the parameters that were fitted to it, and what it does not.
+"""How well a test determines the parameters that were fitted to it.
 
-J holds how the error vector changes with the place of each parameter, at the fit. Parameters whose
-columns of J point the same way cannot be told apart: their correlation is that of (J'J)^-1.
+J is the derivative of the error vector with respect to the places of the parameters, at the fit.
+Parameters whose columns of J are almost parallel cannot be distinguished: their correlation is that
+of (J'J)^-1.
 
-The errors of a model at neighbouring points of a path are one and the same error, so s^2 (J'J)^-1,
-which takes them for independent, would promise far too much. The G half cycles of the test are
-taken as independent instead: (J'J)^-1 (sum over half cycles of J_g'e_g e_g'J_g) (J'J)^-1 G/(G - 1),
+The errors of a model at neighbouring points of a path are not independent, so s^2 (J'J)^-1, which
+assumes that they are, would be far too small. The G half cycles of the test are taken as
+independent instead: (J'J)^-1 (sum over half cycles of J_g'e_g e_g'J_g) (J'J)^-1 G/(G - 1),
 the covariance for clustered errors (Liang & Zeger 1986, Biometrika 73; Cameron & Miller 2015,
 Journal of Human Resources 50).
 """
@@ -21,41 +22,41 @@ from rbsdem.calibration.misfit import Misfit, rms
 from rbsdem.calibration.search import AT_BOUND, refused
 from rbsdem.errors import InputError
 
-#: Change of a parameter for which its sensitivity is told.
+#: Change of a parameter for which its sensitivity is reported.
 CHANGE = 0.1
 
-#: Share of the peak force that a parameter has to move anywhere, or it is refused.
+#: Share of the peak force by which a parameter must change some force; otherwise it is refused.
 NO_EFFECT = 1e-6
 
-#: Root mean square of the change of force over the peak, for CHANGE, below which a parameter is
+#: Root mean square change of the force over the peak, for CHANGE, below which a parameter is
 #: hardly determined.
 LITTLE_EFFECT = 1e-3
 
-#: Correlation above which two parameters cannot be told apart.
+#: Correlation above which two parameters cannot be distinguished.
 TOO_ALIKE = 0.95
 
-#: Steps for a derivative, in shares of the distance between the bounds: the first, unless nothing
-#: changes with it.
+#: Steps for a derivative, as shares of the distance between the bounds. The second is used if
+#: nothing changes with the first.
 _STEPS = 0.005, 0.05
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Determined:
-    """How well the test determines each parameter, in their order.
+    """How well the test determines each parameter, in the order of the parameters.
 
     Attributes
     ----------
     standard_error : ndarray, shape (p,)
-        Of the value, in its unit; infinite where the test does not see it, NaN if there are not
-        more half cycles than parameters.
+        Standard error of the value, in its unit; infinite if no force changes with it, NaN if there
+        are no more half cycles than parameters.
     effect : ndarray, shape (p,)
         Root mean square change of the force over the measured peak, if the parameter changes by
         10 %.
     rise : ndarray, shape (p,)
-        How much the loss grows if the parameter alone changes by 10 %, the larger of both
-        directions.
+        Increase of the loss if the parameter alone changes by 10 %, in the direction of the larger
+        increase.
     correlation : ndarray, shape (p, p)
-        Of the estimates; NaN beside a parameter that the test does not see.
+        Correlation of the estimates; NaN for a parameter with which no force changes.
     at_bound : tuple of str
         "low", "high" or "".
     """
@@ -68,14 +69,14 @@ class Determined:
 
 
 def without_effect(misfit: Misfit, places: list[Array]) -> list[str]:
-    """Return the names of the parameters that move no force between their bounds.
+    """Return the names of the parameters that change no force between their bounds.
 
     Parameters
     ----------
     misfit : Misfit
         The misfit.
     places : list of ndarray, shape (p,)
-        From where each parameter is taken to its bounds alone.
+        Points from which each parameter alone is moved to its bounds.
     """
     idle = list(range(len(misfit.free)))
     for base in places:
@@ -109,7 +110,7 @@ def refuse(misfit: Misfit, names: list[str]) -> None:
 
 
 def determine(misfit: Misfit, places: Array) -> Determined:
-    """Return what the test says about the parameters at a fit, shape (p,)."""
+    """Return how well the test determines the parameters at a fit, shape (p,)."""
     free = list(misfit.free.values())
     size = len(free)
     vector = misfit.vector(places)
@@ -138,7 +139,7 @@ def determine(misfit: Misfit, places: Array) -> Determined:
 
 
 def warnings_of(names: list[str], found: Determined) -> list[str]:
-    """Return a line for everything that the test does not tell."""
+    """Return a line for everything that the test does not determine."""
     lines = []
     for i, name in enumerate(names):
         if np.isinf(found.standard_error[i]):
@@ -171,7 +172,7 @@ def _moved(places: Array, i: int, place: float) -> Array:
 
 
 def _derivatives(misfit: Misfit, places: Array, vector: Array) -> Array:
-    """Return how the vector changes with each place."""
+    """Return the derivative of the vector with respect to each place."""
     jacobian = np.zeros((vector.size, places.size))
     for i in range(places.size):
         for step in _STEPS:
@@ -182,7 +183,7 @@ def _derivatives(misfit: Misfit, places: Array, vector: Array) -> Array:
 
 
 def _derivative(misfit: Misfit, places: Array, vector: Array, i: int, step: float) -> Array:
-    """Return central differences; one-sided at a bound or beside what is refused."""
+    """Return central differences; one-sided ones at a bound or next to a refused column."""
     ends = np.clip([places[i] - step, places[i] + step], 0.0, 1.0)
     sides = [(end, misfit.vector(_moved(places, i, end))) for end in ends]
     known = [(end, other) for end, other in sides if not refused(other)]
@@ -194,7 +195,7 @@ def _derivative(misfit: Misfit, places: Array, vector: Array, i: int, step: floa
 
 
 def _inverse(jacobian: Array) -> Array:
-    """Return (J'J)^-1; columns that are alike give large numbers, not infinite ones."""
+    """Return (J'J)^-1, which is large but finite for parallel columns."""
     scale = np.sqrt(np.sum(jacobian**2, axis=0))
     scaled = jacobian / scale
     values, vectors = np.linalg.eigh(scaled.T @ scaled)
@@ -202,7 +203,7 @@ def _inverse(jacobian: Array) -> Array:
 
 
 def _groups(misfit: Misfit, vector: Array) -> Array:
-    """Return the half cycle of each element; the ratios of a balanced loss are one more each."""
+    """Return the half cycle of each element; each ratio of a balanced loss has one of its own."""
     groups = misfit.target.half_cycle
     extra = vector.size - groups.size
     return np.concatenate((groups, groups[-1] + 1 + np.arange(extra))) if extra else groups
@@ -221,7 +222,7 @@ def _sensitivity(
 ) -> tuple[Array, Array]:
     """Return change of force and growth of the loss for 10 % more or less of each parameter.
 
-    Of a parameter that may be zero or negative, 10 % of the distance between its bounds.
+    For a parameter that may be zero or negative it is 10 % of the distance between its bounds.
     """
     effect, rise = np.zeros(places.size), np.full(places.size, np.nan)
     base = rms(vector)

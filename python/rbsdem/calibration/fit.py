@@ -33,12 +33,12 @@ from rbsdem.parameter import Parameter
 
 __all__ = ["calibrate", "free_names", "undetermined"]
 
-#: Random points from which a parameter may show its effect, besides the start.
+#: Number of random points, besides the start, at which the effect of a parameter is tried.
 _LOOKS = 3
 
 
 def free_names(column: Column) -> dict[str, Parameter | None]:
-    """Return what may be free in a column: names, and values with bounds from physics.
+    """Return the parameters of a column that may be free, with default bounds.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def free_names(column: Column) -> dict[str, Parameter | None]:
     Returns
     -------
     dict of str to Parameter or None
-        None where a calibration has to be given the bounds, as for a stiffness of 0.
+        Parameters by name; None if a calibration needs given bounds, as for a stiffness of 0.
     """
     return Parameters(column).known()
 
@@ -75,7 +75,7 @@ def undetermined(
     Returns
     -------
     list of str
-        Those that move no force between their bounds, from the start and from random others.
+        Those that change no force between their bounds, from the start and from random points.
 
     Raises
     ------
@@ -107,34 +107,34 @@ def calibrate(
 ) -> Calibration:
     """Fit parameters of a column to a measured loop.
 
-    The column is driven through the measured displacements. The error of the force is made least by
-    a Latin hypercube over the bounds and least squares from its best points (scipy); the same input
+    The column is driven through the measured displacements. The error of the force is minimised by
+    a Latin hypercube over the bounds and least squares from its best points (scipy). The same input
     gives the same fit.
 
     Parameters
     ----------
     column : Column
-        The column to begin with. One made from a recipe offers its parameters as `parameters` and
-        takes others by `with_parameters`; in any other the names are paths.
+        The column to start from. A column made from a recipe offers its parameters as `parameters`
+        and changes them by `with_parameters`; in any other column the names are paths.
     test : MeasuredTest, PeerTest, or pair of array_like of shape (m,)
         The measured loop: displacement [m] and net horizontal force [N], as for `rbsdem.compare`.
     free : sequence of str
         Names of the parameters to fit, such as "flexure.k_y", "shear.k", "flexure[0].d_y" (of the
         lowest joint), "flexure[*].k_y" (a factor on all joints); `free_names` lists them.
     bounds : mapping of str to (low, high), optional
-        Bounds in place of those from physics: for a spring a factor of 5 up and down, as far as its
-        rule allows; lengths and loads 20 %.
+        Bounds in place of the default ones, which are a factor of 5 up and down for a spring, as
+        far as its rule allows, and 20 % for lengths and loads.
     loss : {"nrmse", "balanced"}, optional
-        What is made least: the error of the force, or that together with the errors of peak force
+        What is minimised: the error of the force, alone or together with the errors of peak force
         and energy.
     seed : int, optional
-        Of the random points.
+        Seed of the random points.
     progress : bool, optional
-        Show on stderr how far the fit is; needs rich.
+        Show the progress of the fit on stderr; needs rich.
     jobs : int, optional
         Analyses at a time, in threads. The fit does not depend on it.
     evaluations : int, optional
-        About how many analyses the search may make; a few more tell what the test determines.
+        Approximate limit for the analyses of the search. A few more show what the test determines.
     seconds : float, optional
         Wall time after which the search ends [s]; the fit then depends on the machine.
 
@@ -142,22 +142,22 @@ def calibrate(
     -------
     Calibration
         The fitted column, its parameters with standard errors and sensitivities, report and figure.
-        A keyboard interrupt ends the search, and what was best is returned.
+        A keyboard interrupt ends the search; the best fit so far is returned.
 
     Raises
     ------
     InputError
-        For bad input: names not known, or twice, bounds that exclude the start; and for a parameter
-        that changes no force of the test anywhere between its bounds.
+        For wrong input (unknown or repeated names, bounds that exclude the start), and for a
+        parameter that changes no force of the test anywhere between its bounds.
     ImportError
         If scipy is not installed, or progress is asked for without rich.
 
     Warns
     -----
     AccuracyWarning
-        If the test hardly determines a parameter, or does not tell two of them apart.
+        If the test hardly determines a parameter, or does not distinguish two of them.
     """
-    begin = time.perf_counter()
+    started = time.perf_counter()
     _check(loss, seed, jobs, evaluations, seconds)
     target = Target(test)
     parameters = Parameters(column)
@@ -165,7 +165,7 @@ def calibrate(
     need_scipy()
     progress = _core.switch(progress, "calibrate: progress")
     showing = telling(evaluations) if progress else nullcontext(lambda done, best: None)
-    # The search goes through columns that nobody asked for: what is said of them helps no one.
+    # Warnings about the many columns of the search do not help the user.
     with warnings.catch_warnings(), showing as told:
         warnings.simplefilter("ignore", AccuracyWarning)
         with Misfit(parameters.build, chosen, target, loss, jobs, told) as misfit:
@@ -194,7 +194,7 @@ def calibrate(
         evaluations=misfit.evaluations,
         failed=misfit.failed,
         refused=misfit.refused,
-        seconds=time.perf_counter() - begin,
+        seconds=time.perf_counter() - started,
     )
 
 
@@ -210,7 +210,7 @@ def _check(loss: str, seed: int, jobs: int, evaluations: int, seconds: float | N
 
 
 def _looks(start: Array, seed: int) -> list[Array]:
-    """Return places from which parameters are tried one by one."""
+    """Return the points from which the effect of each parameter is tried."""
     return [start, *np.random.default_rng(seed).random((_LOOKS, start.size))]
 
 
@@ -235,7 +235,7 @@ def _fitted(misfit: Misfit, places: ArrayLike, found: Determined) -> tuple[Fitte
 
 
 def _compared(column: Column, target: Target, start: Column) -> Comparison:
-    """Return the scores of a column; the force is not a number where an analysis ended."""
+    """Return the scores of a column; the force is NaN after the end of a failed analysis."""
     reached, _ = forces(column, target.displacement)
     force = np.full(target.force.size, np.nan)
     force[: reached.size] = reached
