@@ -1,6 +1,7 @@
 """The only importer of the compiled extension.
 
-Names and values go in; arrays, a status and a message come back. A status becomes an exception here.
+Names and values go in; arrays, a status and a message come back. Here a status becomes an
+exception.
 """
 
 from __future__ import annotations
