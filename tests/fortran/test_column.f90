@@ -480,6 +480,8 @@ contains
          call check_close(error, column%axial_body(i), 1000.0_wp + 10.0_wp*(sum(spec%masses(i:)) &
                                                                           - 0.5_wp*spec%masses(i)), &
                           1.0e-14_wp, 0.0_wp, 'of a body: half of its own weight')
+         call check_close(error, column%spring(n + i)%axial_load, column%axial_joint(i), 1.0e-14_wp, &
+                          0.0_wp, 'what the layers of a joint carry')
          call check_close(error, column%weight(i), 10.0_wp*spec%masses(i), 1.0e-15_wp, 0.0_wp, 'weight')
       end do
       call check_true(error, column%axially_loaded, 'loaded')

@@ -125,6 +125,9 @@ contains
       call expect(error, spec, [2.0_wp, -2.0_wp, 0.0_wp, 0.45_wp, 1.225_wp, 2.0_wp], &
                   [110.0_wp, -110.0_wp, break_force*0.9_wp/1.35_wp, break_force, &
                    0.5_wp*(break_force + 110.0_wp), 110.0_wp], 'both sides loaded')
+      call spec%set('kappa_d', 0.4_wp)
+      call expect(error, spec, [2.0_wp, -2.0_wp, 0.54_wp], &
+                  [110.0_wp, -110.0_wp, 0.4_wp*110.0_wp/2.9_wp*1.44_wp], 'less missing')
       ! A side that has not yielded breaks at zero deformation.
       break_force = 0.4_wp*100.0_wp/1.9_wp*0.9_wp
       call expect(error, spec, [2.0_wp, 0.0_wp, -0.5_wp, -1.0_wp], &

@@ -69,6 +69,8 @@ contains
       call check_equal(error, plan%steps, 51, 'steps')
       call check_true(error, plan%dt <= longest, 'longest step')
       call check_same(error, [plan%begin, plan%finish], [1.0_wp, 2.0_wp], 'begin and end')
+      call new_plan(plan, [0.0_wp, 1.0_wp], unset, 0.25_wp, limit, outcome)
+      call check_equal(error, plan%steps, 4, 'an interval of four longest steps')
    end subroutine automatic
 
    subroutine dividing(error)

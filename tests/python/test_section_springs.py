@@ -94,6 +94,8 @@ def test_options_of_the_fit():
     assert (lower.k_c, lower.d_c, lower.d_y) == (f.k_c, f.d_c, f.d_y)
     m_y = [s.k_c * s.d_c + s.k_y * (s.d_y - s.d_c) for s in (f, lower)]
     assert m_y[1] / m_y[0] == pytest.approx(0.95, rel=1e-12)
+    assert f.k_u > 0
+    assert lower.k_u / f.k_u == pytest.approx(0.95, rel=1e-12)
     # Rule B: the same moment at a smaller curvature; 0.89 to 1.08 of table 3.
     b = paper.springs(yield_rule="B", shear="none")
     assert b.events.yielding.moment == pytest.approx(plain.events.yielding.moment, rel=1e-9)
