@@ -1,4 +1,4 @@
-"""How far a column is from a measured loop, as a vector to make small."""
+"""The difference between a column and a measured loop, as an error vector to minimise."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from rbsdem.parameter import Parameter
 #: Points along the path of displacement at which the error is taken, as in a comparison.
 POINTS = N_POINTS
 
-#: Error of a column that is refused, in shares of the measured peak: worse than any that runs.
+#: Error of a refused column as a share of the measured peak: larger than that of any analysis.
 REFUSED = 10.0
 
-#: What may be made least.
+#: What may be minimised.
 LOSSES = ("nrmse", "balanced")
 
 #: In "balanced", an error of 1 in the ratio of peaks, or of energies, counts as this nrmse.
@@ -46,7 +46,7 @@ class Target:
     force : ndarray, shape (rows,)
         Net horizontal force [N].
     peak : float
-        Its largest absolute value [N].
+        Largest absolute force [N].
     half_cycle : ndarray of int, shape (POINTS,)
         Number of the half cycle to which each point belongs.
     """
@@ -67,7 +67,7 @@ class Target:
         self.half_cycle = half_cycle_numbers(self.displacement)[self._points.before]
 
     def error(self, force: Array) -> Array:
-        """Return (model - test)/peak at the points; 1 beyond the rows that were reached.
+        """Return (model - test)/peak at the points, and 1 beyond the rows that were reached.
 
         Parameters
         ----------
@@ -83,7 +83,7 @@ class Target:
         return error
 
     def ratios(self, force: Array) -> tuple[float, float]:
-        """Return peak and energy of the model over those of the test, in the rows reached."""
+        """Return peak and energy of the model over those of the test, for the rows reached."""
         if force.size < 2:
             return 0.0, 0.0
         d, test = self.displacement[: force.size], self.force[: force.size]
@@ -96,12 +96,12 @@ class Target:
 class Misfit:
     """The error of a column as a function of the places of its free parameters, each from 0 to 1.
 
-    Keeps count, and the best that was seen.
+    It counts the analyses and keeps the best point.
 
     Parameters
     ----------
     build : callable
-        Makes the column of values by name, or raises `InputError`.
+        Makes the column from values by name, or raises `InputError`.
     free : mapping of str to Parameter
         The parameters that are free, in order.
     target : Target
@@ -109,9 +109,9 @@ class Misfit:
     loss : str
         One of `LOSSES`.
     jobs : int
-        Analyses at a time; the Fortran part runs beside others.
+        Number of analyses at the same time, in threads.
     told : callable
-        Is told the best loss so far after each analysis.
+        Called with the number of analyses and the best loss so far after each analysis.
     """
 
     def __init__(
@@ -145,7 +145,7 @@ class Misfit:
         return POINTS + (2 if self.loss == "balanced" else 0)
 
     def start_places(self) -> Array:
-        """Return the places of the values that the column came with."""
+        """Return the places of the initial values of the column."""
         return np.array([one.place(one.value) for one in self.free.values()])
 
     def values(self, places: Array) -> dict[str, float]:
@@ -156,15 +156,15 @@ class Misfit:
         }
 
     def column(self, places: Array) -> Column:
-        """Return the column, or raise `InputError` where it is refused."""
+        """Return the column, or raise `InputError` if it is refused."""
         return self._build(self.values(places))
 
     def vector(self, places: Array) -> Array:
-        """Return what is to be made small; its mean square counts."""
+        """Return the error vector, whose mean square is to be minimised."""
         return self.vectors([places])[0]
 
     def vectors(self, several: Sequence[Array]) -> list[Array]:
-        """Return the vectors of several places, in their order."""
+        """Return the error vectors of several points, in their order."""
         run = self._pool.map if self._pool is not None and len(several) > 1 else map
         found = []
         for places, (vector, status) in zip(several, run(self._one, several), strict=True):
@@ -192,12 +192,12 @@ class Misfit:
         if self.loss == "nrmse":
             return error
         ratios = np.array(self.target.ratios(force))
-        # As many points as count like that share of the mean square.
+        # Scaled so that each ratio has its share in the mean square over the points.
         return np.concatenate((error, RATIO_WEIGHT * np.sqrt(POINTS) * (ratios - 1.0)))
 
 
 def forces(column: Column, displacement: Array) -> tuple[Array, SolveError | None]:
-    """Return the lateral force at the rows that were reached [N], and what ended the path."""
+    """Return the lateral force at the rows that were reached [N], and the error that ended it."""
     try:
         result, error = cyclic(column, displacement=displacement), None
     except SolveError as stopped:
@@ -206,7 +206,7 @@ def forces(column: Column, displacement: Array) -> tuple[Array, SolveError | Non
         result, error = stopped.result, stopped
     force = result.force
     if error is not None:
-        # The last row of a broken path is the last good state, between two rows of the test.
+        # The last row of a failed path is the last good state, between two rows of the test.
         force = force[:-1] if force.size else force
     force = force[: displacement.size]
     bad = np.flatnonzero(~np.isfinite(force))
@@ -234,7 +234,7 @@ def _loop(test: Any) -> tuple[Array, Array]:
     if d.size != f.size:
         raise InputError(
             f"calibrate: the test has {d.size} displacements and {f.size} forces; they must be "
-            "equally many"
+            "equal in number"
         )
     if d.size < 3:
         raise InputError(f"calibrate: the test has {d.size} rows; a loop needs at least 3")

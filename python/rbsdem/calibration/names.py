@@ -1,4 +1,4 @@
-"""What may be free in a column, and the column of other values."""
+"""The parameters of a column that may be free, and the column with other values."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from rbsdem.column import Column
 from rbsdem.errors import InputError
 from rbsdem.parameter import Parameter, is_recipe
 
-#: Names that a message lists.
+#: Largest number of names in a message.
 _MANY = 30
 
 
 class Parameters:
-    """The parameters of one column: those its recipe offers, or else the paths in it."""
+    """The parameters of one column: those of its recipe, or otherwise the paths in it."""
 
     def __init__(self, column: Column) -> None:
         self.recipe = is_recipe(column)
@@ -33,7 +33,7 @@ class Parameters:
         return list(self.column.parameters) if self.recipe else list(self.ways)
 
     def known(self) -> dict[str, Parameter | None]:
-        """Return all parameters; None where bounds have to be given."""
+        """Return all parameters by name; None for those whose bounds must be given."""
         if self.recipe:
             return dict(self.column.parameters)
         return {name: paths.parameter(self.column, name, way) for name, way in self.ways.items()}
@@ -45,13 +45,13 @@ class Parameters:
         return paths.value_at(self.column, self.ways[name])
 
     def build(self, values: Mapping[str, float]) -> Column:
-        """Return the column of other values, or raise `InputError` if it is refused."""
+        """Return the column with other values, or raise `InputError` if it is refused."""
         if self.recipe:
             return self.column.with_parameters(**values)
         return paths.with_values(self.column, self.ways, values)
 
     def accepts(self, values: Mapping[str, float]) -> bool:
-        """Return whether there is a column of these values."""
+        """Return whether a column with these values is possible."""
         try:
             self.build(values)
         except InputError:
@@ -67,7 +67,7 @@ def free_parameters(
     Raises
     ------
     InputError
-        If names are not known, or come twice, or bounds are wrong.
+        If names are unknown or repeated, or bounds are wrong.
     """
     names = _names(parameters, free)
     given = {name: _pair(name, pair) for name, pair in _mapping(bounds).items()}
@@ -114,7 +114,7 @@ def _unknown(name: Any, parameters: Parameters) -> InputError:
 
 
 def _list(names: Sequence[str]) -> str:
-    """Return the names, of very many the first."""
+    """Return the names as a text; if there are too many, only the first."""
     if len(names) <= _MANY:
         return ", ".join(names)
     first = ", ".join(names[:_MANY])

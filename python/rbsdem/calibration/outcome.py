@@ -1,4 +1,4 @@
-"""What a calibration found: the fitted column, its parameters and what the test says about them."""
+"""The result of a calibration: the fitted column, its parameters and how well they are known."""
 
 from __future__ import annotations
 
@@ -25,19 +25,19 @@ class Fitted:
     Attributes
     ----------
     name, unit, what : str
-        What it is.
+        Name, unit and meaning.
     start, low, high, value : float
-        Where it began, its bounds, and where it ended [unit].
+        Initial value, bounds, and fitted value [unit].
     standard_error : float
-        Of the value [unit], from the scatter between half cycles; infinite where the test does not
-        see the parameter, NaN where there are too few half cycles to tell.
+        Standard error of the value [unit], from the scatter between half cycles; infinite if no
+        force of the test changes with the parameter, NaN if there are too few half cycles.
     effect : float
         Root mean square change of the force over the measured peak, if the parameter alone changes
         by 10 % (of the distance between its bounds, if it may be 0 or negative).
     rise : float
-        How much the loss grows by that; NaN if the column cannot be so.
+        Increase of the loss by that change; NaN if such a column is refused.
     at_bound : str
-        "low", "high", or "" within the bounds.
+        "low" or "high" if the fit ended at that bound, otherwise "".
     """
 
     name: str
@@ -60,7 +60,7 @@ class Calibration:
     Attributes
     ----------
     column, start : Column
-        The fitted column and the one it came from.
+        The fitted column and the initial one.
     parameters : tuple of Fitted
         The parameters that were free.
     before, after : Comparison
@@ -72,10 +72,10 @@ class Calibration:
     warnings : tuple of str
         What the test does not determine.
     loss, seed : str, int
-        What was made least, and the seed of the search.
+        The loss that was minimised, and the seed of the search.
     evaluations, failed, refused : int
-        Analyses, those that did not reach the end of the test, and columns that were refused
-        (K_y above K_c) and cost no analysis.
+        Number of analyses, of those that did not reach the end of the test, and of columns that
+        were refused (K_y above K_c) and cost no analysis.
     seconds : float
         Wall time [s].
     """
@@ -120,7 +120,7 @@ class Calibration:
         Parameters
         ----------
         axes : sequence of two matplotlib Axes, optional
-            Where to draw; a new figure without it.
+            Where to draw; by default a new figure is made.
 
         Returns
         -------

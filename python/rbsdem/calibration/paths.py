@@ -1,8 +1,9 @@
 """Names of the parameters in a column, such as ``flexure.k_y`` or ``flexure[0].d_y``.
 
-A name is the path to a parameter through the frozen dataclasses of a column: only what a static
-path depends on. Where there are several springs, ``flexure[*].k_y`` is a factor on all of them, as
-``flexure.layers[*].f_y`` on all layers of a joint that have an ``f_y``.
+A name is the path to a parameter through the frozen dataclasses of a column. Only parameters on
+which a static path depends have one. Where there are several springs, ``flexure[*].k_y`` is a
+factor on all of them, and ``flexure.layers[*].f_y`` a factor on all layers of a joint that have an
+``f_y``.
 """
 
 from __future__ import annotations
@@ -20,10 +21,10 @@ from rbsdem.column import Column
 from rbsdem.parameter import Parameter
 from rbsdem.springs import Spring
 
-#: A spring is found within a factor of this, unless its rule says otherwise.
+#: Parameters of springs are searched within this factor, unless their rule sets other bounds.
 REACH = 5.0
 
-#: Lengths and loads were measured: they may be off by this share.
+#: Lengths and loads were measured: they are searched within this share.
 MEASURED = 0.2
 
 #: Names with a range of their own, within the bounds of their keys. Exponents of unloading
@@ -37,7 +38,7 @@ LIMITS = {
     "kappa_d": (0.02, 1.0),
 }
 
-#: Stiffnesses after yield, which may vanish.
+#: Stiffnesses after yield, which may be zero.
 AFTER_YIELD = ("k_u", "k_post")
 
 _PLAIN = ("height", "axial_load")
@@ -46,10 +47,10 @@ _NORMAL = {"stiffness": "N/m", "deformation": "m", "force": "N"}
 _TURNING = {"stiffness": "N m/rad", "deformation": "rad", "force": "N m"}
 _UNITS = {"shear": _NORMAL, "flexure": _TURNING, "axial_spring": _NORMAL}
 
-#: Way to a parameter: names of fields and places in tuples; ``None`` stands for all places.
+#: Way to a parameter: names of fields and indices of tuples; ``None`` stands for all indices.
 Way = tuple[str | int | None, ...]
 
-#: Values of the other parameters with which a bound is tried, and how often the way is halved.
+#: Number of sets of the other parameters with which a bound is tried, and number of bisections.
 _TRIES, _HALVINGS = 16, 16
 
 
@@ -61,14 +62,14 @@ def paths(column: Column) -> dict[str, Way]:
         if springs is not None:
             found |= {f"{kind}{name}": (kind, *way) for name, way in _below(springs)}
         if isinstance(springs, Spring) and column.n > 1:
-            # Joints that have the same spring may get different ones.
+            # Joints with the same spring may get different ones.
             several = (springs,) * column.n
             found |= {f"{kind}{name}": (kind, *way) for name, way in _below(several)}
     return found
 
 
 def parameter(column: Column, name: str, way: Way) -> Parameter | None:
-    """Return the parameter at a path with bounds from physics; None if they have to be given."""
+    """Return the parameter at a path with its default bounds; None if they must be given."""
     value = value_at(column, way)
     bounds = default_bounds("" if None in way else str(way[-1]), value, len(way) == 1)
     if bounds is None:
@@ -113,7 +114,7 @@ def _keys_of(rule: str) -> dict[str, dict[str, Any]]:
 
 
 def default_bounds(name: str, value: float, measured: bool) -> tuple[float, float] | None:
-    """Return the range in which a parameter is looked for; None if nothing tells it."""
+    """Return the range in which a parameter is searched; None if it must be given."""
     if name in LIMITS:
         low, high = LIMITS[name]
         return min(low, value), max(high, value)
@@ -139,7 +140,7 @@ def with_values(column: Column, ways: Mapping[str, Way], values: Mapping[str, fl
     InputError
         If the column refuses them.
     """
-    # Springs check what belongs together: all parameters of one object change at a time.
+    # Springs check their parameters together, so all parameters of one spring change at once.
     changes: dict[str, dict[Way, float]] = {}
     for name, value in values.items():
         way = ways[name]
@@ -154,7 +155,7 @@ def with_values(column: Column, ways: Mapping[str, Way], values: Mapping[str, fl
 
 
 def _changed_part(column: Column, part: Any, changes: dict[Way, float]) -> Any:
-    """Change a field of the column; a spring of all joints is spread where single ones change."""
+    """Change a field of the column; joints get springs of their own where they differ."""
     single = {way: value for way, value in changes.items() if way and not isinstance(way[0], str)}
     if isinstance(part, Spring) and single:
         common = {way: value for way, value in changes.items() if way not in single}
@@ -168,11 +169,11 @@ def settle(
     given: Mapping[str, tuple[float, float]],
     accepts: Callable[[Mapping[str, float]], bool],
 ) -> dict[str, Parameter]:
-    """Move bounds to where the column begins to refuse, as K_y at a K_c that is not free.
+    """Move bounds into the range that the column accepts, as that of K_y below a fixed K_c.
 
-    A bound at which the column is refused whatever the others that are free do is found by halving
-    between it and the start. A bound that only some of them forbid stays. Bounds that were given
-    stay.
+    If the column is refused at a bound for all tried values of the other free parameters, the limit
+    is found by bisection between the bound and the start. A bound that is refused for some of these
+    values only is kept, as are bounds that were given.
     """
     start = {name: one.value for name, one in free.items()}
     random = np.random.default_rng(0).random((_TRIES, len(free)))
@@ -196,7 +197,7 @@ def settle(
 
 
 def _edge(one: Parameter, end: float, allowed: Callable[[float], bool]) -> float:
-    """Return the end if it is allowed, else the last value on the way there that is."""
+    """Return the end if it is allowed, otherwise the last allowed value towards it."""
     if allowed(end):
         return end
     inside, outside = one.place(one.value), one.place(end)
@@ -210,9 +211,10 @@ def _edge(one: Parameter, end: float, allowed: Callable[[float], bool]) -> float
 
 
 def _below(part: Any) -> Iterator[tuple[str, Way]]:
-    """Yield names and ways of all parameters in a spring, or in several, with what joins them.
+    """Yield names and ways of all parameters in a spring, or in several.
 
-    ``.k_y`` in one; ``[0].k_y`` in one of several, and ``[*].k_y`` in all of them that have it.
+    They are ``.k_y`` in one spring, ``[0].k_y`` in one of several, and ``[*].k_y`` in all that have
+    a k_y.
     """
     if isinstance(part, tuple):
         several = [list(_below(_spring(item))) for item in part]
@@ -232,14 +234,14 @@ def _below(part: Any) -> Iterator[tuple[str, Way]]:
 
 
 def _spring(item: Any) -> Any:
-    """Return one of several springs; that of a layer comes behind its distance."""
+    """Return the spring of an item, which for a layer follows its distance."""
     return item[-1] if isinstance(item, tuple) else item
 
 
 def _get(part: Any, way: Way) -> Any:
     for step in way:
         if isinstance(step, int):
-            # One spring for all joints is that of each.
+            # One spring for all joints is the spring of each of them.
             part = part if isinstance(part, Spring) else _spring(part[step])
         else:
             part = getattr(part, str(step), None)
@@ -261,7 +263,7 @@ def _changed(part: Any, changes: Mapping[Way, float]) -> Any:
 
 
 def _changed_item(item: Any, place: int, changes: Mapping[Way, float]) -> Any:
-    """Change one of several springs: by its own parameters, then by factors on all of them."""
+    """Change one of several springs: first its own parameters, then factors on all springs."""
     spring = _spring(item)
     own = {way[1:]: value for way, value in changes.items() if way[0] == place}
     for way, factor in changes.items():

@@ -10,7 +10,7 @@ from rbsdem._optional import need_rich
 
 @contextmanager
 def telling(evaluations: int) -> Iterator[Callable[[int, float], None]]:
-    """Show on stderr how many analyses are done, and the best so far."""
+    """Show on stderr the number of finished analyses and the best error so far."""
     rich = need_rich()
     from rich.console import Console  # noqa: PLC0415
 

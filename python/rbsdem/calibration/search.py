@@ -1,11 +1,11 @@
 """The search for the parameters that fit best.
 
 The force of a chain of straight lines is continuous in its parameters nearly everywhere, with kinks
-where a spring takes another line, and the error has several minima. So: a Latin hypercube over the
-bounds; least squares (scipy, trust region) from its best points with coarse finite differences,
-which look over the kinks; then finer ones from the best of them, last by the dogleg method, which
-goes straight to bounds; then the same from places kicked off the best, until that no longer helps.
-docs/calibration.md has the measurements behind the choice.
+where a spring takes another line, and the error has several minima. The search therefore consists
+of a Latin hypercube over the bounds; least squares (scipy, trust region) from its best points with
+coarse finite differences, which smooth the kinks; finer differences from the best of them, the last
+with the dogleg method, which can reach the bounds; and the same from random points near the best
+one, until that no longer helps. docs/calibration.md has the measurements behind this choice.
 """
 
 from __future__ import annotations
@@ -18,45 +18,45 @@ import numpy as np
 from rbsdem._core import Array
 from rbsdem.calibration.misfit import REFUSED, Misfit, rms
 
-#: Points of the hypercube for each free parameter, and at least.
+#: Points of the hypercube for each free parameter, and the least number of points.
 SAMPLES_EACH, SAMPLES_LEAST = 10, 40
 
-#: Draws for each point that the rule of the springs allows.
+#: Largest number of rounds in which refused points are drawn again.
 DRAWS = 20
 
 #: Descents from the best points.
 STARTS = 4
 
-#: Steps of finite differences in shares of the distance between the bounds.
+#: Steps of finite differences as shares of the distance between the bounds.
 COARSE, MIDDLE, FINE = 0.02, 0.005, 0.0005
 
-#: Distance of a kick, and how many without a gain of this share end the search.
+#: Distance of a random restart, and how many without a gain of this share end the search.
 KICK, KICKS, GAIN = 0.15, 3, 0.002
 
-#: Place nearer to a bound than this is on it.
+#: A place closer to a bound than this is taken to be on it.
 AT_BOUND = 1e-3
 
-#: A loss that cannot be told from none.
+#: A loss below this is taken as zero.
 NOTHING = 1e-6
 
 
 class Ended(Exception):  # noqa: N818 - not an error: the search may do no more
-    """The search has used what it may."""
+    """The search has used up its analyses or its time."""
 
 
 class Search:
-    """One search; what it has found is kept by the misfit.
+    """One search; the misfit keeps the best point.
 
     Parameters
     ----------
     misfit : Misfit
-        What is made small.
+        The error to minimise.
     seed : int
-        Of all random choices.
+        Seed of all random choices.
     evaluations : int
-        Most analyses.
+        Largest number of analyses.
     seconds : float or None
-        Most wall time [s].
+        Largest wall time [s].
     """
 
     def __init__(self, misfit: Misfit, seed: int, evaluations: int, seconds: float | None) -> None:
@@ -66,7 +66,7 @@ class Search:
         self._memory: dict[bytes, Array] = {}
 
     def run(self) -> str:
-        """Search; return what ended it."""
+        """Search, and return the reason for the end."""
         status = "converged"
         try:
             for places in self._sample():
@@ -111,7 +111,7 @@ class Search:
         hypercube = qmc.LatinHypercube(size, rng=self._random)
         points = [self.misfit.start_places(), *hypercube.random(wanted)]
         losses = [rms(vector) for vector in self._batches(points)]
-        # Those refused are drawn again: limits between free parameters are no box.
+        # Refused points are drawn again, as the allowed region is not a box.
         for _ in range(DRAWS):
             missing = wanted + 1 - sum(loss < REFUSED for loss in losses)
             if missing <= 0:
@@ -129,7 +129,7 @@ class Search:
         return found
 
     def _descend(self, places: Array, step: float, method: str, most: int) -> None:
-        """Least squares from a point; the misfit remembers the best on the way."""
+        """Run least squares from a point; the misfit keeps the best point on the way."""
         from scipy.optimize import least_squares  # noqa: PLC0415
 
         least_squares(
@@ -141,8 +141,8 @@ class Search:
             max_nfev=most,
             ftol=1e-6,
             xtol=1e-5,
-            # As good as the decomposition of J, which many threads of BLAS slow down; its search in
-            # two dimensions needs two numbers.
+            # As good as the decomposition of J, which many threads of BLAS slow down. It searches
+            # a plane, so it needs two parameters.
             tr_solver="lsmr" if places.size > 1 else "exact",
         )
 
@@ -151,7 +151,7 @@ class Search:
         self._descend(self.misfit.best_places, FINE, "dogbox", 20)
 
     def _touch_bounds(self) -> None:
-        """Put what stays just inside a bound on it: the trust region never touches them."""
+        """Move parameters just inside a bound onto it, as the trust region never reaches bounds."""
         misfit = self.misfit
         for i, place in enumerate(misfit.best_places):
             if 0 < place < AT_BOUND or 0 < 1 - place < AT_BOUND:
@@ -170,7 +170,7 @@ class Search:
         return best
 
     def _jacobian(self, places: Array, step: float) -> Array:
-        """Return finite differences, away from bounds and from what is refused."""
+        """Return finite differences in a direction that stays in bounds and is not refused."""
         size = places.size
         steps = np.where(places + step <= 1.0, step, -step)
         moved = [places + steps[i] * np.eye(size)[i] for i in range(size)]
@@ -191,7 +191,7 @@ def refused(vector: Array) -> bool:
 
 
 def need_scipy() -> Any:
-    """Return scipy.optimize, or raise `ImportError` with the way to get it."""
+    """Return scipy.optimize, or raise `ImportError` with the installation command."""
     try:
         import scipy.optimize  # noqa: PLC0415
     except ImportError as error:

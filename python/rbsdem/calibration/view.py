@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _HEAD = ("", "Unit", "Start", "Low", "High", "Fitted", "Std. error", "Effect", "Rise", "At")
 
-#: Those of the table, which has to go on a terminal: without the bounds.
+#: Columns of the table for the terminal: all but the bounds.
 _NARROW = (0, 1, 2, 5, 6, 7, 8, 9)
 
 
@@ -73,7 +73,7 @@ def table(fit: Calibration) -> Table:
 
 @view_of(Calibration, "plot")
 def draw(fit: Calibration, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
-    """Draw before and after over the test, both to one scale."""
+    """Draw the loops before and after over the test, to the same scale."""
     need_matplotlib()
     if axes is None:
         import matplotlib.pyplot as plt  # noqa: PLC0415
