@@ -1,4 +1,4 @@
-!> What the user typed.
+!> The command line: command, paths and options.
 module rbs_app_command_line
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_text, only: nearest_name
@@ -16,7 +16,7 @@ module rbs_app_command_line
       character(len=:), allocatable :: name
       !> Path of the case
       character(len=:), allocatable :: case
-      !> Path of the output; not allocated: what the case says
+      !> Path of the output; not allocated: the path that the case gives
       character(len=:), allocatable :: output
       logical :: quiet = .false.
       !> keys: as JSON, else as a table
@@ -53,7 +53,7 @@ contains
    subroutine take_option(command, word, i, error)
       type(command_type), intent(inout) :: command
       character(len=*), intent(in) :: word
-      !> Number of the argument; goes on where a value follows
+      !> Number of the argument; advanced by one if the next argument is the value of an option
       integer, intent(inout) :: i
       type(error_type), allocatable, intent(out) :: error
       integer :: mark
@@ -75,7 +75,7 @@ contains
             i = i + 1
             command%output = argument(i)
          else
-            call complain(word(:mark - 1)//' needs the path of a file behind it', error)
+            call complain(word(:mark - 1)//' needs the path of a file after it', error)
          end if
          return
       case default
@@ -122,7 +122,7 @@ contains
       else if (command%name == 'keys') then
          if (allocated(command%case)) call complain("one argument too many: '"//command%case//"'", error)
       else if (.not. allocated(command%case)) then
-         call complain(command%name//' needs the path of a case behind it', error)
+         call complain(command%name//' needs the path of a case after it', error)
       else if (allocated(command%output)) then
          if (command%name /= 'run') then
             call complain('--output is for run only', error)

@@ -29,11 +29,11 @@ module rbs_app_commands
 
    public :: run_case, check_case, show_modes, show_keys
 
-   !> Exit code of a run that ended where the user's criterion of collapse was met.
+   !> Exit code of a run that ended because the user's criterion of collapse was met.
    integer, parameter :: column_collapsed = 3
 
    interface
-      !> C: the path of a file that is there without links and dots; a null pointer if it is not.
+      !> C: the path of an existing file, without links and dots; a null pointer if there is no such file.
       function c_realpath(path, real_path) bind(c, name='realpath') result(status)
          import :: c_char, c_ptr
          implicit none
@@ -48,7 +48,7 @@ contains
    !> rbsdem run: solve a case and write its rows.
    subroutine run_case(path, output, quiet, error)
       character(len=*), intent(in) :: path
-      !> Path of the csv; not allocated: what the case says, or the case's name with .csv
+      !> Path of the csv; not allocated: the path that the case gives, or the case's name with .csv
       character(len=:), allocatable, intent(in) :: output
       logical, intent(in) :: quiet
       type(error_type), allocatable, intent(out) :: error
@@ -85,7 +85,7 @@ contains
       end if
    end subroutine run_case
 
-   !> No fault of the run: it ended where the user wanted it to.
+   !> The error of a run that ended at the user's criterion of collapse; the run itself has not failed.
    subroutine report_collapse(case, recorder, summary, error)
       type(case_record), intent(in) :: case
       type(csv_recorder), intent(in) :: recorder
@@ -101,7 +101,7 @@ contains
                        'are in '//recorder%path)
    end subroutine report_collapse
 
-   !> rbsdem check: everything that can be wrong with the input, and nothing else.
+   !> rbsdem check: report all errors of the input without solving the case.
    subroutine check_case(path, quiet, error)
       character(len=*), intent(in) :: path
       logical, intent(in) :: quiet
@@ -123,7 +123,7 @@ contains
       call print_notes(case, column, error)
    end subroutine check_case
 
-   !> rbsdem modes: frequencies, shapes of few joints, stable step.
+   !> rbsdem modes: frequencies, mode shapes if the joints are few, stable step.
    subroutine show_modes(path, error)
       character(len=*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error
@@ -145,7 +145,7 @@ contains
       if (allocated(error)) return
       call say('mode,frequency_Hz,period_s,omega_rad/s', error)
       do i = 1, column%unknowns
-         ! A column without stiffness to speak of has no period: its frequency is zero.
+         ! A column with negligible stiffness has frequency zero and no period.
          period = 0.0_wp
          if (modes%omega(i) > tiny(1.0_wp)*1.0e3_wp) period = 2.0_wp*pi/modes%omega(i)
          write (line, '(i0, 3(a, es22.16e2))') i, ',', modes%omega(i)/(2.0_wp*pi), ',', period, ',', &
@@ -157,7 +157,7 @@ contains
       call say(trim(line), error)
    end subroutine show_modes
 
-   !> rbsdem keys: everything that a case can say.
+   !> rbsdem keys: all keys of a case.
    subroutine show_keys(as_json, error)
       logical, intent(in) :: as_json
       type(error_type), allocatable, intent(inout) :: error
@@ -171,7 +171,7 @@ contains
       call say(buffer%text(:buffer%length - 1), error)
    end subroutine show_keys
 
-   !> Read a case and its loadings; all their faults come back as one error.
+   !> Read a case and its loadings; all errors in them are returned as one.
    subroutine prepare(path, case, column, history, error)
       character(len=*), intent(in) :: path
       type(case_record), intent(out) :: case
@@ -183,7 +183,7 @@ contains
       if (.not. allocated(error)) call make_column(case%column, column, error)
    end subroutine prepare
 
-   !> Solve into a csv.
+   !> Solve the case and write its rows to a csv.
    subroutine solve(case, column, history, path, recorder, summary, quiet, error)
       type(case_record), intent(in) :: case
       type(column_type), intent(in) :: column
@@ -221,7 +221,7 @@ contains
    !> Comment lines of the csv.
    function header(case, method) result(lines)
       type(case_record), intent(in) :: case
-      !> The one that is used, where the program chooses
+      !> The method that is used, also where the program chooses it
       character(len=*), intent(in) :: method
       character(len=600) :: lines(3)
 
@@ -231,7 +231,7 @@ contains
                  ', kinematics: '//trim(case%column%kinematics)
    end function header
 
-   !> The units of the csv: 'SI', or those that the case names and SI for the rest.
+   !> The units of the csv: 'SI', or those that the case names with SI for the others.
    function units_text(case) result(text)
       type(case_record), intent(in) :: case
       character(len=:), allocatable :: text
@@ -244,7 +244,7 @@ contains
 
    !> The rows must not go into a file that the case was read from.
    subroutine check_output(file, case_path, case, error)
-      !> Where the rows are to go
+      !> File for the rows
       character(len=*), intent(in) :: file
       character(len=*), intent(in) :: case_path
       type(case_record), intent(in) :: case
@@ -266,10 +266,10 @@ contains
       end if
    end subroutine check_output
 
-   !> Whether two paths lead to one file that is there.
+   !> Whether two paths lead to the same existing file.
    logical function same_file(a, b)
       character(len=*), intent(in) :: a, b
-      !> POSIX: no path is longer
+      !> Longest path in POSIX
       integer, parameter :: longest = 4097
       character(kind=c_char) :: real_a(longest), real_b(longest)
 
@@ -282,7 +282,7 @@ contains
                       real_b(:findloc(real_a, c_null_char, dim=1)))
    end function same_file
 
-   !> Where the rows go.
+   !> Path of the csv.
    function output_path(case_path, case, output) result(path)
       character(len=*), intent(in) :: case_path
       type(case_record), intent(in) :: case
@@ -303,7 +303,7 @@ contains
       end if
    end function output_path
 
-   !> The figures of a run; those that do not apply to it are left out.
+   !> Print the summary of a run without the values that do not apply to it.
    subroutine print_summary(case, recorder, summary, error)
       type(case_record), intent(in) :: case
       type(csv_recorder), intent(in) :: recorder
@@ -330,7 +330,7 @@ contains
       call say('  '//name//'  '//recorder%path, error)
    end subroutine print_summary
 
-   !> A method, and why the program chose it.
+   !> A method, with the reason if the program chose it.
    function method_text(method, reason) result(text)
       character(len=*), intent(in) :: method, reason
       character(len=:), allocatable :: text
@@ -339,7 +339,7 @@ contains
       if (reason /= '') text = text//' ('//trim(reason)//')'
    end function method_text
 
-   !> What is allowed and perhaps not meant.
+   !> Print notes on input that is valid but may be a mistake.
    subroutine print_notes(case, column, error)
       type(case_record), intent(in) :: case
       type(column_type), intent(in) :: column
@@ -352,7 +352,7 @@ contains
       end if
    end subroutine print_notes
 
-   !> Rotations that the kinematics do not stand for.
+   !> Print a note if rotations are larger than the kinematics allow.
    subroutine print_rotation(column, summary, error)
       type(column_type), intent(in) :: column
       type(summary_type), intent(in) :: summary

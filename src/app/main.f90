@@ -1,4 +1,4 @@
-!> The executable. Only here errors are printed and the process ends.
+!> The executable. Only this program prints errors and ends the process.
 program rbsdem
    use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: error_unit
@@ -10,7 +10,7 @@ program rbsdem
    implicit none
 
    interface
-      !> C: end the process with a status and without a word.
+      !> C: end the process with a status and without printing anything.
       subroutine c_exit(status) bind(c, name='exit')
          import :: c_int
          implicit none
@@ -45,12 +45,12 @@ program rbsdem
       status = int(error%code, c_int)
    end if
    flush (error_unit)
-   ! Not `stop`: it reports floating-point flags on the way out.
+   ! Not `stop`, which reports floating-point flags.
    call c_exit(status)
 
 contains
 
-   !> Every line of a message with the name of the program before it.
+   !> Print a message, each line after the name of the program.
    subroutine print_error(message)
       character(len=*), intent(in) :: message
       integer :: first, length
@@ -81,15 +81,15 @@ contains
          'and so does rbsdem peer DIR.', &
          '', &
          'options:', &
-         '  -o, --output FILE   where the rows go (default: what &output says, or the', &
+         '  -o, --output FILE   file for the rows (default: the file of &output, or the', &
          '                      name of the case with .csv)', &
          '  -q, --quiet         no summary and no progress', &
          '', &
          'exit code:', &
          '  0  all went well', &
-         '  1  the analysis failed; rows up to there are in FILE.partial', &
+         '  1  the analysis failed; the rows before are in FILE.partial', &
          '  2  the input is wrong; all its errors are listed', &
-         '  3  the column collapsed: collapse_drift was reached; the rows are whole', &
+         '  3  the column collapsed: collapse_drift was reached; all rows are written', &
          '', &
          'A case has the groups &case, &units, &column, &damping, &shear, &flexure,', &
          '&axial_spring, &layer_spring, &layers, &loading, &analysis and &output. The input', &

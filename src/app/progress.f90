@@ -1,4 +1,4 @@
-!> Progress of a long run on a terminal; silence in a pipe.
+!> Progress of a long run on a terminal; nothing is written to a pipe.
 module rbs_app_progress
    use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: error_unit, int64
@@ -9,7 +9,7 @@ module rbs_app_progress
 
    public :: terminal_progress
 
-   !> Runs shorter than this say nothing [s]; then a line is written over no more often than that.
+   !> Runs shorter than this show no progress; it is also the least time between two updates [s].
    real(wp), parameter :: quiet_time = 1.0_wp, pause = 0.2_wp
 
    integer, parameter :: bar_length = 30
@@ -38,7 +38,7 @@ module rbs_app_progress
 
 contains
 
-   !> Begin to count the time.
+   !> Start the clock.
    subroutine start(self, quiet)
       class(terminal_progress), intent(inout) :: self
       logical, intent(in) :: quiet
@@ -65,7 +65,7 @@ contains
       flush (error_unit)
    end subroutine update
 
-   !> Take the line away.
+   !> Erase the line.
    subroutine finish(self)
       class(terminal_progress), intent(inout) :: self
 

@@ -1,4 +1,4 @@
-!> Lines on standard output, through C: the Fortran library does not tell when a disk is full.
+!> Lines on standard output, through C: the Fortran library does not report a full disk.
 module rbs_app_say
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_size_t
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
@@ -21,7 +21,7 @@ module rbs_app_say
 
 contains
 
-   !> Print a line. After an error nothing more is printed.
+   !> Print a line, unless an error has occurred.
    subroutine say(line, error)
       character(len=*), intent(in) :: line
       type(error_type), allocatable, intent(inout) :: error

@@ -1,5 +1,5 @@
-!> Checks on single numbers of an input: each adds one message that names the thing, its value and
-!> what it may be.
+!> Checks on single input values: each adds one message that names the quantity, its value and the
+!> values that are allowed.
 module rbs_base_check
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_fortran_env, only: int64
@@ -21,10 +21,10 @@ contains
       is_given = transfer(x, 0_int64) /= transfer(unset, 0_int64)
    end function is_given
 
-   !> The number must be there, finite and above zero.
+   !> The number must be given, finite and above zero.
    subroutine check_positive(x, name, unit, messages, ok)
       real(wp), intent(in) :: x
-      !> What it is: 'column: height'
+      !> The name of the quantity: 'column: height'
       character(len=*), intent(in) :: name
       !> Its unit, empty for a pure number
       character(len=*), intent(in) :: unit
@@ -43,7 +43,7 @@ contains
       if (present(ok)) ok = passed
    end subroutine check_positive
 
-   !> The number must be there, finite and not below zero.
+   !> The number must be given, finite and not below zero.
    subroutine check_not_negative(x, name, unit, messages, ok)
       real(wp), intent(in) :: x
       character(len=*), intent(in) :: name
@@ -62,7 +62,7 @@ contains
       if (present(ok)) ok = passed
    end subroutine check_not_negative
 
-   !> The number must be there and finite.
+   !> The number must be given and finite.
    subroutine check_finite(x, name, unit, messages, ok)
       real(wp), intent(in) :: x
       character(len=*), intent(in) :: name
@@ -89,7 +89,7 @@ contains
       if (present(ok)) ok = passed
    end subroutine check_finite
 
-   !> The word must be one of the valid ones; returns its place among them, 0 if it is none.
+   !> The word must be one of the valid ones; returns its place among them, 0 if it is not one of them.
    subroutine check_name(word, valid, name, messages, place)
       character(len=*), intent(in) :: word
       character(len=*), intent(in) :: valid(:)

@@ -9,15 +9,15 @@ module rbs_base_constants
    !> Standard acceleration of gravity [m/s2].
    real(wp), parameter, public :: standard_gravity = 9.80665_wp
 
-   !> A deformation that is never reached: the end of a line without end.
+   !> A deformation that is never reached: the end of a line that goes on for ever.
    real(wp), parameter, public :: unbounded = huge(1.0_wp)
 
-   !> Larger numbers, and positive ones below its inverse, have no meaning in any unit; products of them
-   !> would overflow or vanish.
+   !> Numbers larger than this, and positive numbers below its inverse, are refused in every unit: products
+   !> of them would overflow or vanish.
    real(wp), parameter, public :: beyond_meaning = 1.0e50_wp
 
-   !> Marks a number that the user has not given. Not a NaN: a NaN from the user must be refused as
-   !> such, and comparing a NaN traps in builds with floating-point traps.
+   !> Marks a number that the user has not given. It is not a NaN: a NaN from the user must be refused,
+   !> and comparing a NaN traps in builds with floating-point traps.
    real(wp), parameter, public :: unset = -huge(1.0_wp)
 
    !> The same for a whole number.

@@ -9,12 +9,12 @@ module rbs_base_error
    public :: error_type, message_list, fatal_error
    public :: analysis_failed, bad_input
 
-   !> The analysis could not be carried on (exit code 1 of the executable).
+   !> The analysis could not be continued (exit code 1 of the executable).
    integer, parameter :: analysis_failed = 1
    !> The input is wrong (exit code 2 of the executable).
    integer, parameter :: bad_input = 2
 
-   !> One error: what kind, and what the user reads.
+   !> One error: its kind, and the message for the user.
    type :: error_type
       !> `analysis_failed` or `bad_input`
       integer :: code = 0
@@ -25,7 +25,7 @@ module rbs_base_error
    !> More messages than this are only counted.
    integer, parameter :: most_messages = 25
 
-   !> Messages collected on the way, so that one run shows all faults of an input.
+   !> A list of messages, so that one run reports all errors of an input.
    type :: message_list
       !> Number of messages
       integer :: count = 0
@@ -50,7 +50,7 @@ contains
       error%message = message
    end subroutine fatal_error
 
-   !> Put one message on the list.
+   !> Append one message.
    subroutine add(self, message)
       class(message_list), intent(inout) :: self
       character(len=*), intent(in) :: message
@@ -63,7 +63,7 @@ contains
       end if
    end subroutine add
 
-   !> Put all messages of another list behind these.
+   !> Append all messages of another list.
    subroutine join(self, other)
       class(message_list), intent(inout) :: self
       type(message_list), intent(in) :: other
@@ -73,7 +73,7 @@ contains
       self%count = self%count + other%count - 1
    end subroutine join
 
-   !> Turn the list into one `bad_input` error; none if the list is empty.
+   !> Turn the list into one `bad_input` error; `error` stays unallocated if the list is empty.
    subroutine raise(self, error)
       class(message_list), intent(in) :: self
       type(error_type), allocatable, intent(out) :: error

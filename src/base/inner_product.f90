@@ -8,7 +8,7 @@ module rbs_base_inner_product
 
 contains
 
-   !> Four sums side by side, which do not wait for each other.
+   !> Four independent sums, so that one addition need not wait for the previous one.
    pure real(wp) function inner_product(m, a, b)
       integer, intent(in) :: m
       real(wp), intent(in) :: a(m), b(m)

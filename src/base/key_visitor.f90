@@ -1,10 +1,10 @@
-!> A record shows its keys: one procedure of the record names each of its components once, with unit,
-!> bounds and meaning, and every use of the list is a visit.
+!> How a record presents its keys: one procedure of the record names each component once, with unit,
+!> bounds and meaning, to a visitor. The visitor does one of four things:
 !>
-!>     collect   the list itself, with defaults: for documentation, hints, and the reader
-!>     put       set one component by name
-!>     check     a message for each value that is missing or out of bounds
-!>     list      the values that differ from the defaults: for the writer
+!>     collect   makes the list of keys with their defaults, for documentation, hints and the reader
+!>     put       sets one component by name
+!>     check     adds a message for each value that is missing or out of bounds
+!>     list      lists the values that differ from the defaults, for the writer
 module rbs_base_key_visitor
    use rbs_base_check, only: is_given
    use rbs_base_constants, only: unset, unset_integer
@@ -24,13 +24,13 @@ module rbs_base_key_visitor
    type :: entry_type
       character(len=key_length) :: name = ''
       character(len=1) :: kind = real_kind
-      !> Numbers, whole numbers, or 0 and 1
+      !> Its values: real numbers, whole numbers, or 0 and 1 for logicals
       real(wp), allocatable :: number(:)
       character(len=:), allocatable :: text
    end type entry_type
 
    type :: key_visitor
-      !> What the record is, for messages: 'column'
+      !> Name of the record in messages: 'column'
       character(len=16) :: group = ''
       !> The list of keys
       integer :: count = 0
@@ -41,7 +41,7 @@ module rbs_base_key_visitor
       !> Whether all numbers passed the last check
       logical :: sound = .true.
       integer, private :: mode = collecting
-      !> What is put
+      !> The value to put
       character(len=key_length), private :: wanted = ''
       real(wp), allocatable, private :: number(:)
       character(len=:), allocatable, private :: text
@@ -99,7 +99,7 @@ contains
       self%messages = message_list()
    end subroutine start_check
 
-   !> Hand over what the check found.
+   !> Hand over the messages of the check.
    subroutine end_check(self, messages)
       class(key_visitor), intent(in) :: self
       type(message_list), intent(inout) :: messages
@@ -192,8 +192,8 @@ contains
          if (len_trim(self%text) > len(text)) then
             call self%messages%add(trim(self%group)//': '//name//" = '"//self%text(:min(40, &
                                    len(self%text)))// &
-                                   "' has "//to_text(len_trim(self%text))//' letters; it has '// &
-                                   to_text(len(text))//' at the most')
+                                   "' has "//to_text(len_trim(self%text))//' characters; at most '// &
+                                   to_text(len(text))//' are allowed')
          end if
          text = self%text
       case (listing)

@@ -1,7 +1,8 @@
-!> Keys: the names under which a user sets the values of a record, with what is known of each value.
+!> Keys: the names under which a user sets the values of a record, each with its unit, bounds, default
+!> and meaning.
 !>
 !> Reader, writer, validation, documentation and the Python package are driven by lists of keys. This
-!> module knows what a key is; which keys there are is said where the values belong.
+!> module defines the type of a key; each list is defined beside the record that it describes.
 module rbs_base_keys
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use rbs_base_kinds, only: wp
@@ -27,11 +28,11 @@ module rbs_base_keys
    !> The range that a number must be in.
    type :: bound_type
       real(wp) :: least = -huge(1.0_wp), most = huge(1.0_wp)
-      !> Whether the end of the range itself is excluded
+      !> Whether the bound itself is excluded
       logical :: least_open = .false., most_open = .false.
-      !> Whether numbers may be as near to zero as they like: values of histories are
+      !> Whether numbers may be arbitrarily close to zero, as the values of a history are
       logical :: tiny = .false.
-      !> What the message adds, such as '(it is a share)'
+      !> A reason that the message adds, such as '(it is a share)'
       character(len=40) :: reason = ''
    end type bound_type
 
@@ -51,10 +52,10 @@ module rbs_base_keys
       character(len=key_length) :: name = ''
       !> One of the kinds above
       character(len=1) :: kind = real_kind
-      !> Unit, or dimension of a spring's parameter; empty for a pure number
+      !> Unit, or dimension of a spring's parameter; empty for a dimensionless number
       character(len=16) :: unit = ''
       type(bound_type) :: bound = bound_type()
-      !> Value where the user gives none; `unset`: there is none
+      !> Default; `unset`: the key has no default
       real(wp) :: default = unset
       character(len=24) :: default_text = ''
       !> Whether the value may be missing although it has no default
@@ -72,11 +73,11 @@ contains
    !> A message if a number is missing where it must be given, not finite, or outside its bounds.
    subroutine check_number(x, name, key, messages, ok)
       real(wp), intent(in) :: x
-      !> What the number belongs to: 'shear spring of joint 2'
+      !> The owner of the number: 'shear spring of joint 2'
       character(len=*), intent(in) :: name
       type(key_type), intent(in) :: key
       type(message_list), intent(inout) :: messages
-      !> Unchanged where the number passes, else false
+      !> Set to false if the number fails, else unchanged
       logical, intent(inout) :: ok
       logical :: finite
 
@@ -109,7 +110,7 @@ contains
       end if
    end function value_text
 
-   !> Dimensions of springs are no units.
+   !> The unit in messages; empty for the dimensions of springs, which are not units.
    pure function unit_for_message(key) result(unit)
       type(key_type), intent(in) :: key
       character(len=16) :: unit
@@ -187,7 +188,7 @@ contains
       place = 0
    end function find_key
 
-   !> Place of a word among the choices of a key, 0 if it is none of them.
+   !> Place of a word among the choices of a key, 0 if it is not one of them.
    pure integer function choice_place(key, word) result(place)
       type(key_type), intent(in) :: key
       character(len=*), intent(in) :: word

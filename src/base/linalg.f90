@@ -1,7 +1,7 @@
 !> Linear algebra, dense and banded: the only place that calls LAPACK.
 !>
-!> Symmetric matrices are passed whole; the lower triangle is the one that is read. `info` of LAPACK
-!> becomes a logical where the caller has something better to say, an error otherwise.
+!> Symmetric matrices are passed whole; only the lower triangle is read. `info` of LAPACK becomes a
+!> logical where the caller can write a better message, and an error otherwise.
 module rbs_base_linalg
    use, intrinsic :: ieee_exceptions, only: ieee_all, ieee_get_status, ieee_set_halting_mode, &
                                             ieee_set_status, ieee_status_type
@@ -122,7 +122,7 @@ module rbs_base_linalg
 
 contains
 
-   !> Cholesky factor of a symmetric matrix, in place; `positive` tells whether there is one.
+   !> Cholesky factor of a symmetric matrix, in place; it exists if the matrix is positive definite.
    subroutine factor_positive(a, positive)
       !> Matrix (n, n); on return its factor in the lower triangle
       real(wp), intent(inout) :: a(:, :)
@@ -149,7 +149,7 @@ contains
    subroutine invert_positive(a, positive)
       !> Matrix (n, n), replaced by its inverse
       real(wp), intent(inout) :: a(:, :)
-      !> Whether the matrix is positive definite; if not, `a` is spoilt
+      !> Whether the matrix is positive definite; if not, `a` is useless on return
       logical, intent(out) :: positive
       integer :: i, info
 
@@ -164,7 +164,7 @@ contains
 
    !> Solve a general system by elimination with pivots.
    subroutine solve_general(a, b, regular)
-      !> Matrix (n, n), spoilt on return
+      !> Matrix (n, n), overwritten
       real(wp), intent(inout) :: a(:, :)
       !> Right-hand sides (n, m), replaced by the solutions
       real(wp), intent(inout) :: b(:, :)
@@ -181,7 +181,7 @@ contains
    subroutine factor_band(band, positive)
       !> Lower band (width + 1, n): band(1 + i - j, j) = a(i, j) for j <= i <= j + width
       real(wp), intent(inout), contiguous :: band(:, :)
-      !> Whether the matrix is positive definite; if not, `band` is spoilt
+      !> Whether the matrix is positive definite; if not, `band` is useless on return
       logical, intent(out) :: positive
       integer :: info
 
@@ -202,7 +202,7 @@ contains
 
    !> Solve a symmetric positive definite tridiagonal system.
    subroutine solve_tridiagonal(diagonal, beside, b, positive)
-      !> Diagonal (n) and the numbers beside it (n - 1), spoilt on return
+      !> Diagonal (n) and off-diagonal (n - 1), overwritten
       real(wp), intent(inout), contiguous :: diagonal(:), beside(:)
       !> Right-hand side (n), replaced by the solution
       real(wp), intent(inout), contiguous :: b(:)
@@ -216,7 +216,7 @@ contains
 
    !> Solve a general band system by elimination with pivots.
    subroutine solve_general_band(band, below, above, b, regular)
-      !> Band (2 below + above + 1, n): band(below + above + 1 + i - j, j) = a(i, j); spoilt on return
+      !> Band (2 below + above + 1, n): band(below + above + 1 + i - j, j) = a(i, j); overwritten
       real(wp), intent(inout), contiguous :: band(:, :)
       !> Number of diagonals below and above the main one
       integer, intent(in) :: below, above
@@ -234,9 +234,9 @@ contains
 
    !> Eigenvalues of `a x = w b x`, ascending, with vectors that satisfy x' b x = 1.
    subroutine solve_eigen(a, b, w, error)
-      !> Symmetric matrix (n, n), replaced by the vectors, one a column
+      !> Symmetric matrix (n, n), replaced by the vectors, one per column
       real(wp), intent(inout) :: a(:, :)
-      !> Symmetric positive definite matrix (n, n), spoilt on return
+      !> Symmetric positive definite matrix (n, n), overwritten
       real(wp), intent(inout) :: b(:, :)
       !> Eigenvalues (n)
       real(wp), intent(out) :: w(:)
@@ -258,15 +258,15 @@ contains
       end if
    end subroutine solve_eigen
 
-   !> Singular values, descending, and left vectors of a square matrix, by one-sided Jacobi rotations:
-   !> of D1 C D2 with diagonal D1, D2 all values have the relative accuracy that the condition of C allows,
-   !> however far they are apart (Drmac and Veselic, SIAM J. Matrix Anal. Appl. 29, 2008).
+   !> Singular values, descending, and left vectors of a square matrix, by one-sided Jacobi rotations. For
+   !> D1 C D2 with diagonal D1 and D2, all values have the relative accuracy that the condition of C allows,
+   !> however far apart they are (Drmac and Veselic, SIAM J. Matrix Anal. Appl. 29, 2008).
    subroutine singular_values(a, values, left, error)
-      !> Matrix (n, n), spoilt on return
+      !> Matrix (n, n), overwritten
       real(wp), intent(inout), contiguous :: a(:, :)
       !> Singular values (n)
       real(wp), intent(out), contiguous :: values(:)
-      !> Left vectors, one a column (n, n)
+      !> Left vectors, one per column (n, n)
       real(wp), intent(out), contiguous :: left(:, :)
       type(error_type), allocatable, intent(out) :: error
       type(ieee_status_type) :: status
@@ -278,7 +278,7 @@ contains
       n = size(values)
       allocate (work(max(7, 6*n + 2*n**2)), source=0.0_wp)
       allocate (iwork(max(3, 4*n)))
-      ! LAPACK divides the largest number by small ones here: it means the infinity that it gets
+      ! LAPACK divides the largest number by small ones here and intends the infinity that results
       ! (Reference-LAPACK issue 1282).
       call ieee_get_status(status)
       call ieee_set_halting_mode(ieee_all, .false.)
@@ -291,7 +291,7 @@ contains
                           'extreme ratios')
          return
       end if
-      ! The values are scaled where they would leave the range of the arithmetic.
+      ! LAPACK scales values that would leave the range of the arithmetic.
       values = values*(work(1)/work(2))
    end subroutine singular_values
 
@@ -306,8 +306,8 @@ contains
       call dtrtrs('L', 'T', 'N', size(b, 1), size(b, 2), factor, size(factor, 1), b, size(b, 1), info)
    end subroutine solve_upper
 
-   !> Whether shift*diag(d) - a is positive definite, for a symmetric band matrix `a` of half-width 3: the
-   !> factorisation without square roots, on a window of three columns, that changes and stores nothing.
+   !> Whether shift*diag(d) - a is positive definite, for a symmetric band matrix `a` of half-width 3, by a
+   !> factorisation without square roots that keeps three columns at a time and stores nothing else.
    pure logical function is_dominated(band, d, shift)
       !> Lower band (4, n): band(1 + i - j, j) = a(i, j)
       real(wp), intent(in), contiguous :: band(:, :)
@@ -315,7 +315,7 @@ contains
       real(wp), intent(in), contiguous :: d(:)
       real(wp), intent(in) :: shift
       real(wp) :: pivot, l1, l2, l3, below1, below2, below3
-      ! What the columns so far have left of the next three: (1 1), (2 1), (3 1), (2 2), (3 2), (3 3)
+      ! The next three columns after elimination of those before: (1 1), (2 1), (3 1), (2 2), (3 2), (3 3)
       real(wp) :: r11, r21, r31, r22, r32, r33
       integer :: j
 

@@ -1,8 +1,8 @@
-!> Symmetric band matrices of half-width 3, which the implicit methods solve with in every step.
+!> Symmetric band matrices of half-width 3, which the implicit methods factor and solve in every step.
 !>
-!> What the columns so far take from the next three stays in registers. LAPACK's band routines (see
-!> `factor_band` in `rbs_base_linalg`, the reference of the tests) spend several times as long on calls for
-!> vectors of three numbers.
+!> The three columns that an elimination changes stay in registers. LAPACK's band routines (see
+!> `factor_band` in `rbs_base_linalg`, the reference of the tests) take several times as long, because
+!> they call other routines for vectors of three numbers.
 module rbs_base_narrow_band
    use rbs_base_kinds, only: wp
    implicit none
@@ -15,10 +15,10 @@ contains
    !> Factor L D L', in place.
    pure subroutine factor_narrow_band(n, band, positive)
       integer, intent(in) :: n
-      !> Lower band: band(1 + i - j, j) = a(i, j) for j <= i <= j + 3; what stands beyond the last row must
-      !> be zero. On return 1/D and L
+      !> Lower band: band(1 + i - j, j) = a(i, j) for j <= i <= j + 3; elements beyond the last row must be
+      !> zero. On return 1/D and L
       real(wp), intent(inout) :: band(4, n)
-      !> Whether the matrix is positive definite; if not, `band` is spoilt
+      !> Whether the matrix is positive definite; if not, `band` is useless on return
       logical, intent(out) :: positive
       real(wp) :: pivot, share, l1, l2, l3, below1, below2, below3
       real(wp) :: r11, r21, r31, r22, r32, r33

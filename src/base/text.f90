@@ -1,6 +1,6 @@
-!> Numbers as text, names compared: what messages are made of.
+!> Text for messages: numbers as text, and the valid name closest to a misspelt one.
 !>
-!> The results have lengths that are known beforehand. For a text of deferred length gfortran keeps the
+!> The length of every result is computed beforehand. For a text of deferred length gfortran keeps the
 !> length in static storage, which threads would share.
 module rbs_base_text
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_is_finite
@@ -10,7 +10,7 @@ module rbs_base_text
 
    public :: to_text, exact_text, integer_length, lower, nearest_name, list_of
 
-   !> No number is longer than this.
+   !> Longest text of a number.
    integer, parameter :: longest = 32
 
    !> A number as short text for messages and headers.
@@ -20,7 +20,7 @@ module rbs_base_text
 
 contains
 
-   !> Six significant digits at the most, without blanks and trailing zeros: 0.0016, 7.0387e+08.
+   !> At most six significant digits, without blanks and trailing zeros: 0.0016, 7.0387e+08.
    pure function real_to_text(x) result(text)
       real(wp), intent(in) :: x
       character(len=real_length(x)) :: text
@@ -43,7 +43,7 @@ contains
       character(len=integer_length(i)) :: text
       integer :: left, place
 
-      ! By hand: the input of a case takes its locations, and formatted output is slow.
+      ! Without formatted output, which is slow: every key of an input has a location with a line number.
       left = i
       if (i < 0) text(1:1) = '-'
       do place = len(text), merge(2, 1, i < 0), -1
@@ -64,7 +64,7 @@ contains
       end do
    end function integer_length
 
-   !> A number at the left of a text.
+   !> Write a number, adjusted to the left.
    pure subroutine write_real(x, text)
       real(wp), intent(in) :: x
       character(len=longest), intent(out) :: text
@@ -98,7 +98,7 @@ contains
       end if
    end subroutine write_real
 
-   !> A number with as many digits as it takes to read back the same bits.
+   !> A number with the fewest digits from which the same bits are read back.
    pure function exact_text(x) result(text)
       !> Finite
       real(wp), intent(in) :: x
@@ -134,7 +134,7 @@ contains
       if (x < 0.0_wp) text = '-'//text(:longest - 1)
    end function exact_text
 
-   !> Take the zeros (and the point) off the end of a decimal number.
+   !> Remove trailing zeros, and a trailing point, from a decimal number.
    pure subroutine cut_zeros(number)
       character(len=longest), intent(inout) :: number
       integer :: last
@@ -184,7 +184,7 @@ contains
       list_length = sum(len_trim(names)) + 2*max(size(names) - 1, 0)
    end function list_length
 
-   !> The valid name that a misspelt word comes nearest to by edit distance.
+   !> The valid name that is nearest to a misspelt word by edit distance.
    pure function nearest_name(word, names) result(name)
       character(len=*), intent(in) :: word
       character(len=*), intent(in) :: names(:)
@@ -216,7 +216,7 @@ contains
       end do
    end function nearest_place
 
-   !> Levenshtein distance: the least number of letters put in, taken out or changed.
+   !> Levenshtein distance: the least number of characters to insert, remove or change.
    pure function edit_distance(a, b) result(distance)
       character(len=*), intent(in) :: a, b
       integer :: distance

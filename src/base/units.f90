@@ -1,4 +1,4 @@
-!> Units at the edge; inside the program everything is SI.
+!> Units of input and output; inside the program all values are in SI.
 module rbs_base_units
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: standard_gravity
@@ -10,7 +10,7 @@ module rbs_base_units
    !> A unit by name.
    type :: unit_type
       character(len=8) :: name
-      !> SI units in one of it
+      !> Its value in SI units
       real(wp) :: factor
    end type unit_type
 
@@ -40,8 +40,8 @@ module rbs_base_units
 
 contains
 
-   !> A value in SI. Millimetres and the like are divided by a whole number, which rounds once; a factor
-   !> of 0.001 is itself rounded.
+   !> A value in SI. Values in small units, such as millimetres, are divided by a whole number, which
+   !> rounds once; a factor of 0.001 would itself be rounded.
    elemental real(wp) function to_si(value, unit)
       real(wp), intent(in) :: value
       type(unit_type), intent(in) :: unit
@@ -65,14 +65,14 @@ contains
       end if
    end function from_si
 
-   !> Whether nothing has to be converted.
+   !> Whether the units are those of SI, so that nothing is converted.
    pure logical function is_si(self)
       class(unit_system), intent(in) :: self
 
       is_si = self%force%name == 'N' .and. self%length%name == 'm' .and. self%mass%name == 'kg'
    end function is_si
 
-   !> A number of the user in SI.
+   !> A value in the units of the user, converted to SI.
    elemental real(wp) function into_si(self, value, unit)
       class(unit_system), intent(in) :: self
       real(wp), intent(in) :: value
@@ -82,7 +82,7 @@ contains
       into_si = converted(self, value, unit, 1)
    end function into_si
 
-   !> A number of the program in the units of the user.
+   !> A value in SI, converted to the units of the user.
    elemental real(wp) function out_of_si(self, value, unit)
       class(unit_system), intent(in) :: self
       real(wp), intent(in) :: value
@@ -95,7 +95,7 @@ contains
       class(unit_system), intent(in) :: self
       real(wp), intent(in) :: value
       character(len=*), intent(in) :: unit
-      !> +1: into SI, -1: out of it
+      !> +1: to SI, -1: from SI
       integer, intent(in) :: direction
       type(unit_type) :: one
       integer :: i, power
@@ -115,7 +115,8 @@ contains
       end do
    end function converted
 
-   !> The unit that begins at a letter; none if the letter belongs to 'rad', 's' or the like.
+   !> The unit of the user for one character of an SI unit, if the character stands for one: 'N' in 'N m', but
+   !> not 'r' in 'rad'.
    pure subroutine unit_of_letter(self, unit, i, one, found)
       class(unit_system), intent(in) :: self
       character(len=*), intent(in) :: unit
@@ -149,7 +150,7 @@ contains
       end if
    end function applied
 
-   !> The name that an SI unit has here: 'kN/mm' for 'N/m'.
+   !> The name of an SI unit in the units of the user: 'kN/mm' for 'N/m'.
    pure function name_of(self, unit) result(name)
       class(unit_system), intent(in) :: self
       character(len=*), intent(in) :: unit

@@ -1,7 +1,8 @@
-! The one file that f2py reads: free subroutines, arrays of C kinds, a status and a message each.
+! The only file that f2py reads: subroutines outside modules with arrays of C kinds; each returns a status and
+! a message.
 !
-! status: 0 well, 1 the analysis failed (rows up to there are good), 2 bad input.
-! f2py would take real(wp) for a C float without a word, so only c_double and c_int appear here.
+! status: 0 success, 1 the analysis failed (the rows before are valid), 2 bad input.
+! f2py would treat real(wp) as a C float without a warning, so only c_double and c_int appear here.
 
 subroutine rbs_version_text(text)
    use rbs_version, only: version
@@ -24,7 +25,7 @@ subroutine rbs_methods_text(text)
 end subroutine rbs_methods_text
 
 subroutine rbs_keys(most, text, length)
-   ! The list of all keys as JSON; nothing but its length if there is too little room.
+   ! The list of all keys as JSON; only its length if the text is too short for it.
    use iso_c_binding, only: c_int
    use rbs_case_key_list, only: keys_as_json
    use rbs_case_text_buffer, only: text_buffer
@@ -109,7 +110,7 @@ subroutine rbs_check_column(statement, nn, number, status, message)
 end subroutine rbs_check_column
 
 subroutine rbs_to_namelist(statement, nn, number, most, text, length, status, message)
-   ! The case as the text of a file; nothing but its length if there is too little room.
+   ! The case as the text of a file; only its length if the text is too short for it.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_bindings_runs, only: tell
@@ -204,7 +205,7 @@ subroutine rbs_mass_matrix(statement, nn, number, unknowns, paper, mass, status,
 end subroutine rbs_mass_matrix
 
 subroutine rbs_quantities(opens, rows, figures)
-   ! Names of what a row holds, `slip*` for one value a joint, and of the figures of a run.
+   ! Names of the columns of a row, `slip*` for one value per joint, and of the summary values of a run.
    use iso_c_binding, only: c_int
    use rbs_output_row, only: row_quantities
    use rbs_output_summary, only: figure_names
@@ -251,7 +252,7 @@ end subroutine rbs_cyclic
 
 subroutine rbs_time_history(statement, nn, number, m, time, drives, nd, load, mi, initial, opening_given, &
                             width, height, rows, kept, nf, figures, used, status, message)
-   ! status 3: there is too little room for the rows; `kept` of them are wanted, and nothing was solved.
+   ! status 3: the array is too small for the rows; `kept` rows are needed, and nothing was solved.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_bindings_runs, only: choose_method, into_rows_dynamic, little_room, make_loads, tell_run
@@ -291,7 +292,7 @@ subroutine rbs_time_history(statement, nn, number, m, time, drives, nd, load, mi
 end subroutine rbs_time_history
 
 subroutine rbs_read_case(path, nt, nn, m, statement, number, time, values, acting, sizes, status, message)
-   ! Sizes of statement, number and time come back in `sizes`; the arrays are filled if theirs suffice.
+   ! `sizes` returns the sizes of statement, number and time; the arrays are filled if they are large enough.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_bindings_case_arrays, only: case_arrays, open_case
@@ -428,7 +429,7 @@ end subroutine rbs_axial_capacity
 
 subroutine rbs_moment_curvature(nc, codes, nn, numbers, axial_load, tension, confined, m, curvature, &
                                 moment, strain, status, message)
-   ! Curvatures of one sign in rising size.
+   ! Curvatures of one sign and increasing magnitude.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_bindings_runs, only: tell
@@ -458,7 +459,7 @@ end subroutine rbs_moment_curvature
 
 subroutine rbs_section_events(nc, codes, nn, numbers, axial_load, tension, confined, yield, ultimate, &
                               strains, points, lost, status, message)
-   ! A column of `points` each for cracking, yield, peak, ultimate and the end; strains: eps_yield, eps_cover.
+   ! Columns of `points`: cracking, yield, peak, ultimate and the end; strains: eps_yield, eps_cover.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list
    use rbs_bindings_runs, only: tell
@@ -589,9 +590,9 @@ end subroutine rbs_section_concrete
 
 subroutine rbs_section_shear(nc, codes, nn, numbers, axial_load, span, tension, confined, coupled, layers, &
                              share, m, curvature, points, profile, kept, events, ends, status, message)
-   ! A column each: `points` curvature, moment, shear force, shear strain; `profile` y, eps_x, tau, gamma,
-   ! eps_z of the layers at the last point; `ends` as points, of the knee and the last one. `events`: knee
-   ! found, a layer sheared, axial load lost.
+   ! Each column of `points` holds curvature, moment, shear force, shear strain; of `profile` y, eps_x, tau,
+   ! gamma, eps_z of a layer at the last point. `ends`: the knee and the last point, like `points`.
+   ! `events`: knee found, a layer failed in shear, axial load lost.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_bindings_runs, only: tell
@@ -622,8 +623,8 @@ subroutine rbs_section_shear(nc, codes, nn, numbers, axial_load, span, tension, 
 end subroutine rbs_section_shear
 
 subroutine rbs_layer_response(concrete, tension, stirrup, m, path, states, carried)
-   ! concrete: fc, ft, ec, eps0; stirrup: rho_z, fy, fu, es, eps_sh, eps_u; path: eps_x and tau; a column of
-   ! `states`: eps_z, gamma, sigma_x, sigma_z, tau.
+   ! concrete: fc, ft, ec, eps0; stirrup: rho_z, fy, fu, es, eps_sh, eps_u. Each column of `path` holds eps_x
+   ! and tau, of `states` eps_z, gamma, sigma_x, sigma_z, tau.
    use iso_c_binding, only: c_double, c_int
    use rbs_bindings_shear_arrays, only: layer_into_arrays
    implicit none
@@ -637,8 +638,8 @@ subroutine rbs_layer_response(concrete, tension, stirrup, m, path, states, carri
 end subroutine rbs_layer_response
 
 subroutine rbs_section_strips(shape, sizes, round_core, m, core, cover, figures, status, message)
-   ! sizes: width, depth, and by how much those of the core between hoop centre lines are smaller; a column of
-   ! `core` and `cover`: y of the centroid and area; figures: area, second moment, shear area of the whole.
+   ! sizes: width, depth, and the reductions of both to the core between hoop centre lines. Each column of
+   ! `core` and `cover` holds y of the centroid and area; figures: area, second moment, shear area.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_check, only: check_name
    use rbs_base_error, only: error_type, message_list

@@ -21,7 +21,7 @@ module rbs_bindings_case_arrays
       type(statement_sink) :: statements
       !> Times (m) [s], and values of the drives in the order of `drive_names` (m, drives)
       real(c_double), allocatable :: time(:), values(:, :)
-      !> Which drives there are, 0 or 1
+      !> For each drive, 1 if it is present, else 0
       integer(c_int) :: acting(drives) = 0
    end type case_arrays
 
@@ -60,7 +60,7 @@ contains
       call write_case(case, arrays%statements)
    end subroutine open_case
 
-   !> Values of a signal at common times; its own points come back as they are.
+   !> Values of a signal at common times; at its own points they are exactly its values.
    subroutine sample(signal, time, values)
       type(signal_type), intent(inout) :: signal
       real(c_double), intent(in) :: time(:)

@@ -1,4 +1,4 @@
-!> Analyses from plain arrays into plain arrays: what the procedures for f2py call.
+!> Analyses from plain arrays into plain arrays, called by the procedures for f2py.
 module rbs_bindings_runs
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
@@ -23,12 +23,12 @@ module rbs_bindings_runs
    public :: into_rows_static, into_rows_dynamic, make_loads, choose_method, protocol_from_numbers, tell, &
              tell_run
 
-   !> Status of a run that needs more rows than it was given room for; 0 to 2 are those of an error.
+   !> Status of a run that needs more rows than the array has; 0 to 2 are those of an error.
    integer(c_int), parameter, public :: little_room = 3
 
 contains
 
-   !> Static path into an array of rows.
+   !> Write the rows of a static path into an array.
    subroutine into_rows_static(column, case, by_force, target_values, rows, count, summary, error)
       type(column_type), intent(in) :: column
       !> Settings of analysis and output
@@ -51,7 +51,7 @@ contains
       count = recorder%count
    end subroutine into_rows_static
 
-   !> Validate what is not the column.
+   !> Validate the case without its column.
    subroutine check_settings(case, error)
       type(case_record), intent(inout) :: case
       type(error_type), allocatable, intent(out) :: error
@@ -62,7 +62,7 @@ contains
       call messages%raise(error)
    end subroutine check_settings
 
-   !> The method of an analysis in time, where the user names none, and its settings checked.
+   !> Choose the method of an analysis in time if the user has not named one, and check its settings.
    subroutine choose_method(case, loads, error)
       type(case_record), intent(inout) :: case
       type(loads_type), intent(in) :: loads
@@ -82,7 +82,7 @@ contains
       end if
    end subroutine choose_method
 
-   !> Response in time into an array of rows.
+   !> Write the rows of a response in time into an array.
    subroutine into_rows_dynamic(column, case, time, loads, initial_values, opening_given, rows, count, &
                                 summary, enough, error)
       type(column_type), intent(in) :: column
@@ -90,11 +90,11 @@ contains
       type(case_record), intent(in) :: case
       real(c_double), intent(in) :: time(:)
       type(loads_type), intent(in) :: loads
-      !> Deformations, then velocities (2 unknowns), or nothing: at rest
+      !> Deformations, then velocities (2 unknowns); empty: at rest
       real(c_double), intent(in) :: initial_values(:)
       logical, intent(in) :: opening_given
       real(c_double), intent(inout), target, contiguous :: rows(:, :)
-      !> Rows kept; without enough room nothing is solved, and it is the number of rows wanted
+      !> Rows kept; if the array is too small, nothing is solved and this is the number of rows needed
       integer, intent(out) :: count
       type(summary_type), intent(out) :: summary
       logical, intent(out) :: enough
@@ -123,7 +123,7 @@ contains
       count = recorder%count
    end subroutine into_rows_dynamic
 
-   !> What acts, from one column of values for each drive.
+   !> The excitation, from one column of values for each drive.
    subroutine make_loads(loads, drives, time, load, error)
       type(loads_type), intent(out) :: loads
       !> Names of the drives, separated by blanks
@@ -169,7 +169,7 @@ contains
    subroutine protocol_from_numbers(amplitudes, cycles, repeats, points, values, error)
       real(c_double), intent(in) :: amplitudes(:)
       integer(c_int), intent(in) :: cycles(:), repeats, points
-      !> Filled as far as there are points
+      !> Filled up to the number of points
       real(c_double), intent(out) :: values(:)
       type(error_type), allocatable, intent(out) :: error
       type(loading_record) :: spec
@@ -190,7 +190,7 @@ contains
       if (.not. allocated(error)) values = made(:size(values))
    end subroutine protocol_from_numbers
 
-   !> Status and text of an error, 0 and blank without one.
+   !> Status and text of an error; 0 and blank if there is no error.
    subroutine tell(error, status, message)
       type(error_type), allocatable, intent(in) :: error
       integer(c_int), intent(out) :: status
@@ -203,13 +203,13 @@ contains
       message = error%message
    end subroutine tell
 
-   !> The same for a run; one that went well may have a note as its message.
+   !> The same for a run; a successful run may have a note as its message.
    subroutine tell_run(column, summary, error, figures, method, status, message)
       type(column_type), intent(in) :: column
       type(summary_type), intent(in) :: summary
       type(error_type), allocatable, intent(in) :: error
       real(c_double), intent(out) :: figures(:)
-      !> Method that was used, and behind it why the program chose it
+      !> Method that was used, followed by the reason if the program chose it
       character(len=*), intent(out) :: method
       integer(c_int), intent(out) :: status
       character(len=*), intent(out) :: message

@@ -1,7 +1,7 @@
-!> A section as two plain arrays, one of whole numbers and one of reals: how it crosses from Python.
+!> A section as two plain arrays, one of whole numbers and one of reals, in which Python passes it.
 !>
-!> Whole numbers: shape, kind of ties, number of strips, of steels, of bars; place of the steel of each
-!> bar. Reals: the scalars in the order of `section_from_numbers`, five of each steel, y and area of each bar.
+!> Whole numbers: shape, kind of ties, numbers of strips, steels and bars; place of the steel of each bar.
+!> Reals: the scalars in the order of `section_from_numbers`, five of each steel, y and area of each bar.
 !> The Python side is `rbsdem.section.section`.
 module rbs_bindings_section_arrays
    use, intrinsic :: iso_c_binding, only: c_double, c_int
@@ -73,8 +73,8 @@ contains
       steel_of = steel_type(numbers(1), numbers(2), numbers(3), numbers(4), numbers(5))
    end function steel_of
 
-   !> What follows from the input: fc, ft, ec, eps0, n, decay; the same of the core with eps_cu; k_e, f_l,
-   !> rho_s; width and depth of the core.
+   !> Derived values: fc, ft, ec, eps0, n, decay; the same of the core with eps_cu; k_e, f_l, rho_s; width and
+   !> depth of the core.
    subroutine figures_of_section(section, figures)
       type(section_type), intent(in) :: section
       real(c_double), intent(out) :: figures(15)
@@ -97,7 +97,7 @@ contains
       numbers = [point%curvature, point%moment, point%eps0, merge(1.0_wp, 0.0_wp, point%found)]
    end function point_numbers
 
-   !> Numbers of a fitted spring in the order of its type.
+   !> Values of a fitted spring in the order of its type.
    pure function spring_figures(spring) result(numbers)
       type(flexural_spring_type), intent(in) :: spring
       real(c_double) :: numbers(10)

@@ -25,9 +25,9 @@ contains
       real(c_double), intent(in) :: axial_load, span, share
       !> [1/m]
       real(c_double), intent(in) :: curvature(:)
-      !> A column each: curvature, moment, force, strain
+      !> In each column curvature, moment, force, strain
       real(c_double), intent(inout) :: points(:, :), ends(:, :)
-      !> A column each: y, eps_x, tau, gamma, eps_z of the layers at the last point
+      !> In each column y, eps_x, tau, gamma, eps_z of a layer at the last point
       real(c_double), intent(inout) :: profile(:, :)
       integer(c_int), intent(inout) :: kept, events(:)
       type(error_type), allocatable, intent(out) :: error
@@ -70,9 +70,9 @@ contains
       integer(c_int), intent(in) :: tension
       !> rho_z, fy, fu, es, eps_sh, eps_u
       real(c_double), intent(in) :: stirrup(6)
-      !> A column each: eps_x (tension positive), tau [Pa]
+      !> In each column eps_x (tension positive), tau [Pa]
       real(c_double), intent(in) :: path(:, :)
-      !> A column each: eps_z, gamma, sigma_x, sigma_z, tau
+      !> In each column eps_z, gamma, sigma_x, sigma_z, tau
       real(c_double), intent(out) :: states(:, :)
       !> Whether the layer carries tau
       integer(c_int), intent(out) :: carried(:)

@@ -1,8 +1,8 @@
-!> How a column, a spring or a case crosses from Python: names of keys as text, values as numbers.
+!> How Python passes a column, a spring or a case: names of keys as text, values as numbers.
 !>
-!> The text has a line for each group: its name, then its keys, separated by tabs. `key` stands for the
-!> next number, `key:5` for the next five, `key=word` for a text. Keys go through the setter, like those
-!> of a case file.
+!> The text has a line for each group: its name, then its keys, separated by tabs. `key` takes the next
+!> number, `key:5` the next five, `key=word` a text. Keys are set by the setter, like those of a case
+!> file.
 module rbs_bindings_statements
    use, intrinsic :: iso_c_binding, only: c_double
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
@@ -20,7 +20,7 @@ module rbs_bindings_statements
 
 contains
 
-   !> Put all groups of a text.
+   !> Set all groups of a text.
    subroutine put_statements(text, number, setter, messages)
       character(len=*), intent(in) :: text
       real(c_double), intent(in) :: number(:)
@@ -40,11 +40,11 @@ contains
       call setter%finish(messages)
    end subroutine put_statements
 
-   !> One group.
+   !> Set one group.
    subroutine put_group(line, number, at, setter, messages)
       character(len=*), intent(in) :: line
       real(c_double), intent(in) :: number(:)
-      !> Place of the number that was taken last
+      !> Index of the last number that was taken
       integer, intent(inout) :: at
       type(setter_type), intent(inout) :: setter
       type(message_list), intent(inout) :: messages
@@ -63,7 +63,7 @@ contains
       end do
    end subroutine put_group
 
-   !> One key with its value.
+   !> Set one key to its value.
    subroutine put_item(item, number, at, setter, messages)
       character(len=*), intent(in) :: item
       real(c_double), intent(in) :: number(:)
@@ -89,7 +89,7 @@ contains
       at = at + count
    end subroutine put_item
 
-   !> A case as it is stated, not validated.
+   !> Set a case from its text and numbers, without validation.
    subroutine case_from_statements(text, number, case, error)
       character(len=*), intent(in) :: text
       real(c_double), intent(in) :: number(:)
@@ -103,7 +103,7 @@ contains
       case = setter%case
    end subroutine case_from_statements
 
-   !> Validate a column and make it; the rest of the case comes along.
+   !> Validate and make a column; the rest of the case is set but not validated.
    subroutine column_from_statements(text, number, column, case, error)
       character(len=*), intent(in) :: text
       real(c_double), intent(in) :: number(:)
@@ -115,11 +115,11 @@ contains
       if (.not. allocated(error)) call make_column(case%column, column, error)
    end subroutine column_from_statements
 
-   !> Validate a spring that stands alone, as the only one of the group flexure.
+   !> Validate a single spring, given as the only one of the group flexure.
    subroutine spring_from_statements(text, number, axial_load, spring, error)
       character(len=*), intent(in) :: text
       real(c_double), intent(in) :: number(:)
-      !> On the layers, if there are any [N]
+      !> Axial load on the layers, if there are any [N]
       real(c_double), intent(in) :: axial_load
       type(spring_record), intent(out) :: spring
       type(error_type), allocatable, intent(out) :: error

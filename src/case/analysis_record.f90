@@ -1,4 +1,4 @@
-!> What the user asked of the analysis and of its output.
+!> The input of the analysis and of its output.
 module rbs_case_analysis_record
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unset, unset_integer
@@ -13,9 +13,9 @@ module rbs_case_analysis_record
 
    public :: analysis_record, output_record
 
-   !> Tolerances of `rk45` that can be met in the arithmetic.
+   !> Tolerances of `rk45` that the arithmetic can reach.
    type(bound_type), parameter :: possible = bound_type(1.0e-13_wp, 0.1_wp)
-   !> Spectral radii at infinite frequency.
+   !> Range of the spectral radius at infinite frequency.
    type(bound_type), parameter :: radius = bound_type(0.0_wp, 1.0_wp)
 
    !> How the case is solved.
@@ -40,7 +40,7 @@ module rbs_case_analysis_record
       procedure :: validate => validate_analysis
    end type analysis_record
 
-   !> What is written.
+   !> The output of a run.
    type :: output_record
       !> Path of the csv; not allocated: the case file's name with .csv
       character(len=:), allocatable :: file
@@ -131,7 +131,7 @@ contains
       call refuse_unused(self, messages)
    end subroutine validate_analysis
 
-   !> Refuse settings that the method does not take: the user expects something of them.
+   !> Refuse settings that the method does not use: the user expects them to have an effect.
    subroutine refuse_unused(self, messages)
       class(analysis_record), intent(in) :: self
       type(message_list), intent(inout) :: messages
@@ -154,7 +154,7 @@ contains
       subroutine refuse(unused, key, takes)
          logical, intent(in) :: unused
          character(len=*), intent(in) :: key
-         !> Which of the methods take the setting
+         !> For each method, whether it uses the setting
          logical, intent(in) :: takes(:)
          character(len=:), allocatable :: names
 

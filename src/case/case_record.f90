@@ -1,4 +1,4 @@
-!> A whole case: what a namelist file holds.
+!> A whole case: the contents of a namelist file.
 module rbs_case_case_record
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor
@@ -14,7 +14,7 @@ module rbs_case_case_record
    !> A force, a ground motion in two directions and an axial load may act together.
    integer, parameter :: most_loadings = 4
 
-   !> Units of the numbers of a case, by name.
+   !> Names of the units of a case.
    type :: units_record
       character(len=8) :: force = 'N', length = 'm', mass = 'kg'
    contains
@@ -22,7 +22,7 @@ module rbs_case_case_record
       procedure :: system
    end type units_record
 
-   !> Everything that a run needs to know.
+   !> The input of a run.
    type :: case_record
       !> One line for the header of the output
       character(len=:), allocatable :: title
@@ -59,7 +59,7 @@ contains
       call v%word('mass', self%mass, 'unit of masses in the file', 'kg t')
    end subroutine visit_units
 
-   !> The units themselves.
+   !> The units by their names.
    pure type(unit_system) function system(self)
       class(units_record), intent(in) :: self
 
@@ -75,7 +75,7 @@ contains
       named = units(max(1, findloc(units%name == name, .true., dim=1)))
    end function named
 
-   !> Fill in what follows from the rest: sources and units of the loadings, the method.
+   !> Set what follows from other input: sources and units of the loadings, the method.
    subroutine settle(self)
       class(case_record), intent(inout) :: self
       logical :: moving, timed
@@ -109,7 +109,7 @@ contains
       end if
    end subroutine settle
 
-   !> Add a message for everything that is wrong with the case.
+   !> Add a message for every error of the case.
    subroutine validate(self, messages)
       class(case_record), intent(inout) :: self
       type(message_list), intent(inout) :: messages
@@ -120,7 +120,7 @@ contains
       call v%start_check('units')
       call self%units%visit(v)
       call v%end_check(messages)
-      ! Without its units no number says anything.
+      ! Numbers cannot be judged if their units are unknown.
       if (messages%count > known) return
       call self%settle()
       call self%column%validate(messages)
@@ -130,7 +130,7 @@ contains
          return
       end if
       do i = 1, self%loadings
-         ! What a loading needs depends on the method; a method that is not known is told of below.
+         ! The input that a loading needs depends on the method; an unknown method is reported below.
          if (.not. self%analysis%known()) exit
          call self%loading(i)%validate(self%analysis%dynamic(), messages)
       end do
@@ -140,7 +140,7 @@ contains
       call self%output%validate(messages)
    end subroutine validate
 
-   !> What a static path cannot take, found before the path starts (in the words of the solver).
+   !> Refuse input that a static path cannot take before the path starts, with the message of the solver.
    subroutine check_static(self, messages)
       type(case_record), intent(in) :: self
       type(message_list), intent(inout) :: messages
@@ -152,7 +152,7 @@ contains
                         'dynamic analysis')
    end subroutine check_static
 
-   !> Loadings that cannot act together.
+   !> Refuse loadings that cannot act together.
    subroutine check_together(self, messages)
       type(case_record), intent(in) :: self
       type(message_list), intent(inout) :: messages

@@ -18,7 +18,7 @@ module rbs_case_key_list
 
 contains
 
-   !> The keys that a group has besides the parameters of a rule.
+   !> The keys of a group without the parameters of a rule.
    subroutine group_keys(group, keys)
       character(len=*), intent(in) :: group
       type(key_type), allocatable, intent(out) :: keys(:)
@@ -87,7 +87,7 @@ contains
       end do
    end subroutine append_keys
 
-   !> One key; what says nothing is left out.
+   !> One key as JSON; bounds, choices and defaults that it does not have are left out.
    subroutine append_key(buffer, key)
       type(text_buffer), intent(inout) :: buffer
       type(key_type), intent(in) :: key
@@ -144,7 +144,7 @@ contains
       end select
    end function kind_name
 
-   !> The default as text; blank where there is none.
+   !> The default as text; blank if there is none.
    pure function default_of(key) result(text)
       type(key_type), intent(in) :: key
       character(len=32) :: text

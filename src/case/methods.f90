@@ -9,36 +9,36 @@ module rbs_case_methods
    public :: method_type, methods, method_named, method_choices, quoted_names, method_rows
    public :: usual_tolerance, usual_rho_infinity, methods_columns
 
-   !> Where the user gives none: error of a step of rk45, spectral radius at infinite frequency.
+   !> Defaults: error of a step of rk45, spectral radius at infinite frequency.
    real(wp), parameter :: usual_tolerance = 1.0e-6_wp, usual_rho_infinity = 0.8_wp
 
-   !> What is to be known of a method.
+   !> The facts of one method.
    type :: method_type
       character(len=17) :: name = ''
-      !> Order of accuracy; 0: not of an order of its own
+      !> Order of accuracy; 0: none of its own
       integer :: order = 0
       !> Whether it is an analysis in time
       logical :: in_time = .true.
-      !> Whether a step follows from the state at its begin, or from an equation with the state at its end.
-      !> `auto` is neither: it stands for one of the others.
+      !> Explicit: a step follows from the state at its start; implicit: from an equation with the state at
+      !> its end. `auto` is neither: it stands for one of the others.
       logical :: explicit = .false., implicit = .false.
-      !> Whether the length of its steps follows from a tolerance
+      !> Whether it chooses the length of its steps by a tolerance
       logical :: adaptive = .false.
-      !> Settings of the analysis that it takes
+      !> Settings of the analysis that it uses
       logical :: dt = .true., events = .false., tolerance = .false., rho_infinity = .false.
       logical :: allow_unstable = .false.
-      !> Whether it takes `kinematics = 'finite'`
+      !> Whether it can be used with `kinematics = 'finite'`
       logical :: finite = .true.
-      !> Its step where the user gives none, in shares of the stability limit of rk4 or of the longest natural
-      !> period; that of rk45 is the longest one. 0: it does not depend on that
+      !> Default of its step as a share of the stability limit of rk4, or of the longest natural period; for
+      !> rk45 the longest step. 0: the step does not depend on the limit, or on the period
       real(wp) :: limit_share = 0.0_wp, period_share = 0.0_wp
       !> Least spectral radius at infinite frequency
       real(wp) :: least_rho_infinity = 0.0_wp
    end type method_type
 
    !> The pair 5(4) of rk45 is stable for undamped motion up to h omega = 0.9968, rk4 up to 2 sqrt(2): 0.3524
-   !> of the limit of rk4. Beyond, the stiffest mode would grow until its error is above the tolerance, and
-   !> shake the springs on the way.
+   !> of the limit of rk4. With longer steps the stiffest mode would grow until its error exceeds the
+   !> tolerance, and the springs would follow this false motion.
    type(method_type), parameter :: methods(7) = [ &
       method_type('static', in_time=.false., dt=.false.), &
       method_type('auto', tolerance=.true.), &
@@ -52,13 +52,13 @@ module rbs_case_methods
       method_type('generalised_alpha', order=2, implicit=.true., rho_infinity=.true., finite=.false., &
                   period_share=0.02_wp)]
 
-   !> Names of what `method_rows` tells.
+   !> Names of the columns of `method_rows`.
    character(len=*), parameter :: methods_columns = 'method order kind adaptive dt events tolerance '// &
                                   'rho_infinity allow_unstable finite limit_share period_share'
 
 contains
 
-   !> The facts of one method; of a name that is not known, those of a method without a name.
+   !> The facts of one method; for an unknown name those of a method without a name.
    pure type(method_type) function method_named(name) result(method)
       character(len=*), intent(in) :: name
       integer :: i
@@ -79,9 +79,9 @@ contains
       end do
    end function method_choices
 
-   !> Names in quotes of some of the methods: "'rk4' or 'rk45'".
+   !> Some of the methods by their quoted names: "'rk4' or 'rk45'".
    subroutine quoted_names(wanted, text)
-      !> Which of them, in the order of `methods`
+      !> For each of `methods`, whether it is named
       logical, intent(in) :: wanted(:)
       character(len=:), allocatable, intent(out) :: text
       integer :: i, left

@@ -1,4 +1,4 @@
-!> Names of an earlier form of the case file, for messages that name the new ones.
+!> Names of an earlier format of the case file, so that messages can give the new names.
 module rbs_case_renamed
    implicit none
    private
@@ -9,7 +9,7 @@ module rbs_case_renamed
 
    type :: change
       character(len=length) :: group, key
-      !> What the message says behind 'is now'
+      !> The text of the message after 'is now'
       character(len=text_length) :: now
    end type change
 
@@ -34,7 +34,7 @@ module rbs_case_renamed
 
 contains
 
-   !> What a group is called now; blank if it has no other name.
+   !> The new name of a group; blank if it was not renamed.
    pure function new_group(group) result(now)
       character(len=*), intent(in) :: group
       character(len=text_length) :: now
@@ -42,7 +42,7 @@ contains
       now = new_key(group, '')
    end function new_group
 
-   !> What a key is called now; blank if it has no other name.
+   !> The new name of a key; blank if it was not renamed.
    pure function new_key(group, key) result(now)
       character(len=*), intent(in) :: group, key
       character(len=text_length) :: now
@@ -57,7 +57,7 @@ contains
       end do
    end function new_key
 
-   !> What a word under a key is called now; blank if it has no other name.
+   !> The new name of a word of a key; blank if it was not renamed.
    pure function new_word(key, word) result(now)
       character(len=*), intent(in) :: key, word
       character(len=text_length) :: now

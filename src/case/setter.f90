@@ -1,5 +1,5 @@
-!> The one way into a case: a group is opened, its keys are set by name. The reader of case files and the
-!> door to Python both come through here, so a value has one name, one check and one message.
+!> The only way to set a case: a group is opened, then its keys are set by name. The reader of case files and
+!> the bindings for Python both use it, so that a value has one name, one check and one message.
 module rbs_case_setter
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor
@@ -21,23 +21,23 @@ module rbs_case_setter
       'case', 'units', 'column', 'damping', 'shear', 'flexure', 'axial_spring', 'layer_spring', 'layers', &
       'loading', 'analysis', 'output']
 
-   !> What `find` returns for a key that is passed over because the rule of its spring is not known.
+   !> The result of `find` for a key that is ignored because the rule of its spring is unknown.
    integer, parameter, public :: ignored = -1
 
    type :: setter_type
       type(case_record) :: case
-      !> Units of the numbers that are put
+      !> Units of the numbers that are set
       type(unit_system) :: units
       !> Keys of the open group
       type(key_type), allocatable :: keys(:)
       character(len=16) :: group = ''
-      !> Where the group stands, for messages: 'case.nml line 4:' or blank
+      !> Location of the group, for messages: 'case.nml line 4:' or blank
       character(len=80) :: where = ''
       type(entry_list), private :: springs
       type(key_visitor), private :: visitor
       !> Whether each group has been opened before
       logical, private :: seen(size(group_names)) = .false.
-      !> The keys from here on are parameters of the rule of a spring
+      !> From this key on they are parameters of the rule of a spring
       integer, private :: parameters = huge(1)
    contains
       procedure :: open
@@ -50,7 +50,7 @@ module rbs_case_setter
 
 contains
 
-   !> Open a group. Its name and how often it may stand are checked.
+   !> Open a group, after a check of its name and of how often it appears.
    subroutine open(self, group, where, messages, ok)
       class(setter_type), intent(inout) :: self
       character(len=*), intent(in) :: group
@@ -84,13 +84,13 @@ contains
       else if (group == 'loading') then
          ok = self%case%loadings < most_loadings
          if (.not. ok) then
-            call messages%add(adjustl(trim(where)//' &loading stands more than '//to_text(most_loadings)// &
+            call messages%add(adjustl(trim(where)//' &loading appears more than '//to_text(most_loadings)// &
                                       ' times'))
             return
          end if
          self%case%loadings = self%case%loadings + 1
       else if (self%seen(place)) then
-         call messages%add(adjustl(trim(where)//' &'//trim(group)//' stands twice; it may stand once'))
+         call messages%add(adjustl(trim(where)//' &'//trim(group)//' appears twice; it may appear once'))
          ok = .false.
          return
       end if
@@ -100,7 +100,7 @@ contains
       self%keys = self%visitor%keys(:self%visitor%count)
    end subroutine open
 
-   !> Show the record of the open group to the visitor.
+   !> Present the record of the open group to the visitor.
    subroutine visit_open(self)
       class(setter_type), intent(inout) :: self
 
@@ -123,7 +123,7 @@ contains
    end subroutine visit_open
 
    !> Place of a key of the open group; 0 with a message if the group does not have it. The rule of a
-   !> spring must have been put before its parameters are looked for.
+   !> spring must be set before its parameters.
    subroutine find(self, name, where, place, messages)
       class(setter_type), intent(in) :: self
       character(len=*), intent(in) :: name
@@ -161,7 +161,7 @@ contains
                                 "'; did you mean '"//nearest_name(name, self%keys%name)//"'?"))
    end subroutine find
 
-   !> Put numbers, whole numbers, or 0 and 1 under the key at a place.
+   !> Set the key at a place to numbers, whole numbers, or 0 and 1.
    subroutine put_numbers(self, place, number)
       class(setter_type), intent(inout) :: self
       !> From `find`
@@ -187,7 +187,7 @@ contains
          select case (self%keys(place)%name)
          case ('joint')
             entry%joint = nint(si)
-            ! Zero has always stood for every joint.
+            ! joint = 0 means every joint.
             if (all(entry%joint == 0)) deallocate (entry%joint)
          case ('id')
             entry%id = nint(si(1))
@@ -199,7 +199,7 @@ contains
       end associate
    end subroutine put_numbers
 
-   !> Put a word or a text under the key at a place.
+   !> Set the key at a place to a word or a text.
    subroutine put_text(self, place, text, messages)
       class(setter_type), intent(inout) :: self
       integer, intent(in) :: place
@@ -243,7 +243,7 @@ contains
       end associate
    end subroutine put_text
 
-   !> The rule of a spring brings its parameters as keys.
+   !> Set the rule of a spring, and add its parameters to the keys.
    subroutine take_rule(self, name)
       type(setter_type), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -274,7 +274,7 @@ contains
       end do
    end function listed
 
-   !> Everything has been put: give the springs to the joints.
+   !> Give the springs to the joints after all groups have been set.
    subroutine finish(self, messages)
       class(setter_type), intent(inout) :: self
       type(message_list), intent(inout) :: messages
@@ -282,8 +282,8 @@ contains
       call place_springs(self%springs, self%case%column, messages)
    end subroutine finish
 
-   !> The SI unit of a parameter of a spring, which depends on where the spring stands; other units as
-   !> they are.
+   !> The SI unit of a parameter of a spring, which depends on the kind of the spring; other units are
+   !> returned unchanged.
    elemental function unit_in_group(unit, group) result(si)
       character(len=*), intent(in) :: unit, group
       character(len=16) :: si
@@ -296,7 +296,7 @@ contains
          si = merge('N m', 'N  ', group == 'flexure')
       case (deformation)
          si = merge('rad', 'm  ', group == 'flexure')
-      case default                                  ! no spring's dimension
+      case default                                  ! not a dimension of springs
       end select
    end function unit_in_group
 

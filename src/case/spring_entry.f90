@@ -1,4 +1,4 @@
-!> Springs as they are stated: once each, with the joints or the layers that refer to them.
+!> Springs as given in the input: each once, with the joints that have it or the layers that refer to it.
 module rbs_case_spring_entry
    use rbs_base_check, only: check_name
    use rbs_base_error, only: message_list
@@ -32,18 +32,18 @@ module rbs_case_spring_entry
       key_type('spring', kind=integer_kind, bound=one_or_more, most=most_layers, &
                meaning='id of the spring of each layer')]
 
-   !> One group that states a spring, or that refers to layers.
+   !> One group of the input that gives a spring, or the layers of joints.
    type :: spring_entry
       !> 'shear', 'flexure', 'axial_spring', 'layer_spring' or 'layers'
       character(len=16) :: group = ''
       !> For messages: 'case.nml line 4: ' or blank
       character(len=80) :: where = ''
-      !> Joints; not allocated: those without a spring of their own
+      !> Joints that have the spring; not allocated: all joints that no other group names
       integer, allocatable :: joint(:)
-      !> Number of a spring for layers
+      !> Number by which layers refer to the spring
       integer :: id = 0
       type(spring_record) :: spring
-      !> layers: distances [m] and springs
+      !> Distances of layers [m], and their springs
       real(wp), allocatable :: y(:)
       integer, allocatable :: layer(:)
    end type spring_entry
@@ -57,7 +57,7 @@ module rbs_case_spring_entry
 
 contains
 
-   !> Make room for one more entry.
+   !> Append an empty entry.
    subroutine add(self, group, where)
       class(entry_list), intent(inout) :: self
       character(len=*), intent(in) :: group, where
@@ -85,7 +85,7 @@ contains
       end select
    end function is_spring_group
 
-   !> The keys that a group has besides the parameters of its rule.
+   !> The keys of a group without the parameters of its rule.
    pure function keys_of_group(group) result(keys)
       character(len=*), intent(in) :: group
       type(key_type), allocatable :: keys(:)
@@ -119,7 +119,7 @@ contains
       call place_group(whole, 'axial_spring', column%n, column%axial_spring, messages)
    end subroutine place_springs
 
-   !> The springs of layers: a number must stand for one spring, which must have a rule.
+   !> Check the springs of layers: each number must belong to one spring, which must have a rule.
    subroutine check_ids(list, messages)
       type(entry_list), intent(in) :: list
       type(message_list), intent(inout) :: messages
@@ -141,13 +141,13 @@ contains
             if (list%entry(j)%group /= 'layer_spring' .or. list%entry(j)%id /= list%entry(i)%id) cycle
             call messages%add(adjustl(trim(list%entry(i)%where)//' &layer_spring with id = '// &
                                       to_text(list%entry(i)%id)// &
-                                              ' stands twice; give each a number of its own'))
+                                              ' appears twice; give each a number of its own'))
             exit
          end do
       end do
    end subroutine check_ids
 
-   !> Springs of one kind of joint: one for all, or one for each.
+   !> Give springs of one kind to the joints: one for all joints, or one for each.
    subroutine place_group(list, group, n, springs, messages)
       type(entry_list), intent(in) :: list
       character(len=*), intent(in) :: group
@@ -199,7 +199,7 @@ contains
       end do
    end subroutine place_group
 
-   !> Two springs for one joint.
+   !> Report two springs for one joint.
    subroutine twice(entry, first, group, messages, joint)
       type(spring_entry), intent(in) :: entry, first
       character(len=*), intent(in) :: group
@@ -213,7 +213,7 @@ contains
       else
          text = text//' without joint'
       end if
-      text = text//' stands twice'
+      text = text//' appears twice'
       if (first%where /= '') text = text//', first at '//first%where(:len_trim(first%where) - 1)
       call messages%add(adjustl(text//'; remove one'))
    end subroutine twice
@@ -248,7 +248,7 @@ contains
       end do
    end subroutine fill_layers
 
-   !> Take the joints that layers name out of a spring, and make a spring of its own for them.
+   !> Give the joints of a &layers group a copy of their spring, separate from the other joints.
    subroutine share_joints(entry, layers, n, made)
       type(spring_entry), intent(inout) :: entry
       type(spring_entry), intent(in) :: layers
@@ -256,7 +256,7 @@ contains
       type(entry_list), intent(inout) :: made
       integer :: i
 
-      if (allocated(entry%spring%y)) return         ! has its layers
+      if (allocated(entry%spring%y)) return         ! it has its layers already
       call made%add('flexure', entry%where)
       made%entry(made%count) = entry
       if (.not. allocated(layers%joint)) then
@@ -274,7 +274,7 @@ contains
       end if
    end subroutine share_joints
 
-   !> Put the layers into a spring.
+   !> Copy the layers into a spring.
    subroutine set_layers(list, spring, layers, messages)
       type(entry_list), intent(in) :: list
       type(spring_record), intent(inout) :: spring

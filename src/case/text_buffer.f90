@@ -1,4 +1,4 @@
-!> Text that grows.
+!> A text to which other texts are appended.
 module rbs_case_text_buffer
    implicit none
    private
@@ -6,9 +6,9 @@ module rbs_case_text_buffer
    public :: text_buffer
 
    type :: text_buffer
-      !> Letters so far
+      !> Number of characters so far
       integer :: length = 0
-      !> The text, and room behind it
+      !> The text, followed by free space
       character(len=:), allocatable :: text
    contains
       procedure :: append
@@ -16,7 +16,7 @@ module rbs_case_text_buffer
 
 contains
 
-   !> Put a text behind what is there.
+   !> Append a text.
    subroutine append(self, text)
       class(text_buffer), intent(inout) :: self
       character(len=*), intent(in) :: text

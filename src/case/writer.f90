@@ -1,5 +1,5 @@
-!> A case as groups of keys and values: as text that the reader of case files takes, or as names and
-!> numbers for Python. Values that are the defaults are left out.
+!> Writes a case as groups of keys and values: as the text of a case file, or as names and numbers for
+!> Python. Values that equal the defaults are left out.
 module rbs_case_writer
    use rbs_base_check, only: is_given
    use rbs_base_key_visitor, only: key_visitor, entry_type
@@ -19,13 +19,13 @@ module rbs_case_writer
    !> Longest line of a namelist text.
    integer, parameter :: line_length = 100
 
-   !> Springs that grow in number.
+   !> A list of springs.
    type :: spring_list
       integer :: count = 0
       type(spring_record), allocatable :: spring(:)
    end type spring_list
 
-   !> What groups are written to.
+   !> A destination for groups.
    type, abstract :: sink_type
    contains
       procedure(group_interface), deferred :: group
@@ -41,14 +41,14 @@ module rbs_case_writer
       end subroutine group_interface
    end interface
 
-   !> Text of a case file; numbers have as many digits as it takes to read back the same bits.
+   !> The text of a case file; from its numbers the same bits are read back.
    type, extends(sink_type) :: namelist_sink
       type(text_buffer) :: buffer
    contains
       procedure :: group => namelist_group
    end type namelist_sink
 
-   !> Names in lines, a group each, and numbers in an array; see `rbs_bindings_statements`.
+   !> Names in lines, one per group, and numbers in an array; see `rbs_bindings_statements`.
    type, extends(sink_type) :: statement_sink
       type(text_buffer) :: buffer
       integer :: count = 0
@@ -59,7 +59,7 @@ module rbs_case_writer
 
 contains
 
-   !> The whole case, without its units: numbers are SI.
+   !> Write the whole case without its units: numbers are in SI.
    subroutine write_case(case, sink)
       type(case_record), intent(inout) :: case
       class(sink_type), intent(inout) :: sink
@@ -92,7 +92,7 @@ contains
       if (v%listed > 0) call sink%group('output', v%entry(:v%listed))
    end subroutine write_case
 
-   !> A column with its damping and its springs, equal ones once.
+   !> Write a column with its damping and its springs; equal springs are written once.
    subroutine write_column(column, sink)
       type(column_record), intent(inout) :: column
       class(sink_type), intent(inout) :: sink
@@ -117,11 +117,11 @@ contains
       end if
    end subroutine write_column
 
-   !> The springs of one kind of joint.
+   !> Write the springs of one kind.
    subroutine write_springs(group, spring, layer_springs, sink)
       character(len=*), intent(in) :: group
       type(spring_record), intent(in) :: spring(:)
-      !> Springs of layers that have been written
+      !> Springs of layers that have been written before
       type(spring_list), intent(inout) :: layer_springs
       class(sink_type), intent(inout) :: sink
       type(entry_type), allocatable :: entry(:)
@@ -163,10 +163,10 @@ contains
       entry%number = real(pack([(j, j=1, size(first))], first == i), wp)
    end subroutine set_joints
 
-   !> Rule and parameters of a spring.
+   !> The entries of rule and parameters of a spring.
    subroutine spring_entries(spring, before, entry)
       type(spring_record), intent(in) :: spring
-      !> Entries to be left free for the caller
+      !> Number of entries to leave free for the caller
       integer, intent(in) :: before
       type(entry_type), allocatable, intent(out) :: entry(:)
       type(key_type), allocatable :: keys(:)
@@ -199,7 +199,7 @@ contains
       count_given = count([(is_written(spring, keys(i), i), i=1, size(keys))])
    end function count_given
 
-   !> Whether a parameter is given and is not the default.
+   !> Whether a parameter is given and differs from its default.
    pure logical function is_written(spring, key, i)
       type(spring_record), intent(in) :: spring
       type(key_type), intent(in) :: key
@@ -209,7 +209,7 @@ contains
       if (is_written .and. is_given(key%default)) is_written = abs(spring%value(i) - key%default) > 0.0_wp
    end function is_written
 
-   !> Springs of layers that are new, then the layers.
+   !> Write the springs of layers that have not been written before, then the layers.
    subroutine write_layers(spring, joint, first, layer_springs, sink)
       type(spring_record), intent(in) :: spring
       !> First of the joints that have the spring, 0: all
@@ -260,7 +260,7 @@ contains
       list%spring(list%count) = spring
    end subroutine remember
 
-   !> `&name key = value, ... /`, broken into lines.
+   !> Write `&name key = value, ... /` in lines of limited length.
    subroutine namelist_group(self, name, entry)
       class(namelist_sink), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -288,7 +288,7 @@ contains
 
    contains
 
-      !> Put a piece on the line behind a blank, or on the next line.
+      !> Append a piece after a blank, or on the next line.
       subroutine piece(text)
          character(len=*), intent(in) :: text
 
@@ -301,7 +301,7 @@ contains
       end subroutine piece
    end subroutine namelist_group
 
-   !> A text in quotes, quotes within doubled.
+   !> A text in quotes; quotes within are doubled.
    pure subroutine quote(text, quoted)
       character(len=*), intent(in) :: text
       character(len=:), allocatable, intent(out) :: quoted
@@ -337,7 +337,7 @@ contains
       end select
    end function value_text
 
-   !> `name key key:count key=text`, separated by tabs, and the numbers behind those that are there.
+   !> Append `name key key:count key=text`, separated by tabs, and the numbers.
    subroutine statement_group(self, name, entry)
       class(statement_sink), intent(inout) :: self
       character(len=*), intent(in) :: name

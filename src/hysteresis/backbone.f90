@@ -1,9 +1,9 @@
-!> The present backbone of one side: straight lines from corner to corner, all numbers positive.
+!> The present backbone of one side: straight lines from corner to corner, all values positive.
 !>
-!> What energy has taken away enters as two factors (Ibarra, Medina, Krawinkler 2005, Earthquake Eng.
+!> Deterioration by energy acts through two factors (Ibarra, Medina, Krawinkler 2005, Earthquake Eng.
 !> Struct. Dyn. 34, section 3): cracking point, yield point and slope to the cap are multiplied by
 !> `strength`, the force of the softening line at zero deformation by `softening`. Cap and start of the
-!> residual are where the lines meet; beyond `d_u` the force falls to zero.
+!> residual are the points where the lines meet; beyond `d_u` the force drops to zero.
 module rbs_hysteresis_backbone
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unbounded
@@ -18,7 +18,7 @@ module rbs_hysteresis_backbone
    type :: backbone_side
       !> The parameters of the user
       type(backbone_parameters) :: given
-      !> What is left of the strength, and of the force of the softening line
+      !> Remaining shares of the strength, and of the force of the softening line
       real(wp) :: strength = 1.0_wp, softening = 1.0_wp
       !> Present corners from 0, the origin: deformations [m or rad] and forces [N or N m]
       integer :: last = 0
@@ -42,7 +42,7 @@ contains
       real(wp) :: hardening, softening, f_zero, d_res, d_x, d, f, slope
 
       associate (b => self%given)
-         ! Residual strength is not taken away.
+         ! Residual strength does not deteriorate.
          self%strength = max(self%strength, b%f_res/b%f_y)
          hardening = 0.0_wp
          if (b%d_cap > b%d_y) hardening = self%strength*(b%f_cap - b%f_y)/(b%d_cap - b%d_y)
@@ -67,7 +67,7 @@ contains
          end if
          associate (from_d => self%d(self%last), from_f => self%f(self%last))
             d_x = (f_zero - from_f + slope*from_d)/(slope - softening)
-            ! Without deterioration to the last bit the cap of the user.
+            ! Without deterioration the cap must equal that of the user to the last bit.
             if (self%strength >= 1.0_wp .and. self%softening >= 1.0_wp) d_x = b%d_cap
             f = limit(d_x)
             if (d_x > d_res) then
@@ -91,7 +91,7 @@ contains
       end function limit
    end subroutine draw
 
-   !> Cut the lines at d_u; from there to zero force with the slope of the way from zero to yield.
+   !> Cut the lines at d_u; from there the force drops to zero with the slope of the line from zero to yield.
    pure subroutine end_at_rupture(self)
       class(backbone_side), intent(inout) :: self
       real(wp) :: f
@@ -147,7 +147,7 @@ contains
       slope = (self%f(i + 1) - self%f(i))/(self%d(i + 1) - self%d(i))
    end function slope_after
 
-   !> The line of the backbone on side s that begins at, or holds, a deformation; one-way outward.
+   !> The line of the backbone on side s that starts at, or contains, a deformation; one-way outward.
    pure type(segment) function line_from(self, s, d) result(line)
       class(backbone_side), intent(in) :: self
       !> Side, +1 or -1
@@ -168,7 +168,7 @@ contains
       line = line%outward(s, near=d, far=s*far, near_closed=.true., one_way=.true.)
    end function line_from
 
-   !> Whether the backbone has no force left from a deformation on.
+   !> Whether the backbone has no force at a deformation and beyond.
    elemental logical function is_exhausted(self, d)
       class(backbone_side), intent(in) :: self
       !> Deformation, positive [m or rad]

@@ -1,4 +1,4 @@
-!> One side of a backbone with cracking, yield, cap, softening, residual and rupture, as the user gives it.
+!> Input of one side of a backbone with cracking, yield, cap, softening, residual and rupture.
 !>
 !>     force
 !>       f_cap              cap
@@ -8,7 +8,7 @@
 !>               /                          \  slope -f_y/d_y
 !>              0   d_c  d_y  d_cap          d_u       deformation
 !>
-!> All numbers are positive on both sides.
+!> All values are positive on both sides.
 module rbs_hysteresis_backbone_parameters
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unset
@@ -42,7 +42,7 @@ module rbs_hysteresis_backbone_parameters
                meaning='cracking deformation; 0: elastic up to yield'), &
       key_type('f_c', unit=force, bound=not_negative, default=0.0_wp, meaning='cracking force')]
 
-   !> The same for the negative side: positive numbers, as on the positive side where not given.
+   !> The same for the negative side: positive values, by default those of the positive side.
    type(key_type), parameter :: other_side_keys(9) = [ &
       key_type('d_y_neg', unit=deformation, bound=above_zero, optional=.true., meaning=as_positive), &
       key_type('f_y_neg', unit=force, bound=above_zero, optional=.true., meaning=as_positive), &
@@ -61,11 +61,11 @@ module rbs_hysteresis_backbone_parameters
       real(wp) :: d_y = unset, f_y = unset
       !> Capping point: the largest force [m], [N]
       real(wp) :: d_cap = unset, f_cap = unset
-      !> From the cap along the softening line to where it would have no force left [m]
+      !> Deformation from the cap to the point where the softening line reaches zero force [m]
       real(wp) :: d_pc = unset
-      !> Force that softening does not fall below [N]
+      !> Residual force, at which softening ends [N]
       real(wp) :: f_res = unset
-      !> Deformation beyond which the force falls to zero [m]; `unset`: none
+      !> Deformation beyond which the force drops to zero [m]; `unset`: none
       real(wp) :: d_u = unset
    contains
       procedure :: check
@@ -85,7 +85,7 @@ contains
    !> Add a message for every relation that does not hold.
    subroutine check(self, name, suffix, messages)
       class(backbone_parameters), intent(in) :: self
-      !> Which spring, and what stands behind the names of the parameters
+      !> Name of the spring, and suffix of the names of the parameters
       character(len=*), intent(in) :: name, suffix
       type(message_list), intent(inout) :: messages
 
@@ -129,7 +129,7 @@ contains
       end subroutine wrong
    end subroutine check
 
-   !> Both numbers of the cracking point or none; before yield, and stiffer than the way to yield.
+   !> The cracking point needs both values or none; it must come before yield, on a stiffer line.
    subroutine check_cracking(self, name, suffix, messages)
       class(backbone_parameters), intent(in) :: self
       character(len=*), intent(in) :: name, suffix

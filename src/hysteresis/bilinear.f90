@@ -97,12 +97,12 @@ contains
 
       d = line%end_toward(direction)
       if (line%one_way == 0) then
-         ! An elastic end: yield along the bounding line of this direction.
+         ! The elastic line has ended: yield along the bounding line of this direction.
          line = segment(f0=direction*(self%k - self%k_post)*self%d_y, k=self%k_post)
          line = line%outward(direction, near=d, far=direction*unbounded, near_closed=.false., &
                              one_way=.true.)
       else
-         ! Turned back from a bounding line: elastic over twice the yield deformation.
+         ! The motion has turned back from a bounding line: elastic over twice the yield deformation.
          f = line%force(d)
          line = segment(d0=d, f0=f, k=self%k)
          line = line%outward(-direction, near=d + direction*2.0_wp*self%d_y, far=d, &

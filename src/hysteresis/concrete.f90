@@ -19,10 +19,10 @@ module rbs_hysteresis_concrete
 
    public :: concrete_rule
 
-   !> What the present line is
+   !> Kinds of the present line
    integer, parameter :: virgin = 0, envelope = 1, unloading = 2, contact = 3, opening = 4, closing = 5
 
-   !> Chords of the rising curve, as shares of the closing at the peak
+   !> Corners of the chords of the rising curve, as shares of the closing at the peak
    real(wp), parameter :: chord_ends(4) = [0.25_wp, 0.5_wp, 0.75_wp, 1.0_wp]
 
    type(key_type), parameter :: parameters(*) = [ &
@@ -46,11 +46,11 @@ module rbs_hysteresis_concrete
                meaning='share of the strength lost each time the crack closes and opens again')]
 
    type, extends(rule_type) :: concrete_rule
-      !> Stiffness at first [N/m]
+      !> Initial stiffness [N/m]
       real(wp) :: k = 0.0_wp
       !> Largest force [N] and the closing there [m]
       real(wp) :: f_peak = 0.0_wp, d_peak = 0.0_wp
-      !> Slope of softening behind the peak [N/m], positive, and the force that is left [N]
+      !> Slope of softening after the peak [N/m], positive, and the residual force [N]
       real(wp) :: k_soft = 0.0_wp, f_res = 0.0_wp
       !> Factor of the plastic closing
       real(wp) :: plastic = 1.0_wp
@@ -58,12 +58,12 @@ module rbs_hysteresis_concrete
       real(wp) :: contact = 0.0_wp
       !> Share of the widest opening at which its faces touch
       real(wp) :: misfit = 0.0_wp
-      !> Share of the strength lost by every closing and opening, at twice the closing at the peak or more
+      !> Share of the strength that each closing and opening takes, at twice the closing at the peak or more
       real(wp) :: wear = 0.0_wp
       integer, private :: stage = virgin
       !> Largest closing so far and the force there without wear; plastic closing [m, N]
       real(wp), private :: c_u = 0.0_wp, f_u = 0.0_wp, c_p = 0.0_wp
-      !> Widest opening so far, closing at which the faces touch [m]; strength left
+      !> Widest opening so far, closing at which the faces touch [m]; remaining share of the strength
       real(wp), private :: widest = 0.0_wp, c_touch = 0.0_wp, strength = 1.0_wp
       !> Whether the crack was closed since it last opened
       logical, private :: was_closed = .true.
@@ -160,7 +160,7 @@ contains
          case (contact)
             call unload(self, line)
          case (opening)
-            ! The crack begins to close: its faces will touch earlier the wider it was.
+            ! The crack begins to close: the wider it was, the earlier its faces touch.
             self%widest = max(self%widest, self%c_p - c)
             self%c_touch = self%c_p - self%misfit*self%widest
             self%stage = closing
@@ -212,8 +212,8 @@ contains
       call set_one_way(line)
    end subroutine follow_envelope
 
-   !> Plastic closing after unloading from (c_u, f_u), Karsan and Jirsa (1969); straight on behind twice
-   !> the closing at the peak, and never so much that unloading is stiffer than `k`.
+   !> Plastic closing after unloading from (c_u, f_u), Karsan and Jirsa (1969); a straight line beyond twice
+   !> the closing at the peak, and never so large that unloading is stiffer than `k`.
    subroutine find_plastic(self)
       type(concrete_rule), intent(inout) :: self
       real(wp) :: x, share
@@ -238,7 +238,7 @@ contains
       line%hi_closed = .not. c_closed > self%c_touch
    end subroutine unload
 
-   !> On the line between the first touch of the faces and full closing; without one the crack is open.
+   !> On the line between the first touch of the faces and full closing; without length it is skipped.
    subroutine touch(self, line)
       type(concrete_rule), intent(inout) :: self
       type(segment), intent(inout) :: line
@@ -247,7 +247,7 @@ contains
       call full_closing(self, c_closed, f_closed)
       if (c_closed > self%c_touch) then
          self%stage = contact
-         ! Between lines that lead both ways its corners are its own: a spring stands on them.
+         ! The lines before and after it lead both ways, so both corners belong to this line.
          line = chord(self%c_touch, 0.0_wp, c_closed, f_closed)
          line%lo_closed = .true.
          line%hi_closed = .true.
@@ -272,7 +272,7 @@ contains
       f = self%contact*self%strength*self%f_u
    end subroutine full_closing
 
-   !> No force while the crack opens, from the closing c on.
+   !> The line of zero force while the crack opens, from the closing c.
    subroutine open_up(self, c, line)
       type(concrete_rule), intent(inout) :: self
       real(wp), intent(in) :: c
@@ -298,7 +298,7 @@ contains
       curve = self%f_peak*x*r/(r - 1.0_wp + x**r)
    end function curve
 
-   !> The line through two points (closing, force), the second further closed; both ends open.
+   !> The line through two points (closing, force), of which the second is further closed; both ends open.
    pure type(segment) function chord(c_1, f_1, c_2, f_2) result(line)
       real(wp), intent(in) :: c_1, f_1, c_2, f_2
 
@@ -306,7 +306,7 @@ contains
       if (c_2 > c_1) line%k = (f_2 - f_1)/(c_2 - c_1)
    end function chord
 
-   !> A line of the envelope is left when the motion turns back.
+   !> Make a line of the envelope one-way: it is left when the motion turns back.
    pure subroutine set_one_way(line)
       type(segment), intent(inout) :: line
 

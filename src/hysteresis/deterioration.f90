@@ -1,11 +1,12 @@
 !> Cyclic deterioration by energy: Rahnama and Krawinkler 1993 (Blume Center report 108), as in Ibarra,
 !> Medina, Krawinkler 2005 (Earthquake Eng. Struct. Dyn. 34, section 3.2).
 !>
-!> An excursion, from one crossing of zero force to the next, that dissipates E takes the share
+!> An excursion, from one crossing of zero force to the next, that dissipates E reduces strength or
+!> stiffness by the share
 !>
 !>     beta = (E/(E_t - spent))^c,   E_t = lambda f_y d_y,   spent = energy so far, E included
 !>
-!> away of what is left. Each kind of deterioration has its own lambda; at beta >= 1 its E_t is used up.
+!> of its present value. Each kind of deterioration has its own lambda; at beta >= 1 its E_t is used up.
 module rbs_hysteresis_deterioration
    use rbs_base_kinds, only: wp
    implicit none
@@ -18,7 +19,7 @@ module rbs_hysteresis_deterioration
       real(wp) :: strength = 0.0_wp, softening = 0.0_wp, unloading = 0.0_wp, target = 0.0_wp
       !> Exponent
       real(wp) :: c = 1.0_wp
-      !> Energy dissipated by the excursions that are over [J]
+      !> Energy dissipated by the completed excursions [J]
       real(wp) :: spent = 0.0_wp
    contains
       procedure :: share
@@ -31,7 +32,7 @@ contains
       class(deterioration_type), intent(in) :: self
       !> E_t [J], 0: none
       real(wp), intent(in) :: capacity
-      !> What the excursion has dissipated and is not yet in `spent` [J]
+      !> Energy that the excursion has dissipated, not yet in `spent` [J]
       real(wp), intent(in) :: energy
       real(wp) :: left
 

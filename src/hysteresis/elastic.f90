@@ -59,7 +59,7 @@ contains
       line%k = self%k
    end subroutine start
 
-   !> Reached only beyond the largest number: the line goes on.
+   !> Called only for deformations beyond the largest number: the line continues.
    subroutine next(self, line, direction)
       class(elastic_rule), intent(inout) :: self
       type(segment), intent(inout) :: line

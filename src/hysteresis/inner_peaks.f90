@@ -8,8 +8,8 @@ module rbs_hysteresis_inner_peaks
 
    public :: point, reloading_line, inner_peak, inner_peaks
 
-   !> Most peaks that are remembered; then the older half is forgotten, so that a vibration that
-   !> dies away for ever needs no memory without bound.
+   !> Most peaks that are remembered; beyond that the older half is forgotten, so that memory is bounded
+   !> in a vibration whose amplitude decreases for ever.
    integer, parameter :: most_peaks = 4096
 
    !> A point of the diagram.
@@ -18,15 +18,15 @@ module rbs_hysteresis_inner_peaks
       real(wp) :: d = 0.0_wp, f = 0.0_wp
    end type point
 
-   !> A reloading line: what must be known to take it up again.
+   !> A reloading line, with all that is needed to continue on it later.
    type :: reloading_line
-      !> Anchor and slope
+      !> Anchor and slope of the line
       type(segment) :: line
       !> The point it aims at
       type(point) :: target
       !> Serial number of the inner peak it aims at, 0 for the peak on the backbone
       integer(int64) :: target_serial = 0_int64
-      !> The crossing of zero force at which it began [m or rad]
+      !> The crossing of zero force at which it started [m or rad]
       real(wp) :: zero = 0.0_wp
    end type reloading_line
 
@@ -43,9 +43,9 @@ module rbs_hysteresis_inner_peaks
 
    !> The open inner peaks.
    type :: inner_peaks
-      !> How many there are
+      !> Number of peaks
       integer :: count = 0
-      !> The serial number given last
+      !> The last serial number
       integer(int64) :: last_serial = 0_int64
       type(inner_peak), allocatable :: peak(:)
    contains

@@ -1,4 +1,4 @@
-!> What springs had before they changed their lines, so that a trial can be taken back.
+!> Saved states of springs from before they changed their lines, so that a trial can be undone.
 module rbs_hysteresis_journal
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_rule, only: rule_type
@@ -8,24 +8,24 @@ module rbs_hysteresis_journal
 
    public :: journal_type, rule_slot
 
-   !> Holds one rule. Arrays of a polymorphic type are kept out of the program; arrays of this are fine.
+   !> Holds one rule. The program uses arrays of this type in place of polymorphic arrays.
    type :: rule_slot
       class(rule_type), allocatable :: rule
    end type rule_slot
 
    type :: journal_type
-      !> Whether changes are being kept
+      !> Whether changes are being saved
       logical :: open = .false.
-      !> Deformations and works at the begin (count) [m or rad, J]
+      !> Deformations and works at the start (count) [m or rad, J]
       real(wp), allocatable :: d(:), work(:)
-      !> Number of lines left at the begin
+      !> Number of lines left at the start
       integer :: events = 0
       !> Number of springs that have changed their lines since, and which (changed)
       integer :: changed = 0
       integer, allocatable :: spring(:)
-      !> Whether a spring is among them (count)
+      !> Whether each spring is among them (count)
       logical, allocatable :: is_kept(:)
-      !> The lines that they had, and their rules with what these remember (changed)
+      !> The lines that they had, and their rules with their memory (changed)
       type(segment), allocatable :: line(:)
       type(rule_slot), allocatable :: slot(:)
    contains
@@ -36,7 +36,7 @@ module rbs_hysteresis_journal
 
 contains
 
-   !> Begin to keep changes.
+   !> Start to save changes.
    subroutine start(self, d, work, events)
       class(journal_type), intent(inout) :: self
       !> Present deformations and works (count)
@@ -56,7 +56,7 @@ contains
       self%events = events
    end subroutine start
 
-   !> Keep a spring that is about to change its line, if it is the first time.
+   !> Save a spring before it changes its line for the first time.
    subroutine keep(self, i, line, slot)
       class(journal_type), intent(inout) :: self
       integer, intent(in) :: i
@@ -71,7 +71,7 @@ contains
       self%slot(self%changed) = slot
    end subroutine keep
 
-   !> Forget what has been kept, and keep no more.
+   !> Discard what has been saved, and stop saving.
    subroutine forget(self)
       class(journal_type), intent(inout) :: self
 

@@ -1,13 +1,13 @@
-!> A joint as layers: normal springs across it, at distances from the middle of the section, that share
-!> a constant axial load (the multi-spring form of the rigid body-spring method, Kawai 1978).
+!> A joint as layers: normal springs across it, at distances from the middle of the section, that together
+!> carry a constant axial load (the multi-spring form of the rigid body-spring method, Kawai 1978).
 !>
-!> Layer i opens by  w + y_i theta,  w the opening of the joint at the middle, theta its rotation. While
-!> every layer stays on its line, equilibrium of the axial load ties w to theta, and the moment is a
-!> straight line in theta: with the sums  a = sum k,  s = sum k y,  i = sum k y^2,
+!> Layer i opens by  w + y_i theta,  with the opening w of the joint at the middle and its rotation theta.
+!> While every layer stays on its line, equilibrium of the axial load determines w from theta, and the
+!> moment is a straight line in theta: with the sums  a = sum k,  s = sum k y,  i = sum k y^2,
 !>
 !>     dw/dtheta = -s/a          dM/dtheta = i - s^2/a
 !>
-!> So the joint is again a line with two ends: it ends where the first layer comes to an end of its own.
+!> So the joint, like any spring, is on a line with two ends: it ends where the first layer reaches an end.
 module rbs_hysteresis_layered
    use rbs_base_keys, only: key_type
    use rbs_base_kinds, only: wp
@@ -19,12 +19,12 @@ module rbs_hysteresis_layered
 
    public :: layered_rule, layer_slot
 
-   !> A layer that changes its line more often than this at one rotation goes to and fro between two lines
-   !> that both lead back to the other; it then stays on the one it has.
+   !> A layer that changes its line more often than this at one rotation alternates between two lines, each
+   !> of which leads back to the other; it then stays on its present line.
    integer, parameter :: most_changes = 4
-   !> Below this share of the axial stiffness at first the layers that fall cannot be followed.
+   !> Below this share of the initial axial stiffness, softening layers cannot be followed.
    real(wp), parameter :: least_share = 1.0e-5_wp
-   !> Events while the axial load is put on
+   !> Most events while the axial load is applied
    integer, parameter :: most_events = 10000
 
    !> The rule of one layer.
@@ -40,15 +40,15 @@ module rbs_hysteresis_layered
       real(wp), allocatable :: y(:)
       !> Rules of the layers; their force is normal to the joint, tension positive (count)
       type(layer_slot), allocatable :: slot(:)
-      !> Whether the layers could take the axial load
+      !> Whether the layers can carry the axial load
       logical :: carries = .true.
       !> Present lines of the layers (count)
       type(segment), allocatable, private :: line(:)
       !> Present openings of the layers (count) [m]
       real(wp), allocatable, private :: d(:)
-      !> State at the anchor of the present line: rotation, opening, and how it goes on
+      !> State at the anchor of the present line: rotation, opening, and slope of the opening
       real(wp), private :: rotation = 0.0_wp, opening = 0.0_wp, slope = 0.0_wp
-      !> Axial stiffness at first [N/m], distance of the outermost layer [m]
+      !> Initial axial stiffness [N/m], distance of the outermost layer [m]
       real(wp), private :: stiffness = 0.0_wp, reach = 0.0_wp
       !> Rotation under the axial load alone, from which the rotation of the joint is counted
       real(wp), private :: rest = 0.0_wp
@@ -64,7 +64,7 @@ module rbs_hysteresis_layered
 
 contains
 
-   !> No parameters of its own: the layers are springs, and the axial load is that of the column.
+   !> The rule has no parameters of its own: the layers are springs, and the axial load is that of the column.
    pure function keys()
       type(key_type), allocatable :: keys(:)
 
@@ -84,7 +84,7 @@ contains
       self%carries = size(value) >= 0
    end subroutine set
 
-   !> Against rotation, with all layers uncracked [N m/rad].
+   !> Rotational stiffness with all layers uncracked [N m/rad].
    pure real(wp) function initial_stiffness(self)
       class(layered_rule), intent(in) :: self
       real(wp) :: k(size(self%y))
@@ -96,7 +96,7 @@ contains
       initial_stiffness = sum(k*self%y**2) - sum(k*self%y)**2/sum(k)
    end function initial_stiffness
 
-   !> Put the axial load on the virgin layers; without moment an unsymmetric section rotates.
+   !> Apply the axial load to the virgin layers; an unsymmetric section rotates until there is no moment.
    subroutine start(self, line)
       class(layered_rule), intent(inout) :: self
       type(segment), intent(out) :: line
@@ -167,7 +167,7 @@ contains
       self%carries = .false.
    end subroutine put_axial_load
 
-   !> Rotate until there is no moment, and count from there.
+   !> Rotate until there is no moment, and measure rotations from there.
    subroutine find_rest(self, line)
       class(layered_rule), intent(inout) :: self
       type(segment), intent(inout) :: line
@@ -195,7 +195,7 @@ contains
       line%f0 = 0.0_wp
    end subroutine find_rest
 
-   !> Find the lines that the layers have when the joint goes on in a direction, and the line of the joint.
+   !> Find the lines of the layers when the joint rotates further in a direction, and the line of the joint.
    subroutine settle(self, direction, line)
       class(layered_rule), intent(inout) :: self
       !> +1 or -1
@@ -225,7 +225,7 @@ contains
       call make_line(self, direction, changes < most_changes, line)
    end subroutine settle
 
-   !> The line of the joint from the lines of its layers, up to the first end of one of them each way.
+   !> The line of the joint from the lines of its layers; it ends on each side where the first of them ends.
    subroutine make_line(self, direction, settled, line)
       class(layered_rule), intent(in) :: self
       integer, intent(in) :: direction
@@ -260,21 +260,21 @@ contains
                           one_way=line%one_way /= 0)
    end subroutine make_line
 
-   !> How far the joint can turn until a layer comes to the end of its line in a direction [rad].
+   !> Rotation by which the joint can turn until a layer reaches the end of its line in a direction [rad].
    pure real(wp) function turn_to(self, i, s, rate)
       class(layered_rule), intent(in) :: self
       integer, intent(in) :: i, s
-      !> How fast the layer opens or closes [m/rad]
+      !> Opening or closing of the layer per rotation [m/rad]
       real(wp), intent(in) :: rate
       real(wp) :: way
 
       way = max(s*(self%line(i)%end_toward(s) - self%d(i)), 0.0_wp)
       turn_to = unbounded
-      ! Ends that are none, or as good as that, would overflow.
+      ! The quotient would overflow for a line without an end, or with an extremely distant one.
       if (way < 1.0e100_wp*rate) turn_to = way/rate
    end function turn_to
 
-   !> Whether a layer stands at the end of its line in a direction, but for the round-off of the rotation.
+   !> Whether a layer is at the end of its line in a direction, within the round-off of the rotation.
    pure logical function at_end(self, i, s)
       class(layered_rule), intent(in) :: self
       integer, intent(in) :: i, s
@@ -285,7 +285,7 @@ contains
                                                   self%reach*(abs(self%rotation) + abs(self%rest)))
    end function at_end
 
-   !> The rear ends of one-way lines travel with the layers.
+   !> Move the rear ends of one-way lines with the layers.
    pure subroutine carry_rear_ends(self)
       class(layered_rule), intent(inout) :: self
 
@@ -293,14 +293,14 @@ contains
       where (self%line%one_way < 0) self%line%hi = self%d
    end subroutine carry_rear_ends
 
-   !> How the joint opens at the middle as it rotates, from the equilibrium of the axial load.
+   !> Find the slope of the opening at the middle with the rotation, from the equilibrium of the axial load.
    subroutine find_slope(self)
       class(layered_rule), intent(inout) :: self
       real(wp) :: a
 
       a = sum(self%line%k)
       if (a < least_share*self%stiffness) then
-         ! The layers that fall would take the axial load with them: they keep what force they have.
+         ! With its softening layers the joint could not carry the axial load: these layers keep their force.
          where (self%line%k < 0.0_wp)
             self%line%f0 = self%line%f0 + self%line%k*(self%d - self%line%d0)
             self%line%d0 = self%d

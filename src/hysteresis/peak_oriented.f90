@@ -1,17 +1,17 @@
 !> Peak-oriented spring with a capped backbone and cyclic deterioration: Ibarra, Medina, Krawinkler 2005
 !> (Earthquake Eng. Struct. Dyn. 34, 1489-1511), with a cracking point and an unloading stiffness that may
-!> fall with ductility (Takeda 1970). s is the side of the force:
+!> decrease with ductility (Takeda 1970). s is the side of the force:
 !>
 !>     virgin      elastic up to cracking or yield
 !>     backbone    from corner to corner (`rbs_hysteresis_backbone`); turning back: unloading
-!>     unloading   both ways, until zero force or back to where it began; then what was left goes on
-!>     reloading   from zero force to the last peak of the side if that is the steeper way, on to the
-!>                 largest peak, on along the backbone; turning back: unloading
+!>     unloading   both ways, to zero force, or back to its start, from where the line before continues
+!>     reloading   from zero force to the last peak of the side if the line to it is steeper, then to the
+!>                 largest peak, then along the backbone; turning back: unloading
 !>     dead        no force left
 !>
-!> Deterioration (`rbs_hysteresis_deterioration`) acts where the force is zero, so that no force jumps:
-!> the side that is entered pays for the excursion that ends. The unloading stiffness alone is reckoned
-!> where a side turns back; that counts once zero force is reached, so partial unloading leaves no trace.
+!> Deterioration (`rbs_hysteresis_deterioration`) acts where the force is zero, so that no force jumps: at the
+!> end of an excursion the side that is entered deteriorates. Only the unloading stiffness is computed where
+!> the motion turns back; it is stored when zero force is reached, so partial unloading has no effect.
 module rbs_hysteresis_peak_oriented
    use rbs_base_check, only: is_given
    use rbs_base_error, only: message_list
@@ -31,7 +31,7 @@ module rbs_hysteresis_peak_oriented
 
    integer, parameter :: virgin = 0, on_backbone = 1, unloading = 2, reloading = 3, dead = 4
 
-   !> A deformation of a point that is not there; on its side every point is positive.
+   !> Marks a point that does not exist; seen from its side every existing point is positive.
    type(point), parameter :: no_point = point(-1.0_wp, 0.0_wp)
 
    !> Below this share of the yield force a reversal counts as one at zero force.
@@ -40,13 +40,13 @@ module rbs_hysteresis_peak_oriented
    !> Lines whose slopes are this close to each other do not meet.
    real(wp), parameter :: parallel = 1.0e-9_wp
 
-   !> Deterioration leaves this share of the unloading stiffness at the least; the chord back to the begin of
-   !> the excursion is the limit long before.
+   !> Least share of the unloading stiffness after deterioration; normally the chord back to the start of the
+   !> excursion limits it much earlier.
    real(wp), parameter :: least_stiffness = 1.0e-6_wp
 
    character(len=*), parameter :: small_excursions = '(small excursions would count too much)'
 
-   !> Parameters of this rule and of those that extend it: the positive side, what both sides share, the
+   !> Parameters of this rule and of those that extend it: of the positive side, of both sides, of the
    !> negative side.
    type(key_type), parameter :: shared_keys(6) = [ &
       key_type('b0', bound=not_negative, default=0.0_wp, &
@@ -76,16 +76,16 @@ module rbs_hysteresis_peak_oriented
       real(wp), private :: k_0 = 0.0_wp
       !> Present branch and its side
       integer, private :: branch = virgin, side = 0
-      !> Of each side, positive: deformation of the largest peak, and where reloading turned back since
+      !> Of each side, positive: deformation of the largest peak, and last point where reloading turned back
       real(wp), private :: peak(-1:1) = 0.0_wp
       type(point), private :: turned(-1:1) = no_point
       !> Of each side: whether it has been on its backbone
       logical, private :: loaded(-1:1) = .false.
       !> Whether the spring has yielded, on either side
       logical, private :: yielded = .false.
-      !> Factor on the unloading stiffness, and what it will be at zero force
+      !> Factor on the unloading stiffness, now and from the next zero force on
       real(wp), private :: stiffness_left = 1.0_wp, stiffness_next = 1.0_wp
-      !> Work since the last crossing of zero force [J], the crossing, and where the present line began
+      !> Work since the last crossing of zero force [J], the crossing, and the start of the present line
       real(wp), private :: excursion = 0.0_wp, zero = 0.0_wp
       type(point), private :: begun
       !> The line that was left by unloading, its branch, and whether its target is the largest peak
@@ -149,7 +149,7 @@ contains
 
       known = messages%count
       call self%given(1)%check(name, '', messages)
-      ! Else the faults of the one side would be told twice.
+      ! Otherwise errors of the positive side would be reported twice.
       if (messages%count == known) call self%given(-1)%check(name, '_neg', messages)
    end subroutine check
 
@@ -235,7 +235,7 @@ contains
             call reload_to_peak(self, line, here)
          end if
       case default
-         return                                     ! dead: one line for ever
+         return                                     ! dead: the line never ends
       end select
    end subroutine next
 
@@ -263,7 +263,7 @@ contains
       line = segment()
    end subroutine die
 
-   !> Turned back: unload toward zero force.
+   !> The motion has turned back: unload toward zero force.
    subroutine unload(self, line, here)
       class(peak_oriented_rule), intent(inout) :: self
       type(segment), intent(inout) :: line
@@ -275,7 +275,7 @@ contains
       d = s*here%d
       f = s*here%f
       if (f <= no_force*self%given(s)%f_y) then
-         ! Nothing to unload: straight to the other side.
+         ! There is no force to unload: reload on the other side.
          call reload(self, line, -s, here%d)
          return
       end if
@@ -293,15 +293,15 @@ contains
       k = self%unloading_stiffness(s)
       self%stiffness_next = self%stiffness_left
       if (self%yielded) then
-         ! What unloading would give back is not dissipated.
+         ! Energy that unloading would return is not dissipated.
          energy = self%excursion - 0.5_wp*f**2/k
          kept = max(1.0_wp - self%deterioration%share(self%deterioration%unloading, energy), &
                     least_stiffness/self%stiffness_left)
          self%stiffness_next = self%stiffness_left*kept
          k = k*kept
       end if
-      ! Neither beyond the crossing that the excursion came from nor with more energy than went in: both
-      ! would create energy.
+      ! Unloading must not pass the crossing at which the excursion started, nor return more energy than was
+      ! put in: both would create energy.
       way = d - s*self%zero
       if (way > 0.0_wp) k = max(k, f/way)
       if (self%excursion > 0.0_wp) k = max(k, 0.5_wp*f**2/self%excursion)
@@ -310,8 +310,8 @@ contains
       line = line%outward(s, near=here%d - here%f/k, far=here%d, near_closed=.true., one_way=.false.)
    end subroutine unload
 
-   !> K of a side from its largest peak, with what deterioration has left: toward cracking of the other
-   !> side before yield, falling with ductility after it [N/m].
+   !> Unloading stiffness of a side from its largest peak, reduced by deterioration: before yield toward
+   !> cracking of the other side, after it decreasing with ductility [N/m].
    elemental real(wp) function unloading_stiffness(self, s) result(k)
       class(peak_oriented_rule), intent(in) :: self
       integer, intent(in) :: s
@@ -334,7 +334,7 @@ contains
       k = k*self%stiffness_left
    end function unloading_stiffness
 
-   !> Zero force is reached from side -s: the excursion is over, side s pays for it.
+   !> Zero force is reached from side -s: the excursion is over, and side s deteriorates.
    subroutine end_excursion(self, line, s, zero)
       class(peak_oriented_rule), intent(inout) :: self
       type(segment), intent(inout) :: line
@@ -369,8 +369,8 @@ contains
       call reload(self, line, s, zero)
    end subroutine end_excursion
 
-   !> From zero force toward side s: to the break of the line (pinching), or to the last point of turning if
-   !> that is the steeper way, else at once to the largest peak.
+   !> Reload from zero force toward side s: to the break of the line (pinching), or to the last turning point
+   !> if the line to it is steeper, else directly to the largest peak.
    subroutine reload(self, line, s, zero)
       class(peak_oriented_rule), intent(inout) :: self
       type(segment), intent(inout) :: line
@@ -386,7 +386,7 @@ contains
       associate (backbone => self%backbone(s), z => s*zero, last => self%turned(s))
          peak = point(self%peak(s), backbone%force(self%peak(s)))
          if (peak%d < backbone%d_y) then
-            ! Toward yield, if that is the steeper way (as Takeda).
+            ! Toward yield, if the line to it is steeper (as in Takeda's rule).
             yield = point(backbone%d_y, backbone%force(backbone%d_y))
             if (peak%d <= z .or. yield%f*(peak%d - z) >= peak%f*(yield%d - z)) peak = yield
             if (peak%f > self%k_0*(peak%d - z)) peak = meeting(self, s, z, peak)
@@ -407,8 +407,8 @@ contains
       end associate
    end subroutine reload
 
-   !> Where the stiffest line from a crossing of zero force meets the backbone beyond a point: cracking or
-   !> yield of a side may be too near after small cycles that have shifted the crossing.
+   !> The point beyond `peak` where the stiffest line from a crossing of zero force meets the backbone:
+   !> small cycles may shift the crossing so near to cracking or yield that a line there would be too steep.
    elemental type(point) function meeting(self, s, zero, peak)
       class(peak_oriented_rule), intent(in) :: self
       integer, intent(in) :: s
@@ -425,19 +425,19 @@ contains
       if (d > peak%d) meeting = point(d, self%backbone(s)%force(d))
    end function meeting
 
-   !> The point that reloading goes to first, positive, if the rule pinches; else none.
+   !> The point to which reloading goes first if the rule pinches, positive; else `no_point`.
    elemental type(point) function break_point(self, s, zero, peak)
       class(peak_oriented_rule), intent(in) :: self
       !> Side
       integer, intent(in) :: s
-      !> Where reloading begins and the peak that it goes to, seen from side s
+      !> Start of reloading and the peak that it goes to, seen from side s
       real(wp), intent(in) :: zero
       type(point), intent(in) :: peak
 
       break_point = point(no_point%d, 0.0_wp*(s*zero*peak%d*self%b0))
    end function break_point
 
-   !> On from a point between to the largest peak of the side.
+   !> Continue reloading from an intermediate point to the largest peak of the side.
    subroutine reload_to_peak(self, line, from)
       class(peak_oriented_rule), intent(inout) :: self
       type(segment), intent(inout) :: line
@@ -449,7 +449,7 @@ contains
       end associate
    end subroutine reload_to_peak
 
-   !> The straight line to a point of side s. It hangs on that point, so that it is met exactly.
+   !> The straight line to a point of side s. That point is its anchor, so that it is met exactly.
    subroutine aim(self, line, s, from, at)
       class(peak_oriented_rule), intent(inout) :: self
       type(segment), intent(inout) :: line
@@ -461,7 +461,7 @@ contains
 
       self%branch = reloading
       way = at%d - s*from%d
-      ! Where round-off leaves no way at all, the point is met at once.
+      ! If round-off leaves no distance, the point is met at once.
       k = self%k_0
       if (way > 0.0_wp) k = (at%f - s*from%f)/way
       line = segment(d0=s*at%d, f0=s*at%f, k=k)

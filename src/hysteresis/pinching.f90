@@ -1,9 +1,9 @@
-!> The peak-oriented spring with pinched reloading, for columns that open shear cracks or slip: Ibarra,
-!> Medina, Krawinkler 2005 (Earthquake Eng. Struct. Dyn. 34, section 2.3).
+!> The peak-oriented spring with pinched reloading, for columns with open shear cracks or slip of bars:
+!> Ibarra, Medina, Krawinkler 2005 (Earthquake Eng. Struct. Dyn. 34, section 2.3).
 !>
-!> Reloading breaks at the deformation (1 - kappa_d) d_per, d_per where unloading from the largest peak would
-!> end (zero for a side that has not yielded), with kappa_f times the force that the straight line to the
-!> peak has there.
+!> Reloading breaks at the deformation (1 - kappa_d) d_per, with kappa_f times the force that the straight
+!> line to the peak has there. Unloading from the largest peak would end at d_per (zero for a side that
+!> has not yielded).
 module rbs_hysteresis_pinching
    use rbs_base_keys, only: key_type, share_above_zero
    use rbs_base_kinds, only: wp
@@ -22,7 +22,7 @@ module rbs_hysteresis_pinching
    integer, parameter :: before = size(capped_keys)
 
    type, extends(peak_oriented_rule) :: pinching_rule
-      !> Share of the force, and what is missing to the permanent deformation, at the break
+      !> At the break: share of the force, and share of the permanent deformation that is missing
       real(wp) :: kappa_f = 1.0_wp, kappa_d = 0.0_wp
    contains
       procedure, nopass :: keys
@@ -47,7 +47,7 @@ contains
       self%kappa_d = value(before + 2)
    end subroutine set
 
-   !> The break, positive; the peak if reloading begins beyond it. Where it turned back last does not count.
+   !> The break, positive; the peak if reloading starts beyond the break. The last turning point is ignored.
    elemental type(point) function break_point(self, s, zero, peak)
       class(pinching_rule), intent(in) :: self
       integer, intent(in) :: s

@@ -1,4 +1,4 @@
-!> All rules by name. A new rule is a file of its own and two lines here.
+!> All rules by name. A new rule needs a file of its own and two lines here.
 module rbs_hysteresis_registry
    use rbs_base_keys, only: key_type
    use rbs_hysteresis_bilinear, only: bilinear_rule
@@ -46,11 +46,11 @@ contains
          allocate (steel_rule :: rule)
       case ('layered')
          allocate (layered_rule :: rule)
-      case default                                  ! not known: the caller says so
+      case default                                  ! unknown: the caller reports it
       end select
    end subroutine new_rule
 
-   !> Parameters of a rule by its name; none if it is not known.
+   !> Parameters of a rule by its name; an empty list if the rule is not known.
    subroutine keys_of(name, keys)
       character(len=*), intent(in) :: name
       type(key_type), allocatable, intent(out) :: keys(:)
@@ -64,14 +64,14 @@ contains
       end if
    end subroutine keys_of
 
-   !> Whether springs of a rule may stand in a place, one of the words of `rbs_hysteresis_rule`.
+   !> Whether springs of a rule may be used in a place, one of the words of `rbs_hysteresis_rule`.
    impure elemental logical function suits(name, place)
       character(len=*), intent(in) :: name, place
 
       suits = index(' '//places_of(name)//' ', ' '//trim(place)//' ') > 0
    end function suits
 
-   !> The words of all places that springs of a rule suit; blank if the rule is not known.
+   !> The words of all places where springs of a rule may be used; blank if the rule is not known.
    impure elemental function places_of(name) result(places)
       character(len=*), intent(in) :: name
       character(len=places_length) :: places

@@ -1,4 +1,4 @@
-!> What a hysteresis rule is: its parameters, and the author of a spring's lines.
+!> The interface of a hysteresis rule: its parameters, and the lines that a spring follows.
 module rbs_hysteresis_rule
    use rbs_base_error, only: message_list
    use rbs_base_keys, only: key_type
@@ -10,7 +10,7 @@ module rbs_hysteresis_rule
 
    public :: rule_type, check_product
 
-   !> Where a spring may stand; `places` of a rule holds the words of those that it suits.
+   !> Places of springs; `places` of a rule lists those where it may be used.
    character(len=*), parameter, public :: in_shear = 'shear', in_flexure = 'flexure'
    character(len=*), parameter, public :: in_axial = 'axial', in_layer = 'layer'
 
@@ -19,8 +19,8 @@ module rbs_hysteresis_rule
 
    integer, parameter, public :: rule_length = 16, places_length = 32
 
-   !> A rule is asked only when a line ends or the motion turns back. What it must remember lives in
-   !> its own type and is copied by assignment.
+   !> A rule is called only when a line ends or the motion turns back. Its memory is part of its type and is
+   !> copied by assignment.
    type, abstract :: rule_type
    contains
       procedure(keys_interface), deferred, nopass :: keys
@@ -40,14 +40,14 @@ module rbs_hysteresis_rule
          type(key_type), allocatable :: keys(:)
       end function keys_interface
 
-      !> The joints that a spring of this rule suits: some of the words above, separated by blanks.
+      !> The places where springs of this rule may be used: some of the words above, separated by blanks.
       pure function places_interface() result(places)
          import :: places_length
          implicit none
          character(len=places_length) :: places
       end function places_interface
 
-      !> Take the parameters, in the order of `keys`.
+      !> Set the parameters, in the order of `keys`.
       pure subroutine set_interface(self, value)
          import :: rule_type, wp
          implicit none
@@ -62,7 +62,7 @@ module rbs_hysteresis_rule
          class(rule_type), intent(in) :: self
       end function stiffness_interface
 
-      !> The line of the virgin spring; forgets everything.
+      !> The line of the virgin spring; clears the memory.
       subroutine start_interface(self, line)
          import :: rule_type, segment
          implicit none
@@ -70,9 +70,9 @@ module rbs_hysteresis_rule
          type(segment), intent(out) :: line
       end subroutine start_interface
 
-      !> The line that follows where the motion leaves the present one: by `hi` going up
-      !> (direction = +1) or by `lo` going down (direction = -1). On a one-way line the rear end is
-      !> the point where the motion turned back.
+      !> The line that follows when the motion leaves the present one: at `hi` going up (direction = +1)
+      !> or at `lo` going down (direction = -1). On a one-way line the rear end is the point where the
+      !> motion turned back.
       subroutine next_interface(self, line, direction)
          import :: rule_type, segment
          implicit none
@@ -85,21 +85,21 @@ module rbs_hysteresis_rule
 
 contains
 
-   !> Messages on relations between parameters that are each within their bounds. A rule without such
-   !> relations inherits this.
+   !> Add messages on relations between parameters that are each within their bounds. A rule without such
+   !> relations inherits this procedure.
    subroutine check(self, name, messages)
       class(rule_type), intent(in) :: self
-      !> Which spring: 'shear spring of joint 2'
+      !> Name of the spring: 'shear spring of joint 2'
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
 
       if (.false.) call messages%add(name//to_text(self%initial_stiffness()))
    end subroutine check
 
-   !> Stiffness times deformation must be an ordinary number, or the lines have no meaning.
+   !> Stiffness times deformation must neither overflow nor vanish.
    subroutine check_product(k, d, name, product_name, messages)
       real(wp), intent(in) :: k, d
-      !> The spring, and the product as the user reads it: 'k d_y'
+      !> Names of the spring and of the product for the message: 'k d_y'
       character(len=*), intent(in) :: name, product_name
       type(message_list), intent(inout) :: messages
       real(wp) :: power

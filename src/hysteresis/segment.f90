@@ -1,4 +1,4 @@
-!> The heart of the program: a spring is, at any moment, a straight line with two ends.
+!> The basis of all rules: at any moment a spring is on a straight line with two ends.
 module rbs_hysteresis_segment
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unbounded
@@ -9,8 +9,8 @@ module rbs_hysteresis_segment
 
    !> The line f = f0 + k (d - d0) and the deformations between which it holds.
    !>
-   !> The force is always reckoned from the fixed anchor (d0, f0), never by adding increments: it
-   !> cannot depend on how a path is cut.
+   !> The force is always computed from the fixed anchor (d0, f0), never by adding increments, so that
+   !> it does not depend on the steps of a path.
    type :: segment
       !> Anchor: deformation [m or rad] and force [N or N m] of one point of the line
       real(wp) :: d0 = 0.0_wp, f0 = 0.0_wp
@@ -18,11 +18,11 @@ module rbs_hysteresis_segment
       real(wp) :: k = 0.0_wp
       !> Ends: least and largest deformation
       real(wp) :: lo = -unbounded, hi = unbounded
-      !> Whether the point at the end still belongs to this line. An open end belongs to the line
-      !> that follows: to arrive there is to be on it. Only a crossing of zero force is closed.
+      !> Whether the point at the end still belongs to this line. An open end belongs to the line that
+      !> follows: a spring that arrives there is on that line. Only a crossing of zero force is closed.
       logical :: lo_closed = .false., hi_closed = .false.
-      !> A one-way line is left at once when the motion turns back: its rear end travels with the
-      !> motion. +1: one-way upward, lo follows; -1: one-way downward, hi follows; 0: both ways.
+      !> A one-way line is left at once when the motion turns back: its rear end moves with the spring.
+      !> +1: one-way upward, lo moves; -1: one-way downward, hi moves; 0: both ways.
       integer :: one_way = 0
    contains
       procedure :: force
@@ -41,7 +41,7 @@ contains
       force = self%f0 + self%k*(d - self%d0)
    end function force
 
-   !> The end that the line has in a direction, +1 or -1 [m or rad].
+   !> The end of the line in a direction, +1 or -1 [m or rad].
    elemental real(wp) function end_toward(self, direction)
       class(segment), intent(in) :: self
       integer, intent(in) :: direction
@@ -50,7 +50,7 @@ contains
    end function end_toward
 
    !> A line through (d0, f0) seen from side s: it leads outward to `far`, and back to `near`.
-   !> Rules are written for the positive side once; this is where the mirror stands.
+   !> Rules are written once, for the positive side; this procedure mirrors their lines.
    elemental type(segment) function outward(self, s, near, far, near_closed, one_way) result(line)
       !> Anchor and slope are taken from here
       class(segment), intent(in) :: self
@@ -58,7 +58,7 @@ contains
       integer, intent(in) :: s
       !> Ends, `far` further in the direction s than `near`
       real(wp), intent(in) :: near, far
-      !> Whether the near end is closed; that of a one-way line always is, the spring stands on it
+      !> Whether the near end is closed; that of a one-way line always is, as the spring is on it
       logical, intent(in) :: near_closed
       !> Whether the line is left when the motion turns back from s
       logical, intent(in) :: one_way

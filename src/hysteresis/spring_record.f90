@@ -1,4 +1,4 @@
-!> What the user asked of one spring: its rule and the parameters of the rule.
+!> The input of one spring: its rule and the parameters of the rule.
 !>
 !> Deformation is slip [m], rotation [rad] or opening [m], force is shear [N], moment [N m] or axial
 !> force [N].
@@ -104,7 +104,7 @@ contains
       layer%value = self%layer_value(:, i)
    end function layer
 
-   !> The parameters with the defaults of the rule where none is given.
+   !> The parameters; those that are not given have the defaults of the rule.
    pure subroutine whole_values(self, keys, value)
       class(spring_record), intent(in) :: self
       type(key_type), intent(in) :: keys(:)
@@ -120,7 +120,7 @@ contains
    !> Add a message for every parameter that the rule does not allow.
    recursive subroutine validate(self, name, messages)
       class(spring_record), intent(in) :: self
-      !> Which spring: 'shear spring of joint 2'
+      !> Name of the spring: 'shear spring of joint 2'
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
       type(key_type), allocatable :: keys(:)
@@ -181,11 +181,11 @@ contains
             call messages%add(name//': layer '//to_text(i)//" has the rule '"//trim(layer%rule)// &
                               "'; it is one of "//list_of(pack(rule_names, suits(rule_names, in_layer))))
          else if (same_as_before(self, i)) then
-            cycle                                   ! its faults have been told
+            cycle                                   ! its errors have been reported
          else
             call layer%validate(name//': layer '//to_text(i), messages)
          end if
-         ! One table for all layers: a slip is likely in all of them.
+         ! All layers may have the same error: a few messages are enough.
          if (messages%count > 20) return
       end do
    end subroutine validate_layers

@@ -12,8 +12,8 @@ module rbs_hysteresis_springs
 
    public :: spring_array, follow_path
 
-   !> More lines than this within one move mean that a rule leads in a circle of lines without length, which
-   !> is a fault of the rule. The longest correct move closes all the open inner loops that a rule remembers.
+   !> Most lines within one move. More mean that a rule goes round in lines without length, which is an error
+   !> of the rule. The longest correct move closes all open inner loops that a rule remembers.
    integer, parameter :: most_lines = 10000
 
    !> `count` springs in their present state. Assignment copies everything, memory of the rules too.
@@ -35,10 +35,10 @@ module rbs_hysteresis_springs
       real(wp), allocatable :: work(:)
       !> Number of lines left so far
       integer :: events = 0
-      !> Changes with every new line, also where `restore` goes back: what has been factored for the lines of
-      !> one version is still valid while the version is the same
+      !> Changes with every new line, and in `restore`: factors computed for the lines of one version are
+      !> valid while the version is the same
       integer :: version = 0
-      !> Whether a rule has led in a circle; the state must not be used then
+      !> Whether a rule has exceeded `most_lines`; the state must not be used then
       logical :: stuck = .false.
       type(rule_slot), allocatable, private :: slot(:)
       type(journal_type), private :: journal
@@ -89,8 +89,8 @@ contains
       force = self%f0(i) + self%k(i)*(self%d(i) - self%d0(i))
    end function force
 
-   !> The end of the present line in a direction, +1 or -1 [m or rad]. The rear end of a one-way line is where
-   !> the spring stands.
+   !> The end of the present line in a direction, +1 or -1 [m or rad]. The rear end of a one-way line is the
+   !> present deformation.
    pure real(wp) function end_toward(self, i, direction)
       class(spring_array), intent(in) :: self
       integer, intent(in) :: i, direction
@@ -130,7 +130,7 @@ contains
       integer :: i
 
       if (self%count == 2) then
-         ! One body: as long as both stay on their lines, there is neither a loop nor a call.
+         ! One body: while both springs stay on their lines, neither a loop nor a call is needed.
          if (d(1) <= self%last(1) .and. d(1) >= self%first(1) .and. &
              d(2) <= self%last(2) .and. d(2) >= self%first(2)) then
             call walk_pair(d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, &
@@ -144,7 +144,7 @@ contains
          end do
          if (self%stuck) return
       end if
-      ! Springs that are there already do not move any more.
+      ! Springs that have arrived do not move any more.
       call walk_all(self%count, d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, &
                     self%last)
    end subroutine move_all
@@ -200,7 +200,7 @@ contains
       end do
    end subroutine walk_all
 
-   !> Walk every spring to a deformation on its present line.
+   !> Move every spring to a deformation on its present line.
    subroutine carry_to(self, d)
       class(spring_array), intent(inout) :: self
       !> New deformations (count) [m or rad]
@@ -210,13 +210,13 @@ contains
                     self%last)
    end subroutine carry_to
 
-   !> Follow the lines of a spring until it has a force.
+   !> Follow the lines of a spring until it has a given force.
    subroutine load_to(self, i, f, found)
       class(spring_array), intent(inout) :: self
       integer, intent(in) :: i
       !> Force [N or N m]
       real(wp), intent(in) :: f
-      !> Whether the spring can have it
+      !> Whether the spring can reach it
       logical, intent(out) :: found
       real(wp) :: way, far
       integer :: lines, direction
@@ -244,22 +244,21 @@ contains
       found = .false.
    end subroutine load_to
 
-   !> Remember the present state: from here `restore` brings it back. Only springs that change their lines
-   !> are copied.
+   !> Mark the present state, to which `restore` returns. Only springs that change their lines are copied.
    subroutine mark(self)
       class(spring_array), intent(inout) :: self
 
       call self%journal%start(self%d, self%work, self%events)
    end subroutine mark
 
-   !> Go on without the way back.
+   !> Drop the mark.
    subroutine forget_mark(self)
       class(spring_array), intent(inout) :: self
 
       call self%journal%forget()
    end subroutine forget_mark
 
-   !> Bring back the state that was marked, to the last bit. The mark stays.
+   !> Return to the marked state, to the last bit. The mark stays.
    subroutine restore(self)
       class(spring_array), intent(inout) :: self
       integer :: i, j
@@ -282,7 +281,7 @@ contains
       end associate
    end subroutine restore
 
-   !> Move one spring monotonically to a new deformation, along as many lines as lie between.
+   !> Move one spring monotonically to a new deformation, over any number of lines.
    subroutine move(self, i, d)
       class(spring_array), intent(inout) :: self
       integer, intent(in) :: i
@@ -303,7 +302,7 @@ contains
       self%stuck = .true.
    end subroutine move
 
-   !> Go on the present line to d; the rear end of a one-way line comes along.
+   !> Move along the present line to d; the rear end of a one-way line follows.
    pure subroutine walk(self, i, d)
       class(spring_array), intent(inout) :: self
       integer, intent(in) :: i
@@ -321,8 +320,8 @@ contains
       end if
    end subroutine walk
 
-   !> Go to the end of the present line and ask the rule for the line that follows. A one-way line whose
-   !> motion turns back ends where the spring stands.
+   !> Move to the end of the present line and get the line that follows from the rule. When the motion turns
+   !> back, a one-way line ends at the present deformation.
    subroutine change_line(self, i, direction)
       class(spring_array), intent(inout) :: self
       integer, intent(in) :: i, direction
@@ -337,7 +336,7 @@ contains
       call put_line(self, i, line)
    end subroutine change_line
 
-   !> The present line of a spring, as its rule is handed it.
+   !> The present line of a spring, in the form that its rule takes.
    pure type(segment) function line_of(self, i) result(line)
       class(spring_array), intent(in) :: self
       integer, intent(in) :: i
@@ -354,7 +353,7 @@ contains
       line%one_way = self%one_way(i)
    end function line_of
 
-   !> Store the line of a spring. The last number before an open end is the last that belongs to the line.
+   !> Store the line of a spring. At an open end the last deformation is the number next to the end.
    pure subroutine put_line(self, i, line)
       class(spring_array), intent(inout) :: self
       integer, intent(in) :: i
@@ -386,7 +385,7 @@ contains
       end if
    end function next_above
 
-   !> A spring stands at an end of its line and is about to go on beyond it.
+   !> A spring is at an end of its line and is about to move beyond it.
    subroutine leave(self, i, direction)
       class(spring_array), intent(inout) :: self
       integer, intent(in) :: i
@@ -394,12 +393,12 @@ contains
       integer, intent(in) :: direction
 
       call change_line(self, i, direction)
-      ! A new one-way line begins where the spring is, to the last bit.
+      ! A new one-way line starts at the present deformation, to the last bit.
       if (self%one_way(i) > 0) self%first(i) = self%d(i)
       if (self%one_way(i) < 0) self%last(i) = self%d(i)
    end subroutine leave
 
-   !> Put a spring exactly on the end of its line in a direction; an open end leads onto the next line.
+   !> Put a spring exactly on the end of its line in a direction; from an open end it goes to the next line.
    subroutine arrive(self, i, direction)
       class(spring_array), intent(inout) :: self
       integer, intent(in) :: i

@@ -1,11 +1,11 @@
-!> Steel that yields round: Menegotto and Pinto (1973) as straight lines.
+!> Steel with a rounded transition to yield: Menegotto and Pinto (1973) in straight lines.
 !>
-!> A branch begins where the motion turned back and bends from the elastic stiffness to the line of
+!> A branch starts where the motion turned back and bends from the elastic stiffness to the line of
 !> hardening,  f* = b x + (1 - b) x/(1 + x^R)^(1/R),  R = r0 (1 - cr1 xi/(cr2 + xi)),  xi = plastic
-!> excursion over the yield deformation. The curve is followed by chords whose ends are chosen for its
-!> roundness. A branch that meets the one of its direction that was left before goes on along that one:
-!> small cycles close and never overshoot. The strength of new branches
-!> grows with the reach of the strains (Filippou, Popov and Bertero 1983) and falls with the plastic work.
+!> excursion over the yield deformation. Chords replace the curve; their ends depend on its roundness. A
+!> branch that meets the previous branch of its direction continues along that one: small cycles close
+!> and never overshoot. The strength of new branches grows with the range of the strains (Filippou, Popov
+!> and Bertero 1983) and decreases with the plastic work.
 module rbs_hysteresis_steel
    use rbs_base_error, only: message_list
    use rbs_base_keys, only: key_type, above_zero, not_negative, share_below_one, &
@@ -23,19 +23,19 @@ module rbs_hysteresis_steel
 
    !> Ends of the chords: values of x^R
    real(wp), parameter :: corners(8) = [0.03_wp, 0.15_wp, 0.4_wp, 0.8_wp, 1.5_wp, 3.0_wp, 8.0_wp, 30.0_wp]
-   !> Branches left behind that are remembered
+   !> Most branches that are remembered
    integer, parameter :: most_branches = 16
-   !> Roundness has no meaning below
+   !> Least roundness
    real(wp), parameter :: least_r = 0.8_wp
 
-   !> One curve from a point of reversal to the line of hardening.
+   !> One curve from a reversal point to the line of hardening.
    type :: branch_type
       integer :: direction = 0
-      !> Where it begins, and where its two asymptotes meet [m, N]
+      !> Its start, and the point where its two asymptotes meet [m, N]
       real(wp) :: d_0 = 0.0_wp, f_0 = 0.0_wp, d_a = 0.0_wp, f_a = 0.0_wp
       !> Roundness
       real(wp) :: r = 20.0_wp
-      !> Where it meets the branch of its direction that was left before
+      !> The point where it meets the previous branch of its direction
       real(wp) :: d_meet = unbounded
    end type branch_type
 
@@ -60,19 +60,19 @@ module rbs_hysteresis_steel
    type, extends(rule_type) :: steel_rule
       !> Elastic stiffness [N/m], yield force [N], stiffness of hardening [N/m]
       real(wp) :: k = 0.0_wp, f_y = 0.0_wp, k_post = 0.0_wp
-      !> Roundness of the virgin branch and how it falls with the plastic excursion
+      !> Roundness of the virgin branch and its decrease with the plastic excursion
       real(wp) :: r0 = 20.0_wp, cr1 = 0.925_wp, cr2 = 0.15_wp
-      !> Share by which the strength has grown when the strains have reached from -d_y to d_y (Filippou,
-      !> Popov and Bertero 1983); it grows with the power 0.8 of that reach
+      !> Share by which the strength has grown when the strains have ranged from -d_y to d_y (Filippou,
+      !> Popov and Bertero 1983); it grows with the power 0.8 of that range
       real(wp) :: isotropic_hardening = 0.0_wp
-      !> Plastic work over f_y d_y at which the strength is half (0: it stays)
+      !> Plastic work over f_y d_y at which the strength is halved; 0: the strength does not decrease
       real(wp) :: half_strength_work = 0.0_wp
       type(branch_type), private :: branch(most_branches)
       !> Branches in memory; 0: virgin
       integer, private :: count = 0
       !> Extremes of the deformation so far [m]
       real(wp), private :: highest = 0.0_wp, lowest = 0.0_wp
-      !> Work up to the last corner [J], which was there [m, N]
+      !> Work up to the last corner [J], and that corner [m, N]
       real(wp), private :: work = 0.0_wp, d_last = 0.0_wp, f_last = 0.0_wp
    contains
       procedure, nopass :: keys
@@ -166,7 +166,7 @@ contains
       else if (self%branch(self%count)%direction /= direction) then
          call turn_back(self, d, f)
       else
-         ! Back on the branch that was left before: what lies between is forgotten.
+         ! Back on the previous branch: those in between are forgotten.
          do while (direction*(d - self%branch(self%count)%d_meet) >= 0.0_wp)
             self%count = self%count - 2
          end do
@@ -174,7 +174,7 @@ contains
       call follow_branch(self, d, f, line)
    end subroutine next
 
-   !> Begin a branch at (d, f) in the direction away from the present one.
+   !> Start a branch at (d, f) in the direction opposite to the present one.
    subroutine turn_back(self, d, f)
       class(steel_rule), intent(inout) :: self
       real(wp), intent(in) :: d, f
@@ -184,8 +184,9 @@ contains
 
       d_y = self%f_y/self%k
       s = -self%branch(self%count)%direction
-      ! A branch that began less far out than here is outgrown. The present one gives way to the one it would
-      ! have met, which it only comes up to; where it never would, it takes that one's place.
+      ! A branch of the new direction that started less far out than this point is no longer needed. The
+      ! branch before it replaces the present one if the two would meet, as the present one only approaches
+      ! it; else the present one replaces it.
       do while (self%count >= 2)
          if (s*(d - self%branch(self%count - 1)%d_0) > 0.0_wp) exit
          if (self%count >= 3 .and. abs(self%branch(self%count)%d_meet) < unbounded) then
@@ -218,11 +219,11 @@ contains
       if (self%count >= 2) call find_meeting(self, self%branch(self%count - 1), new)
       self%count = self%count + 1
       self%branch(self%count) = new
-      ! Turned back at once, without having moved: still on the branch from before.
+      ! Turned back at once without having moved: still on the previous branch.
       if (abs(new%d_meet - d) <= 1.0e-9_wp*abs(new%d_a - d)) self%count = self%count - 2
    end subroutine turn_back
 
-   !> Forget a branch and the one before it, which those behind it have passed or will not meet any more.
+   !> Forget a branch and the one before it, which later branches have passed or will not meet any more.
    subroutine forget(self, place)
       class(steel_rule), intent(inout) :: self
       integer, intent(in) :: place
@@ -236,7 +237,7 @@ contains
       end do
    end subroutine forget
 
-   !> Where a new branch comes up to the one of its direction that was left before.
+   !> The point where a new branch meets the previous one of its direction.
    subroutine find_meeting(self, old, new)
       class(steel_rule), intent(in) :: self
       type(branch_type), intent(in) :: old
@@ -247,7 +248,7 @@ contains
       s = new%direction
       reach = abs(new%d_a - new%d_0)
       near = new%d_0
-      ! One that begins above the old one, which low roundness allows, has passed it already.
+      ! With low roundness a branch may start above the old one and so has already passed it.
       if (s*(new%f_0 - curve(self, old, near)) > 1.0e-9_wp*self%f_y) return
       do i = 1, size(corners)
          far = new%d_0 + s*reach*corners(i)**(1.0_wp/new%r)
@@ -267,7 +268,7 @@ contains
       new%d_meet = far
    end subroutine find_meeting
 
-   !> From (d, f) along the present branch to the end of the chord.
+   !> The chord of the present branch that starts at (d, f).
    subroutine follow_branch(self, d, f, line)
       class(steel_rule), intent(in) :: self
       real(wp), intent(in) :: d, f
@@ -295,7 +296,7 @@ contains
       line = line%outward(s, near=d, far=far, near_closed=.true., one_way=.true.)
    end subroutine follow_branch
 
-   !> Force of a branch at a deformation [N]; before its begin, on the elastic line.
+   !> Force of a branch at a deformation [N]; before its start, on the elastic line.
    pure real(wp) function curve(self, branch, d) result(f)
       class(steel_rule), intent(in) :: self
       type(branch_type), intent(in) :: branch
@@ -309,7 +310,7 @@ contains
          return
       end if
       b = self%k_post/self%k
-      ! Far out the curve is its asymptote; the power would overflow.
+      ! Far out the curve equals its asymptote, and the power would overflow.
       f = b*x + 1.0_wp - b
       if (x < 1.0e6_wp) f = b*x + (1.0_wp - b)*x/(1.0_wp + x**branch%r)**(1.0_wp/branch%r)
       f = branch%f_0 + f*(branch%f_a - branch%f_0)

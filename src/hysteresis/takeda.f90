@@ -6,7 +6,7 @@
 !>     cracked backbone   slope k_y, ends at yield; turning back: outer unloading
 !>     yielded backbone   slope k_u; turning back: outer unloading
 !>     outer unloading    from the peak of the side, slope K_r; ends at zero force
-!>     reloading          aims at the newest open inner peak of its side, else at the backbone peak
+!>     reloading          toward the newest open inner peak of its side, else the backbone peak
 !>     inner unloading    from a point where reloading turned back, slope K_in; ends at zero force
 !>
 !> K_r = (|Fm| + f_c)/(|Dm| + d_c) before yield, K_0 (d_y/|Dm|)^B0 after it, K_0 = (f_c + f_y)/(d_c + d_y)
@@ -34,8 +34,8 @@ module rbs_hysteresis_takeda
    !> Below this share of the yield force a reversal counts as one at zero force.
    real(wp), parameter :: no_force = 1.0e-12_wp
 
-   !> A line this close to the slope of the yielded backbone does not meet it; K_r comes to it at
-   !> ductilities that only round-off knows.
+   !> A line this close to the slope of the yielded backbone does not meet it. K_r is so close only at
+   !> unrealistic ductilities.
    real(wp), parameter :: parallel = 1.0e-9_wp
 
    type(key_type), parameter :: parameters(*) = [ &
@@ -157,7 +157,7 @@ contains
       line = segment(k=self%k_c, lo=-self%d_c, hi=self%d_c)
    end subroutine start
 
-   !> Where a branch ends, going on or turning back.
+   !> The next branch at the end of the present one, where the motion continues or turns back.
    subroutine next(self, line, direction)
       class(takeda_rule), intent(inout) :: self
       type(segment), intent(inout) :: line
@@ -239,14 +239,14 @@ contains
       if (self%cracked(-s)) then
          near = peak%d - peak%f/self%k_r(s)
       else if (abs(peak%d) <= self%d_y) then
-         near = -s*self%d_c                         ! K_r aims at the cracking point by definition
+         near = -s*self%d_c                         ! by definition K_r leads to the cracking point
       else
          near = peak%d - (peak%f + s*self%f_c)/self%k_r(s)
       end if
       line = line%outward(s, near=near, far=peak%d, near_closed=self%cracked(-s), one_way=.false.)
    end subroutine unload_from_peak
 
-   !> K_r of a peak (eq 7). The secant is the floor: unloading must not cross the origin's side.
+   !> K_r of a peak (eq 7), not below the secant: unloading must not end on the other side of the origin.
    elemental real(wp) function outer_stiffness(self, d, f) result(k_r)
       type(takeda_rule), intent(in) :: self
       !> Peak, both positive
@@ -260,8 +260,8 @@ contains
       k_r = max(k_r, f/d)
    end function outer_stiffness
 
-   !> Outer unloading reaches zero force, the other side has cracked: reload toward its peak, or
-   !> toward its yield point if it has not yielded and that is the steeper way.
+   !> Outer unloading reaches zero force, and the other side has cracked: reload toward its peak, or
+   !> toward its yield point if it has not yielded and the line to it is steeper.
    subroutine cross_zero_from_peak(self, line, zero)
       type(takeda_rule), intent(inout) :: self
       type(segment), intent(inout) :: line
@@ -277,7 +277,7 @@ contains
       call aim_at_peak(self, line, s, point(zero, 0.0_wp), zero)
    end subroutine cross_zero_from_peak
 
-   !> Outer unloading has gone on to the cracking force of the other side, which had not cracked.
+   !> Outer unloading has continued to the cracking force of the other side, which had not cracked.
    subroutine crack_in_return(self, line, d)
       type(takeda_rule), intent(inout) :: self
       type(segment), intent(inout) :: line
@@ -298,7 +298,8 @@ contains
       self%peak(s) = point(s*self%d_y, s*self%f_y)
       ahead = s*(self%peak(s)%d - d)
       if (self%f_y - self%f_c > k_r*ahead .and. k_r > (1.0_wp + parallel)*self%k_u) then
-         ! The yield point is steeper than K_r or behind: go on with K_r to the yielded backbone.
+         ! The line to the yield point is steeper than K_r or leads back: continue with K_r to the yielded
+         ! backbone.
          d_peak = (self%f_y - self%k_u*self%d_y - self%f_c + k_r*s*d)/(k_r - self%k_u)
          self%peak(s) = point(s*d_peak, s*(self%f_y + self%k_u*(d_peak - self%d_y)))
       end if
@@ -322,12 +323,12 @@ contains
       if (self%aim%target_serial == 0_int64) then
          call follow_backbone(self, line, (self%side), here%d)
       else
-         ! An inner peak so old that it was forgotten: on from it to the backbone.
+         ! The inner peak was so old that it has been forgotten: continue to the backbone.
          call aim_at_peak(self, line, (self%side), here, (self%aim%zero))
       end if
    end subroutine arrive
 
-   !> Reloading turns back before its target: an inner peak opens, unloading with K_in.
+   !> Reloading turns back before its target: a new inner peak, from which unloading has slope K_in.
    subroutine turn_back_inside(self, line, here)
       type(takeda_rule), intent(inout) :: self
       type(segment), intent(inout) :: line
@@ -349,7 +350,7 @@ contains
                           one_way=.false.)
    end subroutine turn_back_inside
 
-   !> K_in of an inner peak, within its bounds; the lower one wins.
+   !> K_in of an inner peak within its bounds, of which the lower one has priority.
    pure real(wp) function inner_stiffness(self, peak) result(k_in)
       type(takeda_rule), intent(in) :: self
       type(point), intent(in) :: peak
@@ -366,12 +367,12 @@ contains
          k_in = k_r
       end select
       k_in = min(k_in, k_r)
-      ! At ductilities of 1e16 round-off leaves no way from the zero crossing.
+      ! At ductilities of 1e16 round-off leaves no distance from the zero crossing.
       way = self%side*(peak%d - self%aim%zero)
       if (way > 0.0_wp) k_in = max(k_in, self%side*peak%f/way)
    end function inner_stiffness
 
-   !> Take up the reloading line that was left at an inner peak; it and all newer ones are closed.
+   !> Continue on the reloading line that was left at an inner peak; it and all newer peaks are closed.
    subroutine take_up(self, line, place)
       type(takeda_rule), intent(inout) :: self
       type(segment), intent(inout) :: line
@@ -387,8 +388,8 @@ contains
       self%open%count = place - 1
    end subroutine take_up
 
-   !> Zero force inside: reload toward the newest open peak of side s, else toward its backbone peak
-   !> as it is. Redirection to the yield point would keep inner loops from closing.
+   !> Inner unloading reaches zero force: reload toward the newest open peak of side s, else toward its
+   !> backbone peak. If the target were the yield point instead, inner loops would not close.
    subroutine aim_inside(self, line, s, from)
       type(takeda_rule), intent(inout) :: self
       type(segment), intent(inout) :: line
@@ -418,7 +419,7 @@ contains
       call reload(self, line, s, from)
    end subroutine aim_at_peak
 
-   !> The straight line to the target. It hangs on the target, so that a peak is met exactly.
+   !> The straight line to the target. The target is its anchor, so that a peak is met exactly.
    subroutine reload(self, line, s, from)
       type(takeda_rule), intent(inout) :: self
       type(segment), intent(inout) :: line
@@ -430,7 +431,7 @@ contains
       self%side = s
       associate (target => self%aim%target)
          way = target%d - from%d
-         ! Where round-off leaves no way at all, the target is met at once.
+         ! If round-off leaves no distance, the target is met at once.
          k = self%k_c
          if (s*way > 0.0_wp) k = (target%f - from%f)/way
          line = segment(d0=target%d, f0=target%f, k=k)

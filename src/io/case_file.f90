@@ -1,4 +1,4 @@
-!> From a case file to everything that a run needs: the one reader of both doors.
+!> Reads a case file and its loadings; used by the executable and by Python.
 module rbs_io_case_file
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
@@ -21,17 +21,17 @@ module rbs_io_case_file
 
    !> The loadings of a case.
    type :: case_history
-      !> Common times (m) [s]; the numbers of the points of a static path
+      !> Common times (m) [s]; for a static path the numbers of its points
       real(wp), allocatable :: time(:)
-      !> What is driven on a static path (m) [m or N]
+      !> The prescribed displacement or force of a static path (m) [m or N]
       real(wp), allocatable :: target(:)
-      !> What acts in time
+      !> The actions in time
       type(loads_type) :: loads
    end type case_history
 
 contains
 
-   !> Read a case and its loadings; all their faults come back as one error.
+   !> Read a case and its loadings; all errors in them are returned as one.
    subroutine load_case(path, case, history, error)
       character(len=*), intent(in) :: path
       type(case_record), intent(out) :: case
@@ -46,7 +46,7 @@ contains
       if (.not. allocated(error)) call cut_duration(case%analysis, history, error)
    end subroutine load_case
 
-   !> Values of all loadings that are sound in themselves.
+   !> Make the values of every loading that has no error of its own.
    subroutine load_values(case, folder, history, messages)
       type(case_record), intent(inout) :: case
       character(len=*), intent(in) :: folder
@@ -65,7 +65,7 @@ contains
             if (own%count > 0) cycle                ! reported already
             select case (spec%source)
             case ('protocol')
-               ! The height is in the amplitudes; a wrong one has been reported.
+               ! Amplitudes in drift need the height; a wrong height has been reported.
                if (.not. ieee_is_finite(case%column%height)) cycle
                if (case%column%height <= 0.0_wp) cycle
                call protocol_values(spec, case%column%height, time, value, fault)
@@ -91,7 +91,7 @@ contains
                history%loads%vertical = signal
             case ('axial_load')
                history%loads%axial = signal
-            case default                            ! a displacement is no load
+            case default                            ! a displacement is not an action in time
             end select
             call move_alloc(value, history%target)
             call join_times(history%time, time)
@@ -102,7 +102,7 @@ contains
       end if
    end subroutine load_values
 
-   !> Times of two loadings in one ascending list. Times that differ by round-off are one.
+   !> Merge the times of two loadings into one ascending list. Times that differ by round-off are merged.
    subroutine join_times(all_times, more)
       real(wp), allocatable, intent(inout) :: all_times(:)
       real(wp), intent(in) :: more(:)
@@ -137,7 +137,7 @@ contains
       all_times = joined(:n)
    end subroutine join_times
 
-   !> End the times where the user wants: earlier, or later with the last value held.
+   !> End the history at the duration of the user: earlier, or later with the last value held.
    subroutine cut_duration(spec, history, error)
       type(analysis_record), intent(in) :: spec
       type(case_history), intent(inout) :: history

@@ -1,7 +1,7 @@
-!> Rows as a csv file: under a temporary name until it is whole.
+!> Rows as a csv file, which has a temporary name until it is complete.
 !>
-!> Written through C: the Fortran library of gfortran 12 gives status 0 for writes, flush and close on
-!> a full disk, so that a cut file would pass for a whole one.
+!> Written through C: on a full disk the Fortran library of gfortran 12 gives status 0 for writes, flush
+!> and close, so that a truncated file would look complete.
 module rbs_io_csv
    use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_null_char, c_null_ptr, &
                                           c_ptr, c_size_t
@@ -15,10 +15,10 @@ module rbs_io_csv
 
    public :: csv_recorder
 
-   !> Ending of the file until it is whole, and of what is left of a failed run.
+   !> Ending of the name until the file is complete; a failed run leaves a file with this ending.
    character(len=*), parameter, public :: partial = '.partial'
 
-   !> Width of one number with its comma: every bit of a double comes back from 17 digits.
+   !> Width of one number with its comma: 17 digits preserve every bit of a double.
    integer, parameter :: width = 25
 
    type, extends(recorder_type) :: csv_recorder
@@ -58,7 +58,7 @@ module rbs_io_csv
          integer(c_size_t) :: written
       end function c_fwrite
 
-      !> C: write what is still in the buffer; 0 if it went well.
+      !> C: write what is still in the buffer; 0 on success.
       function c_fflush(stream) bind(c, name='fflush') result(status)
          import :: c_int, c_ptr
          implicit none
@@ -74,7 +74,7 @@ module rbs_io_csv
          integer(c_int) :: descriptor
       end function c_fileno
 
-      !> C: bring a file to its disk; not 0 if it went wrong or there is no disk behind it.
+      !> C: write a file through to its disk; not 0 on failure, or if the file is not on a disk.
       function c_fsync(descriptor) bind(c, name='fsync') result(status)
          import :: c_int
          implicit none
@@ -82,7 +82,7 @@ module rbs_io_csv
          integer(c_int) :: status
       end function c_fsync
 
-      !> C: close a file; 0 if it went well.
+      !> C: close a file; 0 on success.
       function c_fclose(stream) bind(c, name='fclose') result(status)
          import :: c_int, c_ptr
          implicit none
@@ -90,7 +90,7 @@ module rbs_io_csv
          integer(c_int) :: status
       end function c_fclose
 
-      !> C: take a file away; 0 if it went well.
+      !> C: remove a file; 0 on success.
       function c_remove(path) bind(c, name='remove') result(status)
          import :: c_char, c_int
          implicit none
@@ -98,7 +98,7 @@ module rbs_io_csv
          integer(c_int) :: status
       end function c_remove
 
-      !> C: give a file another name, in place of what has that name; 0 if it went well.
+      !> C: rename a file and replace any file that has the new name; 0 on success.
       function c_rename(from, to) bind(c, name='rename') result(status)
          import :: c_char, c_int
          implicit none
@@ -112,7 +112,7 @@ contains
    !> Start the file: comment lines, then the names of the columns.
    subroutine open_csv(self, path, comments, labels, error)
       class(csv_recorder), intent(inout) :: self
-      !> Path of the file when it is whole
+      !> Path of the complete file
       character(len=*), intent(in) :: path
       !> Lines of the header, without the mark of a comment
       character(len=*), intent(in) :: comments(:)
@@ -188,11 +188,11 @@ contains
       end if
    end subroutine put_line
 
-   !> End the file. If the run went well it gets its name; else `.partial` stays, if it has rows, and
-   !> what had the name before is untouched.
+   !> Close the file. After a successful run it gets its final name. After a failed run it keeps the ending
+   !> `.partial`, if it has rows, and an earlier file with the final name is untouched.
    subroutine close_csv(self, whole, error)
       class(csv_recorder), intent(inout) :: self
-      !> Whether the run went well
+      !> Whether the run succeeded
       logical, intent(in) :: whole
       type(error_type), allocatable, intent(inout) :: error
       integer(c_int) :: flushed, status
@@ -203,7 +203,7 @@ contains
       self%stream = c_null_ptr
       if ((flushed /= 0 .or. status /= 0) .and. .not. allocated(error)) call report_write(self, error)
       if (self%count == 0 .and. .not. whole) then
-         ! Nothing to keep.
+         ! There are no rows to keep.
          status = c_remove(self%path//partial//c_null_char)
          return
       end if
@@ -224,14 +224,14 @@ contains
                        'with --output')
    end subroutine report_write
 
-   !> Whether a path is a device or a pipe: these have nothing to bring to a disk.
+   !> Whether a path is a device or a pipe, which cannot be written through to a disk.
    logical function is_special(path)
       character(len=*), intent(in) :: path
       type(c_ptr) :: stream
       integer(c_int) :: status
 
       is_special = .false.
-      ! For update: this neither cuts a file nor waits for the other end of a pipe.
+      ! Opened for update, which neither truncates a file nor waits for the other end of a pipe.
       stream = c_fopen(path//c_null_char, 'r+'//c_null_char)
       if (.not. c_associated(stream)) return
       status = c_fsync(c_fileno(stream))

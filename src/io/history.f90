@@ -10,10 +10,10 @@ module rbs_io_history
 
    public :: history_type, read_history
 
-   !> More columns than this are not a history.
+   !> Largest number of columns of a history.
    integer, parameter :: most_columns = 64
 
-   !> Files beyond this are not read at once [bytes].
+   !> Largest file that is read [bytes].
    integer, parameter :: most_bytes = 2000000000
 
    character(len=1), parameter :: tab = achar(9)
@@ -21,7 +21,7 @@ module rbs_io_history
    type :: history_type
       !> Name of the test: first line of a PEER file, else the file's name
       character(len=:), allocatable :: name
-      !> Whether the file is of the PEER format: millimetres, kilonewtons
+      !> Whether the file has the PEER format: millimetres, kilonewtons
       logical :: peer = .false.
       !> Numbers of columns and rows
       integer :: columns = 0, rows = 0
@@ -31,7 +31,7 @@ module rbs_io_history
       real(wp), allocatable :: values(:, :)
    end type history_type
 
-   !> Begin and end of the fields of a line.
+   !> First and last characters of the fields of a line.
    type :: field_list
       integer :: count = 0
       integer :: first(most_columns + 1) = 0, last(most_columns + 1) = 0
@@ -60,7 +60,7 @@ contains
       end if
    end subroutine read_history
 
-   !> A PEER file has a name, a count (perhaps followed by 0), and then at least two numbers a line.
+   !> A PEER file has a name, a count (perhaps followed by 0), and then at least two numbers per line.
    logical function is_peer(file)
       type(text_file), intent(inout) :: file
       type(field_list) :: fields
@@ -73,7 +73,7 @@ contains
       if (.not. found) return
       call split(file%text(first:last), ' ', fields)
       if (fields%count == 0) return
-      ! A name may be a number; a line of as many numbers as the rows have is a row.
+      ! The name of a test may be a number, but a line with as many numbers as a row is itself a row.
       numbers = 0
       do i = 1, fields%count
          call read_real(file%text(first + fields%first(i) - 1:first + fields%last(i) - 1), value, status)
@@ -82,7 +82,7 @@ contains
       if (numbers < fields%count) numbers = 0
       call file%next_line(first, last, found)
       if (.not. found) return
-      ! A csv with blanks may well have the row `0 0` there.
+      ! A csv separated by blanks may have the row `0 0` there.
       call split(file%text(first:last), ' ', fields)
       if (count_of(file%text(first:last)) < merge(0, 1, fields%count == 1)) return
       call file%next_line(first, last, found)
@@ -91,7 +91,7 @@ contains
       is_peer = fields%count >= 2 .and. numbers /= fields%count
    end function is_peer
 
-   !> The count on the second line of a PEER file, alone or followed by one 0; -1 if it is none.
+   !> The count on the second line of a PEER file, alone or followed by one 0; -1 if the line is not a count.
    integer function count_of(line)
       character(len=*), intent(in) :: line
       type(field_list) :: fields
@@ -199,7 +199,7 @@ contains
       end if
    end subroutine read_csv
 
-   !> Rows of numbers to the end of the file; every row as long as the first.
+   !> Read rows of numbers to the end of the file; every row must be as long as the first.
    subroutine read_rows(file, path, separator, history, error)
       type(text_file), intent(inout) :: file
       character(len=*), intent(in) :: path
@@ -268,8 +268,8 @@ contains
                        ": '"//snippet(word)//"' "//remedy//'; correct the file')
    end subroutine report_number
 
-   !> Cut a line into fields, `most_columns` + 1 of them at the most. Blanks separate (any number of
-   !> them, and tabs) where the separator is one.
+   !> Cut a line into at most `most_columns` + 1 fields. If the separator is a blank, any run of blanks and
+   !> tabs separates two fields.
    subroutine split(line, separator, fields)
       character(len=*), intent(in) :: line
       character(len=1), intent(in) :: separator
@@ -278,7 +278,7 @@ contains
 
       at = 1
       last = len(line)
-      ! Spreadsheets leave separators at the end of every line.
+      ! Spreadsheets may write separators at the end of every line.
       do while (last > 0)
          if (scan(line(last:last), ' '//tab) == 0) exit
          last = last - 1
@@ -306,8 +306,8 @@ contains
       end do
    end subroutine split
 
-   !> Place of the separator that ends the first field of a line, 0 if it is the last field; a
-   !> separator between quotes ends nothing.
+   !> Place of the separator that ends the first field of a line, 0 if it is the last field; separators
+   !> between quotes are not counted.
    pure integer function end_of_field(line, separator) result(place)
       character(len=*), intent(in) :: line
       character(len=1), intent(in) :: separator
@@ -323,7 +323,7 @@ contains
       if (place > 0) place = place + quote
    end function end_of_field
 
-   !> Leave blanks, and quotes that stand on both sides, out of a field.
+   !> Remove the blanks around a field, and quotes that enclose it.
    pure subroutine trim_field(line, first, last)
       character(len=*), intent(in) :: line
       integer, intent(inout) :: first, last

@@ -24,7 +24,7 @@ contains
       character(len=*), intent(in) :: folder
       !> Whether times are needed
       logical, intent(in) :: dynamic
-      !> Whether a force with times is refused, because nobody has said that they do not count
+      !> Whether a force with times is refused, because the user has not chosen between statics and dynamics
       logical, intent(in) :: refuse_times
       !> Times (m) [s]; the number of the row in a static analysis
       real(wp), allocatable, intent(out) :: time(:)
@@ -60,14 +60,14 @@ contains
       call find_times(history, path, spec, time, error)
    end subroutine loading_values
 
-   !> Displacements [m] and forces [N] of a measured test.
+   !> Read the displacements [m] and forces [N] of a measured test.
    subroutine read_test(path, units, name, rows, displacement, force, error)
       character(len=*), intent(in) :: path
-      !> Units of displacement and force; blank: those of the file, see `convert`
+      !> Units of displacement and force; blank: units of the file, see `convert`
       character(len=*), intent(in) :: units(2)
       !> Name of the test
       character(len=:), allocatable, intent(out) :: name
-      !> Number of rows; the arrays must have room for as many
+      !> Number of rows; the arrays must have room for all of them
       integer(c_int), intent(out) :: rows
       real(wp), intent(out) :: displacement(:), force(:)
       type(error_type), allocatable, intent(out) :: error
@@ -102,11 +102,11 @@ contains
       rows = history%rows
    end subroutine read_test
 
-   !> The column that a word names, or the one that the drive stands for.
+   !> The column with the name or number that the user gives, or else with the name of the drive.
    subroutine find_column(history, path, drive, word, key, column, error)
       type(history_type), intent(in) :: history
       character(len=*), intent(in) :: path, drive, word
-      !> What the word is called in the input
+      !> Key of the word in the input
       character(len=*), intent(in) :: key
       integer, intent(out) :: column
       type(error_type), allocatable, intent(out) :: error
@@ -119,7 +119,7 @@ contains
       if (word == '') then
          wanted = drive
          if (drive == 'ground_acceleration') wanted = 'acceleration'
-         ! Short names are common in files: 'vertical_g', 'axial_kN'.
+         ! Files often have short names: 'vertical_g', 'axial_kN'.
          if (drive == 'vertical_acceleration') wanted = 'vertical'
          if (drive == 'axial_load') wanted = 'axial'
          do i = 1, history%columns
@@ -158,7 +158,7 @@ contains
       end if
    end subroutine find_column
 
-   !> The columns that there are, for a message.
+   !> The columns of the file, for a message.
    subroutine describe_columns(history, text)
       type(history_type), intent(in) :: history
       character(len=:), allocatable, intent(out) :: text
@@ -170,8 +170,8 @@ contains
       end if
    end subroutine describe_columns
 
-   !> Values in SI: the unit that the user gives, else the one behind the column's name, else the one
-   !> of PEER files, else SI already.
+   !> Convert values to SI from the unit that the user gives, else from the unit in the column's name, else
+   !> from the units of PEER files; other values are in SI.
    subroutine convert(history, path, column, drive, unit, value, error)
       type(history_type), intent(in) :: history
       character(len=*), intent(in) :: path, drive, unit
@@ -199,7 +199,7 @@ contains
                        '; give the right one with unit')
    end subroutine convert
 
-   !> Times from their column, or from the interval between rows.
+   !> Take the times from their column, or from the interval between rows.
    subroutine find_times(history, path, spec, time, error)
       type(history_type), intent(in) :: history
       character(len=*), intent(in) :: path
@@ -243,7 +243,7 @@ contains
       end if
    end subroutine find_times
 
-   !> Values must leave room for the arithmetic: units, scale, squares.
+   !> Values must be small enough that conversion, scale and squares do not overflow.
    subroutine check_range(value, path, column, largest, error)
       real(wp), intent(in) :: value(:)
       character(len=*), intent(in) :: path
@@ -261,7 +261,7 @@ contains
       end do
    end subroutine check_range
 
-   !> Times are in seconds: a name that ends with another unit must not pass for them.
+   !> Times are in seconds: a column whose name ends with another unit is refused.
    subroutine check_seconds(label, path, error)
       character(len=*), intent(in) :: label, path
       type(error_type), allocatable, intent(out) :: error
@@ -273,7 +273,7 @@ contains
                        ' are not in seconds; convert them and name the column time_s')
    end subroutine check_seconds
 
-   !> What stands behind the name of a column as its unit: `_mm`, ` (mm)`, `[mm]`, `/mm`, `-mm`, ` mm`.
+   !> The unit at the end of a column's name: `_mm`, ` (mm)`, `[mm]`, `/mm`, `-mm`, ` mm`.
    pure function unit_of(label) result(unit)
       character(len=*), intent(in) :: label
       character(len=len(label)) :: unit
@@ -289,7 +289,7 @@ contains
       if (mark > 0) unit = adjustl(label(mark + 1:last))
    end function unit_of
 
-   !> Whether a column has the name of a time: t, time, time_s.
+   !> Whether a column's name is that of times: t, time, time_s.
    elemental logical function is_time(label)
       character(len=*), intent(in) :: label
 

@@ -1,5 +1,5 @@
-!> A case from a namelist file: the scanner cuts the text into groups and entries, each entry is checked
-!> against the key that it names and handed to the setter.
+!> Reads a case from a namelist file: the scanner cuts the text into groups and entries; each entry is
+!> checked against the key that it names and passed to the setter.
 module rbs_io_namelist
    use rbs_base_error, only: error_type, message_list
    use rbs_base_keys, only: text_kind, word_kind
@@ -16,12 +16,12 @@ module rbs_io_namelist
 
    public :: read_case
 
-   !> Larger files are no cases [bytes].
+   !> Largest case file that is read [bytes].
    integer, parameter :: most_bytes = 100000000
 
 contains
 
-   !> Read a case. Nothing that is wrong with it stops the reading: there is a message for each fault.
+   !> Read a case. An error does not stop the reading: every error of the file gets a message.
    subroutine read_case(path, case, messages, understood)
       character(len=*), intent(in) :: path
       type(case_record), intent(out) :: case
@@ -46,7 +46,7 @@ contains
       call scan_namelist(file, name, scanned, messages)
       if (messages%count > known) return
       call put_groups(scanned, name, setter, messages)
-      ! Values that were not understood are missing below: reporting that too would mislead.
+      ! Values that were not understood would also be reported as missing, which would mislead.
       understood = messages%count == known
       if (understood) call setter%finish(messages)
       understood = messages%count == known
@@ -54,7 +54,7 @@ contains
       if (understood) call case%validate(messages)
    end subroutine read_case
 
-   !> All groups, the units first: they say what the numbers of the others mean.
+   !> Read all groups; &units first, as the numbers of the others depend on it.
    subroutine put_groups(scanned, path, setter, messages)
       type(nml_scan), intent(in) :: scanned
       character(len=*), intent(in) :: path
@@ -77,7 +77,7 @@ contains
       end do
    end subroutine put_groups
 
-   !> One group. The rule of a spring goes first: it says which parameters there are.
+   !> Read one group; the rule of a spring first, as it determines the parameters.
    subroutine put_group(scanned, group, path, setter, messages)
       type(nml_scan), intent(in) :: scanned
       type(nml_group), intent(in) :: group
@@ -99,7 +99,7 @@ contains
       end do
    end subroutine put_group
 
-   !> One entry, `name = values` or `name(i) = value`.
+   !> Read one entry, `name = values` or `name(i) = value`.
    subroutine put_entry(scanned, group, i, path, setter, messages)
       type(nml_scan), intent(in) :: scanned
       type(nml_group), intent(in) :: group
@@ -125,7 +125,7 @@ contains
                call setter%put_text(place, text, messages)
                return
             end if
-            ! Subscripted values of one name are put together, with the first of them.
+            ! All subscripted values of a name are put together when the first of them is read.
             call entry_numbers(path, scanned, group, i, key, number, messages)
             if (allocated(number)) call setter%put_numbers(place, number)
          end associate

@@ -1,4 +1,4 @@
-!> Second look at a namelist file: each entry against the key that it names.
+!> The second pass over a namelist file: each entry is checked against the key that it names.
 module rbs_io_namelist_entry
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_negative_inf, ieee_positive_inf
    use rbs_base_error, only: message_list
@@ -12,7 +12,7 @@ module rbs_io_namelist_entry
 
    public :: location, check_twice, check_values, entry_text, entry_numbers
 
-   !> Texts longer than this are refused: they would be cut.
+   !> Longer texts are refused.
    integer, parameter :: text_length = 512
 
 contains
@@ -26,7 +26,7 @@ contains
       text = path//' line '//to_text(line)
    end function location
 
-   !> The same name (and subscript) must not come twice in a group.
+   !> A name (with its subscript) must not appear twice in a group.
    subroutine check_twice(path, scanned, group, i, messages)
       character(len=*), intent(in) :: path
       type(nml_scan), intent(in) :: scanned
@@ -40,13 +40,13 @@ contains
          if (scanned%entry(j)%subscript /= scanned%entry(i)%subscript .and. &
              scanned%entry(j)%subscript > 0 .and. scanned%entry(i)%subscript > 0) cycle
          call messages%add(location(path, scanned%entry(i)%line)//": '"//trim(scanned%entry(i)%name)// &
-                           "' stands twice in &"//trim(group%name)//', first on line '// &
+                           "' appears twice in &"//trim(group%name)//', first on line '// &
                            to_text(scanned%entry(j)%line)//'; remove one')
          return
       end do
    end subroutine check_twice
 
-   !> Every value must be of the kind that the name wants, and there must not be too many.
+   !> Every value must be of the kind of the key, and there must not be too many.
    subroutine check_values(path, entry, wanted, messages)
       character(len=*), intent(in) :: path
       type(nml_entry), intent(in) :: entry
@@ -77,7 +77,7 @@ contains
       end if
    end subroutine check_values
 
-   !> What is wrong with a value; empty if nothing is.
+   !> The reason why a value is refused; empty if it is valid.
    subroutine find_fault(text, kind, what)
       character(len=*), intent(in) :: text
       character(len=1), intent(in) :: kind
@@ -93,7 +93,7 @@ contains
          if (.not. quoted) then
             what = "must be a text in quotes: '"//clean(text)//"'"
          else if (len(text) > text_length) then
-            what = 'is longer than '//to_text(text_length - 2)//' letters'
+            what = 'is longer than '//to_text(text_length - 2)//' characters'
          end if
       case (real_kind)
          call read_real(text, value, status)
@@ -120,7 +120,7 @@ contains
       end select
    end subroutine find_fault
 
-   !> The text of an entry without its quotes, doubled ones within made single.
+   !> The text of an entry without its quotes; doubled quotes within become single.
    subroutine entry_text(entry, text)
       type(nml_entry), intent(in) :: entry
       character(len=:), allocatable, intent(out) :: text
@@ -140,8 +140,8 @@ contains
       text = text(:length)
    end subroutine entry_text
 
-   !> The numbers of an entry. Where the entry has a subscript: those of all entries of its name, with the
-   !> first of them; not allocated for the others, and where some are missing.
+   !> The numbers of an entry. If it has a subscript, the first entry of its name gets the numbers of all
+   !> entries of that name; the result is not allocated for the other entries, or if numbers are missing.
    subroutine entry_numbers(path, scanned, group, i, key, number, messages)
       character(len=*), intent(in) :: path
       type(nml_scan), intent(in) :: scanned
@@ -171,7 +171,7 @@ contains
          if (j < i) return
          last = max(last, scanned%entry(j)%subscript)
       end do
-      if (last > key%most) return                   ! told of that entry
+      if (last > key%most) return                   ! has been reported
       allocate (number(last), there(last))
       there = .false.
       do j = i, group%last
@@ -186,7 +186,7 @@ contains
       deallocate (number)
    end subroutine entry_numbers
 
-   !> A value that has been found sound.
+   !> The number of a value that has been checked.
    real(wp) function one_number(text, kind)
       character(len=*), intent(in) :: text
       character(len=1), intent(in) :: kind
@@ -201,7 +201,7 @@ contains
       end if
    end function one_number
 
-   !> NaN or infinity, as it is written: the check of the values names it.
+   !> NaN or infinity, which the check of the values then reports.
    real(wp) function not_finite(text)
       character(len=*), intent(in) :: text
 

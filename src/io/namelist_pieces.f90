@@ -5,9 +5,9 @@ module rbs_io_namelist_pieces
 
    public :: nml_value, nml_entry, nml_group, nml_scan, add_group, add_entry, add_value
 
-   !> One value as it stands in the file.
+   !> One value as written in the file.
    type :: nml_value
-      !> How often it is repeated (`3*0.5`)
+      !> Repeat count (`3*0.5`)
       integer :: times = 1
       !> Its text, quotes included
       character(len=:), allocatable :: text
@@ -40,7 +40,7 @@ module rbs_io_namelist_pieces
 
 contains
 
-   !> Begin a group.
+   !> Start a group.
    subroutine add_group(scanned, name, line)
       type(nml_scan), intent(inout) :: scanned
       character(len=*), intent(in) :: name
@@ -59,7 +59,7 @@ contains
       scanned%group(scanned%groups)%last = scanned%entries
    end subroutine add_group
 
-   !> Begin an entry of the present group.
+   !> Start an entry of the present group.
    subroutine add_entry(scanned, name, line)
       type(nml_scan), intent(inout) :: scanned
       character(len=*), intent(in) :: name
@@ -83,7 +83,7 @@ contains
       scanned%entry(scanned%entries)%line = line
    end subroutine add_entry
 
-   !> Put a value into an entry.
+   !> Append a value to an entry.
    subroutine add_value(entry, times, text)
       type(nml_entry), intent(inout) :: entry
       integer, intent(in) :: times

@@ -1,8 +1,8 @@
-!> First look at a namelist file: groups, names and values, each with its line.
+!> The first pass over a namelist file: groups, names and values, each with its line.
 !>
-!> The Fortran read alone does not tell which name it did not know, takes a missing group, a value too
-!> many and the end of the file for the same, and says nothing about a value too few. Here the text is
-!> cut into pieces that are known to be sound; the read of each piece follows.
+!> A Fortran namelist read does not report which name is unknown, does not distinguish a missing group, too
+!> many values and the end of the file, and accepts too few values. Here the text is cut into pieces
+!> with valid syntax, and each piece is read on its own.
 module rbs_io_namelist_scan
    use rbs_base_error, only: message_list
    use rbs_base_text, only: lower, to_text
@@ -16,16 +16,16 @@ module rbs_io_namelist_scan
    character(len=*), parameter :: letters = 'abcdefghijklmnopqrstuvwxyz'
    character(len=*), parameter :: name_set = letters//'0123456789_'
 
-   !> Repeat counts beyond this are a slip of the pen.
+   !> Largest repeat count; a larger one is taken for a typing error.
    integer, parameter :: most_repeats = 100000
 
-   !> Faults of the text beyond this are not listed: the file is none of ours.
+   !> The scan stops after this many errors: the file is probably not a case file.
    integer, parameter, public :: most_messages = 20
 
-   !> More groups, and more entries in a group, than any case has.
+   !> Largest numbers of groups, and of entries in a group; no case needs as many.
    integer, parameter :: most_groups = 100000, most_entries = 5000
 
-   !> Where the scan is in the text; each line ends with a blank here.
+   !> The text, in which each line ends with a blank, and the position of the scan.
    type :: cursor
       character(len=:), allocatable :: text
       integer, allocatable :: line_of(:)
@@ -37,7 +37,7 @@ contains
    !> Cut a file into groups and entries.
    subroutine scan_namelist(file, path, scanned, messages)
       type(text_file), intent(inout) :: file
-      !> For messages
+      !> Path of the file, for messages
       character(len=*), intent(in) :: path
       type(nml_scan), intent(out) :: scanned
       type(message_list), intent(inout) :: messages
@@ -65,7 +65,7 @@ contains
       end if
    end subroutine scan_namelist
 
-   !> The text without comments, and refuse what no keyboard writes.
+   !> Copy the text without comments, and refuse control characters.
    subroutine strip_comments(file, path, c, messages)
       type(text_file), intent(inout) :: file
       character(len=*), intent(in) :: path
@@ -88,7 +88,7 @@ contains
             if (quote == ' ' .and. letter == '!') exit
             if (iachar(letter) < 32 .or. iachar(letter) == 127) then
                call messages%add(path//' line '//to_text(file%line)//': a control character (code '// &
-                                 to_text(iachar(letter))//') stands in the text; is it a text file?')
+                                 to_text(iachar(letter))//') is in the text; is it a text file?')
                if (messages%count > most_messages) return
                exit
             end if
@@ -113,7 +113,7 @@ contains
       c%text = c%text(:length)
    end subroutine strip_comments
 
-   !> Scan from behind the & to the closing slash.
+   !> Scan from the name after & to the closing slash.
    subroutine scan_group(c, path, scanned, messages)
       type(cursor), intent(inout) :: c
       character(len=*), intent(in) :: path
@@ -126,7 +126,7 @@ contains
       begin = c%at - 1
       call take_name(c, name)
       if (name == '') then
-         call complain(c, path, 'a group has no name behind &', messages)
+         call complain(c, path, 'a group has no name after &', messages)
          return
       end if
       if (scanned%groups == most_groups) then
@@ -169,8 +169,8 @@ contains
       known = messages%count
       call take_name(c, name)
       if (name == '') then
-         call complain(c, path, "'"//word_at(c)//"' in &"//group//' is no name; entries are name = value', &
-                       messages)
+         call complain(c, path, "'"//word_at(c)//"' in &"//group//' is not a name; entries are '// &
+                       'name = value', messages)
          return
       end if
       call add_entry(scanned, name, c%line_of(min(c%at, size(c%line_of)) - 1))
@@ -181,8 +181,8 @@ contains
       scanned%entry(scanned%entries)%subscript = subscript
       call skip_blanks(c)
       if (.not. at_letter(c, '=')) then
-         call complain(c, path, "'"//name//"' in &"//group//' has no = behind it; entries are '// &
-                       'name = value, and texts stand in quotes', messages)
+         call complain(c, path, "'"//name//"' in &"//group//' has no = after it; entries are '// &
+                       'name = value, and texts are in quotes', messages)
          return
       end if
       c%at = c%at + 1
@@ -244,8 +244,8 @@ contains
       length = scan(c%text(c%at:), ' ,/''"=') - 1
       if (length < 0) length = len(c%text) - c%at + 1
       if (length == 0) then
-         call complain(c, path, "'"//c%text(c%at:c%at)//"' does not belong into the values of '"//name//"'", &
-                       messages)
+         call complain(c, path, "'"//c%text(c%at:c%at)//"' is not allowed among the values of '"//name// &
+                       "'", messages)
          return
       end if
       associate (word => c%text(c%at:c%at + length - 1))
@@ -257,8 +257,8 @@ contains
                read (word(:star - 1), '(i6)') times
             end if
             if (times < 1 .or. times > most_repeats .or. star == length) then
-               call complain(c, path, "'"//word//"' of '"//name//"' is no value; repeats are count*value", &
-                             messages)
+               call complain(c, path, "'"//word//"' of '"//name//"' is not a value; "// &
+                             'repeats are count*value', messages)
                return
             end if
          end if
@@ -267,7 +267,7 @@ contains
       c%at = c%at + length
    end subroutine take_value
 
-   !> Length of a quoted text, quotes included; a quote within is doubled. 0 if it is not closed.
+   !> Length of a quoted text with its quotes; a quote within is doubled. 0 if the text is not closed.
    pure integer function quoted_length(text) result(length)
       character(len=*), intent(in) :: text
       integer :: mark
@@ -309,7 +309,7 @@ contains
       c%at = c%at + length
    end subroutine take_subscript
 
-   !> Whether a name and its = (or subscript) come next.
+   !> Whether a name with its = (or subscript) is next.
    logical function is_name_ahead(c)
       type(cursor), intent(in) :: c
       integer :: at
@@ -328,7 +328,7 @@ contains
       if (at <= len(c%text)) is_name_ahead = c%text(at:at) == '=' .or. c%text(at:at) == '('
    end function is_name_ahead
 
-   !> Take a name, in lower case; empty if none is there.
+   !> Take a name, in lower case; empty if the next character cannot begin one.
    subroutine take_name(c, name)
       type(cursor), intent(inout) :: c
       character(len=:), allocatable, intent(out) :: name
@@ -364,7 +364,7 @@ contains
       if (c%at <= len(c%text)) at_letter = c%text(c%at:c%at) == letter
    end function at_letter
 
-   !> The word at the present place, for a message.
+   !> The word at the present position, for a message.
    pure function word_at(c) result(word)
       type(cursor), intent(in) :: c
       character(len=word_length(c)) :: word

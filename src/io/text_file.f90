@@ -1,4 +1,4 @@
-!> A text file in memory: its lines, whatever ends them, and numbers read strictly.
+!> A text file in memory: its lines, with any line ending, and strict reading of numbers.
 module rbs_io_text_file
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_fortran_env, only: int64
@@ -11,15 +11,15 @@ module rbs_io_text_file
    public :: text_file, load_text, read_real, is_integer
    public :: number_ok, number_wrong, number_not_finite
 
-   !> What `read_real` found.
+   !> Results of `read_real`.
    integer, parameter :: number_ok = 0, number_wrong = 1, number_not_finite = 2
 
-   !> Numbers with more letters than this are none.
+   !> Longest text that is read as a number.
    integer, parameter :: most_digits = 4096
 
    character(len=1), parameter :: cr = achar(13), lf = achar(10)
 
-   !> The text of a file and a place in it.
+   !> The text of a file and a position in it.
    type :: text_file
       character(len=:), allocatable :: text
       !> Number of the line read last
@@ -37,7 +37,7 @@ contains
    subroutine load_text(file, path, most, error)
       type(text_file), intent(out) :: file
       character(len=*), intent(in) :: path
-      !> Largest size that makes sense [bytes]
+      !> Largest size that is accepted [bytes]
       integer, intent(in) :: most
       type(error_type), allocatable, intent(out) :: error
       character(len=256) :: message
@@ -78,8 +78,8 @@ contains
       end if
    end subroutine load_text
 
-   !> Begin and end of the next line in `text`; lines end with LF, CR or both. `found` is false after
-   !> the last one.
+   !> First and last character of the next line in `text`; lines end with LF, CR or both. `found` is false
+   !> after the last line.
    subroutine next_line(self, first, last, found)
       class(text_file), intent(inout) :: self
       integer, intent(out) :: first, last
@@ -105,7 +105,7 @@ contains
       end if
    end subroutine next_line
 
-   !> The present place, for `go_back`.
+   !> The present position, for `go_back`.
    pure function place(self)
       class(text_file), intent(in) :: self
       integer :: place(2)
@@ -113,7 +113,7 @@ contains
       place = [self%at, self%line]
    end function place
 
-   !> Go back to a place; to the begin without one.
+   !> Go back to a position, by default to the start of the file.
    subroutine go_back(self, place)
       class(text_file), intent(inout) :: self
       integer, intent(in), optional :: place(2)
@@ -126,8 +126,8 @@ contains
       end if
    end subroutine go_back
 
-   !> Read a number that is nothing else: a sign, digits, a point, an exponent with e or d. A Fortran
-   !> read alone would take `1,5`, `1/2` or `3*4` for something.
+   !> Read a word as a number: a sign, digits, a point, an exponent with e or d. A Fortran read would also
+   !> accept `1,5`, `1/2` and `3*4`.
    subroutine read_real(word, value, status)
       character(len=*), intent(in) :: word
       real(wp), intent(out) :: value
@@ -166,12 +166,12 @@ contains
       end if
    end subroutine read_real
 
-   !> A decimal number of few digits: a whole number below 2**53, times or over a power of ten that is exact,
-   !> is rounded once, which gives the nearest number. Other words are left to the library.
+   !> Read a decimal number with few digits. A whole number below 2**53, multiplied or divided by an exact
+   !> power of ten, is rounded once, which gives the nearest number. Other words are left to the library.
    pure subroutine read_short(word, value, status)
       character(len=*), intent(in) :: word
       real(wp), intent(out) :: value
-      !> `number_ok`, or `number_wrong` for what is not so short
+      !> `number_ok`, or `number_wrong` if the number has more digits
       integer, intent(out) :: status
       integer, parameter :: most_places = 15, most_power = 22
       real(wp), parameter :: ten = 10.0_wp
@@ -223,8 +223,8 @@ contains
       status = number_ok
    end subroutine read_short
 
-   !> Whether a number that `looks_real` is too large for the arithmetic. Asked before the read: that
-   !> overflows inside the C library, which ends a program that traps overflow.
+   !> Whether a number that `looks_real` is too large for the arithmetic. This is checked before the read,
+   !> which would overflow inside the C library and end a program that traps overflow.
    pure logical function overflows(word)
       character(len=*), intent(in) :: word
       !> Digits of the largest number, rounded down: 1.79769313486231580 e308
@@ -257,7 +257,7 @@ contains
       overflows = lge(digits, largest)
    end function overflows
 
-   !> The exponent of a number, no larger in size than a million.
+   !> The exponent of a number, limited to a million in size.
    pure integer function exponent_of(word) result(power)
       character(len=*), intent(in) :: word
       integer :: at
@@ -302,7 +302,7 @@ contains
       looks_real = at > len(word)
    end function looks_real
 
-   !> Number of leading characters that are of a set.
+   !> Number of leading characters that belong to a set.
    pure integer function run_of(word, set)
       character(len=*), intent(in) :: word, set
 
@@ -310,7 +310,7 @@ contains
       if (run_of < 0) run_of = len(word)
    end function run_of
 
-   !> Whether a word is a whole number without sign that fits an integer.
+   !> Whether a word is a whole number without sign that fits into an integer.
    pure logical function is_integer(word)
       character(len=*), intent(in) :: word
 

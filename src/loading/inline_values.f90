@@ -1,4 +1,4 @@
-!> Values that stand in the case itself.
+!> Values that are given in the case itself.
 module rbs_loading_inline_values
    use rbs_base_check, only: is_given
    use rbs_base_kinds, only: wp
@@ -15,7 +15,7 @@ contains
    subroutine inline_values(spec, time, value)
       !> Validated loading
       type(loading_record), intent(in) :: spec
-      !> Times (m) [s]; the number of the point where none are given
+      !> Times (m) [s]; if none are given, the number of each point
       real(wp), allocatable, intent(out) :: time(:)
       !> Values (m) [m, N or m/s2]
       real(wp), allocatable, intent(out) :: value(:)

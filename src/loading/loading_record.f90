@@ -1,4 +1,4 @@
-!> What the user asked of one loading: what is driven, and where its values come from.
+!> The input of one loading: the quantity that is prescribed, and the source of its values.
 module rbs_loading_loading_record
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unset
@@ -17,14 +17,14 @@ module rbs_loading_loading_record
       'displacement', 'force', 'ground_acceleration', 'vertical_acceleration', 'axial_load']
    character(len=8), parameter :: source_names(3) = ['file    ', 'protocol', 'values  ']
 
-   !> Most values that a case file itself may hold for one loading; longer histories stand in files.
+   !> Most values of one loading in a case file; longer histories are read from files.
    integer, parameter :: most_amplitudes = 1000, most_values = 1000000
 
    !> One loading of a case.
    type :: loading_record
-      !> What is prescribed, one of `drive_names`: displacement of the top [m], lateral force at the top
-      !> [N], acceleration of the ground, horizontal or (upward positive) vertical [m/s2], or axial load
-      !> besides the constant one, compression positive [N]
+      !> The prescribed quantity, one of `drive_names`: displacement of the top [m], lateral force at the top
+      !> [N], acceleration of the ground, horizontal or vertical (upward positive) [m/s2], or axial load
+      !> added to the constant one, compression positive [N]
       character(len=24) :: drive = ''
       !> One of `source_names`
       character(len=16) :: source = ''
@@ -81,7 +81,7 @@ contains
       call v%key('values', self%values, '', any_value, 'the values themselves', most_values)
    end subroutine visit
 
-   !> Find the source where it is not named.
+   !> Find the source if it is not named.
    subroutine settle(self)
       class(loading_record), intent(inout) :: self
 
@@ -91,8 +91,8 @@ contains
       if (allocated(self%file)) self%source = 'file'
    end subroutine settle
 
-   !> Whether the loading says when its values act. Whether a file has a column of times is seen when it is
-   !> read.
+   !> Whether the input gives the times of the values. A column of times in a file is found only when the
+   !> file is read.
    elemental logical function has_time(self)
       class(loading_record), intent(in) :: self
 
@@ -115,7 +115,7 @@ contains
       end select
    end function units_of
 
-   !> Add a message for everything that is wrong with the loading.
+   !> Add a message for every error of the loading.
    subroutine validate(self, dynamic, messages)
       class(loading_record), intent(inout) :: self
       !> Whether the analysis runs in time

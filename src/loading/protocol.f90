@@ -10,19 +10,19 @@ module rbs_loading_protocol
 
    public :: protocol_values
 
-   !> More points than this are a slip of the pen.
+   !> Most points of a protocol; a larger number is taken for a typing error.
    integer, parameter :: most_points = 100000000
 
 contains
 
-   !> Points of a protocol: from zero, for every amplitude its cycles 0, +a, 0, -a, 0, each quarter in
-   !> equal parts; the whole `repeats` times.
+   !> Points of a protocol: from zero, the cycles 0, +a, 0, -a, 0 of every amplitude, with each quarter in
+   !> equal parts; the whole is repeated `repeats` times.
    subroutine protocol_values(spec, height, time, value, error)
       !> Validated loading with source = 'protocol'
       type(loading_record), intent(in) :: spec
       !> Height of the column, for amplitudes in drift [m]
       real(wp), intent(in) :: height
-      !> Time of each point [s]; the number of the point where no period is given
+      !> Time of each point [s]; its number if no period is given
       real(wp), allocatable, intent(out) :: time(:)
       !> Points [m, N or m/s2]
       real(wp), allocatable, intent(out) :: value(:)
@@ -78,7 +78,7 @@ contains
       end do
    end function si_amplitude
 
-   !> The triangle wave of unit amplitude after j parts of a cycle; exact at its corners.
+   !> The triangle wave of unit amplitude after j parts of a cycle; exact at its peaks and zeros.
    pure real(wp) function triangle(j, quarter)
       integer, intent(in) :: j, quarter
       integer :: up

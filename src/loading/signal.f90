@@ -11,9 +11,9 @@ module rbs_loading_signal
       real(wp), allocatable :: time(:)
       !> Values (m)
       real(wp), allocatable :: value(:)
-      !> The interval asked for last: time runs forward, so the next one is this or close by
+      !> The interval of the last call: time runs forward, so the next interval is the same or near
       integer, private :: at = 1
-      !> The line of that interval: value = start + slope (t - begin)
+      !> The line in that interval: value = start + slope (t - begin)
       real(wp), private :: begin = 1.0_wp, finish = -1.0_wp, start = 0.0_wp, slope = 0.0_wp
    contains
       procedure :: at_time
@@ -53,7 +53,7 @@ contains
       corner = self%finish
    end function corner_after
 
-   !> Make the interval that holds t the present one.
+   !> Find the interval that holds t, and keep its line.
    subroutine find(self, t)
       class(signal_type), intent(inout) :: self
       real(wp), intent(in) :: t

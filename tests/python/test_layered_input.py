@@ -149,7 +149,7 @@ def test_fault_of_the_spring_of_a_layer_is_told(run_cli, case_text, tmp_path, na
     [
         (
             {"layer_spring": [*SPRINGS, "id = 2, " + CONCRETE]},
-            "line 8: &layer_spring with id = 2 stands twice",
+            "line 8: &layer_spring with id = 2 appears twice",
         ),
         ({"layers": None}, "the layers are missing"),
         ({"layers": "y = 0, spring = 2"}, "one layer has no stiffness against rotation"),
