@@ -1,7 +1,7 @@
 """Tables 2 and 3 of the paper: the four tested columns and their springs.
 
-The numbers are read from `data/paper_table_2.csv` and `data/paper_table_3.csv`, which hold them as
-printed; here they are in SI.
+The values are read from `data/paper_table_2.csv` and `data/paper_table_3.csv`, which have them as
+printed, and are converted to SI.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ __all__ = [
 KEYS = ("soesianawati_1", "tanaka_park_1", "tanaka_park_5", "zahn_7")
 """The four columns of the paper, in its order."""
 
-# Whole numbers to divide or multiply by: 400 mm is then the same number as 0.4 m.
+# Whole numbers to divide or multiply by, so that 400 mm gives exactly 0.4 m.
 _DIVISOR = {"-": 1, "mm": 1000, "mm2": 1000**2}
 _FACTOR = {"kN": 1000, "MPa": 1000**2}
 

@@ -1,4 +1,4 @@
-"""Force-displacement loops as a journal prints them: mm and kN, the model over the test.
+"""Figures of force-displacement loops for publication: mm and kN, the model over the test.
 
 Needs matplotlib (``pip install rbsdem[plot]``), which is imported when a figure is asked for.
 Functions take SI and draw millimetres and kilonewtons. Without axes they make a figure in the house
@@ -88,7 +88,7 @@ DPI = 300
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Panel:
-    """What one panel of `four_panels` shows.
+    """The contents of one panel of `four_panels`.
 
     Attributes
     ----------
@@ -111,7 +111,7 @@ class Panel:
 
 @contextmanager
 def style() -> Iterator[None]:
-    """Put the house style `RC` in force inside a ``with`` block, nowhere else."""
+    """Use the house style `RC` inside a ``with`` block only."""
     need_matplotlib()
     import matplotlib as mpl  # noqa: PLC0415
 
@@ -199,7 +199,7 @@ def loops_over_test(
     ax: Axes | None = None,
     **line: Any,
 ) -> Axes:
-    """Draw a computed loop over the measured one: solid black over broken gray, as in figure 3.
+    """Draw a computed loop over the measured one: solid black over dashed gray, as in figure 3.
 
     Parameters
     ----------
@@ -252,9 +252,9 @@ def four_panels(
     Parameters
     ----------
     panels : sequence of Panel
-        One to four of them, in the order of the letters.
+        One to four panels, in the order (a) to (d).
     test_label, model_label : str
-        Texts of the legend, which stands once below the panels.
+        Texts of the legend below the panels.
 
     Returns
     -------

@@ -447,7 +447,7 @@ def test_recipe(made):
 
 def test_recipe_has_its_own_names_only(made):
     with pytest.raises(
-        InputError, match=r"'hing' is no parameter .* did you mean 'hinge'\? It has str"
+        InputError, match=r"'hing' is not a parameter .* did you mean 'hinge'\? It has str"
     ):
         quiet(made.of(), response(made.of(), path(made.of())), ["hing"])
 
@@ -547,7 +547,7 @@ ZERO = replace(COLUMNS["zahn_7"], flexure=replace(COLUMNS["zahn_7"].flexure, k_u
         ({"free": 3}, "must be a list of names"),
         ({"free": ["flexure.ky"]}, r"'flexure.ky' .* did you mean 'flexure.k_y'\?"),
         ({"free": ["flexure[0].k_y"]}, r"did you mean 'flexure.k_y'\?"),
-        ({"free": [None]}, "None is no parameter"),
+        ({"free": [None]}, "None is not a parameter"),
         ({"free": ["shear.k", "shear.k"]}, "'shear.k' comes twice"),
         ({"bounds": {"shear.k": (1e8, 1e9)}}, r"'shear.k' is not in free \(flexure.k_y\)"),
         ({"bounds": {"flexure.k_y": (2e8, 1e8)}}, "must be a lower and a higher one"),
@@ -558,7 +558,7 @@ ZERO = replace(COLUMNS["zahn_7"], flexure=replace(COLUMNS["zahn_7"].flexure, k_u
         ({"bounds": {"flexure.k_y": ("a", 2)}}, "must be a number"),
         ({"bounds": [1, 2]}, "must be a mapping"),
         ({"column": 3}, "column = 3 must be a Column"),
-        ({"column": ZERO, "free": ["flexure.k_u"]}, "k_u = 0 tells no range"),
+        ({"column": ZERO, "free": ["flexure.k_u"]}, "k_u = 0 has no default bounds"),
         ({"test": 3}, "a int has no displacement and force"),
         ({"test": (D, F, F)}, "has no displacement and force"),
         ({"test": (D, F[:-1])}, "displacements and .* forces"),

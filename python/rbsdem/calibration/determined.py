@@ -144,8 +144,8 @@ def warnings_of(names: list[str], found: Determined) -> list[str]:
     for i, name in enumerate(names):
         if np.isinf(found.standard_error[i]):
             lines.append(
-                f"{name}: no force of the test changes with it where the fit ended; its value is "
-                "only one of many that fit as well"
+                f"{name}: no force of the test changes with it at the fit; other values fit just "
+                "as well"
             )
         elif found.effect[i] < LITTLE_EFFECT:
             lines.append(
@@ -159,8 +159,8 @@ def warnings_of(names: list[str], found: Determined) -> list[str]:
             alike = found.correlation[i, j]
             if abs(alike) > TOO_ALIKE:
                 lines.append(
-                    f"{names[j]} and {name}: correlation {alike:+.3f}, the test does not tell them "
-                    "apart; fix one of them"
+                    f"{names[j]} and {name}: correlation {alike:+.3f}, the test does not "
+                    "distinguish them; fix one of them"
                 )
     return lines
 

@@ -82,7 +82,7 @@ def free_parameters(
             one = _within(parameters, name, one, given[name])
         if one is None:
             raise InputError(
-                f"calibrate: {name} = {parameters.start(name):g} tells no range to look in; give "
+                f"calibrate: {name} = {parameters.start(name):g} has no default bounds; give "
                 f"bounds={{{name!r}: (low, high)}}"
             )
         chosen[name] = one
@@ -108,7 +108,7 @@ def _unknown(name: Any, parameters: Parameters) -> InputError:
     if not near:
         return InputError(f"calibrate: free: {name!r}: this column has no parameters to fit")
     return InputError(
-        f"calibrate: free: {name!r} is no parameter of this column; did you mean {near[0]!r}? "
+        f"calibrate: free: {name!r} is not a parameter of this column; did you mean {near[0]!r}? "
         f"It has {_list(parameters.names)}"
     )
 
