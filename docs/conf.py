@@ -25,7 +25,7 @@ napoleon_numpy_docstring = True
 napoleon_use_ivar = True
 napoleon_preprocess_types = False
 
-# Types stand in the docstrings, with shapes and units.
+# The docstrings give types, with shapes and units.
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True

@@ -317,7 +317,7 @@ def save(figure: Figure, path: str | os.PathLike[str], *, pdf: bool = False) -> 
     figure : matplotlib Figure
         What to write.
     path : path
-        File to write; the ending .png is added if there is none. Its folder is made.
+        File to write; the ending .png is added if it is missing, and the folder is created.
     pdf : bool, default False
         Write the PDF as well.
 
