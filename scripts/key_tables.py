@@ -4,7 +4,8 @@
     python scripts/key_tables.py --check    only say whether they are up to date
 
 A table stands between ``<!-- keys: NAME -->`` and ``<!-- end of keys -->``. NAME is a group of a
-case file, or ``rule`` and the name of a rule. The list is that of ``rbsdem keys --json``.
+case file, ``rule`` and the name of a rule, or ``places``: the groups where each rule may stand. The
+list is that of ``rbsdem keys --json``.
 """
 
 from __future__ import annotations
@@ -81,8 +82,24 @@ def rows(keys: list[dict[str, Any]]) -> Iterator[str]:
         last = cells
 
 
+#: Groups by the places of a rule.
+PLACES = {"shear": "shear", "flexure": "flexure", "axial": "axial_spring", "layer": "layer_spring"}
+
+
+def places(rules: dict[str, Any]) -> str:
+    """Return the table of the groups where each rule may stand."""
+    text = f"| rule | {' | '.join(f'`&{group}`' for group in PLACES.values())} |\n"
+    text += "| --- " * (len(PLACES) + 1) + "|\n"
+    for name, rule in rules.items():
+        cells = ["yes" if place in rule["places"].split() else "" for place in PLACES]
+        text += f"| `'{name}'` | {' | '.join(cells)} |\n"
+    return text
+
+
 def table(known: dict[str, Any], name: str) -> str:
-    """Return the table of a group, or of a rule."""
+    """Return the table of a group, of a rule, or of the places of all rules."""
+    if name == "places":
+        return places(known["rules"])
     keys = known["rules"][name[5:]]["keys"] if name.startswith("rule ") else known["groups"][name]
     return HEAD + "".join(rows(keys))
 

@@ -13,7 +13,7 @@ from rbsdem import _core
 from rbsdem._renamed import renamed
 from rbsdem.damping import Damping
 from rbsdem.errors import InputError
-from rbsdem.springs import Layered, Spring, layer_springs
+from rbsdem.springs import Layered, Spring, classes_for, layer_springs
 
 #: Standard acceleration of gravity [m/s2].
 STANDARD_GRAVITY = 9.80665
@@ -225,10 +225,9 @@ def _springs(springs: Any, name: str, n: int) -> Spring | tuple[Spring, ...]:
         several = (springs,)
     for spring in several:
         if not isinstance(spring, Spring):
+            names = ", ".join(classes_for("axial" if name == "axial_spring" else name))
             raise InputError(
-                f"column: {name} = {spring!r} must be a spring (Elastic, Bilinear, Takeda, "
-                "PeakOriented, Pinching, Layered; Compression as axial spring) or a "
-                "sequence of them"
+                f"column: {name} = {spring!r} must be a spring ({names}) or a sequence of them"
             )
     if not several:
         raise InputError(f"column: {name} is empty; give one spring, or one for each joint")

@@ -40,10 +40,7 @@ class Spring:
 
     def __post_init__(self) -> None:
         if not self.rule:
-            raise TypeError(
-                "Spring is the base of Elastic, Bilinear, Takeda, PeakOriented, Pinching, "
-                "Compression, ConcreteSpring, SteelSpring and Layered; use one of them"
-            )
+            raise TypeError(f"Spring is the base of {', '.join(classes_for(''))}; use one of them")
         for field in fields(self):
             given = getattr(self, field.name)
             if field.name in ("inner", "layers"):
@@ -127,6 +124,22 @@ class Spring:
         if path.size == 0:
             return np.empty(0)
         return _core.spring_response(self.statement("flexure"), axial_load, path)
+
+
+def classes_for(place: str) -> list[str]:
+    """Return the names of the classes whose springs may stand in a place.
+
+    Parameters
+    ----------
+    place : str
+        "shear", "flexure", "axial" or "layer"; empty: anywhere.
+    """
+    rules = _core.keys()["rules"]
+    return [
+        kind.__name__
+        for rule, kind in SPRINGS.items()
+        if not place or place in rules[rule]["places"].split()
+    ]
 
 
 @cache
@@ -429,8 +442,8 @@ class Layered(Spring):
     Parameters
     ----------
     layers : sequence of (float, Spring)
-        Distance of each layer from the middle of the section [m] and its spring: `ConcreteSpring`,
-        `SteelSpring`, `Elastic`, `Bilinear` or `Compression`. At least two.
+        Distance of each layer from the middle of the section [m] and its spring, one of a rule that
+        suits layers: `ConcreteSpring`, `SteelSpring`, `Elastic` and others. At least two.
 
     Raises
     ------
@@ -452,7 +465,7 @@ class Layered(Spring):
             if not isinstance(spring, Spring):
                 raise InputError(
                     f"layered spring: layer {number} has {spring!r}; it must be a spring "
-                    "(ConcreteSpring, SteelSpring, Elastic, Bilinear, Compression)"
+                    f"({', '.join(classes_for('layer'))})"
                 )
         layers = tuple(
             (_core.number(y, f"layered spring: y of layer {number}"), spring)

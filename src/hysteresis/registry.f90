@@ -1,4 +1,4 @@
-!> All rules by name. A new rule needs a file of its own and two lines here.
+!> All rules by name. A new rule needs a file of its own; its name and what allocates it stand here.
 module rbs_hysteresis_registry
    use rbs_base_keys, only: key_type
    use rbs_hysteresis_bilinear, only: bilinear_rule
@@ -16,7 +16,7 @@ module rbs_hysteresis_registry
 
    public :: rule_names, new_rule, keys_of, places_of, suits
 
-   character(len=rule_length), parameter :: rule_names(9) = [character(len=rule_length) :: &
+   character(len=rule_length), parameter :: rule_names(*) = [character(len=rule_length) :: &
       'elastic', 'bilinear', 'takeda', 'compression', 'peak_oriented', 'pinching', 'concrete', 'steel', &
       'layered']
 

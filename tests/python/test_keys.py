@@ -184,6 +184,7 @@ def test_tables_of_the_input_reference_are_those_of_the_keys():
     assert shown == (
         set(KEYS["groups"]) - {"flexure", "axial_spring"}
         | {f"rule {name}" for name in RULES if name != "layered"}
+        | {"places"}
     )
 
 
