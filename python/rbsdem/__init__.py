@@ -36,6 +36,7 @@ from rbsdem.springs import (
     Layered,
     PeakOriented,
     Pinching,
+    SteelBank,
     SteelSpring,
     Takeda,
 )
@@ -70,6 +71,7 @@ __all__ = [
     "SolveError",
     "Spiral",
     "Steel",
+    "SteelBank",
     "SteelSpring",
     "Takeda",
     "Ties",

@@ -431,6 +431,57 @@ class SteelSpring(Spring):
     half_strength_work: float = 0.0
 
 
+@dataclass(frozen=True)
+class SteelBank(Spring):
+    """Steel that yields round: elements side by side, each of which slips at a limit of its own.
+
+    Iwan 1966, with limits that follow the plastic reach. As `SteelSpring` it takes the roundness of
+    Menegotto and Pinto (1973). It depends continuously on its path, and closed loops never create
+    energy. ``docs/rules.md`` has its lines. Below, d_y = f_y/k, and the plastic reach is the range
+    of the deformation so far, which is at least that from -d_y to d_y, less 2 d_y.
+
+    Parameters
+    ----------
+    k : float
+        Elastic stiffness [N/m].
+    f_y : float
+        Yield force [N].
+    k_post : float
+        Stiffness of hardening [N/m], from 0 to below `k`.
+    r0, cr1, cr2 : float, optional
+        Roundness R = r0 (1 - cr1 q/(cr2 + q)) of branches, q the plastic reach over d_y; cr1 is
+        below 1. The virgin curve is sharp.
+    isotropic_hardening, hardening_reach : float, optional
+        The strength grows by the share isotropic_hardening (q/(2 hardening_reach))^0.8, on the
+        virgin curve too.
+    f_u : float, optional
+        Force at which hardening ends [N], not below `f_y`. The default is none.
+    plateau : float, optional
+        Length of the yield plateau over d_y; needs `f_u`.
+    endurance : float, optional
+        Plastic deformation over d_y, added up while the reach does not grow, at which half of the
+        strength is left; 0: it stays. Not below the widest limit of an element, about 10.
+
+    Raises
+    ------
+    InputError
+        If a parameter is outside the rule.
+    """
+
+    rule: ClassVar[str] = "steel_bank"
+    k: float
+    f_y: float
+    k_post: float
+    r0: float = 20.0
+    cr1: float = 0.925
+    cr2: float = 0.15
+    isotropic_hardening: float = 0.0
+    hardening_reach: float = 1.0
+    f_u: float | None = None
+    plateau: float = 0.0
+    endurance: float = 0.0
+
+
 @renamed(axial_load="the axial load of the column: Column(axial_load=...)")
 @dataclass(frozen=True, repr=False)
 class Layered(Spring):

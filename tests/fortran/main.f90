@@ -27,6 +27,7 @@ program unit_tests
    use test_static, only: collect_static
    use test_static_finite, only: collect_static_finite
    use test_steel, only: collect_steel
+   use test_steel_bank, only: collect_steel_bank
    use test_steppers, only: collect_steppers
    use test_takeda, only: collect_takeda
    use test_text, only: collect_text
@@ -47,7 +48,7 @@ program unit_tests
       procedure(collect_interface), pointer, nopass :: collect => null()
    end type suite_type
 
-   type(suite_type) :: suites(29)
+   type(suite_type) :: suites(30)
    character(len=80) :: wanted, pattern
    integer :: i, run, failed, found
 
@@ -58,7 +59,8 @@ program unit_tests
              suite_type('capped', collect_capped), &
              suite_type('peak_oriented', collect_peak_oriented), &
              suite_type('concrete', collect_concrete), &
-             suite_type('steel', collect_steel), suite_type('layered', collect_layered), &
+             suite_type('steel', collect_steel), suite_type('steel_bank', collect_steel_bank), &
+             suite_type('layered', collect_layered), &
              suite_type('springs', collect_springs), suite_type('column', collect_column), &
              suite_type('chain', collect_chain), &
              suite_type('band', collect_band), &

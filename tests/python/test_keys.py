@@ -102,6 +102,7 @@ GOOD = {
     "pinching": CAPPED | {"kappa_f": 0.5, "kappa_d": 0.5},
     "concrete": {"k": 1e9, "f_peak": 1e6, "d_peak": 2e-3, "k_soft": 1e8},
     "steel": {"k": 1e9, "f_y": 1e6, "k_post": 1e7},
+    "steel_bank": {"k": 1e9, "f_y": 1e6, "k_post": 1e7},
 }
 
 
@@ -197,6 +198,7 @@ def test_tables_of_the_rules_name_every_key_and_default():
         "Parameters": ("peak_oriented", "pinching"),
         "Concrete": ("concrete",),
         "Steel": ("steel",),
+        "Steel as a bank of elements": ("steel_bank",),
     }.items():
         keys = {key["name"]: key for rule in rules for key in RULES[rule]["keys"]}
         named = set()
