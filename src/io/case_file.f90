@@ -148,7 +148,8 @@ contains
       finish = history%time(1) + spec%duration
       if (.not. finish > history%time(1)) then
          call fatal_error(error, bad_input, 'analysis: duration = '//to_text(spec%duration)// &
-                          ' s is lost beside the time of the start, '//to_text(history%time(1))//' s')
+                          ' s is too short to change the time of the start, '//to_text(history%time(1))// &
+                          ' s; give a longer one')
          return
       end if
       history%time = [pack(history%time, history%time < finish), finish]

@@ -2,7 +2,7 @@
 !>
 !> The lateral stress is the mean of both directions, with the arches between the bars of each face. The
 !> layered hinge (`python/rbsdem/section/strips.py`) takes the stress of the direction of loading alone and
-!> spreads the held bars evenly around the core: its parameters are fitted with that form, so it has its own.
+!> spreads the held bars evenly around the core; it has its own formula, as its parameters are fitted with it.
 module rbs_section_confinement
    use rbs_base_kinds, only: wp
    use rbs_section_concrete_law, only: confined_concrete, spalling_concrete

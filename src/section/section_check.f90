@@ -14,7 +14,7 @@ module rbs_section_section_check
 
 contains
 
-   !> Add a message for every error of a section but those of its concrete, which `check_concrete` finds.
+   !> Add a message for every error of a section, except those of its concrete, which `check_concrete` finds.
    subroutine check_section(section, messages)
       type(section_type), intent(in) :: section
       type(message_list), intent(inout) :: messages

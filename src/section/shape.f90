@@ -12,7 +12,7 @@ module rbs_section_shape
 
    public :: shape_type, check_size
 
-   !> No column is larger than this [m]: a larger size was given in millimetres.
+   !> Largest size [m]; a larger one was probably given in millimetres.
    real(wp), parameter, public :: largest_size = 50.0_wp
 
    type, abstract :: shape_type

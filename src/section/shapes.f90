@@ -1,4 +1,4 @@
-!> The list of shapes, and the only place that makes one.
+!> The list of shapes, and the only procedures that make them.
 module rbs_section_shapes
    use rbs_base_kinds, only: wp
    use rbs_section_shape, only: shape_type
@@ -38,7 +38,7 @@ contains
       class(shape_type), intent(in) :: outline
       !> Whether the hoops are round
       logical, intent(in) :: round
-      !> By how much width and depth between hoop centre lines are smaller than those of the outline [m]
+      !> Reductions of width and depth from the outline to the hoop centre lines [m]
       real(wp), intent(in) :: width_by, depth_by
       class(shape_type), allocatable, intent(inout) :: core
 

@@ -1,7 +1,7 @@
 !> Sections cut into strips across the direction of loading.
 !>
-!> The one cutting: the integration of stresses takes the middles of the strips, the layers of a hinge take
-!> the centroids of core and cover in each strip.
+!> The integration of stresses uses the middles of the strips, the layers of a hinge use the centroids of
+!> core and cover in each strip.
 module rbs_section_strips
    use rbs_base_kinds, only: wp
    use rbs_section_shape, only: shape_type
@@ -35,7 +35,7 @@ contains
       strips%core_area = min(core%area_between(low, high), strips%area)
    end subroutine cut_strips
 
-   !> Centroids of core and cover in each strip [m]; the middle of the strip where there is none of them.
+   !> Centroids of core and cover in each strip [m]; the middle of a strip that has no core, or no cover.
    pure subroutine strip_centroids(outline, core, strips, core_y, cover_y)
       class(shape_type), intent(in) :: outline, core
       type(strips_type), intent(in) :: strips

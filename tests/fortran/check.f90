@@ -1,7 +1,7 @@
-!> A small frame for unit tests: named tests in suites, and checks that fill an error.
+!> A small framework for unit tests: named tests in suites, and checks that set an error.
 !>
-!> A test is a subroutine with an error argument; it passes if the error is not there at its end. A
-!> check does nothing once the error is there: the first failure of a test is the one that is told.
+!> A test is a subroutine with an error argument; it passes if the error is not allocated at its end. A
+!> check does nothing once the error is allocated: the first failure of a test is the one reported.
 module check
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_error, only: error_type, fatal_error
@@ -47,13 +47,13 @@ module check
 
 contains
 
-   !> Run the tests whose name holds `pattern`; one line each.
+   !> Run the tests whose name contains `pattern`, and print one line for each.
    subroutine run_suite(suite, tests, pattern, unit, run, failed)
       character(len=*), intent(in) :: suite
       type(unit_test), intent(in) :: tests(:)
       !> Part of a name; empty: all tests
       character(len=*), intent(in) :: pattern
-      !> Where the lines go
+      !> Unit for the lines
       integer, intent(in) :: unit
       !> Tests run and failed so far
       integer, intent(inout) :: run, failed
@@ -105,7 +105,7 @@ contains
       call fail(error, what//': '//trim(text))
    end subroutine equal_logicals
 
-   !> Texts, blanks at the end included.
+   !> Two texts are equal, with their trailing blanks.
    subroutine equal_texts(error, actual, expected, what)
       type(error_type), allocatable, intent(inout) :: error
       character(len=*), intent(in) :: actual, expected
@@ -159,7 +159,7 @@ contains
       end do
    end subroutine same_arrays
 
-   !> A text holds a part.
+   !> A text contains a part.
    subroutine check_contains(error, text, part, what)
       type(error_type), allocatable, intent(inout) :: error
       character(len=*), intent(in) :: text, part
@@ -171,17 +171,17 @@ contains
    !> A procedure under test has not failed.
    subroutine check_passed(error, outcome, what)
       type(error_type), allocatable, intent(inout) :: error
-      !> What the procedure returned
+      !> Error that the procedure returned
       type(error_type), allocatable, intent(in) :: outcome
       character(len=*), intent(in) :: what
 
       if (allocated(outcome)) call fail(error, what//' failed: '//outcome%message)
    end subroutine check_passed
 
-   !> A procedure under test has failed with a code and a message that holds `part`.
+   !> A procedure under test has failed with a code and a message that contains `part`.
    subroutine check_failed(error, outcome, code, part)
       type(error_type), allocatable, intent(inout) :: error
-      !> What the procedure returned
+      !> Error that the procedure returned
       type(error_type), allocatable, intent(in) :: outcome
       integer, intent(in) :: code
       character(len=*), intent(in) :: part

@@ -1,5 +1,5 @@
-!> Exact rotations by an independent route: positions of own masses and lumped mass as written in
-!> theory.md section 2, their derivatives by Taylor arithmetic, M = sum J' diag(m, m, I) J dense.
+!> Exact rotations by an independent method: positions of the bodies' masses and of the lumped mass as in
+!> theory.md section 2, their derivatives by Taylor arithmetic, and the dense M = sum J' diag(m, m, I) J.
 module exact
    use rbs_base_constants, only: pi
    use rbs_base_kinds, only: wp
@@ -13,18 +13,18 @@ module exact
    public :: jet, point, variant, state
    public :: sample, variant_of, random_state, place, dense_mass, dense_acceleration
 
-   !> A number that moves: value, first and second derivative.
+   !> A function of time: value, first and second derivative.
    type :: jet
       real(wp) :: d(0:2) = 0.0_wp
    end type jet
 
-   !> A mass point with rotary inertia on the way.
+   !> A moving mass point with rotary inertia.
    type :: point
       type(jet) :: x, y, rotation
       real(wp) :: mass = 0.0_wp, inertia = 0.0_wp
    end type point
 
-   !> What can differ from one column to the other.
+   !> Properties by which the columns differ.
    type :: variant
       logical :: opens = .false., axial_follows = .false., force_follows = .false., lumped = .false.
    end type variant
@@ -82,7 +82,7 @@ contains
       cosine%d(2) = -sin(a%d(0))*a%d(2) - cos(a%d(0))*a%d(1)**2
    end function cosine
 
-   !> Column of n bodies that differ, with everything that a column can have.
+   !> Column of n different bodies with all optional properties.
    type(column_record) function sample(n, kind) result(spec)
       integer, intent(in) :: n
       type(variant), intent(in) :: kind
@@ -129,8 +129,8 @@ contains
                   random%uniform(-9.0_wp, 9.0_wp), random%uniform(-1.0e4_wp, 1.0e4_wp)]
    end function random_state
 
-   !> Own masses at mid-length of the bodies, the last point is the lumped mass at the top (n + 1), while
-   !> the unknowns move as q + v s + a s^2/2.
+   !> Motion of the mass points while the unknowns move as q + v s + a s^2/2: the masses at mid-length of the
+   !> bodies, and as last point the lumped mass at the top (n + 1).
    subroutine place(spec, q, v, a, points)
       type(column_record), intent(in) :: spec
       real(wp), intent(in) :: q(:), v(:), a(:)
@@ -212,7 +212,7 @@ contains
       type(column_record), intent(in) :: spec
       type(state), intent(in) :: now
       real(wp), intent(out) :: a(:)
-      !> Size of the terms that make the accelerations up
+      !> Size of the terms in the accelerations
       real(wp), intent(out) :: largest
       type(point) :: points(spec%n + 1)
       real(wp) :: jacobian(3, spec%n + 1, size(now%q)), mass(size(now%q), size(now%q))

@@ -94,7 +94,7 @@ program unit_tests
       end do
       write (error_unit, '(a)') ''
    end if
-   ! A filter that meets nothing, or an unknown suite, must not look like success.
+   ! A filter that matches no test, or an unknown suite, must not look like success.
    if (failed > 0 .or. run == 0) error stop 1
 
 contains

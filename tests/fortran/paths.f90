@@ -1,4 +1,4 @@
-!> What must hold on any path of any spring: increments do not matter, trial moves leave no trace.
+!> Properties of every spring on every path: increments have no effect, and trial moves have none.
 module paths
    use check, only: check_same
    use rbs_base_error, only: error_type
@@ -13,7 +13,7 @@ module paths
 
 contains
 
-   !> A path cut into increments ends every move at the same force, to the last bit.
+   !> On a path cut into increments every move ends at the same force, to the last bit.
    subroutine check_increments(error, spec, d, parts)
       type(error_type), allocatable, intent(inout) :: error
       type(spring_record), intent(in) :: spec
@@ -43,7 +43,7 @@ contains
       type(spring_record), intent(in) :: spec
       real(wp), intent(in) :: d(:)
       type(random_type), intent(inout) :: random
-      !> Of the trial moves
+      !> Size of the trial moves
       real(wp), intent(in) :: reach
       type(spring_array) :: spring, copy
       real(wp) :: f(size(d))

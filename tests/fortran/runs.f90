@@ -1,5 +1,5 @@
-!> Runs in time that several suites make: a column and what acts on it go in, rows and summary come out;
-!> and states that a stepper moves by hand.
+!> Runs in time for several suites, from a column and its loads to rows and summary; and states that a
+!> test moves with a stepper.
 module runs
    use check, only: check_passed, check_true
    use rbs_base_constants, only: unset_integer
@@ -31,10 +31,10 @@ module runs
    public :: run_data, run, times, signal_of, loads_of, last_deformation
    public :: new_state, new_located, residual_of, distance, order_of, check_order
 
-   !> One run: what goes in besides the column, and what comes out.
+   !> One run: its input without the column, and its results.
    type :: run_data
       type(analysis_record) :: analysis = analysis_record(method='rk4')
-      !> Times of the loading [s]; what is not allocated does not act
+      !> Times of the loading [s]; loads that are not allocated do not act
       real(wp), allocatable :: time(:), force(:), ground(:), vertical(:), axial(:)
       integer :: every = unset_integer
       type(initial_state) :: initial
@@ -44,7 +44,7 @@ module runs
       type(error_type), allocatable :: outcome
    end type run_data
 
-   !> A column, its loads, how it begins and how long it moves.
+   !> A column, its loads, its initial state and the duration of the motion.
    type :: scene_type
       type(column_type) :: column
       type(loads_type) :: loads
@@ -112,7 +112,7 @@ contains
       q = data%rows(row_joints:row_joints + unknowns - 1, size(data%rows, 2))
    end function last_deformation
 
-   !> A state at time zero, springs at the deformations q.
+   !> A state at time zero with the springs at the deformations q.
    subroutine new_state(state, column, loads, q, v)
       type(state_type), intent(out) :: state
       type(column_type), intent(in) :: column
@@ -140,14 +140,14 @@ contains
                + potential_energy(state%motion%column, state%q)
    end function energy_of
 
-   !> What is left of the balance of energy [J].
+   !> Residual of the balance of energy [J].
    real(wp) function residual_of(state) result(residual)
       type(state_type), intent(in) :: state
 
       residual = state%of_loads + state%at_begin - energy_of(state) - state%of_damping
    end function residual_of
 
-   !> How far two states are apart, relative to the second: deformations and velocities.
+   !> Difference of two states relative to the second: deformations and velocities.
    real(wp) function distance(state, reference)
       type(state_type), intent(in) :: state, reference
 
@@ -155,7 +155,7 @@ contains
                      maxval(abs(state%v - reference%v))/maxval(abs(reference%v)))
    end function distance
 
-   !> Steps cut at events: rk4 without tolerance, the embedded pair with one.
+   !> Move a state in steps that end at events: by rk4 without a tolerance, by the embedded pair with one.
    subroutine new_located(stepper, column, tolerance, step)
       type(located_stepper), intent(out) :: stepper
       type(column_type), intent(in) :: column
@@ -173,7 +173,7 @@ contains
       stepper%shortest = 1.0e-6_wp*step
    end subroutine new_located
 
-   !> Observed order from the first error to the last, the step halved each time.
+   !> Observed order from the first error to the last, with the step halved each time.
    pure real(wp) function order_of(wrong) result(order)
       real(wp), intent(in) :: wrong(:)
 
@@ -191,7 +191,7 @@ contains
                       ' and '//to_text(most))
    end subroutine check_order
 
-   !> Columns that yield and unload many times; the force has corners that meet no step.
+   !> Columns that yield and unload many times; the corners of the force do not coincide with steps.
    subroutine new_scene(scene, number)
       type(scene_type), intent(out) :: scene
       integer, intent(in) :: number
@@ -233,7 +233,7 @@ contains
       scene%v(scene%column%n + 1) = 1.0_wp
    end subroutine new_scene
 
-   !> One mass on an axial spring, which nothing couples to the rest, without load.
+   !> One mass on an axial spring that is not coupled to the other springs, without load.
    subroutine new_mass(scene, spring, mass, w, v)
       type(scene_type), intent(out) :: scene
       type(spring_record), intent(in) :: spring
@@ -250,7 +250,7 @@ contains
       scene%v = [0.0_wp, 0.0_wp, v]
    end subroutine new_mass
 
-   !> Begin a scene and move it to its end in equal steps.
+   !> Start a scene and move it to its end in equal steps.
    subroutine play(scene, stepper, steps, state, outcome)
       type(scene_type), intent(in) :: scene
       class(stepper_type), intent(inout) :: stepper

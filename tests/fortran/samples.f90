@@ -24,7 +24,7 @@ module samples
    !> Mass [kg] and height [m] of the column
    real(wp), parameter, public :: mass_1 = 614.4_wp, height_1 = 1.6_wp
 
-   !> Random numbers that are the same everywhere (Lehmer, 2**31 - 1).
+   !> Random numbers that are the same on every machine (Lehmer, 2**31 - 1).
    type :: random_type
       integer(int64) :: state = 20240229_int64
    contains
@@ -106,9 +106,9 @@ contains
       spec = takeda(k_c, d_c, k_y, d_y, k_u, b0, b1, inner)
    end function takeda_1
 
-   !> A strip of a joint of concrete, 0.4 m by 0.4 m and 0.3 m long, of 30 MPa.
+   !> A strip of a joint of 30 MPa concrete, 0.4 m by 0.4 m and 0.3 m long.
    type(spring_record) function concrete_1(share) result(spec)
-      !> Of the area
+      !> Share of the area
       real(wp), intent(in) :: share
 
       spec%rule = 'concrete'
@@ -123,7 +123,7 @@ contains
       call spec%set('wear', 0.03_wp)
    end function concrete_1
 
-   !> A row of its bars, 1600 mm2 of 450 MPa over 0.4 m.
+   !> A row of bars of the joint, 1600 mm2 of 450 MPa over 0.4 m.
    type(spring_record) function steel_1() result(spec)
       spec%rule = 'steel'
       call spec%set('k', 8.0e8_wp)
@@ -133,7 +133,7 @@ contains
       call spec%set('half_strength_work', 2000.0_wp)
    end function steel_1
 
-   !> Column 1 in one component.
+   !> Column 1 as one body.
    type(column_record) function column_1(kinematics) result(spec)
       character(len=*), intent(in) :: kinematics
 
@@ -145,7 +145,7 @@ contains
       spec%flexure(1) = takeda_1('kc')
    end function column_1
 
-   !> A column 2 m high of n bodies that differ, with elastic springs that differ.
+   !> A column 2 m high of n different bodies with different elastic springs.
    type(column_record) function chain(n, kinematics) result(spec)
       integer, intent(in) :: n
       character(len=*), intent(in) :: kinematics

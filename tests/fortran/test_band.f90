@@ -26,12 +26,12 @@ contains
                unit_test('the mass is diagonal at the centroids', mass_diagonal), &
                unit_test('band of the springs is B''k B', springs), &
                unit_test('band of the axial forces is B''K_G B', geometric), &
-               unit_test('openings are a chain of their own', openings), &
+               unit_test('openings are not coupled to slips and rotations', openings), &
                unit_test('critical load against the dense eigenproblem', critical), &
                unit_test('critical load of 10000 bodies: Haringx with shear, order 2', critical_long)]
    end subroutine collect_band
 
-   !> A chain with everything: openings, a mass on top, weight and axial load.
+   !> A chain with openings, a mass on top, weight and axial load.
    type(column_type) function full(n) result(column)
       integer, intent(in) :: n
       type(column_record) :: spec
@@ -64,7 +64,7 @@ contains
       end do
    end subroutine joints_of_bodies
 
-   !> A lower band of half-width 3, made whole.
+   !> The whole matrix of a lower band of half-width 3.
    pure function whole(band) result(a)
       real(wp), intent(in) :: band(:, :)
       real(wp) :: a(size(band, 2), size(band, 2))
@@ -205,7 +205,7 @@ contains
       end associate
    end subroutine openings
 
-   !> The largest w of -K_G x = w diag(k) x is one over the critical factor.
+   !> The largest w of -K_G x = w diag(k) x is the inverse of the critical factor.
    subroutine critical(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 5
@@ -241,11 +241,11 @@ contains
       end do
    end subroutine critical
 
-   !> An elastic cantilever with shear: the slip of a joint is across the axis of the body below, the axial
-   !> force stays upright; so the chain tends to Haringx's critical load, P (1 + P/kGA) = pi^2 EI/(2 L)^2.
-   !> Each flexural spring stands for a body's length, the lowest one for half of it. A slip feels the axial
-   !> force by the rotation of the body below, so the lowest shear spring feels nothing and the highest one
-   !> stands for two bodies.
+   !> An elastic cantilever with shear: the slip of a joint is across the axis of the body below, and the
+   !> axial force stays vertical; so the chain tends to Haringx's critical load, P (1 + P/kGA) =
+   !> pi^2 EI/(2 L)^2. Each flexural spring represents a body's length, the lowest one half of it. The axial
+   !> force acts on a slip through the rotation of the body below, so it has no effect on the lowest shear
+   !> spring, and the highest one represents two bodies.
    subroutine critical_long(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome

@@ -19,13 +19,13 @@ contains
    subroutine collect_bilinear(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
-      tests = [unit_test('elastic: one line whatever the path', elastic_line), &
+      tests = [unit_test('elastic: one line for every path', elastic_line), &
                unit_test('takeda.md section 4, the bilinear sequence', sequence), &
                unit_test('takeda.md section 2c, the median on random paths', median), &
                unit_test('the elastic range is 2 d_y wide', elastic_range), &
                unit_test('work of a closed cycle is the area of the loop', work_of_cycle), &
                unit_test('k_post = 0: the force stays at yield', perfectly_plastic), &
-               unit_test('a turn on the bounding line and back goes on along it', turn_and_back), &
+               unit_test('after a turn and back on the bounding line it continues', turn_and_back), &
                unit_test('one move through several lines', long_move)]
    end subroutine collect_bilinear
 
@@ -76,7 +76,7 @@ contains
             by_median(j) = f_old
          end do
          call follow_path(spec, d, f)
-         ! The median adds up round-off, the spring does not.
+         ! The median accumulates round-off, the spring does not.
          call check_close(error, f, by_median, 1.0e-12_wp, 1.0e-12_wp, 'median')
       end do
    end subroutine median
@@ -105,7 +105,7 @@ contains
          before = spring%work(1)
          call spring%move(1, -5.0_wp*s_d)
       end do
-      ! A parallelogram: 2 q high, the plastic way 2 (5 - 1) d_y wide.
+      ! A parallelogram of height 2 q and width 2 (5 - 1) d_y, the plastic deformation.
       call check_close(error, spring%work(1) - before, 2.0_wp*q*8.0_wp*s_d, 1.0e-12_wp, 0.0_wp, 'work')
       call check_equal(error, spring%events, 9, 'lines left')
    end subroutine work_of_cycle

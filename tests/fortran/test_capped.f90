@@ -25,7 +25,7 @@ contains
    subroutine collect_capped(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
-      tests = [unit_test('keys: each has a place of its own', table), &
+      tests = [unit_test('keys: all have different places', table), &
                unit_test('validation names number, value and remedy', validation), &
                unit_test('initial stiffness is that of the stiffer side', stiffness), &
                unit_test('backbone: corners by hand', corners), &
@@ -36,7 +36,7 @@ contains
                unit_test('property 6: the mirror path with swapped sides, to the last bit', mirror), &
                unit_test('property 9: the work from the virgin state is never negative', work_positive), &
                unit_test('property 13: copies, marks and restores', copies), &
-               unit_test('a spring whose energy is used up carries nothing, and is never stuck', exhausted), &
+               unit_test('a spring whose energy is used up has no force and is not stuck', exhausted), &
                unit_test('no line is steeper than the virgin one', steepest)]
    end subroutine collect_capped
 
@@ -51,7 +51,7 @@ contains
       call spec%set('f_res', 20.0_wp)
    end function hand
 
-   !> The backbone of a side, with what is not given for the negative one as on the positive.
+   !> The backbone of a side; the negative side has the values of the positive one if it is not given.
    type(backbone_parameters) function side_of(spec, s) result(side)
       type(spring_record), intent(in) :: spec
       integer, intent(in) :: s
@@ -89,7 +89,7 @@ contains
       call check_true(error, .not. is_given(spec%get('k')), 'k is not there')
       call keys_of('peak_oriented', more)
       call check_true(error, find_key(keys, 'kappa_f') > 0 .and. find_key(more, 'kappa_f') == 0, &
-                      'who takes kappa_f')
+                      'rules with kappa_f')
       do i = 1, size(rule_names)
          call keys_of(rule_names(i), keys)
          call check_true(error, size(keys) <= most_parameters, 'there is room for the parameters')
@@ -121,7 +121,7 @@ contains
       call axial(error)
    end subroutine validation
 
-   !> One message that holds `part`; none if the part is empty.
+   !> Expect one message that contains `part`, or none if `part` is empty.
    subroutine expect(error, spec, part)
       type(error_type), allocatable, intent(inout) :: error
       type(spring_record), intent(in) :: spec
@@ -246,7 +246,7 @@ contains
       call check_same(error, deterioration%share(100.0_wp, 30.0_wp), 0.25_wp, 'squared')
    end subroutine shares
 
-   !> A spring with all features at random, and a path for it.
+   !> A random spring with all features, and a path for it.
    subroutine random_spring(random, spec, d)
       type(random_type), intent(inout) :: random
       type(spring_record), intent(out) :: spec
@@ -322,7 +322,7 @@ contains
          call other%set('d_u', side(-1)%d_u)
          call other%set('d_y_neg', side(1)%d_y)
          call other%set('f_res_neg', side(1)%f_res)
-         ! What has no end on one side cannot be said of the other alone.
+         ! A parameter without a value on one side cannot be given for the other side alone.
          call other%set('d_u_neg', max(side(1)%d_u, 1.0e9_wp))
          call follow_path(spec, d, f)
          call follow_path(other, -d, mirrored)

@@ -1,4 +1,4 @@
-!> What is refused, and what the user reads then: the thing, its value, the remedy.
+!> Input that is refused, with messages that name the quantity, its value and the remedy.
 module test_case
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf
    use check, only: unit_test, check_close, check_contains, check_equal, check_failed, check_same, &
@@ -28,15 +28,15 @@ contains
    subroutine collect_case(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
-      tests = [unit_test('unset is told from any number, NaN included', given), &
+      tests = [unit_test('unset differs from every number and from NaN', given), &
                unit_test('the springs of table 3 are valid', springs_valid), &
                unit_test('spring: unknown rule', spring_rule), &
                unit_test('spring: elastic', spring_elastic), &
                unit_test('spring: bilinear', spring_bilinear), &
-               unit_test('spring: takeda, single numbers', spring_takeda_numbers), &
-               unit_test('spring: takeda, order of the numbers', spring_takeda_order), &
+               unit_test('spring: takeda, single parameters', spring_takeda_numbers), &
+               unit_test('spring: takeda, order of the parameters', spring_takeda_order), &
                unit_test('spring: limits of the rules are valid', spring_limits), &
-               unit_test('spring: NaN and infinity in every number', spring_not_finite), &
+               unit_test('spring: NaN and infinity in every parameter', spring_not_finite), &
                unit_test('spring: beyond the range of the arithmetic', spring_range), &
                unit_test('spring: initial stiffness', spring_stiffness), &
                unit_test('column: valid ones', column_valid), &
@@ -54,12 +54,12 @@ contains
                unit_test('analysis and output', analysis), &
                unit_test('analysis: settings of the methods', settings), &
                unit_test('analysis: a setting that the method does not use', unused_settings), &
-               unit_test('case: all faults at once', all_at_once), &
+               unit_test('case: all errors at once', all_at_once), &
                unit_test('case: several loadings', several_loadings), &
                unit_test('units: exact decimals', units)]
    end subroutine collect_case
 
-   !> The messages on a spring hold `part`; an empty part: there are none.
+   !> Expect messages on a spring that contain `part`, or none if `part` is empty.
    subroutine expect_spring(error, spec, part)
       type(error_type), allocatable, intent(inout) :: error
       type(spring_record), intent(in) :: spec
@@ -95,7 +95,7 @@ contains
       call expect(error, messages, part)
    end subroutine expect_loading
 
-   !> One message that holds `part`, or none if the part is empty.
+   !> Expect one message that contains `part`, or none if `part` is empty.
    subroutine expect(error, messages, part)
       type(error_type), allocatable, intent(inout) :: error
       type(message_list), intent(in) :: messages
@@ -554,7 +554,7 @@ contains
       call check_contains(error, of_case%text, 'output: every = 0 must be 1 or more', 'every')
    end subroutine analysis
 
-   !> The settings of an analysis give one message that holds `part`, or none if it is empty.
+   !> Expect of the settings of an analysis one message that contains `part`, or none if it is empty.
    subroutine expect_analysis(error, spec, part)
       type(error_type), allocatable, intent(inout) :: error
       type(analysis_record), intent(in) :: spec
@@ -691,7 +691,7 @@ contains
       type(unit_type) :: unit
       integer :: i
 
-      ! 0.017*0.001 is another number than 0.017e-3.
+      ! 0.017*0.001 and 0.017e-3 are different numbers.
       call check_same(error, to_si(0.017_wp, length_units(2)), 0.017e-3_wp, '0.017 mm')
       call check_same(error, to_si(97.854_wp, length_units(2)), 97.854e-3_wp, '97.854 mm')
       call check_same(error, to_si(1.23_wp, length_units(3)), 1.23e-2_wp, '1.23 cm')

@@ -1,5 +1,5 @@
-!> Equation of motion of the chain with small rotations: the O(n) forms against dense matrices written
-!> straight from theory.md, and against the energies.
+!> Equation of motion of the chain with small rotations: the O(n) forms against dense matrices from the
+!> equations of theory.md, and against the energies.
 module test_chain
    use check, only: unit_test, check_close, check_same, check_true
    use rbs_base_error, only: error_type
@@ -32,7 +32,7 @@ contains
       type(unit_test), allocatable, intent(out) :: tests(:)
 
       tests = [unit_test('accelerations solve the dense equation of motion', dense), &
-               unit_test('the loads act each by itself', one_load), &
+               unit_test('each load on its own', one_load), &
                unit_test('powers are the rates of the energies', power), &
                unit_test('velocities of bodies and of joints, kinetic energy', bodies), &
                unit_test('height of the top to second order', height), &
@@ -40,8 +40,8 @@ contains
                unit_test('loads that do not act cost nothing and change nothing', idle_loads)]
    end subroutine collect_chain
 
-   !> Whether a bit of the number of a variant is set: opens, second order, lumped mass, damping of mass,
-   !> initial stiffness, present stiffness, modes.
+   !> Column of a variant, whose bits mean: opens, second order, lumped mass, damping of mass, of initial
+   !> stiffness, of present stiffness, of modes.
    type(column_record) function variant(n, kind, random) result(spec)
       integer, intent(in) :: n, kind
       type(random_type), intent(inout) :: random
@@ -59,7 +59,7 @@ contains
       if (btest(kind, 6)) spec%damping%modal = [random%uniform(0.0_wp, 0.3_wp)]
    end function variant
 
-   !> A state with springs somewhere on their ways, and all loads.
+   !> A state with all loads and with springs at random points of their paths.
    subroutine random_state(spec, random, state)
       type(column_record), intent(in) :: spec
       type(random_type), intent(inout) :: random
@@ -190,7 +190,7 @@ contains
       end do
    end subroutine dense
 
-   !> Without springs' forces each load alone has a closed form for one body.
+   !> For one body without spring forces each load alone has a closed form.
    subroutine one_load(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
@@ -232,7 +232,7 @@ contains
    end subroutine one_load
 
    !> d(kinetic energy + potential)/dt + power of the springs = power of loads - power of damping. Both
-   !> energies are quadratic: a central difference over any distance is their derivative.
+   !> energies are quadratic, so a central difference over any distance is their derivative.
    subroutine power(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
@@ -304,7 +304,7 @@ contains
                        0.0_wp, 'kinetic energy')
    end subroutine check_bodies
 
-   !> The potential of the axial load alone is load times the height that the top has gained.
+   !> The potential of the axial load alone is the load times the rise of the top.
    subroutine height(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
@@ -328,7 +328,7 @@ contains
       end do
    end subroutine height
 
-   !> `single` only chooses the way of reckoning.
+   !> `single` only chooses the method of computation.
    subroutine fast_step(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
@@ -363,7 +363,7 @@ contains
          call check_close(error, fast%q, slow%q, 0.0_wp, 1.0e-14_wp*maxval(abs(slow%q)), 'deformation')
          call check_close(error, fast%v, slow%v, 0.0_wp, 1.0e-13_wp*maxval(abs(slow%v)), 'velocity')
          call check_close(error, fast%of_loads, slow%of_loads, 1.0e-11_wp, 1.0e-12_wp, 'work of the loads')
-         ! The general way of all columns, power by power
+         ! The computation for all columns, power by power
          state%motion%plain = .false.
          call slow%attempt(state, 2.0e-4_wp)
          call check_close(error, fast%v, slow%v, 0.0_wp, 1.0e-13_wp*maxval(abs(slow%v)), 'velocity again')
@@ -372,7 +372,7 @@ contains
       end do
    end subroutine fast_step
 
-   !> A load of zeros acts like none, to round-off.
+   !> A load of zeros has the effect of no load, to round-off.
    subroutine idle_loads(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random

@@ -1,4 +1,4 @@
-!> Geometry, mass matrix in both views, axial forces: against sums written straight from theory.md.
+!> Geometry, mass matrix in both forms, axial forces: against sums from the equations of theory.md.
 module test_column
    use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_same, check_true
    use rbs_base_error, only: error_type, bad_input
@@ -157,7 +157,7 @@ contains
    end subroutine symmetric_definition
 
    !> Horizontal equilibrium of everything above joint i, and its moment about joint i, with
-   !> x_k'' = sum of u_j'' (j <= k) + sum of l~_kj th_j'', l~_kj = l_j below k, l_k/2 in k, 0 above.
+   !> x_k'' = sum of u_j'' (j <= k) + sum of l~_kj th_j'', l~_kj = l_j below k, l_k/2 for k, 0 above.
    subroutine paper_definition(error)
       type(error_type), allocatable, intent(inout) :: error
       type(column_type) :: column
@@ -395,8 +395,8 @@ contains
       call check_failed(error, outcome, bad_input, 'the critical load of '//to_text(k_c/height_1)//' N')
    end subroutine buckling
 
-   !> Steiner: own mass at mid-length and a point with inertia at the top, about their common centroid; and
-   !> the mass matrix, with the two kept apart.
+   !> Parallel axes: the body's mass at mid-length and a point with inertia at the top, about their common
+   !> centroid; and the mass matrix with the two kept separate.
    subroutine lumped(error)
       type(error_type), allocatable, intent(inout) :: error
       real(wp), parameter :: m = 700.0_wp, j = 35.0_wp
@@ -432,7 +432,7 @@ contains
       call check_close(error, pack(mass, .true.), pack(expected, .true.), 1.0e-13_wp, 0.0_wp, 'mass matrix')
       call check_close(error, column%ground_arm, plain%ground_arm + m*column%arm, 1.0e-14_wp, 0.0_wp, &
                        'ground')
-      ! Its weight is not the column's.
+      ! Its weight is not part of the column's.
       spec%self_weight = .true.
       column = made(spec)
       spec%top_mass = 0.0_wp

@@ -20,9 +20,9 @@ contains
       type(unit_test), allocatable, intent(out) :: tests(:)
 
       tests = [unit_test('Popovics 1973 at the ends of the chords', rising), &
-               unit_test('falling line, residual, no tension', falling), &
+               unit_test('softening line, residual, no tension', falling), &
                unit_test('Karsan and Jirsa 1969: plastic closing', plastic_closing), &
-               unit_test('unloading is never stiffer than at first', stiffest), &
+               unit_test('unloading is never stiffer than the initial stiffness', stiffest), &
                unit_test('before the first chord ends: elastic', elastic_begin), &
                unit_test('faces that were apart touch early and close fully later', contact), &
                unit_test('no misfit, no contact: back to the plastic closing', plain), &
@@ -31,12 +31,12 @@ contains
                unit_test('forces are continuous where lines meet', continuous), &
                unit_test('property 2: 1, 7, 1000 increments, to the last bit', increments), &
                unit_test('copies and trial moves leave no trace', copies), &
-               unit_test('start forgets everything', forgets), &
+               unit_test('start clears the memory', forgets), &
                unit_test('property 9: work is not negative, contact aside', work_positive), &
                unit_test('envelope is never left outward', envelope)]
    end subroutine collect_concrete
 
-   !> A spring of simple numbers: 100 at a closing of 2, then -10 down to 20 at 10.
+   !> A spring with simple parameters: 100 at a closing of 2, then slope -10 down to 20 at 10.
    type(spring_record) function hand() result(spec)
       spec%rule = 'concrete'
       call spec%set('k', 100.0_wp)
@@ -67,7 +67,7 @@ contains
                        'force')
    end subroutine falling
 
-   !> Where unloading reaches zero force: 0.145 x^2 + 0.13 x, beyond x = 2 the line 0.84 + 0.834 (x - 2).
+   !> Unloading reaches zero force at 0.145 x^2 + 0.13 x, beyond x = 2 on the line 0.84 + 0.834 (x - 2).
    subroutine plastic_closing(error)
       type(error_type), allocatable, intent(inout) :: error
       real(wp), parameter :: x(5) = [0.8_wp, 1.0_wp, 1.5_wp, 2.0_wp, 4.0_wp]
@@ -78,12 +78,12 @@ contains
       do i = 1, size(x)
          middle = x(i) + share(i)
          call follow_path(hand(), [-2.0_wp*x(i), -middle, -2.0_wp*share(i), -1.9_wp*share(i)], f)
-         call check_close(error, f(2), 0.5_wp*f(1), 1.0e-13_wp, 0.0_wp, 'half of the way')
-         call check_close(error, f(3:), [0.0_wp, 0.0_wp], 0.0_wp, 1.0e-12_wp, 'end of the way')
+         call check_close(error, f(2), 0.5_wp*f(1), 1.0e-13_wp, 0.0_wp, 'half of the path')
+         call check_close(error, f(3:), [0.0_wp, 0.0_wp], 0.0_wp, 1.0e-12_wp, 'end of the path')
       end do
    end subroutine plastic_closing
 
-   !> A plastic closing that is too large gives way: from (4, 80) the line of slope 100 ends at 3.2.
+   !> A plastic closing that is too large is reduced: from (4, 80) the line of slope 100 ends at 3.2.
    subroutine stiffest(error)
       type(error_type), allocatable, intent(inout) :: error
       type(spring_record) :: spec
@@ -120,7 +120,7 @@ contains
       call follow_path(spec, [-4.0_wp, 1.32_wp, -0.18_wp, -1.22_wp, -2.26_wp, -3.13_wp], f)
       call check_close(error, f, -[80.0_wp, 0.0_wp, 0.0_wp, 10.0_wp, 20.0_wp, 50.0_wp], 1.0e-12_wp, &
                        1.0e-11_wp, 'force')
-      ! A narrower opening leaves the touch where it is: the widest counts.
+      ! A narrower opening does not move the touch, which depends on the widest opening.
       call follow_path(spec, [-4.0_wp, 1.32_wp, -3.0_wp, 0.5_wp, -1.22_wp, -4.0_wp], f)
       call check_close(error, f(5:), -[10.0_wp, 80.0_wp], 1.0e-12_wp, 0.0_wp, 'widest opening')
    end subroutine contact
@@ -159,10 +159,10 @@ contains
                               -1.5e-3_wp], f)
       call follow_path(spec, [-1.5e-3_wp], straight)
       call check_same(error, f(5), f(2), 'same line')
-      call check_close(error, f([6, 7]), [f(1), straight(1)], 1.0e-13_wp, 0.0_wp, 'no trace')
+      call check_close(error, f([6, 7]), [f(1), straight(1)], 1.0e-13_wp, 0.0_wp, 'no effect')
    end subroutine partial
 
-   !> A random spring of its kind, and a path in closings at the peak.
+   !> A random concrete spring, and a path in units of its closing at the peak.
    subroutine random_spring(random, spec, d)
       type(random_type), intent(inout) :: random
       type(spring_record), intent(out) :: spec
@@ -186,7 +186,7 @@ contains
       end do
    end subroutine random_spring
 
-   !> Across every event the force stays; every line has its ends in order.
+   !> The force is continuous at every event; the ends of every line are in order.
    subroutine continuous(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
@@ -265,7 +265,7 @@ contains
       call rule%start(first)
       line = first
       do i = 1, 100
-         ! Down three lines, up three lines: not to an end that is none.
+         ! Down three lines, up three lines: the ends of lines are not targets if they are not finite.
          call rule%next(line, merge(1, -1, mod(i, 6) > 2))
       end do
       call rule%start(line)
@@ -273,8 +273,8 @@ contains
                       [first%d0, first%f0, first%k, first%lo, first%hi], 'first line')
    end subroutine forgets
 
-   !> Without contact nothing comes back that did not go in. With it a crack may give back more when it opens
-   !> for the first time than it took when it closed: at most the triangle below the contact line.
+   !> Without contact the work is never negative. With it a crack may return more energy when it opens for the
+   !> first time than it took when it closed: at most the triangle below the contact line.
    subroutine work_positive(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
@@ -295,7 +295,7 @@ contains
       end do
    end subroutine work_positive
 
-   !> Never tension; where faces match, never more than loading in one direction.
+   !> There is never tension; if the faces match, the force never exceeds that of loading in one direction.
    subroutine envelope(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random

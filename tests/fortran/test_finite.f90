@@ -1,4 +1,4 @@
-!> Exact rotations, body by body, against the dense route of module `exact`, eq 4, and what must be so.
+!> Exact rotations, body by body: against the dense method of module `exact`, eq 4, and invariants.
 module test_finite
    use check, only: unit_test, check_close, check_same, check_true
    use rbs_base_constants, only: pi
@@ -37,10 +37,10 @@ contains
                unit_test('potential of small rotations, without cancellation', small_potential), &
                unit_test('the derivative of the potential is the force', potential_force), &
                unit_test('small rotations: pdelta to third order', small_rotations), &
-               unit_test('small rotations: openings go their own way to second order', small_openings), &
+               unit_test('small rotations: openings are not coupled to second order', small_openings), &
                unit_test('a rigid rotation of the column is not felt in the joints above', rigid_rotation), &
                unit_test('a full turn of any joint changes nothing', full_turns), &
-               unit_test('who falls freely has no weight', free_fall)]
+               unit_test('in free fall the column has no weight', free_fall)]
    end subroutine collect_finite
 
    !> Accelerations of a state.
@@ -271,7 +271,7 @@ contains
       end do
    end subroutine kinetic
 
-   !> P (y_T - height) + sum m g (y - y_0) over the own masses.
+   !> P (y_T - height) + sum m g (y - y_0) over the masses of the bodies.
    subroutine potential(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
@@ -339,7 +339,7 @@ contains
                        1.0e-11_wp*maxval(abs(slope)), 'force')
    end subroutine potential_force
 
-   !> One unknown moved.
+   !> The unknowns with one of them changed.
    pure function moved(q, i, by) result(there)
       real(wp), intent(in) :: q(:), by
       integer, intent(in) :: i
@@ -349,7 +349,7 @@ contains
       there(i) = q(i) + by
    end function moved
 
-   !> M q'' + f + K_G q = a F - b a_g is left out at the third order only; the motion is odd in the state.
+   !> M q'' + f + K_G q = a F - b a_g holds up to terms of third order, as the motion is odd in the state.
    subroutine small_rotations(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 5
@@ -378,7 +378,7 @@ contains
       call check_close(error, away(1)/away(2), 8.0_wp, 0.01_wp, 0.0_wp, 'third order')
    end subroutine small_rotations
 
-   !> Openings about the equilibrium N_i = -`axial_joint` couple with nothing at first order.
+   !> Openings about the equilibrium N_i = -`axial_joint` are not coupled to other unknowns at first order.
    subroutine small_openings(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 5
@@ -408,7 +408,7 @@ contains
       call check_close(error, away(1)/away(2), 4.0_wp, 0.01_wp, 0.0_wp, 'second order')
    end subroutine small_openings
 
-   !> A chain on which the ground does not act turns as a whole: what its joints do is the same.
+   !> A chain without ground motion turns as a whole: the motion of its joints is the same.
    subroutine rigid_rotation(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 4
@@ -457,7 +457,7 @@ contains
       end do
    end subroutine full_turns
 
-   !> A ground that falls with g takes the weight of the bodies away.
+   !> If the ground falls with g, the bodies have no weight.
    subroutine free_fall(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random

@@ -30,14 +30,14 @@ module test_history
 
    public :: collect_history
 
-   !> Takes a few rows, then fails, as a full disk does.
+   !> Accepts a few rows, then fails like a full disk.
    type, extends(recorder_type) :: failing_recorder
       integer :: count = 0
    contains
       procedure :: record => record_and_fail
    end type failing_recorder
 
-   !> Counts how often it is told, and remembers the last share.
+   !> Counts the reports of progress, and keeps the last share.
    type, extends(observer_type) :: counting_progress
       integer :: count = 0
       real(wp) :: share = 0.0_wp
@@ -60,18 +60,18 @@ contains
                unit_test('a step beyond the limit is refused, with the limit', refused), &
                unit_test('misprint E6: eq 4 keeps its energy, finite rotation', misprint_e6), &
                unit_test('finite rotation: energy under force, ground, axial load, damping', finite_energy), &
-               unit_test('finite rotation begins as small rotation', finite_small), &
+               unit_test('finite rotation starts as small rotation', finite_small), &
                unit_test('energy balance of a linear chain under everything', chain_energy), &
                unit_test('nonlinear: springs follow their rules, to the last bit', spring_rows), &
                unit_test('nonlinear: the energy residual shrinks with the step', energy_converges), &
                unit_test('slow force-driven loading approaches the static path', slow_loading), &
-               unit_test('initial state: the springs get there from zero', initial), &
-               unit_test('rows: begin, every n-th, the last', rows), &
+               unit_test('initial state: the springs move there from zero', initial), &
+               unit_test('rows: the first, every n-th, the last', rows), &
                unit_test('free steps end exactly at the end', free_steps), &
-               unit_test('a column that falls: an error, the rows up to there', falling), &
+               unit_test('a column that falls: an error, with the rows before it', falling), &
                unit_test('a recorder that fails ends the run', failing), &
-               unit_test('progress is told in ascending shares', progress), &
-               unit_test('input that is no number is refused', not_a_number)]
+               unit_test('progress is reported in ascending shares', progress), &
+               unit_test('input that is not a number is refused', not_a_number)]
    end subroutine collect_history
 
    subroutine record_and_fail(self, row, error)
@@ -128,7 +128,7 @@ contains
       call check_passed(error, outcome, 'find_modes')
       allocate (data%initial%deformation(2*n))
       do mode = 1, 2*n
-         ! Where the cosine is steep, the error of the phase is seen.
+         ! The error of the phase is visible where the cosine is steep.
          finish = 4.7_wp/modes%omega(mode)
          data%initial%deformation(:) = 1.0e-3_wp*modes%shapes(:, mode)
          h = min(finish/20, 0.9_wp*modes%stable_step)
@@ -199,7 +199,7 @@ contains
       end do
    end function harmonic
 
-   !> The table has a point at every half step, where RK4 asks for the load: no error of interpolation.
+   !> The table has a point at every half step, where RK4 needs the load: no error of interpolation.
    subroutine harmonic_orders(error, by_ground)
       type(error_type), allocatable, intent(inout) :: error
       logical, intent(in) :: by_ground
@@ -287,7 +287,7 @@ contains
       call check_equal(error, data%summary%events, 0, 'no spring has left its first line')
    end subroutine ramp
 
-   !> March with a step that no plan would allow: the limit is where the scheme itself fails.
+   !> Integrate with a step that no plan would allow: the limit is that of the scheme itself.
    subroutine limit(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -571,9 +571,9 @@ contains
       call check_passed(error, data%outcome, 'run')
       if (allocated(error)) return
       call follow_path(column%spring(2), [3.0_wp*d_y], f)
-      call check_same(error, data%rows(row_joints + 3, 1), f(1), 'moment at the begin')
-      call check_same(error, data%rows(row_kinetic, 1), 0.5_wp*mass_1, 'kinetic energy at the begin')
-      call check_same(error, data%rows(row_residual, 1), 0.0_wp, 'the balance begins at zero')
+      call check_same(error, data%rows(row_joints + 3, 1), f(1), 'moment at the start')
+      call check_same(error, data%rows(row_kinetic, 1), 0.5_wp*mass_1, 'kinetic energy at the start')
+      call check_same(error, data%rows(row_residual, 1), 0.0_wp, 'the balance starts at zero')
    end subroutine initial
 
    subroutine rows(error)
@@ -596,7 +596,7 @@ contains
       call check_close(error, data%rows(row_force, :), data%force, 1.0e-14_wp, 0.0_wp, 'force')
       call check_equal(error, size(data%rows, 2), 11, 'rows')
 
-      ! With `every` it is the steps that count.
+      ! `every` counts steps.
       steps = data%summary%steps
       fine%time = data%time
       fine%force = data%force
@@ -611,8 +611,8 @@ contains
       call run(thin, column)
       call check_passed(error, thin%outcome, 'every 7th step')
       if (allocated(error)) return
-      call check_true(error, mod(steps, 7) /= 0, 'the last step is none of them')
-      call check_equal(error, thin%summary%rows, steps/7 + 2, 'rows: begin, every 7th, the last')
+      call check_true(error, mod(steps, 7) /= 0, 'the last step is not one of them')
+      call check_equal(error, thin%summary%rows, steps/7 + 2, 'rows: the start, every 7th, the last')
       call check_same(error, pack(thin%rows(:, :steps/7 + 1), .true.), pack(fine%rows(:, ::7), .true.), &
                       'every 7th step')
       call check_same(error, thin%rows(:, steps/7 + 2), fine%rows(:, steps + 1), 'the last step')
@@ -636,12 +636,12 @@ contains
       call check_passed(error, data%outcome, 'run')
       if (allocated(error)) return
       last = size(data%rows, 2)
-      call check_equal(error, last, 22, 'rows: the begin, 20 steps and a half one')
-      call check_same(error, data%rows(row_time, [1, last]), data%time, 'begin and end')
+      call check_equal(error, last, 22, 'rows: the start, 20 steps and a half one')
+      call check_same(error, data%rows(row_time, [1, last]), data%time, 'start and end')
       call check_close(error, data%rows(row_time, last - 1), 1.02_wp, 1.0e-15_wp, 0.0_wp, 'last whole step')
    end subroutine free_steps
 
-   !> P l above k_u: once yielded, the column falls, and falls without end with linear geometry.
+   !> P l above k_u: after yield the column falls, and with linear geometry it falls without end.
    subroutine falling(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data
@@ -700,7 +700,7 @@ contains
       call run_dynamic(column, data%analysis, plan, data%time, none, data%initial, unset_integer, recorder, &
                        summary, outcome, told)
       call check_passed(error, outcome, 'run')
-      call check_equal(error, told%count, 12, 'times told')
+      call check_equal(error, told%count, 12, 'number of reports')
       call check_true(error, told%ascends .and. told%share <= 1.0_wp, 'shares')
    end subroutine progress
 

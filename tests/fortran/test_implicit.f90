@@ -1,5 +1,5 @@
 !> The implicit steppers: the scalar theory step by step, orders, damping of high frequencies, energy, stiff
-!> chains, contact, and the way back from a step that fails.
+!> chains, contact, and the recovery from a step that fails.
 module test_implicit
    use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_same, check_true
    use rbs_base_constants, only: pi
@@ -30,7 +30,7 @@ contains
       type(unit_test), allocatable, intent(out) :: tests(:)
 
       tests = [unit_test('one mass: the steps of the scalar theory', scalar_theory), &
-               unit_test('infinite frequency: the spectral radius that was asked for', high_frequency), &
+               unit_test('infinite frequency: the spectral radius of the input', high_frequency), &
                unit_test('free and damped vibration: closed form, order 2', vibration), &
                unit_test('order 2 through yielding and unloading', yielding_order), &
                unit_test('average acceleration keeps the energy of elastic chains', elastic_energy), &
@@ -41,15 +41,15 @@ contains
                unit_test('modal damping of a column that yields, against rk45', modal_yielding), &
                unit_test('present stiffness in the damping, against rk45', tangent_damping), &
                unit_test('a step much longer than all periods stays bounded', long_step), &
-               unit_test('stiff chains come to rest where statics says', stiff_chain), &
+               unit_test('stiff chains come to rest at the static solution', stiff_chain), &
                unit_test('stiff chains that yield', stiff_yielding), &
                unit_test('a contact that bounces, against the closed form', bounce), &
                unit_test('a chain of contacts falls onto its base', impact), &
                unit_test('a column that falls has no bounds', falling), &
-               unit_test('a step that fails leaves no trace', no_trace), &
+               unit_test('a step that fails has no effect', no_trace), &
                unit_test('a failure names spring and time', failure), &
-               unit_test('steps of all lengths, in any order', halves), &
-               unit_test('very short steps from a velocity alone', short_steps)]
+               unit_test('steps of all lengths in any order', halves), &
+               unit_test('very short steps from an initial velocity alone', short_steps)]
    end subroutine collect_implicit
 
    !> One of the methods by number.
@@ -162,7 +162,7 @@ contains
                              'method '//to_text(number))
          end do
          if (number > 3 .and. rho < 0.6_wp) then
-            call check_true(error, abs(w(12)) < 0.3_wp*abs(w(0)), 'it dies away')
+            call check_true(error, abs(w(12)) < 0.3_wp*abs(w(0)), 'the motion decays')
          end if
       end do
    end subroutine high_frequency
@@ -214,7 +214,7 @@ contains
       end do
    end subroutine vibration
 
-   !> Where within the step a line ends is by chance: order 2 on the mean over five halvings.
+   !> A line ends at a random place within the step: order 2 in the mean over five halvings.
    subroutine yielding_order(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -292,8 +292,8 @@ contains
       end do
    end subroutine elastic_energy
 
-   !> Generalised-alpha with rho = 0.8 and 20 steps a period: the amplitude falls by less than 0.1 per cent a
-   !> period, and never grows.
+   !> Generalised-alpha with rho = 0.8 and 20 steps per period: the amplitude decreases by less than 0.1 per
+   !> cent per period, and never grows.
    subroutine low_frequency(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -407,7 +407,7 @@ contains
       end do
    end subroutine axial_history
 
-   !> Each mode by itself: exp(-zeta w t) (cos w_d t + ...), every mode with its own ratio.
+   !> Each mode separately: exp(-zeta w t) (cos w_d t + ...), every mode with its own ratio.
    subroutine modal_decay(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -425,7 +425,7 @@ contains
       allocate (spec%axial_spring(1))
       spec%axial_spring(1) = elastic(2.0e9_wp)
       scene%column = made(spec)
-      ! The openings vibrate about what the axial load closes.
+      ! The openings vibrate about their values under the axial load.
       rest = 0.0_wp
       rest(5:) = -1.0e7_wp/2.0e9_wp
       call find_modes(scene%column, modes, outcome)
@@ -578,7 +578,7 @@ contains
          spec = chain(bodies(i), 'small')
          allocate (spec%axial_spring(1))
          spec%axial_spring(1) = elastic(2.0e9_wp*bodies(i))
-         ! The same column, finer: equal flexibility and mass in all.
+         ! The same column in more bodies, with equal total flexibility and mass.
          do j = 1, size(spec%shear)
             call spec%shear(j)%set('k', spec%shear(j)%get('k')*bodies(i))
             call spec%flexure(j)%set('k', spec%flexure(j)%get('k')*bodies(i))
@@ -597,7 +597,7 @@ contains
                call stepper%advance(state, 0.2_wp, outcome)
                call check_passed(error, outcome, 'n = '//to_text(bodies(i)))
             end do
-            ! With hundreds of bodies the first forces of damping are differences of round-off.
+            ! With hundreds of bodies the first damping forces consist of round-off.
             if (i == 1) call check_equal(error, stepper%cut_steps, 0, 'no step is cut')
             call check_true(error, stepper%cut_steps < 20, 'cut steps: '//to_text(stepper%cut_steps))
             call check_close(error, state%q, expected, 1.0e-6_wp, 0.0_wp, 'n = '//to_text(bodies(i))// &
@@ -606,7 +606,7 @@ contains
       end do
    end subroutine stiff_chain
 
-   !> Many springs that change their lines in one step: no cut, energy to the order of the step.
+   !> Many springs change their lines in one step: it is not cut, and the energy has the order of the step.
    subroutine stiff_yielding(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: bodies(2) = [200, 1000]
@@ -622,7 +622,7 @@ contains
          spec = column_1('pdelta')
          spec%n = bodies(i)
          share = 1.0_wp/bodies(i)
-         ! The flexibility of one joint, spread over all; shear elastic.
+         ! The flexibility of one joint, distributed over all; shear is elastic.
          spec%shear(1) = elastic(spec%shear(1)%get('k')*bodies(i))
          call spec%flexure(1)%set('k_c', spec%flexure(1)%get('k_c')*bodies(i))
          call spec%flexure(1)%set('k_y', spec%flexure(1)%get('k_y')*bodies(i))
@@ -648,7 +648,7 @@ contains
       end do
    end subroutine stiff_yielding
 
-   !> The contact of the explicit tests: five falls, the energy of the last flight.
+   !> The contact of the explicit tests: five impacts, and the energy of the last flight.
    subroutine bounce(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -678,7 +678,7 @@ contains
          call check_true(error, wrong(3) < 2.0e-4_wp .and. wrong(3) < 0.1_wp*wrong(1), 'method '// &
                          to_text(number)//': '//to_text(wrong(3)))
          call check_equal(error, state%springs%events, 11, 'opened six times, closed five times')
-         ! The contact itself has taken nothing.
+         ! The contact itself has dissipated nothing.
          call check_close(error, state%springs%work(3), 0.0_wp, 0.0_wp, 1.0e-12_wp*mass*v0**2, 'work')
       end do
    end subroutine bounce
@@ -710,10 +710,10 @@ contains
          do step = 1, 1000
             call stepper%advance(state, 2.0e-3_wp, outcome)
             call check_passed(error, outcome, 'method '//to_text(number))
-            call check_true(error, all(abs(state%q) < 1.0_wp), 'method '//to_text(number)//': it flies away')
+            call check_true(error, all(abs(state%q) < 1.0_wp), 'method '//to_text(number)//': unbounded')
             if (allocated(error)) return
          end do
-         ! They lie on each other: the weight above over the stiffness.
+         ! At rest each joint is closed by the weight above over its stiffness.
          if (number == 5 .or. number == 6) then
             call check_close(error, state%q(2*n + 1:), -scene%column%axial_joint/1.0e9_wp, 0.0_wp, &
                              1.0e-7_wp, 'method '//to_text(number)//': they lie')
@@ -721,7 +721,8 @@ contains
       end do
    end subroutine impact
 
-   !> Beyond the critical load of the yielded springs the column falls: an error or no bounds, no crash.
+   !> Beyond the critical load of the yielded springs the column falls: an error or unbounded values, but no
+   !> crash.
    subroutine falling(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -757,7 +758,7 @@ contains
       end do
    end subroutine falling
 
-   !> Force the failure of a step in the middle of a run, after all its work; then go on.
+   !> Force a step to fail in the middle of a run, after all its work; then continue.
    subroutine no_trace(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -831,12 +832,12 @@ contains
       call check_failed(error, outcome, analysis_failed, 's at time 0.25 s does not converge')
       call check_failed(error, outcome, analysis_failed, ' spring of joint ')
       call check_true(error, stepper%cut_steps > 20, 'cut steps')
-      ! An error that is there already: nothing moves.
+      ! If there is an error already, nothing moves.
       call stepper%advance(state, 0.01_wp, outcome)
       call check_same(error, state%time, 0.25_wp, 'time')
    end subroutine failure
 
-   !> Steps that differ by four orders, on a column whose springs know many lines.
+   !> Steps that differ by four orders of magnitude, on a column whose springs have many lines.
    subroutine halves(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -869,8 +870,8 @@ contains
       end do
    end subroutine halves
 
-   !> At the begin there are no forces, and those of the first step are small differences of large numbers:
-   !> nothing but the velocity tells what is round-off.
+   !> At the start there are no forces, and those of the first step are small differences of large numbers:
+   !> only the velocity shows the size of round-off.
    subroutine short_steps(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -896,7 +897,7 @@ contains
                end do
                call check_equal(error, stepper%cut_steps, 0, 'n = '//to_text(bodies(j))//', method '// &
                                 to_text(number)//', step of '//to_text(h(i))//' s: cut steps')
-               ! It has not had time to be stopped.
+               ! The time is too short for the column to stop.
                if (h(i) < 2.0e-7_wp) then
                   call check_close(error, state%q(bodies(j) + 1), 5.0_wp*h(i)*v(bodies(j) + 1), 1.0e-2_wp, &
                                    0.0_wp, 'rotation')

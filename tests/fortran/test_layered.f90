@@ -21,15 +21,15 @@ module test_layered
    !> A section 0.4 m deep: bars at +-0.17 m, strips of concrete between.
    real(wp), parameter :: arm = 0.17_wp, depth = 0.4_wp
 
-   !> A joint, and its layers once more as springs on their own.
+   !> A joint, and copies of its layers as separate springs.
    type :: double_joint
       class(rule_type), allocatable :: rule
       type(segment) :: line
       type(spring_array) :: layers
       real(wp), allocatable :: y(:)
-      !> Present rotation [rad], axial load [N], axial stiffness at first [N/m]
+      !> Present rotation [rad], axial load [N], initial axial stiffness [N/m]
       real(wp) :: rotation = 0.0_wp, axial_load = 0.0_wp, stiffness = 0.0_wp
-      !> Largest faults so far, over the largest force of a layer and that times the depth
+      !> Largest errors so far, relative to the largest force of a layer, and to that times the depth
       real(wp) :: axial_fault = 0.0_wp, moment_fault = 0.0_wp, largest = 1.0_wp
       integer :: events = 0
    contains
@@ -47,13 +47,13 @@ contains
                unit_test('perfectly plastic layers: moment capacity under axial load', capacity), &
                unit_test('joint without tension: axial load times its arm', rocking), &
                unit_test('axial load: carried by the layers at every event', equilibrium), &
-               unit_test('axial load: round bars, but for their chords', round_bars), &
+               unit_test('axial load: rounded steel, to the error of its chords', round_bars), &
                unit_test('virgin joint of an unsymmetric section has no moment', unsymmetric), &
                unit_test('order of the layers does not matter', order), &
                unit_test('a layer cut in two is the same layer', cut_layer), &
                unit_test('property 2: 1, 7, 100 increments, to the last bit', increments), &
                unit_test('copies and trial moves leave no trace', copies), &
-               unit_test('start forgets everything', forgets), &
+               unit_test('start clears the memory', forgets), &
                unit_test('initial stiffness is the slope of the first line', first_slope), &
                unit_test('axial load beyond the capacity is refused', refused), &
                unit_test('validation names layer, value and remedy', validation)]
@@ -111,7 +111,7 @@ contains
       call self%compare()
    end subroutine begin
 
-   !> Rotate in a straight way and compare at every event.
+   !> Rotate in one direction and compare at every event.
    subroutine turn_to(self, rotation)
       class(double_joint), intent(inout) :: self
       real(wp), intent(in) :: rotation
@@ -136,7 +136,7 @@ contains
       call self%compare()
    end subroutine turn_to
 
-   !> Forces of the layers on their own against what the joint says.
+   !> Compare the forces of the separate layers with those of the joint.
    subroutine compare(self)
       class(double_joint), intent(inout) :: self
       real(wp) :: force(size(self%y)), d(size(self%y))
@@ -172,14 +172,14 @@ contains
       y(n + 1) = arm
       layer(n + 1) = elastic(ea_bar)
       call follow_path(joint(3.0e5_wp, y, layer), [1.0e-3_wp, -2.0e-3_wp], f)
-      ! A strip lacks h^2/12 of its own: 1/n^2 of the whole.
+      ! A strip has no second moment h^2/12 of its own: an error of 1/n^2 of the whole.
       centroid = ea_bar*arm/(ea + ea_bar)
       ei = ea*(depth**2/12.0_wp*(1.0_wp - 1.0_wp/n**2) + centroid**2) + ea_bar*(arm - centroid)**2
       call check_close(error, f, ei*[1.0e-3_wp, -2.0e-3_wp], 1.0e-11_wp, 0.0_wp, 'moment')
    end subroutine elastic_section
 
-   !> All layers yield: those beyond the plastic neutral axis in tension. It lies at a layer that carries
-   !> what is left.
+   !> All layers yield, those beyond the plastic neutral axis in tension. The axis is at a layer that carries
+   !> the remaining force.
    subroutine capacity(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 21
@@ -202,7 +202,7 @@ contains
       end do
    end subroutine capacity
 
-   !> Blocks that only push: the joint opens until it stands on the last one.
+   !> Layers with compression only: the joint opens until it is supported by the last one.
    subroutine rocking(error)
       type(error_type), allocatable, intent(inout) :: error
       type(spring_record) :: layer(20)
@@ -221,7 +221,7 @@ contains
       call check_close(error, f(3), 0.0_wp, 0.0_wp, 1.0e-8_wp, 'and back')
    end subroutine rocking
 
-   !> Bars that yield with corners: the layers on their own follow the same lines.
+   !> Bilinear bars: the separate layers follow the same lines.
    subroutine equilibrium(error)
       type(error_type), allocatable, intent(inout) :: error
       type(double_joint) :: both
@@ -249,7 +249,7 @@ contains
       call check_true(error, events > 5000, 'many events')
    end subroutine equilibrium
 
-   !> Round bars: chords begin elsewhere where the joint stops on the way, which the layers do not know.
+   !> Rounded steel: the joint starts chords at its stops, where the separate layers do not.
    subroutine round_bars(error)
       type(error_type), allocatable, intent(inout) :: error
       type(double_joint) :: both
@@ -266,7 +266,7 @@ contains
       end do
    end subroutine round_bars
 
-   !> Bars on one side only: under the axial load alone the joint turns, and counts from there.
+   !> Bars on one side only: the joint rotates under the axial load alone, and measures from there.
    subroutine unsymmetric(error)
       type(error_type), allocatable, intent(inout) :: error
       type(spring_record) :: layer(9)
@@ -453,7 +453,7 @@ contains
                   'layer 1: f_peak = 1e+07 must be below k d_peak = 9.6e+06')
    end subroutine validation
 
-   !> What validation says of a spring, empty for nothing.
+   !> The messages of the validation of a spring; empty if it is valid.
    subroutine expect(error, spec, part)
       type(error_type), allocatable, intent(inout) :: error
       type(spring_record), intent(in) :: spec

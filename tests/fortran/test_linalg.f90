@@ -1,4 +1,4 @@
-!> LAPACK behind its wall: small systems by hand, and every way to fail.
+!> The interface to LAPACK: small systems by hand, and every possible failure.
 module test_linalg
    use check, only: unit_test, check_close, check_failed, check_passed, check_true
    use rbs_base_error, only: error_type, analysis_failed
@@ -22,7 +22,7 @@ contains
       tests = [unit_test('Cholesky solves, lower triangle only', positive), &
                unit_test('Cholesky refuses an indefinite matrix', indefinite), &
                unit_test('Cholesky refuses a singular matrix', semidefinite), &
-               unit_test('the inverse is whole and symmetric', inverse), &
+               unit_test('the inverse is complete and symmetric', inverse), &
                unit_test('inverse of a 6 by 6 Hilbert matrix, exact integers', hilbert), &
                unit_test('the inverse of an indefinite matrix is refused', no_inverse), &
                unit_test('elimination with pivots, two right-hand sides', general), &
@@ -96,7 +96,7 @@ contains
       end do
       call invert_positive(a, is_positive)
       call check_true(error, is_positive, 'positive definite')
-      ! Condition 1.5e7: nine digits must be left.
+      ! Condition 1.5e7: nine digits must remain.
       call check_close(error, a(1, :3), [36.0_wp, -630.0_wp, 3360.0_wp], 1.0e-8_wp, 0.0_wp, 'row 1')
       call check_close(error, a(6, 4:), [1552320.0_wp, -1746360.0_wp, 698544.0_wp], 1.0e-8_wp, &
                        0.0_wp, 'row 6')
@@ -117,7 +117,7 @@ contains
       real(wp) :: a(3, 3), b(3, 2)
       logical :: regular
 
-      ! A zero in the first place: needs pivots, as the bordered matrix of a driven top does.
+      ! A zero as first element needs pivots, like the bordered matrix of a driven top.
       a = reshape([0.0_wp, 1.0_wp, 2.0_wp, 1.0_wp, 0.0_wp, 1.0_wp, 3.0_wp, -1.0_wp, 0.0_wp], [3, 3])
       b(:, 1) = matmul(a, [1.0_wp, 2.0_wp, 3.0_wp])
       b(:, 2) = matmul(a, [-1.0_wp, 0.0_wp, 0.5_wp])
@@ -210,8 +210,8 @@ contains
       d = 1.0_wp
       call check_true(error, is_dominated(bending(n), d, largest*(1.0_wp + 1.0e-14_wp)), 'just above')
       call check_true(error, .not. is_dominated(bending(n), d, largest*(1.0_wp - 1.0e-14_wp)), 'just below')
-      ! Two by two, what is beyond the matrix is not read: 3 is the largest of (2 1; 1 2); with masses 1, 2
-      ! the larger root of 2 w^2 - 6 w + 3.
+      ! Two by two, as elements beyond the matrix are not read: 3 is the largest eigenvalue of (2 1; 1 2);
+      ! with masses 1, 2 it is the larger root of 2 w^2 - 6 w + 3.
       full = 7.0_wp
       full(1, :) = 2.0_wp
       full(2, 1) = 1.0_wp
@@ -282,7 +282,7 @@ contains
       call check_close(error, abs(u(1, 1)), 1.0_wp, 1.0e-15_wp, 0.0_wp, 'one vector')
    end subroutine graded
 
-   !> u' a has rows of the lengths w, at right angles.
+   !> The rows of u' a are orthogonal and have the lengths w.
    subroutine left_vectors(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 6

@@ -22,19 +22,19 @@ contains
 
       tests = [unit_test('eq 6 and misprint E5: frequencies of column 1', eq_6), &
                unit_test('modes diagonalise mass and stiffness', orthogonal), &
-               unit_test('an axial load takes P l from k_M', axial), &
-               unit_test('a chain of equal bodies comes to the cantilever', cantilever), &
+               unit_test('an axial load reduces k_M by P l', axial), &
+               unit_test('a chain of equal bodies converges to the cantilever', cantilever), &
                unit_test('stable step without damping: 2 sqrt(2)/omega', plain_step), &
                unit_test('stable step with damping is on the edge |R| = 1', damped_step), &
                unit_test('stable step under axial load is the shorter one', axial_step), &
                unit_test('a column that buckles by itself has no modes', buckling), &
-               unit_test('openings are modes of their own', openings), &
+               unit_test('openings are separate modes', openings), &
                unit_test('lowest and highest frequency in O(n) are those of all modes', bounds), &
                unit_test('lowest and highest frequency of 10000 bodies', bounds_long), &
                unit_test('stability limit of chains with damping is on the edge |R| = 1', chain_steps), &
-               unit_test('the modes between two have no shorter limit', unimodal), &
+               unit_test('modes between two others have no shorter limit', unimodal), &
                unit_test('modal damping: exact for elastic springs, safe for others', modal_step), &
-               unit_test('damping that follows the present lines leaves with them', tangent_step), &
+               unit_test('damping from present stiffness ends with that stiffness', tangent_step), &
                unit_test('near the critical load the modes come with a warning', near_critical), &
                unit_test('all modes of too many bodies are refused', too_many)]
    end subroutine collect_modal
@@ -120,8 +120,8 @@ contains
       end do
    end subroutine axial
 
-   !> Bending of a slender elastic cantilever, omega = 1.875104^2 sqrt(E I/(m l^3)); each flexural
-   !> spring stands for the length of one body (the lowest for a half): error of second order in 1/n.
+   !> Bending of a slender elastic cantilever, omega = 1.875104^2 sqrt(E I/(m l^3)); each flexural spring
+   !> represents the length of one body (the lowest a half): error of second order in 1/n.
    subroutine cantilever(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -331,8 +331,8 @@ contains
       end do
    end subroutine bounds
 
-   !> The cantilever of above; in the highest mode all bodies far from the ends turn alike and slide back:
-   !> omega^2 = k_V l^2/I, twenty powers of ten above the square of the lowest one.
+   !> The cantilever above; in the highest mode all bodies far from the ends rotate equally and slip back:
+   !> omega^2 = k_V l^2/I, twenty orders of magnitude above the square of the lowest one.
    subroutine bounds_long(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -385,9 +385,9 @@ contains
       end do
    end subroutine chain_steps
 
-   !> Why two modes are enough: the limit of a mode with c = alpha + beta omega^2 rises with omega and then
-   !> falls; on a ladder of frequencies it never rises again. In units of sqrt(alpha/beta) there is only one
-   !> number. With alpha alone: the springs of a mode soften.
+   !> Why two modes are enough: the limit of a mode with c = alpha + beta omega^2 first increases with omega
+   !> and then decreases; over a series of frequencies it never increases again. In units of sqrt(alpha/beta)
+   !> there is only one parameter. With alpha alone: the springs of a mode soften.
    subroutine unimodal(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: rungs = 1000
@@ -411,7 +411,7 @@ contains
       end do
    end subroutine unimodal
 
-   !> Longest step h at which RK4 lets no motion of q'' + c q' + omega^2 q = 0 grow.
+   !> Longest step h at which no motion of q'' + c q' + omega^2 q = 0 grows in RK4.
    pure real(wp) function edge(omega, c) result(below)
       real(wp), intent(in) :: omega, c
       real(wp) :: above, h
@@ -429,8 +429,8 @@ contains
       end do
    end function edge
 
-   !> Elastic, one ratio: as one mode of the highest frequency. Otherwise no more than the half disc of
-   !> radius 2.615587 over the highest frequency, and no less for ratios up to one half.
+   !> Elastic springs with one ratio: like one mode of the highest frequency. Otherwise at most the radius
+   !> 2.615587 of a half disc over the highest frequency, and not less for ratios up to one half.
    subroutine modal_step(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 4
@@ -466,7 +466,7 @@ contains
       end do
    end subroutine modal_step
 
-   !> Springs that yield leave their initial damping behind, -c; if it follows the lines it goes with them.
+   !> When springs yield, their initial damping -c remains; damping from the present stiffness does not.
    subroutine tangent_step(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome

@@ -1,4 +1,4 @@
-!> The peak-oriented and the pinching spring: the sequences by hand of docs/rules.md.
+!> The peak-oriented and the pinching spring: sequences of docs/rules.md, computed by hand.
 module test_peak_oriented
    use check, only: unit_test, check_close
    use rbs_base_error, only: error_type
@@ -10,7 +10,7 @@ module test_peak_oriented
 
    public :: collect_peak_oriented
 
-   !> What the excursion from zero to 2 and back to zero force dissipates, 94.5.
+   !> Energy that the excursion from zero to 2 and back to zero force dissipates, 94.5.
    real(wp), parameter :: energy = 50.0_wp + 105.0_wp - 0.5_wp*110.0_wp**2/100.0_wp
 
    real(wp), parameter :: close = 1.0e-12_wp
@@ -21,13 +21,13 @@ contains
       type(unit_test), allocatable, intent(out) :: tests(:)
 
       tests = [unit_test('backbone, residual and rupture', backbone), &
-               unit_test('cracking: unloading aims at the cracking point of the other side', cracking), &
+               unit_test('cracking: unloading leads to the cracking point of the other side', cracking), &
                unit_test('unloading, reloading to yield, to the peaks, past the cap', sequence), &
-               unit_test('reloading takes the steeper way over the last turn', last_turn), &
+               unit_test('reloading takes the steeper line over the last turn', last_turn), &
                unit_test('pinching: the break, with and without a permanent deformation', pinching), &
                unit_test('strength deteriorates', strength), &
                unit_test('the softening line deteriorates', softening), &
-               unit_test('the unloading stiffness deteriorates where the side turns back', unloading), &
+               unit_test('the unloading stiffness deteriorates where the motion turns back', unloading), &
                unit_test('the target of reloading moves outward', target)]
    end subroutine collect_peak_oriented
 
@@ -164,7 +164,7 @@ contains
       call expect(error, spec, [2.0_wp, -8.0_wp], [110.0_wp, -(150.0_wp*left - 80.0_wp)], 'forces')
    end subroutine softening
 
-   !> Reckoned where the side turns back, from what is not given back.
+   !> Computed where the motion turns back, from the energy that unloading will not return.
    subroutine unloading(error)
       type(error_type), allocatable, intent(inout) :: error
       type(spring_record) :: spec

@@ -21,7 +21,7 @@ contains
                unit_test('the whole is repeated', repeats), &
                unit_test('drift, units and scale', units), &
                unit_test('time: number of the point, or by the period', times), &
-               unit_test('a protocol too long to be meant is refused', too_long)]
+               unit_test('a protocol with too many points is refused', too_long)]
    end subroutine collect_protocol
 
    type(loading_record) function protocol(amplitudes, points) result(spec)

@@ -19,13 +19,13 @@ contains
    subroutine collect_results(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
-      tests = [unit_test('places of a row are all different and fill it', places), &
+      tests = [unit_test('columns of a row are all different and fill it', places), &
                unit_test('labels carry joint and unit', labels), &
                unit_test('labels of joints that open', labels_of_openings), &
                unit_test('recorder keeps rows until it is full', recorder), &
                unit_test('recorder keeps nothing after an error', recorder_after_error), &
-               unit_test('summary sees peaks with sign, kept or not', peaks), &
-               unit_test('summary sees the energies of kept rows', energies), &
+               unit_test('summary has peaks with sign, of kept and other rows', peaks), &
+               unit_test('summary has the energies of kept rows', energies), &
                unit_test('summary as an array, in the order of its names', as_array)]
    end subroutine collect_results
 
@@ -115,7 +115,7 @@ contains
       call check_true(error, allocated(outcome), 'the error is still there')
    end subroutine recorder_after_error
 
-   !> A row with a displacement, a force, and energies that are told apart.
+   !> A row with a displacement, a force, and energies that all differ.
    pure function row_of(displacement, force, residual) result(row)
       real(wp), intent(in) :: displacement, force, residual
       real(wp) :: row(14)

@@ -1,5 +1,5 @@
-!> What a run decides and tells: the method, its steps, the end by collapse or failure, the state at the
-!> begin; and that every method gives the same answer in any units.
+!> The decisions and messages of a run: the method, its steps, the end by collapse or failure, the initial
+!> state; and that every method gives the same answer in any units.
 module test_run
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_finite
    use check, only: unit_test, check_close, check_contains, check_equal, check_failed, check_passed, &
@@ -34,7 +34,7 @@ module test_run
       'rk4              ', 'rk4              ', 'rk45             ', 'newmark          ', &
       'hht              ', 'generalised_alpha']
 
-   !> Takes a few steps, then fails in the middle of one.
+   !> Makes a few steps, then fails in the middle of one.
    type, extends(stepper_type) :: failing_stepper
       integer :: count = 0
    contains
@@ -49,26 +49,26 @@ contains
       tests = [unit_test('all methods agree', agreement), &
                unit_test('any units: the same answer, to the last bit', units), &
                unit_test('collapse ends the run, and is no failure', collapse), &
-               unit_test('a collapse that does not come', no_collapse), &
-               unit_test('without that criterion the fall is an error', no_bounds), &
-               unit_test('a step beyond the limit: refused, or taken at the risk', unstable), &
-               unit_test('a dt that other methods take', long_dt), &
+               unit_test('a collapse that does not occur', no_collapse), &
+               unit_test('without a criterion of collapse the fall is an error', no_bounds), &
+               unit_test('a step beyond the limit: refused, unless it is allowed', unstable), &
+               unit_test('a dt that other methods accept', long_dt), &
                unit_test('what a method cannot do is refused', refused), &
-               unit_test('loads that would do nothing are refused', idle_loads), &
+               unit_test('loads without effect are refused', idle_loads), &
                unit_test('auto: the choice', choice), &
                unit_test('auto: the reason is true', reason), &
-               unit_test('auto is the method that it names', auto_is_method), &
+               unit_test('auto gives the results of the method that it names', auto_is_method), &
                unit_test('joints closed by load and weight stay at rest', at_rest), &
                unit_test('joints that cannot carry their load', cannot_carry), &
-               unit_test('openings at the begin, given or found', openings), &
+               unit_test('initial openings, given or found', openings), &
                unit_test('a stepper that fails: the rows up to the last good state', failing), &
                unit_test('rows of methods with steps of their own', rows), &
-               unit_test('a late clock: the same motion, no more steps', late), &
+               unit_test('times far from zero: the same motion, no more steps', late), &
                unit_test('initial values must be numbers', initial_numbers), &
                unit_test('the largest rotation is that of a body', peak_rotation)]
    end subroutine collect_run
 
-   !> Ask for a method by number.
+   !> The record of a method by number.
    subroutine ask(data, method)
       type(run_data), intent(inout) :: data
       integer, intent(in) :: method
@@ -80,7 +80,7 @@ contains
       if (method == 3) data%analysis%tolerance = 1.0e-9_wp
    end subroutine ask
 
-   !> A column with all that it can have, scaled to other units of length, mass and time.
+   !> A column with all optional properties, scaled to other units of length, mass and time.
    type(column_record) function scaled(kinematics, length, mass, time) result(spec)
       character(len=*), intent(in) :: kinematics
       real(wp), intent(in) :: length, mass, time
@@ -165,7 +165,7 @@ contains
       end do
    end subroutine agreement
 
-   !> Powers of two change no digit: what depends on the units has a constant with units inside.
+   !> Powers of two change no digit: a result that depends on the units has a constant with units in it.
    subroutine units(error)
       type(error_type), allocatable, intent(inout) :: error
       real(wp), parameter :: length = 2.0_wp**10, mass = 2.0_wp**(-6), time = 2.0_wp**4
@@ -214,7 +214,7 @@ contains
       end do
    end subroutine units
 
-   !> P l beyond the yielded stiffness: once pushed over, the column falls.
+   !> P l above the yielded stiffness: once it is pushed beyond yield, the column falls.
    subroutine fall(data, kinematics, n, spec)
       type(run_data), intent(inout) :: data
       character(len=*), intent(in) :: kinematics
@@ -252,7 +252,7 @@ contains
                   last = size(data%rows, 2)
                   call check_true(error, data%summary%collapsed, trim(method_name(method))//': collapsed')
                   call check_true(error, last > 1 .and. last < 1000, 'rows up to there')
-                  call check_equal(error, data%summary%rows, last, 'rows told')
+                  call check_equal(error, data%summary%rows, last, 'reported rows')
                   call check_true(error, abs(data%rows(row_displacement, last)) >= 0.05_wp*height_1, &
                                   'the last row has the drift')
                   call check_true(error, maxval(abs(data%rows(row_displacement, :last - 1))) &
@@ -427,7 +427,7 @@ contains
       call check_passed(error, data%outcome, 'openings')
    end subroutine idle_loads
 
-   !> Stiff: many short bodies under a long loading.
+   !> A stiff problem: many short bodies under a long loading.
    type(column_record) function stiff() result(spec)
       integer, parameter :: n = 200
 
@@ -476,7 +476,7 @@ contains
       call check_contains(error, data%summary%reason, 'stiff', 'stiff')
    end subroutine choice
 
-   !> Numbers of steps that the reason tells are those of the plans.
+   !> Numbers of steps in the reason are those of the plans.
    subroutine reason(error)
       type(error_type), allocatable, intent(inout) :: error
       real(wp) :: time(51)
@@ -508,18 +508,18 @@ contains
          call check_passed(error, outcome, method)
       end subroutine planned
 
-      !> What is told is an upper bound: intervals of the loading are cut into whole numbers of steps.
+      !> The stated number is an upper bound: intervals of the loading are cut into whole numbers of steps.
       subroutine check_number(steps, told, what)
          integer, intent(in) :: steps
          real(wp), intent(in) :: told
          character(len=*), intent(in) :: what
 
-         ! Six digits are told.
+         ! The reason has six digits.
          call check_true(error, steps <= 1.00001_wp*told .and. steps >= 0.5_wp*told, &
-                         what//': told '//to_text(told)//' steps, planned '//to_text(steps))
+                         what//': reported '//to_text(told)//' steps, planned '//to_text(steps))
       end subroutine check_number
 
-      !> The number that follows a word.
+      !> The number after a word.
       real(wp) function number_after(text, word)
          character(len=*), intent(in) :: text, word
          integer :: at, status
@@ -556,12 +556,12 @@ contains
          call check_passed(error, named%outcome, auto%summary%method)
          if (allocated(error)) return
          call check_same(error, pack(auto%rows, .true.), pack(named%rows, .true.), auto%summary%method)
-         call check_true(error, named%summary%reason == '', 'a method that was asked for needs no reason')
+         call check_true(error, named%summary%reason == '', 'a method that the user names has no reason')
          call check_true(error, auto%summary%reason /= '', 'a reason for the choice')
       end do
    end subroutine auto_is_method
 
-   !> Nothing moves that has no cause to; whatever the axial springs are.
+   !> Nothing moves without a cause, with axial springs of every rule.
    subroutine at_rest(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data
@@ -609,12 +609,12 @@ contains
       call run(data, made(spec))
       call check_failed(error, data%outcome, analysis_failed, &
                         'the axial spring of joint 1 cannot carry the axial force of -100000 N')
-      ! A lift at the begin, against a load that is carried.
+      ! A lift at the start; the springs could carry the constant load alone.
       spec%axial_load = 1.0e5_wp
       data%axial = [-2.0e5_wp, 0.0_wp]
       call run(data, made(spec))
       call check_failed(error, data%outcome, analysis_failed, 'the axial force of -100000 N')
-      ! Openings that are given need no equilibrium.
+      ! Given openings need no equilibrium.
       data%initial%opening_given = .true.
       call run(data, made(spec))
       call check_passed(error, data%outcome, 'openings given')
@@ -631,7 +631,7 @@ contains
       spec%axial_spring(1) = elastic(1.0e9_wp)
       data%time = [0.0_wp, 1.0e-4_wp]
       data%axial = [1.0e6_wp, 1.0e6_wp]
-      ! What is said of openings counts only if they are given.
+      ! Openings of the initial state are used only if they are marked as given.
       data%initial%deformation = [1.0e-5_wp, 0.0_wp, 0.0_wp, 0.0_wp, 7.0_wp, 7.0_wp]
       call run(data, made(spec))
       call check_passed(error, data%outcome, 'found')
@@ -659,7 +659,7 @@ contains
       self%count = self%count + 1
       self%cut_steps = self%cut_steps + 1
       if (self%count == 8) then
-         ! Half of the step is good.
+         ! The first half of the step succeeds.
          state%time = state%time + 0.5_wp*h
          state%q(1) = 0.5_wp
          call fatal_error(error, analysis_failed, 'no way to go on at '//to_text(state%time)//' s')
@@ -698,18 +698,18 @@ contains
                          'the last row is the last good state')
          call check_same(error, kept([row_time, row_displacement], 2), [0.125_wp, 0.01_wp]*every, &
                          'a row before')
-         call check_equal(error, summary%rows, recorder%count, 'rows told')
-         call check_equal(error, summary%cut_steps, 8, 'cut steps told')
-         call check_equal(error, summary%steps, 7, 'steps told')
+         call check_equal(error, summary%rows, recorder%count, 'reported rows')
+         call check_equal(error, summary%cut_steps, 8, 'reported cut steps')
+         call check_equal(error, summary%steps, 7, 'reported steps')
       end do
-      ! In the very first step: the begin is the only row.
+      ! Failure in the very first step: the initial state is the only row.
       stepper = failing_stepper(count=7)
       recorder%count = 0
       call march(made(column_1('small')), plan, stepper, [0.0_wp, 1.0_wp], none, rest, unset, 1, recorder, &
                  summary, outcome)
       call check_failed(error, outcome, analysis_failed, 'no way to go on at 0.0625 s')
       call check_equal(error, recorder%count, 2, 'rows')
-      ! Where nothing of the first step is good, it is the only one.
+      ! If no part of the first step succeeds, the initial state is the only row.
       rest%velocity = [0.0_wp, 1.0_wp]
       call new_located(located, made(column_1('small')), 1.0e-10_wp, 1.0e-2_wp)
       located%shortest = 1.0e-2_wp
@@ -722,7 +722,7 @@ contains
       call check_equal(error, summary%steps, 0, 'steps')
    end subroutine failing
 
-   !> Steps of rk45 are its own; rows come after the steps of the plan.
+   !> rk45 chooses its own steps; rows follow the steps of the plan.
    subroutine rows(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data, fine
@@ -753,7 +753,7 @@ contains
       end do
    end subroutine rows
 
-   !> Times of ten thousand seconds have four digits less behind the point.
+   !> Times of ten thousand seconds have four decimal places less.
    subroutine late(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: early, late_one
@@ -800,7 +800,7 @@ contains
       call check_failed(error, data%outcome, bad_input, 'initial velocity: value 1 of 2 is 1e+60')
    end subroutine initial_numbers
 
-   !> Absolute, not relative to the body below.
+   !> Rotations are absolute, not relative to the body below.
    subroutine peak_rotation(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data

@@ -90,7 +90,7 @@ contains
       n = 0.8_wp + 15.0_wp/17.0_wp
       call check_close(error, concrete_stress(law, x*law%eps0), 15.0e6_wp*n*x/(n - 1.0_wp + x**n), &
                        1.0e-14_wp, 0.0_wp, 'weak concrete')
-      ! A strain at the peak that is given keeps E_c as the initial slope.
+      ! With a given strain at the peak E_c is still the initial slope.
       law = plain_concrete(30.0e6_wp, unset, unset, 0.0025_wp)
       call check_close(error, concrete_tangent(law, 1.0e-9_wp), law%ec, 1.0e-5_wp, 0.0_wp, 'given eps0')
       call check_close(error, concrete_stress(law, 0.0025_wp), 30.0e6_wp, 1.0e-14_wp, 0.0_wp, 'its peak')
@@ -198,7 +198,7 @@ contains
                        'core')
    end subroutine strip_sums
 
-   !> What a shape says of itself, against sums of its width over 20 000 thin strips.
+   !> Area and moments of a shape against sums of its width over 20 000 thin strips.
    subroutine shapes_agree(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: many = 20000

@@ -15,8 +15,8 @@ contains
    subroutine collect_segment(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
-      tests = [unit_test('force is reckoned from the anchor', anchor), &
-               unit_test('a line is endless unless told otherwise', endless), &
+      tests = [unit_test('force is computed from the anchor', anchor), &
+               unit_test('a line has no ends by default', endless), &
                unit_test('outward on the positive side', outward_up), &
                unit_test('outward on the negative side is the mirror', outward_down)]
    end subroutine collect_segment
@@ -28,7 +28,7 @@ contains
       line = segment(d0=2.0_wp, f0=-3.0_wp, k=4.0_wp)
       call check_same(error, line%force(2.0_wp), -3.0_wp, 'at the anchor')
       call check_same(error, line%force(2.5_wp), -1.0_wp, 'ahead of it')
-      call check_same(error, line%force([1.0_wp, 0.0_wp]), [-7.0_wp, -11.0_wp], 'elemental, behind it')
+      call check_same(error, line%force([1.0_wp, 0.0_wp]), [-7.0_wp, -11.0_wp], 'elemental, beyond it')
    end subroutine anchor
 
    subroutine endless(error)

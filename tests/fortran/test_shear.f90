@@ -35,9 +35,9 @@ contains
                unit_test('slopes are the differences of the stresses', slopes), &
                unit_test('a solved layer is in equilibrium', balanced), &
                unit_test('without stirrups tau^2 = -f_1 f_2', no_stirrups), &
-               unit_test('shear the other way is the mirror', mirror), &
+               unit_test('shear in the other direction is the mirror image', mirror), &
                unit_test('a layer cracks where its principal stress is f_t', cracks), &
-               unit_test('a layer says when it carries no more', exhausted), &
+               unit_test('a layer reports that it does not carry the stress', exhausted), &
                unit_test('softening of Vecchio and Collins 1986', softening), &
                unit_test('shear flow adds up to the shear force', flow_adds_up), &
                unit_test('shear flow of an elastic section is V S/(I b)', elastic_flow), &
@@ -92,12 +92,12 @@ contains
       type(layer_state) :: state
       logical :: carried
 
-      ! Popovics' curve is straight only at its beginning: so little stress that E_c is its slope.
+      ! Popovics' curve is straight only at its start: the stress is so small that E_c is the slope.
       layer = sample_layer(0.0_wp)
       call solve_layer(layer, 0.0_wp, 100.0_wp, state, carried)
       call check_true(error, carried, 'carried')
       call check_close(error, state%gamma, 200.0_wp/layer%concrete%ec, 1.0e-9_wp, 0.0_wp, 'gamma')
-      ! Tension is straight up to f_t: no strain of compression, so exact.
+      ! Tension is linear up to f_t and there is no compressive strain, so the result is exact.
       state = layer_state()
       call solve_layer(layer, 2.0e-5_wp, 1000.0_wp, state, carried)
       call check_close(error, state%gamma, 2000.0_wp/layer%concrete%ec, 1.0e-4_wp, 0.0_wp, 'under tension')
@@ -163,7 +163,7 @@ contains
       end do
    end subroutine slopes
 
-   !> Along rising shear at many longitudinal strains, from compression to well beyond yield.
+   !> Increasing shear at many longitudinal strains, from compression to well beyond yield.
    subroutine balanced(error)
       type(error_type), allocatable, intent(inout) :: error
       type(layer_type) :: layer
@@ -225,7 +225,7 @@ contains
       call check_true(error, carried .and. down%gamma > 0.0_wp, 'back again')
    end subroutine mirror
 
-   !> Without longitudinal strain tau = f_1 up to cracking but for the little that compression is softer.
+   !> Without longitudinal strain tau = f_1 up to cracking, except that compression is slightly softer.
    subroutine cracks(error)
       type(error_type), allocatable, intent(inout) :: error
       type(layer_type) :: layer
@@ -258,7 +258,7 @@ contains
       most = state%tau
       state = layer_state()
       call solve_layer(layer, 1.0e-3_wp, 0.99_wp*most, state, carried)
-      call check_true(error, carried, 'nearly the stress told is carried')
+      call check_true(error, carried, 'almost the reported stress is carried')
       state = layer_state()
       call solve_layer(layer, 1.0e-3_wp, 1.05_wp*most, state, carried)
       call check_true(error, .not. carried, 'not much more is')
@@ -343,7 +343,7 @@ contains
       end do
    end subroutine elastic_flow
 
-   !> Stirrups that yielded: the states of equal eps_1 do not lead there, nor Newton's method at once.
+   !> Yielded stirrups: neither the search over eps_1 nor Newton's method in one step finds this state.
    subroutine in_parts(error)
       type(error_type), allocatable, intent(inout) :: error
       type(layer_type) :: layer
@@ -390,7 +390,7 @@ contains
          width = section%strips%area(i)/section%strips%dy
          total = total + transverse_ratio(section, section%strips%y(i), width)*width*section%strips%dy
       end do
-      ! Cut by a crack at 45 degrees a hoop pulls with pi/2 A f over the core: A_v f/s D pi/2 for two legs.
+      ! A hoop that a crack at 45 degrees cuts pulls with pi/2 A f over the core: A_v f/s D pi/2 for two legs.
       call check_close(error, total, 0.5_wp*pi*0.25_wp*pi*0.012_wp**2*section%core_shape%depth/0.11_wp, &
                        1.0e-3_wp, 0.0_wp, 'steel over the depth')
    end subroutine circle_stirrups
@@ -465,7 +465,7 @@ contains
       call check_close(error, few%knee%force/few%knee%strain, secant, 2.0e-3_wp, 0.0_wp, 'secant')
    end subroutine knee_alone
 
-   !> The sample without ties, without axial load, short.
+   !> The sample without ties and axial load, and with a short span.
    subroutine failing_diagram(points, diagram, error)
       integer, intent(in) :: points
       type(shear_diagram_type), intent(out) :: diagram
@@ -502,7 +502,7 @@ contains
       call check_close(error, few%last%strain, many%last%strain, 2.0e-2_wp, 0.0_wp, 'strain')
    end subroutine failure_alone
 
-   !> The sample and what `couple` needs of it.
+   !> The sample and the arguments of `couple`.
    subroutine coupled_sample(long, flow, layers, state, states, error)
       !> M/V [m]
       real(wp), intent(in) :: long
@@ -560,7 +560,7 @@ contains
             associate (at => minloc(abs(section%strips%y - section%bar_y(i)), dim=1))
                stress = stress_of_state(layers(at), states(at))
             end associate
-            strain = steel_stress(section%steels(1), strain) + stress%sigma_x      ! now a stress
+            strain = steel_stress(section%steels(1), strain) + stress%sigma_x      ! `strain` is now a stress
             axial = axial + strain*section%bar_area(i)
             moment = moment - strain*section%bar_area(i)*section%bar_y(i)
          end do
@@ -569,7 +569,7 @@ contains
          call check_close(error, force, moment/span, 1.0e-4_wp, 0.0_wp, 'V')
          call advance(section, flow%laws, load, state%curvature, alone, found)
       end associate
-      ! Diagonal compression takes some of the moment: 0.94 to 0.97 at yield of the paper's columns.
+      ! Diagonal compression reduces the moment: to 0.94 to 0.97 at yield of the paper's columns.
       call check_true(error, state%moment < 0.98_wp*alone%moment .and. state%moment > 0.93_wp*alone%moment, &
                       'less moment: '//to_text(state%moment/alone%moment))
    end subroutine coupled_equilibrium

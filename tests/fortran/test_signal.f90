@@ -19,11 +19,11 @@ contains
       tests = [unit_test('a signal without points does not act', acts), &
                unit_test('linear between the points, exact at them', interpolation), &
                unit_test('constant before the first and after the last point', beyond), &
-               unit_test('times may be asked in any order', any_order), &
-               unit_test('points very unequal in distance', unequal), &
+               unit_test('times may be in any order', any_order), &
+               unit_test('points at very unequal distances', unequal), &
                unit_test('the corner that follows a time', corners), &
                unit_test('corners asked for in any order, values in between', corners_and_values), &
-               unit_test('corners are found where the clock is coarse', late_corners), &
+               unit_test('corners are found where times are coarse', late_corners), &
                unit_test('of several loads the next corner of any', load_corners)]
    end subroutine collect_signal
 
@@ -109,7 +109,7 @@ contains
       call check_same(error, s%corner_after(5.0_wp), huge(1.0_wp), 'at the last point')
       call check_same(error, s%corner_after(1.0e9_wp), huge(1.0_wp), 'after the last point')
       call check_same(error, s%corner_after(1.5_wp), 2.0_wp, 'and back')
-      ! A time that is the corner but for its last bits is past it.
+      ! A time that differs from the corner only in its last bits counts as past it.
       call check_same(error, s%corner_after(nearest(2.0_wp, -1.0_wp)), 4.0_wp, 'a bit before a point')
       call check_same(error, s%corner_after(nearest(5.0_wp, -1.0_wp)), huge(1.0_wp), 'a bit before the last')
       s = table([0.0_wp, 1.0_wp], [0.0_wp, 1.0_wp])
@@ -134,13 +134,13 @@ contains
          if (mod(i, 3) == 0) then
             call check_same(error, s%corner_after(t), minval(time, mask=time > t), 'corner')
          else
-            ! What was asked before leaves no trace in the value.
+            ! Earlier calls have no effect on the value.
             call check_same(error, s%at_time(t), fresh%at_time(t), 'value')
          end if
       end do
    end subroutine corners_and_values
 
-   !> Steps from corner to corner end, and meet every corner once.
+   !> A walk from corner to corner ends, and meets every corner once.
    subroutine late_corners(error)
       type(error_type), allocatable, intent(inout) :: error
       type(signal_type) :: s
@@ -158,7 +158,7 @@ contains
             if (next > 1.0e300_wp) exit
             count = count + 1
             call check_true(error, any(abs(time - next) <= 0.0_wp), 'a corner is a point')
-            ! The clock arrives there within its last digit.
+            ! The time arrives there within its last digit.
             t = t + (next - t)
          end do
          call check_equal(error, count, 100, 'corners')

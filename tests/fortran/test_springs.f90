@@ -1,4 +1,4 @@
-!> The springs of a column as arrays: each one on its own, copied by assignment.
+!> The springs of a column as arrays: each spring is independent, and assignment copies them.
 module test_springs
    use check, only: unit_test, check_close, check_equal, check_same, check_true
    use rbs_base_error, only: error_type
@@ -25,19 +25,19 @@ contains
                unit_test('property 2: all rules at once, to the last bit', increments), &
                unit_test('the work does not depend on the cuts', work), &
                unit_test('the present deformation is always within the ends', within_ends), &
-               unit_test('arrive at an open end is to be on the next line', arrive_open), &
-               unit_test('arrive at a closed end stays on the line', arrive_closed), &
-               unit_test('leave turns back a one-way line', leave_one_way), &
-               unit_test('create forgets everything', create_again), &
+               unit_test('a spring that arrives at an open end is on the next line', arrive_open), &
+               unit_test('a spring that arrives at a closed end stays on the line', arrive_closed), &
+               unit_test('leave turns back on a one-way line', leave_one_way), &
+               unit_test('create clears the memory', create_again), &
                unit_test('restore brings back the marked state, to the last bit', restoring), &
-               unit_test('restore in the depth of Takeda loops', restoring_deep), &
-               unit_test('a mark that is forgotten leaves no trace', forgetting), &
+               unit_test('restore deep inside Takeda loops', restoring_deep), &
+               unit_test('a dropped mark has no effect', forgetting), &
                unit_test('only springs that leave their line change the version', versions), &
-               unit_test('springs that stay on their lines are carried as they move', carried), &
+               unit_test('springs that stay on their lines move as along a path', carried), &
                unit_test('a contact presses, and does not pull', contact), &
-               unit_test('a contact gives back all work', contact_work), &
-               unit_test('load to a force', loaded), &
-               unit_test('load to a force that no line has', not_loaded)]
+               unit_test('a contact returns all work', contact_work), &
+               unit_test('loading to a force', loaded), &
+               unit_test('loading to a force that no line reaches', not_loaded)]
    end subroutine collect_springs
 
    !> One spring of every kind.
@@ -51,7 +51,7 @@ contains
       specs(5) = takeda_1('one')
    end subroutine every_kind
 
-   !> A point of a random path, of the size at which each spring yields.
+   !> A point of a random path, with deformations near the yield of each spring.
    subroutine random_point(random, d)
       type(random_type), intent(inout) :: random
       real(wp), intent(out) :: d(5)
@@ -256,7 +256,7 @@ contains
       call springs%move(1, 3.9_wp*d_y)
       slope = springs%k(1)
       call springs%arrive(1, -1)
-      ! A crossing of zero force is passed only strictly beyond.
+      ! The spring has passed a crossing of zero force only when it is strictly beyond it.
       call check_close(error, springs%force(1), 0.0_wp, 0.0_wp, 1.0e-9_wp*f_y, 'zero force')
       call check_same(error, springs%k(1), slope, 'slope')
       call springs%move(1, nearest(springs%d(1), -1.0_wp))
@@ -295,7 +295,7 @@ contains
                       'uncracked again')
    end subroutine create_again
 
-   !> One more of every kind, for the tests of going back.
+   !> One more spring of every kind, for the tests of restore.
    subroutine all_kinds(specs)
       type(spring_record), intent(out) :: specs(6)
 
@@ -303,10 +303,10 @@ contains
       specs(6) = compression(3.0_wp)
    end subroutine all_kinds
 
-   !> Every array of the springs is the same, and so is what they do from here on: rules remember alike.
+   !> All arrays of the springs are equal, and so are their next moves, as their rules have the same memory.
    subroutine check_alike(error, a, b, random, what)
       type(error_type), allocatable, intent(inout) :: error
-      !> Copies, which move on
+      !> Copies, which are moved further
       type(spring_array), intent(in) :: a, b
       type(random_type), intent(in) :: random
       character(len=*), intent(in) :: what
@@ -333,7 +333,7 @@ contains
       end do
    end subroutine check_alike
 
-   !> A point for springs of all kinds, some of whose deformations are far and some near.
+   !> A point for springs of all kinds, with some deformations far away and some near.
    subroutine random_move(random, d)
       type(random_type), intent(inout) :: random
       real(wp), intent(out) :: d(:)
@@ -345,7 +345,7 @@ contains
       end do
    end subroutine random_move
 
-   !> Mark, wild moves, back; mark again somewhere else; springs one by one and all together.
+   !> Mark, make random moves, restore; mark again elsewhere; move springs one by one and all together.
    subroutine restoring(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
@@ -366,7 +366,7 @@ contains
                   i = 1 + mod(j + trial, 6)
                   call springs%move(i, point(i))
                else if (mod(j, 7) == 0) then
-                  ! Turn back where the line goes one way.
+                  ! Turn back on a one-way line.
                   i = 2 + mod(j + round, 4)
                   if (springs%one_way(i) /= 0) call springs%leave(i, -springs%one_way(i))
                else
@@ -377,7 +377,7 @@ contains
             call check_alike(error, springs, undisturbed, random, 'round '//to_text(round))
             if (allocated(error)) return
          end do
-         ! The way that is taken: from the mark or after it, with or without the mark still set.
+         ! The next move: after a restore or not, with or without the mark.
          call random_move(random, point)
          if (mod(round, 3) == 0) call springs%forget_mark()
          call springs%move_all(point)
@@ -388,7 +388,7 @@ contains
       call check_true(error, springs%events > 100, 'lines were left')
    end subroutine restoring
 
-   !> Two hundred loops inside each other, then away from there and back, closing a few or all of them.
+   !> Two hundred nested loops, then moves away from there and back, which close a few or all of them.
    subroutine restoring_deep(error)
       type(error_type), allocatable, intent(inout) :: error
       character(len=3), parameter :: inner(3) = ['kc ', 'kr ', 'one']
@@ -423,7 +423,7 @@ contains
       end do
    end subroutine restoring_deep
 
-   !> With a mark and without, the same moves are the same, and a later mark goes back to its own place.
+   !> With and without a mark the same moves give the same state, and a later mark restores its own state.
    subroutine forgetting(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
@@ -443,7 +443,7 @@ contains
          if (mod(j, 4) == 3) call springs%forget_mark()
          call check_alike(error, springs, plain, random, 'move '//to_text(j))
       end do
-      ! A copy takes the mark along, and neither disturbs the other.
+      ! A copy includes the mark, and the copies do not affect each other.
       call springs%mark()
       copy = springs
       call random_move(random, point)
@@ -474,7 +474,7 @@ contains
       call check_true(error, springs%version /= before, 'yielded')
       before = springs%version
       call springs%restore()
-      ! Who has factored the yielded lines must not take them for the present ones.
+      ! Factors of the yielded lines must not be used for the present ones.
       call check_true(error, springs%version /= before, 'restored')
       call check_equal(error, springs%events, 0, 'events are those of the mark')
    end subroutine versions
@@ -492,7 +492,7 @@ contains
       within = 0
       do j = 1, 3000
          call random_move(random, point)
-         ! Mostly small moves from where the springs are.
+         ! Mostly small moves from the present deformations.
          if (mod(j, 5) /= 0) point = springs%d + 0.01_wp*point
          moved = springs
          call moved%move_all(point)
@@ -529,7 +529,7 @@ contains
       call check_true(error, .not. springs%stuck, 'not stuck')
    end subroutine contact
 
-   !> Through zero in steps of any size: nothing is won or lost, the last bit of the anchor is exact.
+   !> Through zero in steps of any size: no energy is gained or lost, and the anchor is exact to the last bit.
    subroutine contact_work(error)
       type(error_type), allocatable, intent(inout) :: error
       type(spring_array) :: springs
@@ -549,7 +549,7 @@ contains
       call check_close(error, springs%work(1), 0.0_wp, 0.0_wp, 1.0e-15_wp, 'work')
    end subroutine contact_work
 
-   !> There by the lines that a path of deformations takes, and no further.
+   !> Along the lines that a path of deformations follows, and no further.
    subroutine loaded(error)
       type(error_type), allocatable, intent(inout) :: error
       type(spring_array) :: springs, moved
@@ -585,7 +585,7 @@ contains
       call springs%load_to(4, -8.0_wp, found)
       call check_true(error, found, 'there already')
       call check_same(error, springs%d(4), -4.0_wp, 'it stays there')
-      ! From where the contact is open, back to pressure.
+      ! From an open contact back to pressure.
       call springs%move(3, 1.0_wp)
       call springs%load_to(3, -8.0_wp, found)
       call check_true(error, found, 'contact: found from the open side')

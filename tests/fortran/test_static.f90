@@ -1,4 +1,4 @@
-!> The static path, event to event: against springs in series, bracketing, closed forms, and itself.
+!> The static path, event to event: against springs in series, bracketing, closed forms, and other runs.
 module test_static
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_true
@@ -24,7 +24,7 @@ module test_static
 
    public :: collect_static
 
-   !> Takes a few rows, then fails, as a full disk does.
+   !> Accepts a few rows, then fails like a full disk.
    type, extends(recorder_type) :: failing_recorder
       integer :: count = 0
    contains
@@ -37,10 +37,10 @@ contains
       type(unit_test), allocatable, intent(out) :: tests(:)
 
       tests = [unit_test('elastic column: flexibility of springs in series', series), &
-               unit_test('one body, both springs nonlinear: bracketing finds the same', bracketing), &
-               unit_test('forces of a chain are those of its springs on their own', chain_of_springs), &
-               unit_test('driven by the force it answered with, it goes back the same way', both_drives), &
-               unit_test('increments do not matter', increments), &
+               unit_test('one body, both springs nonlinear: same result by bracketing', bracketing), &
+               unit_test('forces of a chain are those of its springs moved separately', chain_of_springs), &
+               unit_test('driven by its own force, the column follows the same path', both_drives), &
+               unit_test('increments have no effect', increments), &
                unit_test('pdelta: every row is in equilibrium, energy too', equilibrium), &
                unit_test('pdelta: elastic column against its closed form', pdelta_elastic), &
                unit_test('k_post = 0: capacity, the path up to it is kept', capacity), &
@@ -49,18 +49,18 @@ contains
                unit_test('a mechanism of equal joints shares the motion', mechanism), &
                unit_test('a mechanism of unequal joints shares it by their stiffness', mechanism_unequal), &
                unit_test('equal cycles return to the peaks exactly', repeated_cycles), &
-               unit_test('beyond the critical load: no answer to a force, one to a displacement', &
+               unit_test('beyond the critical load: a path by displacement, none by force', &
                          buckled), &
                unit_test('every n-th row and the last', every), &
                unit_test('number of rows kept', rows_kept), &
                unit_test('no targets, no rows', nothing), &
                unit_test('the first target may be zero, targets may repeat', standstill), &
                unit_test('a recorder that fails ends the path', failing), &
-               unit_test('a target that is no number is refused', not_a_number), &
+               unit_test('a target that is not a number is refused', not_a_number), &
                unit_test('bands and full matrices give the same line', bands), &
                unit_test('pdelta: a long chain, beyond its peak', long_chain), &
                unit_test('a mechanism in a band', band_mechanism), &
-               unit_test('openings keep still and change nothing else', openings), &
+               unit_test('openings do not move and have no other effect', openings), &
                unit_test('height of the top, largest rotation', height_of_top), &
                unit_test('collapse ends the path', collapse)]
    end subroutine collect_static
@@ -149,8 +149,8 @@ contains
       end do
    end subroutine random_targets
 
-   !> The springs share the force F = V(u) = M(phi)/l, u + l phi = x: bisection on u, from the state at
-   !> the last target; nothing of the solver is used but the springs.
+   !> Both springs carry the same force F = V(u) = M(phi)/l, u + l phi = x: bisection on u, from the state at
+   !> the last target, with the springs but no other part of the solver.
    subroutine bracketing(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -220,7 +220,7 @@ contains
       do i = 1, 2*n
          call follow_path(column%spring(i), rows(row_joints - 1 + i, :), f)
          call check_close(error, rows(row_joints - 1 + 2*n + i, :), f, 1.0e-9_wp, 1.0e-4_wp, &
-                          'unknown '//to_text(i)//' on its own')
+                          'unknown '//to_text(i)//' alone')
          call check_close(error, rows(row_joints - 1 + 2*n + i, :), column%arm(i)*rows(row_force, :), &
                           1.0e-10_wp, 1.0e-4_wp, 'unknown '//to_text(i)//' in equilibrium')
       end do
@@ -349,7 +349,7 @@ contains
       last = size(rows, 2)
       call check_equal(error, last, 4, 'rows kept')
       call check_close(error, rows(row_force, last), s_k*s_d, 1.0e-12_wp, 0.0_wp, 'force reached')
-      ! The same column goes on if the displacement drives it.
+      ! The same column continues if the displacement drives it.
       call run(spec, .false., [0.05_wp, 0.1_wp, 0.0_wp], rows, outcome)
       call check_passed(error, outcome, 'driven by displacement')
       call check_close(error, rows(row_force, :2), [s_k*s_d, s_k*s_d], 1.0e-12_wp, 0.0_wp, 'force')
@@ -411,8 +411,8 @@ contains
       call check_close(error, abs(rows(row_force, :)), spread(s_k*s_d, 1, 3), 1.0e-12_wp, 0.0_wp, 'force')
    end subroutine mechanism
 
-   !> Joints of unequal stiffness and equal strength: the motion is shared as a hardening in proportion
-   !> to the stiffness would share it.
+   !> Joints of unequal stiffness and equal strength: the motion is distributed as by hardening in proportion
+   !> to the stiffness.
    subroutine mechanism_unequal(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -431,8 +431,8 @@ contains
       call check_close(error, slip, [0.75_wp, 0.25_wp]*0.01_wp, 1.0e-10_wp, 0.0_wp, 'slips')
    end subroutine mechanism_unequal
 
-   !> Cycles of equal amplitude return to the peak of each spring, whatever round-off says: unloading is
-   !> outer unloading in every cycle (takeda.md section 2b, the discontinuity in the amplitude).
+   !> Cycles of equal amplitude return to the peak of each spring in spite of round-off: unloading is outer
+   !> unloading in every cycle (takeda.md section 2b, the discontinuity in the amplitude).
    subroutine repeated_cycles(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -474,7 +474,7 @@ contains
       spec%flexure(1) = elastic(k_c)
       call run(spec, .true., [1.0_wp], rows, outcome)
       call check_failed(error, outcome, analysis_failed, 'times the critical load of the uncracked column')
-      ! Held by the top, it leans against the hand: a negative force.
+      ! The column pushes against the support at its top: a negative force.
       call run(spec, .false., [0.01_wp], rows, outcome)
       call check_passed(error, outcome, 'driven by displacement')
       call check_close(error, rows(row_displacement, 1)/rows(row_force, 1), &
@@ -579,7 +579,7 @@ contains
       call check_failed(error, outcome, bad_input, 'force: value 2 of 2 is -1e+60')
    end subroutine not_a_number
 
-   !> Random stiffness on both sides of the loss of stability, residuals, gap; n up to a few bodies.
+   !> Random stiffness on both sides of the loss of stability, residuals, gap; few bodies.
    subroutine bands(error)
       type(error_type), allocatable, intent(inout) :: error
       type(equilibrium_type) :: full, band
@@ -624,7 +624,7 @@ contains
 
    contains
 
-      !> Slips and rotations in shares of the largest: the residual is of mixed size.
+      !> Slips and rotations relative to the largest, as the residual has entries of different size.
       subroutine compare(drive)
          character(len=*), intent(in) :: drive
 
@@ -671,7 +671,7 @@ contains
       call check_true(error, maxval(abs(rows(row_residual, :))) < 1.0e-11_wp*largest, 'energy balance')
       call check_true(error, abs(rows(row_force, 1)) < 0.8_wp*summary%peak_force .or. summary%events > n, &
                       'springs yield')
-      ! It softens: more force at a third of the way.
+      ! The column softens: the force is larger at a third of the displacement.
       call run(spec, .false., [0.1_wp, 0.2_wp, 0.3_wp], rows, outcome)
       call check_passed(error, outcome, 'static path')
       call check_true(error, rows(row_force, 3) < rows(row_force, 2), 'the force falls')
@@ -697,7 +697,7 @@ contains
                           'the base slips')
          do i = 1, 2*n - 1
             call check_close(error, rows(row_joints + i, 2), rows(row_joints + i, 1), 1.0e-9_wp, 0.0_wp, &
-                             'the rest keeps still')
+                             'the other springs do not move')
          end do
       end do
    end subroutine band_mechanism

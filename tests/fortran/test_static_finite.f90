@@ -1,4 +1,4 @@
-!> The static path with exact rotations: against bracketing, statics by hand, the elastica, and itself.
+!> The static path with exact rotations: against bracketing, statics by hand, the elastica, and other runs.
 module test_static_finite
    use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_true
    use rbs_base_constants, only: pi, unset, unset_integer
@@ -28,7 +28,7 @@ contains
    subroutine collect_static_finite(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
-      tests = [unit_test('one body: bracketing of its two equations finds the same', bracketing), &
+      tests = [unit_test('one body: same result by bracketing of its two equations', bracketing), &
                unit_test('small amplitudes: pdelta, and the difference falls with their square', &
                          small_amplitudes), &
                unit_test('elastica: cantilever under an end load, order 2', elastica), &
@@ -38,14 +38,14 @@ contains
                unit_test('the same with joints that open', equilibrium_opening), &
                unit_test('springs are on their paths', on_their_paths), &
                unit_test('one increment or a hundred', increments), &
-               unit_test('driven by the force it answered with, it goes back the same way', both_drives), &
+               unit_test('driven by its own force, the column follows the same path', both_drives), &
                unit_test('loops through yield close', closed_loops), &
-               unit_test('the residual of the energy falls with the fourth power', energy_order), &
+               unit_test('the residual of the energy decreases with the fourth power', energy_order), &
                unit_test('softening column: capacity under a force, peak under a displacement', softening), &
                unit_test('a smooth peak of the force', smooth_peak), &
-               unit_test('a driven top comes as far as the column lets it', farthest_top), &
-               unit_test('beyond the critical load: no answer to a force, one to a displacement', buckled), &
-               unit_test('an axial spring yields before the path begins', axial_yield), &
+               unit_test('a driven top moves as far as the column can follow', farthest_top), &
+               unit_test('beyond the critical load: a path by displacement, none by force', buckled), &
+               unit_test('an axial spring yields before the path starts', axial_yield), &
                unit_test('a joint that cannot carry tension is named', no_tension), &
                unit_test('loads that follow are refused', following), &
                unit_test('collapse ends the path', collapse), &
@@ -94,7 +94,7 @@ contains
    end subroutine random_targets
 
    !> V(u) = F and M(th) = F l cos th + P l sin th + m g l/2 sin th with u + l sin th = x: bisection on th,
-   !> from the state at the last target; nothing of the solver is used but the springs.
+   !> from the state at the last target, with the springs but no other part of the solver.
    subroutine bracketing(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -165,8 +165,8 @@ contains
       end do
    end subroutine small_amplitudes
 
-   !> A chain for an elastic beam of EI = 1 and length 1 in n parts: a joint stands for the half parts
-   !> beside it, so that the curvature is summed by the trapezoidal rule (it is zero at the top).
+   !> A chain for an elastic beam of EI = 1 and length 1 in n parts: a joint represents the two half parts
+   !> next to it, so that the curvature is summed by the trapezoidal rule (it is zero at the top).
    type(column_record) function beam(n) result(spec)
       integer, intent(in) :: n
       integer :: i
@@ -387,7 +387,7 @@ contains
       end do
    end subroutine equilibrium_opening
 
-   !> The way to each target in many parts.
+   !> The path to each target in many increments.
    subroutine divide(x, parts, fine)
       real(wp), intent(in) :: x(:)
       integer, intent(in) :: parts
@@ -405,7 +405,7 @@ contains
       end do
    end subroutine divide
 
-   !> Rows so close that no spring turns unseen between them.
+   !> Rows so close that no spring can turn back between them unnoticed.
    subroutine on_their_paths(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -425,7 +425,7 @@ contains
       do i = 1, 2*n
          call follow_path(column%spring(i), rows(row_joints - 1 + i, :), f)
          call check_close(error, rows(row_joints - 1 + 2*n + i, :), f, 1.0e-8_wp, 1.0e-2_wp, &
-                          'unknown '//to_text(i)//' on its own')
+                          'unknown '//to_text(i)//' alone')
       end do
    end subroutine on_their_paths
 
@@ -527,7 +527,7 @@ contains
       end do
    end subroutine energy_order
 
-   !> P l above the stiffness after yield: F l cos th = M - P l sin th falls from the yield point on.
+   !> P l above the stiffness after yield: F l cos th = M - P l sin th decreases from the yield point on.
    subroutine softening(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -585,7 +585,7 @@ contains
       call check_close(error, driven(row_force, last), largest, 1.0e-5_wp, 0.0_wp, 'force reached')
    end subroutine smooth_peak
 
-   !> P l above k_M: x = l sin th + F/k_V has a largest value where F, which pulls back, grows faster.
+   !> P l above k_M: x = l sin th + F/k_V has a maximum, from where F, which pulls back, grows faster.
    subroutine farthest_top(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -610,7 +610,7 @@ contains
       call check_equal(error, last, 3, 'rows kept')
       call check_close(error, rows(row_displacement, last), farthest, 1.0e-8_wp, 0.0_wp, &
                        'displacement reached')
-      ! Within its reach it goes on.
+      ! Below this displacement the path continues.
       call run(spec, .false., [0.99_wp, -0.99_wp]*farthest, rows, outcome)
       call check_passed(error, outcome, 'driven by displacement')
       call check_close(error, rows(row_force, 2), -rows(row_force, 1), 1.0e-10_wp, 0.0_wp, 'symmetric')
@@ -636,7 +636,7 @@ contains
       call check_passed(error, outcome, 'driven by displacement')
       call check_close(error, rows(row_force, 1), force, 1.0e-10_wp, 0.0_wp, 'force')
       call check_true(error, force < 0.0_wp, 'it leans against the hand')
-      ! At the critical load itself the force begins with the third power.
+      ! At the critical load itself the force starts with the third power.
       spec%axial_load = 1.0_wp
       call run(spec, .true., [0.1_wp], rows, outcome)
       call check_failed(error, outcome, analysis_failed, 'critical load')
@@ -645,7 +645,7 @@ contains
       call check_close(error, rows(row_force, 1), 0.01_wp**3/6.0_wp, 1.0e-3_wp, 0.0_wp, 'third power')
    end subroutine buckled
 
-   !> The axial springs are in equilibrium from the begin on, beyond yield; the balance begins there.
+   !> The axial springs are in equilibrium beyond yield from the start, where the energy balance begins.
    subroutine axial_yield(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome

@@ -1,4 +1,4 @@
-!> Steel that yields round (docs/rules.md section 10): Menegotto and Pinto 1973 in chords.
+!> Steel with a rounded transition (docs/rules.md section 10): Menegotto and Pinto 1973 in chords.
 module test_steel
    use check, only: unit_test, check_close, check_same, check_true
    use paths, only: check_copies, check_increments
@@ -24,19 +24,19 @@ contains
 
       tests = [unit_test('Menegotto and Pinto 1973: virgin branch at the ends of the chords', virgin), &
                unit_test('Menegotto and Pinto 1973: branch after a reversal', reversed), &
-               unit_test('Filippou, Popov and Bertero 1983: strength grows with the reach', growth), &
-               unit_test('endurance: half of the strength, a fifth', endurance), &
-               unit_test('elastic range: no trace', elastic_range), &
+               unit_test('Filippou, Popov and Bertero 1983: strength grows with the range', growth), &
+               unit_test('half_strength_work: half of the strength, a fifth', endurance), &
+               unit_test('moves in the elastic range have no effect', elastic_range), &
                unit_test('small cycles close and never overshoot', small_cycles), &
-               unit_test('a small cycle leaves no trace', closed), &
+               unit_test('a small cycle has no effect', closed), &
                unit_test('more cycles within cycles than are remembered', many_nested), &
                unit_test('mirrored path, mirrored bits', mirror), &
                unit_test('forces are continuous where lines meet', continuous), &
                unit_test('property 2: 1, 7, 1000 increments, to the last bit', increments), &
-               unit_test('copies and trial moves leave no trace', copies), &
-               unit_test('start forgets everything', forgets), &
-               unit_test('property 9: work of closed cycles, but for the chords', cycles), &
-               unit_test('stays between its lines of hardening', bounded)]
+               unit_test('copies and trial moves have no effect', copies), &
+               unit_test('start clears the memory', forgets), &
+               unit_test('property 9: work of closed cycles, to the error of the chords', cycles), &
+               unit_test('the force stays between the lines of hardening', bounded)]
    end subroutine collect_steel
 
    !> Yields at (1, 1).
@@ -66,7 +66,7 @@ contains
          call follow_path(with_roundness(real(r0, wp)), x, f)
          call check_close(error, f, star(x, real(r0, wp)), 1.0e-13_wp, 0.0_wp, 'chords')
       end do
-      ! Behind the last chord with the slope of hardening.
+      ! After the last chord with the slope of hardening.
       call follow_path(with_roundness(20.0_wp), [50.0_wp], far)
       call check_close(error, far(1), f(8) + hardening*(50.0_wp - x(8)), 1.0e-13_wp, 0.0_wp, 'far out')
       call check_close(error, far(1), star(50.0_wp, 20.0_wp), 2.0e-3_wp, 0.0_wp, 'asymptote')
@@ -80,7 +80,7 @@ contains
    end function with_roundness
 
    !> From (5, f): asymptotes meet where the elastic line meets -1 + b (d + 1); the plastic excursion is
-   !> reckoned from the lowest deformation so far, here 0.
+   !> measured from the lowest deformation so far, here 0.
    subroutine reversed(error)
       type(error_type), allocatable, intent(inout) :: error
       real(wp) :: f(2), f_turn(1), d_a, f_a, r, xi, x
@@ -97,7 +97,7 @@ contains
       call check_close(error, f(2), f_turn(1) + star(x, r)*(f_a - f_turn(1)), 1.0e-12_wp, 0.0_wp, 'force')
    end subroutine reversed
 
-   !> Reach from 0 to 8: half of it is 4 d_y, the strength grows by growth 4^0.8.
+   !> Range from 0 to 8: half of it is 4 d_y, the strength grows by isotropic_hardening 4^0.8.
    subroutine growth(error)
       type(error_type), allocatable, intent(inout) :: error
       type(spring_record) :: spec
@@ -112,7 +112,7 @@ contains
       call check_close(error, f(2) - g(2), 0.1_wp*4.0_wp**0.8_wp, 3.0e-3_wp, 0.0_wp, 'new branch')
    end subroutine growth
 
-   !> Plastic work of the way to `far` is that under the curve less the elastic part.
+   !> The plastic work up to `far` is the area under the curve less the elastic part.
    subroutine endurance(error)
       type(error_type), allocatable, intent(inout) :: error
       type(spring_record) :: spec
@@ -141,10 +141,10 @@ contains
       call check_close(error, f(:6), [0.8_wp, -0.8_wp, 0.5_wp, 0.0_wp, -0.3_wp, 0.0_wp], 3.0e-3_wp, &
                        1.0e-15_wp, 'elastic')
       call follow_path(unit_steel(), [3.0_wp], straight)
-      call check_same(error, f(7), straight(1), 'no trace')
+      call check_same(error, f(7), straight(1), 'no effect')
    end subroutine elastic_range
 
-   !> Cycles back onto the virgin branch: behind them the force is on it, between curve and chord.
+   !> Cycles that return to the virgin branch: after them the force is on it, between curve and chord.
    subroutine small_cycles(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
@@ -163,11 +163,11 @@ contains
          d(8) = x
          call follow_path(spec, d, f)
          call check_true(error, f(8) <= star(x, spec%get('r0')) + 1.0e-9_wp, 'no overshoot')
-         call check_close(error, f(8), star(x, spec%get('r0')), 2.0e-2_wp, 0.0_wp, 'behind the small cycles')
+         call check_close(error, f(8), star(x, spec%get('r0')), 2.0e-2_wp, 0.0_wp, 'after the small cycles')
       end do
    end subroutine small_cycles
 
-   !> After a return to where a cycle began the rest of the path is as if there had been none.
+   !> After a return to the start of a cycle the rest of the path is as without the cycle.
    subroutine closed(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
@@ -181,12 +181,12 @@ contains
          d = [-4.0_wp, 3.0_wp, 3.0_wp - small, 3.0_wp, 5.0_wp, -6.0_wp]
          call follow_path(spec, d, f)
          call follow_path(spec, d([1, 5, 6]), g)
-         call check_close(error, f([5, 6]), g(2:3), 2.0e-2_wp, 0.0_wp, 'as if there had been none')
+         call check_close(error, f([5, 6]), g(2:3), 2.0e-2_wp, 0.0_wp, 'as without the cycle')
       end do
    end subroutine closed
 
-   !> More cycles within cycles than are remembered, and out of all of them: elastic ones that come back to
-   !> where they left, and plastic ones.
+   !> More nested cycles than are remembered, and out of all of them: elastic ones that return to their start,
+   !> and plastic ones.
    subroutine many_nested(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: most = 60
@@ -206,12 +206,12 @@ contains
             call follow_path(spec, d, f)
             call follow_path(spec, d([1, most + 1]), g)
             call check_close(error, f(most + 1), g(2), 2.0e-2_wp, 0.0_wp, 'out of all')
-            call check_true(error, maxval(abs(f)) <= 1.01_wp*abs(g(2)), 'on the way')
+            call check_true(error, maxval(abs(f)) <= 1.01_wp*abs(g(2)), 'on the path')
          end do
       end do
    end subroutine many_nested
 
-   !> A random steel and a path in yield deformations.
+   !> A random steel, and a path in units of its yield deformation.
    subroutine random_steel(random, spec, d)
       type(random_type), intent(inout) :: random
       type(spring_record), intent(out) :: spec
@@ -249,7 +249,7 @@ contains
       end do
    end subroutine mirror
 
-   !> Across every event the force stays; every line has its ends in order.
+   !> The force is continuous at every event; the ends of every line are in order.
    subroutine continuous(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
@@ -327,7 +327,7 @@ contains
       call rule%start(first)
       line = first
       do i = 1, 100
-         ! Up four lines, down four lines: never to the end of a branch, which has none.
+         ! Up four lines, down four lines: branches have no end.
          call rule%next(line, merge(1, -1, mod(i, 8) < 4))
       end do
       call rule%start(line)
@@ -335,7 +335,7 @@ contains
                       [first%d0, first%f0, first%k, first%lo, first%hi], 'first line')
    end subroutine forgets
 
-   !> From a state, away and back again, twice, so that the second cycle is a closed one.
+   !> From a state away and back, twice, so that the second cycle is closed.
    subroutine cycles(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random

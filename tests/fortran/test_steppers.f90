@@ -1,5 +1,5 @@
 !> The explicit steppers: closed forms through contact and yielding, observed orders with located events,
-!> errors in proportion to the tolerance, events in every awkward place, any units.
+!> errors in proportion to the tolerance, events in difficult places, any units.
 module test_steppers
    use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_same, check_true
    use rbs_base_constants, only: pi
@@ -40,18 +40,18 @@ contains
                unit_test('an event at the exact end of a step', exact_end), &
                unit_test('a contact that is just touched', grazing), &
                unit_test('several springs at the same instant', at_once), &
-               unit_test('many springs, one soon after the other', in_a_row), &
-               unit_test('begin on the end of a line', begin_on_end), &
-               unit_test('begin with a velocity against a one-way line', against_one_way), &
-               unit_test('begin at rest, on the yield plateau', rest_on_line), &
-               unit_test('Takeda loops without end, smaller and smaller', small_loops), &
+               unit_test('many springs, shortly after each other', in_a_row), &
+               unit_test('start on the end of a line', begin_on_end), &
+               unit_test('start with a velocity against a one-way line', against_one_way), &
+               unit_test('start at rest, on the yield plateau', rest_on_line), &
+               unit_test('ever smaller Takeda loops', small_loops), &
                unit_test('events are counted once', counted), &
-               unit_test('where the run is interrupted does not matter', interrupted), &
+               unit_test('interruptions of the run have no effect', interrupted), &
                unit_test('a tolerance that cannot be met: an error, the last good state', hopeless), &
                unit_test('a column that falls has no bounds', falling)]
    end subroutine collect_steppers
 
-   !> Falls on a spring, is thrown back, flies under a constant load, falls again.
+   !> A mass falls on a spring, is thrown back, flies under a constant load and falls again.
    subroutine bounce(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -83,13 +83,13 @@ contains
          call check_close(error, [state%q(3), state%v(3)], [0.5_wp*v0**2*mass/push, 0.0_wp], 0.0_wp, &
                           1.0e3_wp*10.0_wp**(-i), 'rk45 with 1e-'//to_text(i))
       end do
-      ! The spring has given back what it took.
+      ! The spring has returned all work.
       call check_close(error, state%springs%work(3), 0.0_wp, 0.0_wp, 1.0e-9_wp, 'work of the contact')
       call check_equal(error, state%springs%events, 11, 'opened six times, closed five times')
    end subroutine bounce
 
-   !> Yield, turn, yield the other way, turn, and a quarter of the elastic period back: on each line the
-   !> motion is a harmonic one.
+   !> Yield, turn, yield in the other direction, turn, and a quarter of the elastic period back: on each line
+   !> the motion is harmonic.
    subroutine yielding(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -220,8 +220,8 @@ contains
       end do
    end subroutine located_energy
 
-   !> A line that changes at the end of the step costs two orders: by chance more or less, so the mean over
-   !> five halvings.
+   !> A change of line at the end of the step reduces the order by two; the error varies randomly, so the mean
+   !> over five halvings is taken.
    subroutine step_order(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -260,7 +260,7 @@ contains
             call play_located(scene, 10.0_wp**(-i), 1, state, outcome)
             call check_passed(error, outcome, 'scene '//to_text(number))
             wrong(i) = distance(state, reference)
-            ! Some hundred steps add up, and some twenty changes of stiffness make the difference grow.
+            ! Errors of some hundred steps add up, and some twenty changes of stiffness increase them.
             call check_true(error, wrong(i) < 1.0e4_wp*10.0_wp**(-i), 'scene '//to_text(number)// &
                             ', tolerance 1e-'//to_text(i)//': error '//to_text(wrong(i)))
          end do
@@ -347,17 +347,17 @@ contains
          call play_located(scene, tolerance, 4, state, outcome)
          call check_passed(error, outcome, 'flight')
          call check_close(error, [state%q(3), state%v(3)], [0.0_wp, -1.0_wp], 0.0_wp, 1.0e-15_wp, 'contact')
-         ! Half a period in contact, then away with the same speed.
+         ! Half a period in contact, then off with the same speed.
          scene%finish = 4.0_wp
          call play_located(scene, tolerance, 1024, state, outcome)
          call check_passed(error, outcome, 'there and back')
          call check_close(error, [state%q(3), state%v(3)], [3.0_wp - pi/sqrt(k), 1.0_wp], 0.0_wp, 1.0e-9_wp, &
                           'thrown back')
-         call check_equal(error, state%springs%events, 3, 'opened at the begin, closed, opened')
+         call check_equal(error, state%springs%events, 3, 'open at the start, closed, opened')
       end do
    end subroutine exact_end
 
-   !> w = (t - t0)^2 - depth under a constant lift: over the end and back within a step, or not quite.
+   !> w = (t - t0)^2 - depth under a constant lift: beyond the end and back within a step, or almost.
    subroutine grazing(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -380,7 +380,7 @@ contains
                scene%finish = 2.0_wp
                call play_located(scene, merge(0.0_wp, 1.0e-9_wp, way == 1), 8, state, outcome)
                call check_passed(error, outcome, 'depth '//to_text(depth(i)))
-               ! Whatever the contact does, it takes no energy; a small depth changes little.
+               ! The contact dissipates no energy in any case; a small depth has little effect.
                call check_close(error, 0.5_wp*state%v(3)**2 - 2.0_wp*state%q(3), 0.5_wp*v0**2 - 2.0_wp*w0, &
                                 0.0_wp, 1.0e-7_wp + 1.0e-3_wp*sqrt(abs(depth(i))), 'energy')
                call check_close(error, state%q(3), (2.0_wp - touch(j))**2 - depth(i), 0.0_wp, &
@@ -423,8 +423,8 @@ contains
       call check_close(error, state%q(5:6), reference%q(5:6), 0.0_wp, 1.0e-5_wp, 'openings')
    end subroutine at_once
 
-   !> Blocks thrown at each other in long steps: within one step many contacts open and close, and which is
-   !> the first is not known before it is located.
+   !> Blocks thrown at each other in long steps: within one step many contacts open and close, and the first
+   !> of these events is known only after they are located.
    subroutine in_a_row(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 8
@@ -458,7 +458,7 @@ contains
       end do
    end subroutine in_a_row
 
-   !> The deformation of yield belongs to the yielded line; a spring that goes back from there is elastic.
+   !> The yield deformation belongs to the yielded line; a spring that turns back there is elastic.
    subroutine begin_on_end(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -495,7 +495,7 @@ contains
       end do
    end subroutine begin_on_end
 
-   !> Yielded by its initial deformation, and already on its way back: the first step is on the elastic line.
+   !> Yielded by its initial deformation, and with a velocity back: the first step is on the elastic line.
    subroutine against_one_way(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -507,7 +507,7 @@ contains
       real(wp) :: amplitude, expected
 
       call new_mass(scene, bilinear(k, yield, post), mass, 2.0_wp*yield, -0.1_wp)
-      ! Amplitude about the point without force, F/k behind; it stays within the elastic 2 d_y.
+      ! The amplitude about the point of zero force, which is F/k back, stays within the elastic range 2 d_y.
       amplitude = (k*yield + post*yield)/k
       scene%finish = 0.5_wp/omega
       expected = 2.0_wp*yield - amplitude + amplitude*cos(0.5_wp) - 0.1_wp/omega*sin(0.5_wp)
@@ -517,14 +517,14 @@ contains
       call play_located(scene, 0.0_wp, 100, state, outcome)
       call check_passed(error, outcome, 'located')
       call check_close(error, state%q(3), expected, 1.0e-10_wp, 0.0_wp, 'located')
-      ! Without location the first step is on the wrong line, and only that.
+      ! Without location of events only the first step is on the wrong line.
       call stepper%scheme%create(scene%column)
       call play(scene, stepper, 100, state, outcome)
       call check_passed(error, outcome, 'step')
       call check_close(error, state%q(3), expected, 1.0e-3_wp, 0.0_wp, 'step')
    end subroutine against_one_way
 
-   !> Yielded and at rest in equilibrium, or pushed on from there: no line changes without need.
+   !> Yielded and at rest in equilibrium, or pushed further: no line changes without need.
    subroutine rest_on_line(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -552,8 +552,8 @@ contains
       end do
    end subroutine rest_on_line
 
-   !> A damped column, cracked and yielded on both sides, comes to rest: every swing crosses zero force and
-   !> is a smaller inner loop than the one before.
+   !> A damped column, cracked and yielded on both sides, comes to rest: every swing crosses zero force, and
+   !> each inner loop is smaller than the one before.
    subroutine small_loops(error)
       type(error_type), allocatable, intent(inout) :: error
       character(len=3), parameter :: inner(3) = ['kc ', 'kr ', 'one']
@@ -571,7 +571,7 @@ contains
          call swing(0.2_wp, 0.0_wp, 8000, state)
          call check_close(error, state%q, reference%q, 0.0_wp, 1.0e-7_wp*maxval(abs(reference%q)), &
                           inner(i)//': deformation')
-         ! exp(-20): hardly anything is left of the motion.
+         ! exp(-20): the motion has almost vanished.
          call swing(2.0_wp, 1.0e-12_wp, 1, state)
          call check_true(error, all(abs(state%v) < 1.0e-6_wp), inner(i)//': at rest')
          call check_true(error, state%springs%events > 100, inner(i)//': many loops, not '// &
@@ -605,7 +605,7 @@ contains
 
    end subroutine small_loops
 
-   !> One yield and one turn are two lines left, whichever method goes there.
+   !> One yield and one turn are two changes of line with every method.
    subroutine counted(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -647,7 +647,7 @@ contains
       end do
    end subroutine interrupted
 
-   !> A shortest step as long as the first leaves no room.
+   !> If the shortest step equals the first, the step cannot be reduced.
    subroutine hopeless(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -664,14 +664,14 @@ contains
       call check_same(error, [state%q, state%v], [scene%q, scene%v], 'the state is that before the step')
       call check_same(error, [state%time, state%of_loads, state%springs%d], spread(0.0_wp, 1, 4), &
                       'so are time, work and springs')
-      ! With more room it goes on from there.
+      ! With a shorter shortest step the run continues from there.
       stepper%shortest = 1.0e-9_wp
       deallocate (outcome)
       call stepper%advance(state, scene%finish, outcome)
       call check_passed(error, outcome, 'once more')
    end subroutine hopeless
 
-   !> Beyond the critical load of its yielded springs a column falls for ever: all methods say the same.
+   !> Beyond the critical load of its yielded springs a column falls for ever: all methods report it.
    subroutine falling(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome

@@ -14,8 +14,8 @@ module test_takeda
 
    character(len=3), parameter :: inner(3) = ['kc ', 'kr ', 'one']
 
-   !> The peak at 4 d_y, the slope that it unloads with, the zero force before reloading from the
-   !> opposite peak, and the slope of reloading.
+   !> The peak at 4 d_y, the slope of unloading from it, the zero crossing after unloading from the opposite
+   !> peak, and the slope of reloading from there.
    real(wp), parameter :: f_4 = f_y + 3.0_wp*k_u*d_y, k_r4 = k_0*(1.0_wp/4.0_wp)**b0
    real(wp), parameter :: zero_4 = -4.0_wp*d_y + f_4/k_r4, slope_4 = f_4/(4.0_wp*d_y - zero_4)
 
@@ -34,9 +34,9 @@ contains
                unit_test('rule 2: the other side uncracked after yield', first_return), &
                unit_test('rule 3: redirection to a steeper yield point', redirection), &
                unit_test('equality: an exact return to the peak unloads from the backbone', exact_return), &
-               unit_test('equality: a turn at zero force goes straight to the other side', turn_at_zero), &
-               unit_test('section 2b: the secant is the floor of K_in', secant_floor), &
-               unit_test('section 2b: K_r of the other side where this one has none', other_side), &
+               unit_test('equality: a turn at zero force leads directly to the other side', turn_at_zero), &
+               unit_test('section 2b: K_in is not below the secant', secant_floor), &
+               unit_test('section 2b: K_r of the other side if this one has none', other_side), &
                unit_test('property 12: B0 = 0 unloads with K_0', no_degradation), &
                unit_test('property 2: 1, 7, 1000 increments, to the last bit', increments), &
                unit_test('property 3: no jump, no slope above k_c', continuity), &
@@ -96,7 +96,7 @@ contains
             call spring%move(1, d(j))
             if (j == 4) before = spring%work(1)
          end do
-         ! Of each half cycle the loading triangle less the unloading triangle.
+         ! For each half cycle the loading triangle less the unloading triangle.
          call check_close(error, spring%work(1) - before, f_2*(2.0e-3_wp - zero) - f_2**2/k_r, 1.0e-9_wp, &
                           0.0_wp, inner(i)//' work of the cycle')
          call check_close(error, spring%work(1) - before, 143.082_wp, 0.0_wp, 1.0e-3_wp, &
@@ -178,7 +178,7 @@ contains
       f(4) = f(3) - k_in*0.4_wp*d_y
       f(5) = slope_4*(1.5_wp*d_y - zero_4)
       if (option == 'kr') then
-         ! The secant is the floor: everything stays on the reloading line.
+         ! K_in is the secant: everything stays on the reloading line.
          f(6:8) = slope_4*([-1.0_wp, 0.5_wp, -0.5_wp]*d_y - zero_4)
       else
          z(6) = 1.5_wp*d_y - f(5)/k_in
@@ -231,7 +231,7 @@ contains
                       'force')
    end subroutine corners
 
-   !> Property 11, and the floor F/D of K_r under the extreme B0 = 1 with k_u = k_y.
+   !> Property 11, and the least K_r, F/D, under the extreme B0 = 1 with k_u = k_y.
    subroutine outer_line(error)
       type(error_type), allocatable, intent(inout) :: error
       real(wp) :: f(4), f_peak, k_r
@@ -249,7 +249,7 @@ contains
       call check_close(error, f(:2), [f_peak, f_peak/9.0_wp], 1.0e-12_wp, 0.0_wp, 'the secant as floor')
    end subroutine outer_line
 
-   !> Unloading from 2 d_y goes on to -F_c, then straight to the opposite yield point.
+   !> Unloading from 2 d_y continues to -F_c, then directly to the opposite yield point.
    subroutine first_return(error)
       type(error_type), allocatable, intent(inout) :: error
       real(wp) :: f(3), k_r, crack
@@ -260,7 +260,7 @@ contains
       call follow_path(takeda_1('kc'), [2.0_wp*d_y, crack, 0.5_wp*(crack - d_y)], f)
       call check_close(error, f, [f_y + k_u*d_y, -f_c, -0.5_wp*(f_c + f_y)], 1.0e-12_wp, 0.0_wp, 'table 3')
 
-      ! Extreme: the yield point is behind; on with K_r to the yielded backbone.
+      ! Extreme: the line to the yield point would lead back; with K_r to the yielded backbone.
       spec = takeda(1.0_wp, 1.0_wp, 0.9_wp, 1.05_wp, 0.5_wp, 1.0_wp, 1.0_wp, 'kc')
       call follow_path(spec, [9.0_wp, -40.0_wp], f(:2))
       call check_close(error, f(2), -(1.0_wp + 0.9_wp*0.05_wp + 0.5_wp*38.95_wp), 1.0e-14_wp, 0.0_wp, &
@@ -297,8 +297,8 @@ contains
       end do
    end subroutine exact_return
 
-   !> Turn a few numbers beyond a crossing of zero force, where force and way are round-off: their
-   !> ratio must not become a slope.
+   !> Turn a few floating-point numbers beyond a crossing of zero force, where force and distance are
+   !> round-off: their ratio must not become a slope.
    subroutine turn_at_zero(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
@@ -378,7 +378,7 @@ contains
       end do
    end subroutine no_degradation
 
-   !> Numbers over the whole range that takeda.md section 3 was tried on.
+   !> Parameters over the whole range on which takeda.md section 3 was tested.
    subroutine random_spring(random, spec)
       type(random_type), intent(inout) :: random
       type(spring_record), intent(out) :: spec
@@ -454,7 +454,7 @@ contains
          end do
       end do
       call check_true(error, steepest <= 1.0_wp + 1.0e-8_wp, 'a chord is steeper than k_c')
-      call check_true(error, steepest > 0.9_wp, 'the paths begin uncracked')
+      call check_true(error, steepest > 0.9_wp, 'the paths start uncracked')
    end subroutine continuity
 
    subroutine mirror(error)
@@ -469,7 +469,7 @@ contains
          call random_path(random, spec%get('d_y'), d)
          call follow_path(spec, d, f)
          call follow_path(spec, -d, f_mirror)
-         ! + 0: a zero of either sign is the same zero.
+         ! + 0: makes zeros of both signs equal.
          call check_same(error, -f_mirror + 0.0_wp, f + 0.0_wp, 'force')
       end do
    end subroutine mirror
@@ -517,7 +517,7 @@ contains
          call spring%move(1, vertex(j, n))
          f(j) = spring%force(1)
       end do
-      ! Outward on one side: every loop closes where it began.
+      ! Outward on one side: every loop closes at its start.
       do j = n - 1, 1, -2
          call spring%move(1, vertex(j, n))
          call check_same(error, spring%force(1), f(j), 'closed loop')

@@ -1,4 +1,4 @@
-!> Numbers as text, names compared, messages collected.
+!> Numbers as text, comparison of names, lists of messages.
 module test_text
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf, &
                                             ieee_negative_inf
@@ -20,10 +20,10 @@ contains
    subroutine collect_text(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
-      tests = [unit_test('reals have six digits and no needless zeros', reals), &
+      tests = [unit_test('reals have six digits and no trailing zeros', reals), &
                unit_test('reals change to powers of ten outside 1e-4 to 1e6', powers), &
                unit_test('reals are rounded before the form is chosen', rounding), &
-               unit_test('numbers that are none', not_numbers), &
+               unit_test('NaN, infinity and words that are not numbers', not_numbers), &
                unit_test('integers', integers), &
                unit_test('exact text reads back to the same bits', exact), &
                unit_test('short decimals are read as the library reads them', short_decimals), &
@@ -32,7 +32,7 @@ contains
                unit_test('nearest name by edit distance', nearest), &
                unit_test('an error carries code and message', one_error), &
                unit_test('messages are raised together, in order', collected), &
-               unit_test('a flood of messages is counted', flood)]
+               unit_test('messages beyond the limit are counted', flood)]
    end subroutine collect_text
 
    subroutine reals(error)
@@ -85,7 +85,7 @@ contains
       call check_equal(error, to_text(huge(1)), '2147483647', 'the largest')
    end subroutine integers
 
-   !> By the library and by our own reader.
+   !> By the library and by `read_real`.
    subroutine exact(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random

@@ -1,4 +1,4 @@
-!> Which steps are taken, and what is refused.
+!> The plan of the steps, and the input that is refused.
 module test_time_plan
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf
    use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_same, check_true
@@ -12,7 +12,7 @@ module test_time_plan
 
    public :: collect_time_plan
 
-   !> Stability limit of these plans, and the longest step where the user gives none [s]
+   !> Stability limit of these plans, and the longest step if the user gives none [s]
    real(wp), parameter :: limit = 0.1_wp, longest = 0.02_wp
 
 contains
@@ -23,12 +23,12 @@ contains
       tests = [unit_test('times must be two or more, finite, ascending', times), &
                unit_test('no dt: equal steps, not above the longest', automatic), &
                unit_test('dt that divides every interval', dividing), &
-               unit_test('dt that divides but for round-off', nearly_dividing), &
+               unit_test('dt that divides within round-off', nearly_dividing), &
                unit_test('dt that does not divide: free steps to the end', free), &
                unit_test('dt longer than an interval of the loading: free steps', longer), &
                unit_test('dt beyond the limit is refused, with the limit', beyond_limit), &
-               unit_test('dt that is no step', no_step), &
-               unit_test('more steps than a lifetime', too_many), &
+               unit_test('dt that is not a valid step', no_step), &
+               unit_test('too many steps', too_many), &
                unit_test('number of rows', number_of_rows), &
                unit_test('intervals that are all shorter than the step', short_intervals), &
                unit_test('steps and rows of random loadings', any_loading)]
@@ -68,7 +68,7 @@ contains
       end do
       call check_equal(error, plan%steps, 51, 'steps')
       call check_true(error, plan%dt <= longest, 'longest step')
-      call check_same(error, [plan%begin, plan%finish], [1.0_wp, 2.0_wp], 'begin and end')
+      call check_same(error, [plan%begin, plan%finish], [1.0_wp, 2.0_wp], 'start and end')
       call new_plan(plan, [0.0_wp, 1.0_wp], unset, 0.25_wp, limit, outcome)
       call check_equal(error, plan%steps, 4, 'an interval of four longest steps')
    end subroutine automatic
@@ -159,7 +159,7 @@ contains
       call check_failed(error, outcome, bad_input, '1e+12 steps of 0.001 s are more than 2e+09')
       call new_plan(plan, [0.0_wp, 1.0e50_wp], 1.0e-50_wp, longest, limit, outcome)
       call check_failed(error, outcome, bad_input, 'shorten the duration')
-      ! Beyond that the number of steps itself would overflow.
+      ! With more, the number of steps itself would overflow.
       call new_plan(plan, [0.0_wp, 1.0e50_wp], 1.0e-300_wp, longest, limit, outcome)
       call check_failed(error, outcome, bad_input, 'too short for any number of steps')
       call check_times([0.0_wp, 1.0e300_wp], outcome)
@@ -174,10 +174,10 @@ contains
       call new_plan(plan, [0.0_wp, 0.5_wp, 0.75_wp], 0.0625_wp, longest, limit, outcome)
       call check_passed(error, outcome, 'plan')
       call check_equal(error, plan%rows(unset_integer), 3, 'one at each time of the loading')
-      call check_equal(error, plan%rows(1), 13, 'begin and 12 steps')
-      call check_equal(error, plan%rows(4), 4, 'begin, 4, 8, 12')
-      call check_equal(error, plan%rows(5), 4, 'begin, 5, 10, 12')
-      call check_equal(error, plan%rows(100), 2, 'begin and 12')
+      call check_equal(error, plan%rows(1), 13, 'start and 12 steps')
+      call check_equal(error, plan%rows(4), 4, 'start, 4, 8, 12')
+      call check_equal(error, plan%rows(5), 4, 'start, 5, 10, 12')
+      call check_equal(error, plan%rows(100), 2, 'start and 12')
    end subroutine number_of_rows
 
    subroutine short_intervals(error)
@@ -195,7 +195,7 @@ contains
       call check_equal(error, plan%steps, 1, 'steps')
    end subroutine short_intervals
 
-   !> Whatever the times are: no step is longer than the longest, parts add up, rows are counted.
+   !> For all times: no step exceeds the longest, parts add up, rows are counted.
    subroutine any_loading(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
