@@ -1,11 +1,11 @@
-!> Steel that yields round: a bank of elements side by side, each elastic up to a limit of its own.
+!> Steel with a rounded transition to yield: a bank of parallel elements, each elastic up to its own limit.
 !>
 !> The force is f = sum s_i with -y_i <= s_i <= y_i (Iwan 1966). An element inside its limits follows the
 !> deformation with its stiffness k_i; one that slips stays on its limit. The limits y_i = w k_i d_y Y_i(q)
 !> follow the plastic reach q = (H - L)/d_y - 2, with H and L the extremes of the deformation so far, along
 !> a table that gives the branches the roundness of Menegotto and Pinto (1973). No limit moves faster than
 !> its element can: small reversals have small effects, and closed loops never create energy. Plastic
-!> deformation inside the reach may wear the strength, w.
+!> deformation inside the reach may reduce the strength through the factor w (wear).
 module rbs_hysteresis_steel_bank
    use rbs_base_check, only: is_given
    use rbs_base_constants, only: unbounded, unset
@@ -21,22 +21,22 @@ module rbs_hysteresis_steel_bank
 
    public :: steel_bank_rule
 
-   !> Elements that yield, and with them the one of hardening
+   !> Number of elements that yield, and number with the one of hardening
    integer, parameter :: yielding = 7, elements = 8
    !> Slopes of a branch between the limits of the elements, over k
    real(wp), parameter :: slopes(0:yielding) = &
       [1.0_wp, 0.94_wp, 0.75_wp, 0.5_wp, 0.25_wp, 0.08_wp, 0.015_wp, 0.0_wp]
    !> Stiffness of each element over that of all that yield
    real(wp), parameter :: share(yielding) = slopes(:yielding - 1) - slopes(1:)
-   !> Plastic reaches of the table but for those of the plateau
+   !> Plastic reaches of the table, without those of the plateau
    real(wp), parameter :: reaches(12) = [0.0_wp, 0.1_wp, 0.2_wp, 0.4_wp, 0.8_wp, 1.6_wp, 3.2_wp, 6.4_wp, &
                                          12.8_wp, 25.6_wp, 51.2_wp, 102.4_wp]
    integer, parameter :: most_rows = size(reaches) + 2
-   !> Roundness has no meaning below
+   !> Least roundness
    real(wp), parameter :: least_r = 0.8_wp
    !> An element is on its limit if no more than this share of H - L is missing
    real(wp), parameter :: near_limit = 1.0e-13_wp
-   !> A limit that moves with this share of the stiffness of its element takes it along
+   !> A limit that moves with at least this share of its element's stiffness carries the element with it
    real(wp), parameter :: as_fast = 1.0_wp - 1.0e-9_wp
 
    type(key_type), parameter :: parameters(*) = [ &
@@ -63,7 +63,7 @@ module rbs_hysteresis_steel_bank
       key_type('endurance', bound=not_negative, default=0.0_wp, &
                meaning='plastic deformation over d_y inside the reach that halves the strength; 0: none')]
 
-   !> Limits over k_i d_y by rows of the plastic reach: straight between them, constant after the last.
+   !> Limits over k_i d_y in rows of the plastic reach: linear between them, constant after the last.
    type :: table_type
       integer :: rows = 1
       real(wp) :: q(most_rows) = 0.0_wp
@@ -73,7 +73,7 @@ module rbs_hysteresis_steel_bank
    type, extends(rule_type) :: steel_bank_rule
       !> Elastic stiffness [N/m], yield force [N], stiffness of hardening [N/m]
       real(wp) :: k = 0.0_wp, f_y = 0.0_wp, k_post = 0.0_wp
-      !> Roundness and how it falls with the plastic reach
+      !> Roundness, and its decrease with the plastic reach
       real(wp) :: r0 = 20.0_wp, cr1 = 0.925_wp, cr2 = 0.15_wp
       !> Growth of the strength with the plastic reach, and half of the reach that it belongs to
       real(wp) :: isotropic_hardening = 0.0_wp, hardening_reach = 1.0_wp
@@ -90,9 +90,9 @@ module rbs_hysteresis_steel_bank
       real(wp), private :: k_element(elements) = 0.0_wp, s(elements) = 0.0_wp
       !> Their slopes on the present line [N/m]
       real(wp), private :: rate(elements) = 0.0_wp
-      !> Where the last event was, and extremes of the deformation up to there [m]
+      !> Deformation at the last event, and extremes of the deformation up to it [m]
       real(wp), private :: d = 0.0_wp, highest = 0.0_wp, lowest = 0.0_wp
-      !> Plastic deformation inside the reach up to there [m], and its growth along the present line
+      !> Plastic deformation inside the reach up to it [m], and its growth along the present line
       real(wp), private :: worn = 0.0_wp, wear_rate = 0.0_wp
    contains
       procedure, nopass :: keys
@@ -238,7 +238,7 @@ contains
       line = line%outward(direction, near=self%d, far=far, near_closed=.true., one_way=growing .or. one_slips)
    end subroutine next
 
-   !> Go along the present line to its end at d.
+   !> Move along the present line to its end at d.
    pure subroutine bring(self, d)
       type(steel_bank_rule), intent(inout) :: self
       real(wp), intent(in) :: d
@@ -254,13 +254,13 @@ contains
       self%lowest = min(self%lowest, d)
    end subroutine bring
 
-   !> Limits of the elements, their growth with the deformation, and the way to the next row of the table.
+   !> Limits of the elements, their growth with the deformation, and distance to the next row of the table.
    pure subroutine find_limits(self, growing, limit, growth, ahead)
       type(steel_bank_rule), intent(in) :: self
       logical, intent(in) :: growing
       !> (elements) [N], (elements) [N/m]
       real(wp), intent(out) :: limit(elements), growth(elements)
-      !> [m], `unbounded` where no row follows
+      !> [m], `unbounded` if no row follows
       real(wp), intent(out) :: ahead
       real(wp) :: q, way, strength
       integer :: row
@@ -296,7 +296,7 @@ contains
       logical, intent(in) :: slips(elements)
       !> (elements) [N/m]
       real(wp), intent(out) :: growth(elements)
-      !> The way until no strength is left [m]
+      !> Distance to the deformation at which no strength is left [m]
       real(wp), intent(inout) :: ahead
       real(wp) :: left, loss(elements), slope, slipping
       integer :: n
@@ -360,13 +360,13 @@ contains
             strength = min(strength, sum(share*before) + 0.9_wp*way)
             y = strength*round_limits(r)
             call limit_row(y, strength, max(before - way, 0.0_wp), before + way)
-            ! What round-off has left of a limit that is as fast as its element.
+            ! Apart from round-off the limit moves as fast as its element.
             where (y - before > as_fast*way) y = before + way
          end associate
       end do
    end subroutine make_table
 
-   !> A corner of the plateau becomes a row; a row next to it gives way.
+   !> Make a corner of the plateau a row; it replaces a row next to it.
    pure subroutine insert_row(table, q)
       type(table_type), intent(inout) :: table
       real(wp), intent(in) :: q
@@ -396,10 +396,10 @@ contains
       x = (c(1:) - c(:yielding - 1))/share
    end function round_limits
 
-   !> Keep limits within bounds, all moved by one number so that the strength of the bank stays as it is.
+   !> Keep limits within bounds, and shift all by one value so that the strength of the bank is unchanged.
    pure subroutine limit_row(y, strength, least, most)
       real(wp), intent(inout) :: y(:)
-      !> Of the bank, over that of the virgin one
+      !> Strength of the bank over that of the virgin one
       real(wp), intent(in) :: strength
       real(wp), intent(in) :: least(:), most(:)
       real(wp) :: from(size(y)), low, high, c, missing, free
