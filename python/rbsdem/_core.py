@@ -371,129 +371,131 @@ def read_history(path: str, length: str, force: str) -> tuple[str, Array, Array]
     return _text(name), displacement[:rows].copy(), force[:rows].copy()
 
 
-#: A section for Fortran (`rbs_bindings_section_arrays`): whole numbers and reals.
-PackedSection = tuple[NDArray[np.int32], Array]
+@cache
+def section_quantities() -> dict[str, tuple[str, ...]]:
+    """Return the names of the values that come back, by what they belong to.
+
+    "section" and "spring" have figures; "point" and "shear" the values of a point of a
+    moment-curvature and of a shear diagram; "profile" and "layer" those of layers.
+    """
+    kinds = ("section", "spring", "point", "shear", "profile", "layer")
+    texts = _rbsdem.rbs_section_quantities()
+    return {kind: tuple(_text(text).split(", ")) for kind, text in zip(kinds, texts, strict=True)}
 
 
-def check_section(section: PackedSection) -> Array:
-    """Return derived values of a section, or raise `InputError` with all that is wrong with it."""
-    figures, status, message = _rbsdem.rbs_check_section(*section)
+def _named(kind: str, values: Array) -> dict[str, float]:
+    return dict(zip(section_quantities()[kind], values.tolist(), strict=True))
+
+
+def _named_rows(kind: str, rows: Array) -> dict[str, Array]:
+    return {name: row.copy() for name, row in zip(section_quantities()[kind], rows, strict=True)}
+
+
+def check_section(section: Statement) -> dict[str, float]:
+    """Return figures of a section, or raise `InputError` for everything wrong with it."""
+    names = section_quantities()["section"]
+    figures, status, message = _rbsdem.rbs_check_section(*section, len(names))
     _raise(status, message)
-    return figures
+    return _named("section", figures)
 
 
-def axial_capacity(section: PackedSection) -> tuple[float, float]:
-    """Return the least (tension) and the largest axial load without bending."""
+def axial_capacity(section: Statement) -> tuple[float, float]:
+    """Return least (tension) and largest axial load without bending."""
     least, most, status, message = _rbsdem.rbs_axial_capacity(*section)
     _raise(status, message)
     return least, most
 
 
-def concrete_response(numbers: list[float], tension: int, strain: Array) -> Array:
+def concrete_response(concrete: Statement, tension: str, strain: Array) -> Array:
     """Return the stresses of unconfined concrete, compression positive."""
-    stress, status, message = _rbsdem.rbs_concrete_response(numbers, tension, strain)
+    statement = concrete + group("diagram", {"tension": tension})
+    stress, status, message = _rbsdem.rbs_concrete_response(*statement, strain)
     _raise(status, message)
     return stress
 
 
-def steel_response(numbers: list[float], strain: Array) -> Array:
+def steel_response(steel: Statement, strain: Array) -> Array:
     """Return the stresses of steel."""
-    stress, status, message = _rbsdem.rbs_steel_response(numbers, strain)
-    _raise(status, message)
-    return stress
-
-
-def section_concrete(section: PackedSection, tension: int, part: int, strain: Array) -> Array:
-    """Return the stresses of the concrete of a section: 0 plain, 1 core, 2 spalling cover."""
-    stress, status, message = _rbsdem.rbs_section_concrete(*section, tension, part, strain)
+    stress, status, message = _rbsdem.rbs_steel_response(*steel, strain)
     _raise(status, message)
     return stress
 
 
 def moment_curvature(
-    section: PackedSection, axial_load: float, tension: int, confined: bool, curvature: Array
+    section: Statement, settings: Mapping[str, Any], curvature: Array
 ) -> tuple[Array, Array]:
-    """Return moments and strains for curvatures of one sign in ascending order of size."""
-    moment, strain, status, message = _rbsdem.rbs_moment_curvature(
-        *section, axial_load, tension, int(confined), curvature
-    )
+    """Return moments and strains for curvatures of one sign and increasing magnitude."""
+    statement = section + group("diagram", settings)
+    moment, strain, status, message = _rbsdem.rbs_moment_curvature(*statement, curvature)
     _raise(status, message)
     return moment, strain
 
 
 def section_events(
-    section: PackedSection,
-    axial_load: float,
-    tension: int,
-    confined: bool,
-    yielding: str,
-    ultimate: str,
-    strains: Array,
-) -> tuple[Array, bool]:
-    """Return cracking, yield, peak, ultimate and end (columns), and whether N was lost."""
-    points, lost, status, message = _rbsdem.rbs_section_events(
-        *section, axial_load, tension, int(confined), word(yielding), word(ultimate), strains
-    )
+    section: Statement, settings: Mapping[str, Any]
+) -> tuple[list[dict[str, float]], bool]:
+    """Return cracking, yield, peak, ultimate and the end, and whether the axial load was lost."""
+    statement = section + group("diagram", settings)
+    points, lost, status, message = _rbsdem.rbs_section_events(*statement)
     _raise(status, message)
-    return points, bool(lost)
+    return [_named("point", column) for column in points.T], bool(lost)
 
 
 def section_flexure(
-    section: PackedSection,
-    settings: list[float],
-    stiffened: bool,
-    confined: bool,
-    yielding: str,
-    ultimate: str,
-) -> tuple[Array, Array]:
-    """Return the points of the diagram (columns) and the parameters of the flexural spring."""
-    points, figures, status, message = _rbsdem.rbs_section_flexure(
-        *section, settings, int(stiffened), int(confined), word(yielding), word(ultimate)
-    )
+    section: Statement, settings: Mapping[str, Any]
+) -> tuple[list[dict[str, float]], dict[str, float]]:
+    """Return cracking, yield, peak and ultimate, and the figures of the flexural spring."""
+    statement = section + group("springs", settings)
+    names = section_quantities()["spring"]
+    points, figures, status, message = _rbsdem.rbs_section_flexure(*statement, len(names))
     _raise(status, message)
-    return points, figures
+    return [_named("point", column) for column in points.T], _named("spring", figures)
 
 
-def section_shear(
-    section: PackedSection,
-    axial_load: float,
-    length: float,
-    tension: int,
-    confined: bool,
-    coupled: bool,
-    layers: int,
-    knee: float,
-    curvature: Array,
-) -> tuple[Array, Array, tuple[bool, bool, bool], Array]:
-    """Return points, layers, events (knee found, sheared, axial load lost), knee and last point."""
+class ShearRun(NamedTuple):
+    """A shear diagram: its points, the layers at the last one, the knee if it is found, the end."""
+
+    points: dict[str, Array]
+    profile: dict[str, Array]
+    knee: dict[str, float] | None
+    end: dict[str, float]
+    sheared: bool
+    lost: bool
+
+
+def section_shear(section: Statement, settings: Mapping[str, Any], curvature: Array) -> ShearRun:
+    """Follow a shear diagram; `settings` has the number of layers."""
+    statement = section + group("shear", settings)
     points, profile, kept, events, ends, status, message = _rbsdem.rbs_section_shear(
-        *section, axial_load, length, tension, int(confined), int(coupled), layers, knee, curvature
+        *statement, max(1, settings["layers"]), curvature
     )
     _raise(status, message)
     found, sheared, lost = (bool(event) for event in events)
-    return points[:, :kept].copy(), profile, (found, sheared, lost), ends
-
-
-def section_strips(
-    shape: str, sizes: list[float], round_core: bool, number: int
-) -> tuple[Array, Array, Array]:
-    """Return centroids and areas of strips of core and cover, and values of the whole section.
-
-    `sizes` are width and depth of the section and the amounts by which those of the core are
-    smaller; the values are area, second moment of area and shear area.
-    """
-    core, cover, figures, status, message = _rbsdem.rbs_section_strips(
-        word(shape), sizes, int(round_core), number
+    return ShearRun(
+        _named_rows("shear", points[:, :kept]),
+        _named_rows("profile", profile),
+        _named("shear", ends[:, 0]) if found else None,
+        _named("shear", ends[:, 1]),
+        sheared,
+        lost,
     )
+
+
+def section_strips(section: Statement, round_core: bool, number: int) -> tuple[Array, Array]:
+    """Return centroids and areas of core and of cover in strips, a strip a column."""
+    core, cover, status, message = _rbsdem.rbs_section_strips(*section, int(round_core), number)
     _raise(status, message)
-    return core, cover, figures
+    return core, cover
 
 
 def layer_response(
-    concrete: list[float], tension: int, stirrup: list[float], path: Array
+    concrete: Statement, steel: Statement, settings: Mapping[str, Any], path: Array
 ) -> tuple[Array, Array]:
-    """Return the states of a layer along a path (columns), and whether they carry the stress."""
-    return _rbsdem.rbs_layer_response(concrete, tension, stirrup, path)
+    """Return states of a layer along a path (a column each), and whether they carry the stress."""
+    statement = concrete + steel + group("layer", settings)
+    states, carried, status, message = _rbsdem.rbs_layer_response(*statement, path)
+    _raise(status, message)
+    return states, carried
 
 
 def _path(path: str) -> str:

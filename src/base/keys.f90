@@ -143,9 +143,10 @@ contains
       logical :: below
 
       below = x <= bound%least
-      if (bound%least > -huge(1.0_wp) .and. bound%most < huge(1.0_wp) .and. bound%reason == '' .and. &
+      if (bound%least > -huge(1.0_wp) .and. bound%most < huge(1.0_wp) .and. &
           .not. (bound%least_open .or. bound%most_open)) then
-         text = 'must be from '//to_text(bound%least)//' to '//to_text(bound%most)
+         text = 'must be from '//to_text(bound%least)//' to '//to_text(bound%most)//' '//bound%reason
+         return
       else if (below .and. abs(bound%least) > 0.0_wp) then
          text = 'must be '//to_text(bound%least)//' or more'
       else if (below .and. bound%least_open) then

@@ -379,233 +379,217 @@ subroutine rbs_kept_rows(points, every, rows)
    rows = kept_rows(points, every)
 end subroutine rbs_kept_rows
 
-subroutine rbs_check_section(nc, codes, nn, numbers, figures, status, message)
+subroutine rbs_section_quantities(section, spring, point, shear, profile, layer)
+   ! Names of the values that come back: figures of a section and of its spring, points of a moment-curvature
+   ! and of a shear diagram, layers at the last point of that, states of one layer.
+   use rbs_section_flexural_spring, only: spring_figures
+   use rbs_section_section_figures, only: layer_values, point_values, profile_values, section_figures, &
+                                          shear_values
+   use rbs_base_text, only: list_of
+   implicit none
+   character(len=512), intent(out) :: section, spring, point, shear, profile, layer
+   !f2py threadsafe
+
+   section = list_of(section_figures)
+   spring = list_of(spring_figures)
+   point = list_of(point_values)
+   shear = list_of(shear_values)
+   profile = list_of(profile_values)
+   layer = list_of(layer_values)
+end subroutine rbs_section_quantities
+
+subroutine rbs_check_section(statement, nn, number, nf, figures, status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_bindings_runs, only: tell
-   use rbs_bindings_section_arrays, only: section_from_numbers, figures_of_section
+   use rbs_bindings_section_statements, only: section_from_statements
    use rbs_section_cross_section, only: section_type
+   use rbs_section_section_figures, only: figures_of_section
+   use rbs_section_section_setter, only: section_setter
    implicit none
-   integer(c_int), intent(in) :: nc, nn, codes(nc)
-   real(c_double), intent(in) :: numbers(nn)
-   real(c_double), intent(out) :: figures(15)
+   character(len=*), intent(in) :: statement
+   integer(c_int), intent(in) :: nn, nf
+   real(c_double), intent(in) :: number(nn)
+   real(c_double), intent(out) :: figures(nf)
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
+   type(section_setter) :: setter
    type(section_type) :: section
    type(error_type), allocatable :: error
 
    figures = 0.0_c_double
-   call section_from_numbers(section, codes, numbers, error)
+   call section_from_statements(statement, number, '', setter, section, error)
    call tell(error, status, message)
-   if (status == 0) call figures_of_section(section, figures)
+   if (status == 0) figures = figures_of_section(section)
 end subroutine rbs_check_section
 
-subroutine rbs_axial_capacity(nc, codes, nn, numbers, least, most, status, message)
+subroutine rbs_axial_capacity(statement, nn, number, least, most, status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_bindings_runs, only: tell
-   use rbs_bindings_section_arrays, only: section_from_numbers
+   use rbs_bindings_section_statements, only: section_from_statements
    use rbs_section_balance, only: axial_capacity
    use rbs_section_concrete_law, only: tension_bare
-   use rbs_section_resultants, only: section_laws
    use rbs_section_cross_section, only: section_type
+   use rbs_section_resultants, only: section_laws
+   use rbs_section_section_setter, only: section_setter
    implicit none
-   integer(c_int), intent(in) :: nc, nn, codes(nc)
-   real(c_double), intent(in) :: numbers(nn)
+   character(len=*), intent(in) :: statement
+   integer(c_int), intent(in) :: nn
+   real(c_double), intent(in) :: number(nn)
    real(c_double), intent(out) :: least, most
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
+   type(section_setter) :: setter
    type(section_type) :: section
    type(error_type), allocatable :: error
 
    least = 0.0_c_double
    most = 0.0_c_double
-   call section_from_numbers(section, codes, numbers, error)
+   call section_from_statements(statement, number, '', setter, section, error)
    call tell(error, status, message)
    if (status == 0) call axial_capacity(section, section_laws(section, tension_bare, .false.), least, most)
 end subroutine rbs_axial_capacity
 
-subroutine rbs_moment_curvature(nc, codes, nn, numbers, axial_load, tension, confined, m, curvature, &
-                                moment, strain, status, message)
-   ! Curvatures of one sign and increasing magnitude.
+subroutine rbs_moment_curvature(statement, nn, number, m, curvature, moment, strain, status, message)
+   ! Curvatures of one sign and increasing magnitude; the settings are those of the group diagram.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_bindings_runs, only: tell
-   use rbs_bindings_section_arrays, only: section_from_numbers
+   use rbs_bindings_section_statements, only: section_from_statements, tension_place
    use rbs_section_balance, only: follow
-   use rbs_section_resultants, only: section_laws
    use rbs_section_cross_section, only: section_type
+   use rbs_section_resultants, only: section_laws
+   use rbs_section_section_setter, only: section_setter
    implicit none
-   integer(c_int), intent(in) :: nc, nn, tension, confined, m, codes(nc)
-   real(c_double), intent(in) :: numbers(nn), axial_load, curvature(m)
+   character(len=*), intent(in) :: statement
+   integer(c_int), intent(in) :: nn, m
+   real(c_double), intent(in) :: number(nn), curvature(m)
    real(c_double), intent(out) :: moment(m), strain(m)
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
+   type(section_setter) :: setter
    type(section_type) :: section
    type(error_type), allocatable :: error
 
    moment = 0.0_c_double
    strain = 0.0_c_double
-   call section_from_numbers(section, codes, numbers, error)
+   call section_from_statements(statement, number, 'diagram', setter, section, error)
    if (.not. allocated(error)) then
-      call follow(section, section_laws(section, tension, confined /= 0), axial_load, curvature, &
-                  moment, strain, error)
+      associate (given => setter%diagram)
+         call follow(section, section_laws(section, tension_place(given%tension), given%confined), &
+                     given%axial_load, curvature, moment, strain, error)
+      end associate
    end if
    call tell(error, status, message)
 end subroutine rbs_moment_curvature
 
-subroutine rbs_section_events(nc, codes, nn, numbers, axial_load, tension, confined, yield, ultimate, &
-                              strains, points, lost, status, message)
-   ! Columns of `points`: cracking, yield, peak, ultimate and the end; strains: eps_yield, eps_cover.
+subroutine rbs_section_events(statement, nn, number, points, lost, status, message)
+   ! A column of `points` each for cracking, yield, peak, ultimate and the end.
    use iso_c_binding, only: c_double, c_int
-   use rbs_base_error, only: error_type, message_list
+   use rbs_base_error, only: error_type
    use rbs_bindings_runs, only: tell
-   use rbs_bindings_section_arrays, only: section_from_numbers, point_numbers
-   use rbs_section_events, only: check_rules, events_type, find_events, rule_type
-   use rbs_section_resultants, only: section_laws
+   use rbs_bindings_section_statements, only: check_settings, section_from_statements, tension_place
    use rbs_section_cross_section, only: section_type
+   use rbs_section_events, only: events_type, find_events
+   use rbs_section_resultants, only: section_laws
+   use rbs_section_section_figures, only: values_of_point
+   use rbs_section_section_setter, only: section_setter
    implicit none
-   integer(c_int), intent(in) :: nc, nn, tension, confined, codes(nc)
-   real(c_double), intent(in) :: numbers(nn), axial_load, strains(2)
-   character(len=*), intent(in) :: yield, ultimate
+   character(len=*), intent(in) :: statement
+   integer(c_int), intent(in) :: nn
+   real(c_double), intent(in) :: number(nn)
    real(c_double), intent(out) :: points(4, 5)
    integer(c_int), intent(out) :: lost, status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
+   type(section_setter) :: setter
    type(section_type) :: section
    type(events_type) :: events
-   type(rule_type) :: rule
-   type(message_list) :: messages
    type(error_type), allocatable :: error
 
    points = 0.0_c_double
    lost = 0
-   rule%eps_yield = strains(1)
-   rule%eps_cover = strains(2)
-   call section_from_numbers(section, codes, numbers, error)
-   if (.not. allocated(error)) then
-      call check_rules(section, confined /= 0, yield, ultimate, rule, messages)
-      call messages%raise(error)
-   end if
-   if (.not. allocated(error)) then
-      call find_events(section, section_laws(section, tension, confined /= 0), axial_load, rule, events, &
-                       error)
-   end if
+   call section_from_statements(statement, number, 'diagram', setter, section, error)
+   associate (given => setter%diagram)
+      if (.not. allocated(error)) call check_settings(section, given%confined, given%rule(), error)
+      if (.not. allocated(error)) then
+         call find_events(section, section_laws(section, tension_place(given%tension), given%confined), &
+                          given%axial_load, given%rule(), events, error)
+      end if
+   end associate
    call tell(error, status, message)
    if (status /= 0) return
-   points(:, 1) = point_numbers(events%cracking)
-   points(:, 2) = point_numbers(events%yield)
-   points(:, 3) = point_numbers(events%peak)
-   points(:, 4) = point_numbers(events%ultimate)
-   points(:, 5) = point_numbers(events%last)
+   points(:, 1) = values_of_point(events%cracking)
+   points(:, 2) = values_of_point(events%yield)
+   points(:, 3) = values_of_point(events%peak)
+   points(:, 4) = values_of_point(events%ultimate)
+   points(:, 5) = values_of_point(events%last)
    lost = merge(1, 0, events%lost)
 end subroutine rbs_section_events
 
-subroutine rbs_section_flexure(nc, codes, nn, numbers, settings, stiffened, confined, yield, ultimate, &
-                               points, figures, status, message)
-   ! settings: length, axial load, hinge length, factor of the moments, B_0, D_m, eps_yield, eps_cover.
+subroutine rbs_section_flexure(statement, nn, number, nf, points, figures, status, message)
+   ! The settings are those of the group springs; a column of `points` each for cracking, yield, peak,
+   ! ultimate.
    use iso_c_binding, only: c_double, c_int
-   use rbs_base_error, only: error_type, message_list
+   use rbs_base_error, only: error_type
    use rbs_bindings_runs, only: tell
-   use rbs_bindings_section_arrays, only: section_from_numbers, point_numbers, spring_figures
-   use rbs_section_events, only: check_rules, rule_type
-   use rbs_section_flexural_spring, only: check_hinge, fit_flexural_spring, flexural_spring_type, hinge_type
+   use rbs_bindings_section_statements, only: check_settings, section_from_statements
    use rbs_section_cross_section, only: section_type
+   use rbs_section_flexural_spring, only: fit_flexural_spring, flexural_spring_type, hinge_type
+   use rbs_section_section_figures, only: values_of_point
+   use rbs_section_section_setter, only: section_setter
    implicit none
-   integer(c_int), intent(in) :: nc, nn, stiffened, confined, codes(nc)
-   real(c_double), intent(in) :: numbers(nn), settings(8)
-   character(len=*), intent(in) :: yield, ultimate
-   real(c_double), intent(out) :: points(4, 4), figures(10)
+   character(len=*), intent(in) :: statement
+   integer(c_int), intent(in) :: nn, nf
+   real(c_double), intent(in) :: number(nn)
+   real(c_double), intent(out) :: points(4, 4), figures(nf)
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
+   type(section_setter) :: setter
    type(section_type) :: section
    type(hinge_type) :: hinge
    type(flexural_spring_type) :: spring
-   type(message_list) :: messages
    type(error_type), allocatable :: error
 
    points = 0.0_c_double
    figures = 0.0_c_double
-   hinge%length = settings(1)
-   hinge%axial_load = settings(2)
-   hinge%hinge_length = settings(3)
-   hinge%moment_factor = settings(4)
-   hinge%b0 = settings(5)
-   hinge%d_m = settings(6)
-   hinge%rule%eps_yield = settings(7)
-   hinge%rule%eps_cover = settings(8)
-   hinge%stiffened_yield = stiffened /= 0
-   hinge%confined = confined /= 0
-   call section_from_numbers(section, codes, numbers, error)
-   if (.not. allocated(error)) then
-      call check_rules(section, hinge%confined, yield, ultimate, hinge%rule, messages)
-      call check_hinge(hinge, messages)
-      call messages%raise(error)
-   end if
+   call section_from_statements(statement, number, 'springs', setter, section, error)
+   hinge = setter%springs%hinge()
+   if (.not. allocated(error)) call check_settings(section, hinge%confined, hinge%rule, error)
    if (.not. allocated(error)) call fit_flexural_spring(section, hinge, spring, error)
    call tell(error, status, message)
    if (status /= 0) return
-   points(:, 1) = point_numbers(spring%cracking)
-   points(:, 2) = point_numbers(spring%yield)
-   points(:, 3) = point_numbers(spring%peak)
-   points(:, 4) = point_numbers(spring%ultimate)
-   figures = spring_figures(spring)
+   points(:, 1) = values_of_point(spring%cracking)
+   points(:, 2) = values_of_point(spring%yield)
+   points(:, 3) = values_of_point(spring%peak)
+   points(:, 4) = values_of_point(spring%ultimate)
+   figures = spring%as_array()
 end subroutine rbs_section_flexure
 
-subroutine rbs_section_concrete(nc, codes, nn, numbers, tension, part, m, strain, stress, status, message)
-   ! part: 0 without confinement, 1 core, 2 cover that spalls; compression positive.
+subroutine rbs_section_shear(statement, nn, number, layers, m, curvature, points, profile, kept, events, &
+                             ends, status, message)
+   ! The settings are those of the group shear; `ends` are the knee and the last point. `events`: knee found,
+   ! a layer sheared, axial load lost. `layers` is the room of the profile.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_bindings_runs, only: tell
-   use rbs_bindings_section_arrays, only: section_from_numbers
-   use rbs_section_concrete_law, only: concrete_stress
-   use rbs_section_resultants, only: laws_type, section_laws
+   use rbs_bindings_section_statements, only: section_from_statements, shear_into_arrays
    use rbs_section_cross_section, only: section_type
+   use rbs_section_section_setter, only: section_setter
    implicit none
-   integer(c_int), intent(in) :: nc, nn, tension, part, m, codes(nc)
-   real(c_double), intent(in) :: numbers(nn), strain(m)
-   real(c_double), intent(out) :: stress(m)
-   integer(c_int), intent(out) :: status
-   character(len=8192), intent(out) :: message
-   !f2py threadsafe
-   type(section_type) :: section
-   type(laws_type) :: laws
-   type(error_type), allocatable :: error
-
-   stress = 0.0_c_double
-   call section_from_numbers(section, codes, numbers, error)
-   call tell(error, status, message)
-   if (status /= 0) return
-   laws = section_laws(section, tension, part /= 0)
-   if (part == 1) then
-      stress = concrete_stress(laws%core, strain)
-   else
-      stress = concrete_stress(laws%shell, strain)
-   end if
-end subroutine rbs_section_concrete
-
-subroutine rbs_section_shear(nc, codes, nn, numbers, axial_load, span, tension, confined, coupled, layers, &
-                             share, m, curvature, points, profile, kept, events, ends, status, message)
-   ! Each column of `points` holds curvature, moment, shear force, shear strain; of `profile` y, eps_x, tau,
-   ! gamma, eps_z of a layer at the last point. `ends`: the knee and the last point, like `points`.
-   ! `events`: knee found, a layer failed in shear, axial load lost.
-   use iso_c_binding, only: c_double, c_int
-   use rbs_base_error, only: error_type
-   use rbs_bindings_runs, only: tell
-   use rbs_bindings_section_arrays, only: section_from_numbers
-   use rbs_bindings_shear_arrays, only: shear_into_arrays
-   use rbs_section_cross_section, only: section_type
-   implicit none
-   integer(c_int), intent(in) :: nc, nn, tension, confined, coupled, layers, m, codes(nc)
-   real(c_double), intent(in) :: numbers(nn), axial_load, span, share, curvature(m)
+   character(len=*), intent(in) :: statement
+   integer(c_int), intent(in) :: nn, layers, m
+   real(c_double), intent(in) :: number(nn), curvature(m)
    real(c_double), intent(out) :: points(4, m), profile(5, layers), ends(4, 2)
    integer(c_int), intent(out) :: kept, events(3), status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
+   type(section_setter) :: setter
    type(section_type) :: section
    type(error_type), allocatable :: error
 
@@ -614,121 +598,133 @@ subroutine rbs_section_shear(nc, codes, nn, numbers, axial_load, span, tension, 
    ends = 0.0_c_double
    kept = 0
    events = 0
-   call section_from_numbers(section, codes, numbers, error)
+   call section_from_statements(statement, number, 'shear', setter, section, error)
    if (.not. allocated(error)) then
-      call shear_into_arrays(section, tension, confined /= 0, coupled /= 0, axial_load, span, layers, share, &
-                             curvature, points, profile, kept, events, ends, error)
+      call shear_into_arrays(section, setter, curvature, points, profile, kept, events, ends, error)
    end if
    call tell(error, status, message)
 end subroutine rbs_section_shear
 
-subroutine rbs_layer_response(concrete, tension, stirrup, m, path, states, carried)
-   ! concrete: fc, ft, ec, eps0; stirrup: rho_z, fy, fu, es, eps_sh, eps_u. Each column of `path` holds eps_x
-   ! and tau, of `states` eps_z, gamma, sigma_x, sigma_z, tau.
+subroutine rbs_layer_response(statement, nn, number, m, path, states, carried, status, message)
+   ! Groups concrete, steel (of the stirrups) and layer; path: eps_x and tau.
    use iso_c_binding, only: c_double, c_int
-   use rbs_bindings_shear_arrays, only: layer_into_arrays
+   use rbs_base_error, only: error_type
+   use rbs_bindings_runs, only: tell
+   use rbs_bindings_section_statements, only: layer_into_arrays, record_from_statements
+   use rbs_section_section_setter, only: section_setter
    implicit none
-   integer(c_int), intent(in) :: tension, m
-   real(c_double), intent(in) :: concrete(4), stirrup(6), path(2, m)
+   character(len=*), intent(in) :: statement
+   integer(c_int), intent(in) :: nn, m
+   real(c_double), intent(in) :: number(nn), path(2, m)
    real(c_double), intent(out) :: states(5, m)
-   integer(c_int), intent(out) :: carried(m)
+   integer(c_int), intent(out) :: carried(m), status
+   character(len=8192), intent(out) :: message
    !f2py threadsafe
+   type(section_setter) :: setter
+   type(error_type), allocatable :: error
 
-   call layer_into_arrays(concrete, tension, stirrup, path, states, carried)
+   states = 0.0_c_double
+   carried = 0
+   call record_from_statements(statement, number, 'layer', setter, error)
+   call tell(error, status, message)
+   if (status == 0) call layer_into_arrays(setter, path, states, carried)
 end subroutine rbs_layer_response
 
-subroutine rbs_section_strips(shape, sizes, round_core, m, core, cover, figures, status, message)
-   ! sizes: width, depth, and the reductions of both to the core between hoop centre lines. Each column of
-   ! `core` and `cover` holds y of the centroid and area; figures: area, second moment, shear area.
+subroutine rbs_section_strips(statement, nn, number, round_core, m, core, cover, status, message)
+   ! A column of `core` and `cover`: y of the centroid and area.
    use iso_c_binding, only: c_double, c_int
-   use rbs_base_check, only: check_name
-   use rbs_base_error, only: error_type, message_list
+   use rbs_base_error, only: error_type
    use rbs_bindings_runs, only: tell
+   use rbs_bindings_section_statements, only: record_from_statements
+   use rbs_section_section_build, only: outline_core
+   use rbs_section_section_setter, only: section_setter
    use rbs_section_shape, only: shape_type
-   use rbs_section_shapes, only: new_core, new_shape, shape_names
    use rbs_section_strips, only: cut_strips, strip_centroids, strips_type
    implicit none
-   character(len=*), intent(in) :: shape
-   real(c_double), intent(in) :: sizes(4)
-   integer(c_int), intent(in) :: round_core, m
-   real(c_double), intent(out) :: core(2, m), cover(2, m), figures(3)
+   character(len=*), intent(in) :: statement
+   integer(c_int), intent(in) :: nn, round_core, m
+   real(c_double), intent(in) :: number(nn)
+   real(c_double), intent(out) :: core(2, m), cover(2, m)
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
-   class(shape_type), allocatable :: outline, inside
+   type(section_setter) :: setter
+   class(shape_type), allocatable :: inside
    type(strips_type) :: strips
-   type(message_list) :: messages
    type(error_type), allocatable :: error
-   integer :: place
-   logical :: ok
 
    core = 0.0_c_double
    cover = 0.0_c_double
-   figures = 0.0_c_double
-   call check_name(shape, shape_names, 'section: shape', messages, place)
-   call new_shape(place, sizes(1), sizes(2), outline)
-   call outline%check(messages, ok)
-   call messages%raise(error)
+   call record_from_statements(statement, number, '', setter, error)
    call tell(error, status, message)
    if (status /= 0) return
-   call new_core(outline, round_core /= 0, sizes(3), sizes(4), inside)
-   call cut_strips(outline, inside, int(m), strips)
-   call strip_centroids(outline, inside, strips, core(1, :), cover(1, :))
+   call outline_core(setter%section, round_core /= 0, inside)
+   call cut_strips(setter%section%shape, inside, int(m), strips)
+   call strip_centroids(setter%section%shape, inside, strips, core(1, :), cover(1, :))
    core(2, :) = strips%core_area
    cover(2, :) = strips%area - strips%core_area
-   figures = [outline%area(), outline%second_moment(), outline%shear_area()]
 end subroutine rbs_section_strips
 
-subroutine rbs_concrete_response(numbers, tension, m, strain, stress, status, message)
-   ! numbers: fc, ft, ec, eps0, eps_spall; without confinement, compression positive.
+subroutine rbs_concrete_response(statement, nn, number, m, strain, stress, status, message)
+   ! Groups concrete and diagram (its tension law); without confinement, compression positive.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list
    use rbs_bindings_runs, only: tell
-   use rbs_section_concrete_law, only: check_concrete, concrete_stress, concrete_type, plain_concrete
+   use rbs_bindings_section_statements, only: record_from_statements, tension_place
+   use rbs_section_concrete_law, only: concrete_stress, concrete_type
+   use rbs_section_section_setter, only: section_setter
    implicit none
-   real(c_double), intent(in) :: numbers(5)
-   integer(c_int), intent(in) :: tension, m
-   real(c_double), intent(in) :: strain(m)
+   character(len=*), intent(in) :: statement
+   integer(c_int), intent(in) :: nn, m
+   real(c_double), intent(in) :: number(nn), strain(m)
    real(c_double), intent(out) :: stress(m)
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
+   type(section_setter) :: setter
    type(concrete_type) :: law
    type(message_list) :: messages
    type(error_type), allocatable :: error
 
    stress = 0.0_c_double
-   call check_concrete(numbers(1), numbers(2), numbers(3), numbers(4), numbers(5), messages)
-   call messages%raise(error)
+   call record_from_statements(statement, number, 'diagram', setter, error)
+   if (.not. allocated(error)) then
+      call setter%section%concrete%validate(messages)
+      call messages%raise(error)
+   end if
    call tell(error, status, message)
    if (status /= 0) return
-   law = plain_concrete(numbers(1), numbers(2), numbers(3), numbers(4))
-   law%tension = tension
+   law = setter%section%concrete%law()
+   law%tension = tension_place(setter%diagram%tension)
    stress = concrete_stress(law, strain)
 end subroutine rbs_concrete_response
 
-subroutine rbs_steel_response(numbers, m, strain, stress, status, message)
-   ! numbers: fy, fu, es, eps_sh, eps_u.
+subroutine rbs_steel_response(statement, nn, number, m, strain, stress, status, message)
+   ! Group steel.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list
    use rbs_bindings_runs, only: tell
-   use rbs_section_steel_law, only: check_steel, steel_stress, steel_type
+   use rbs_bindings_section_statements, only: record_from_statements
+   use rbs_section_section_setter, only: section_setter
+   use rbs_section_steel_law, only: steel_stress
    implicit none
-   real(c_double), intent(in) :: numbers(5)
-   integer(c_int), intent(in) :: m
-   real(c_double), intent(in) :: strain(m)
+   character(len=*), intent(in) :: statement
+   integer(c_int), intent(in) :: nn, m
+   real(c_double), intent(in) :: number(nn), strain(m)
    real(c_double), intent(out) :: stress(m)
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
+   type(section_setter) :: setter
    type(message_list) :: messages
    type(error_type), allocatable :: error
-   type(steel_type) :: law
 
    stress = 0.0_c_double
-   law = steel_type(numbers(1), numbers(2), numbers(3), numbers(4), numbers(5))
-   call check_steel(law, 'steel', messages)
-   call messages%raise(error)
+   call record_from_statements(statement, number, '', setter, error)
+   if (.not. allocated(error)) then
+      call setter%section%steels(1)%validate(messages)
+      call messages%raise(error)
+   end if
    call tell(error, status, message)
-   if (status == 0) stress = steel_stress(law, strain)
+   if (status == 0) stress = steel_stress(setter%section%steels(1)%law(), strain)
 end subroutine rbs_steel_response

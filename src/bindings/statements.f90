@@ -6,6 +6,7 @@
 module rbs_bindings_statements
    use, intrinsic :: iso_c_binding, only: c_double
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
+   use rbs_base_key_setter, only: key_setter
    use rbs_case_case_record, only: case_record
    use rbs_case_setter, only: setter_type
    use rbs_column_column, only: column_type
@@ -24,7 +25,7 @@ contains
    subroutine put_statements(text, number, setter, messages)
       character(len=*), intent(in) :: text
       real(c_double), intent(in) :: number(:)
-      type(setter_type), intent(inout) :: setter
+      class(key_setter), intent(inout) :: setter
       type(message_list), intent(inout) :: messages
       integer :: first, last, at
 
@@ -46,7 +47,7 @@ contains
       real(c_double), intent(in) :: number(:)
       !> Index of the last number that was taken
       integer, intent(inout) :: at
-      type(setter_type), intent(inout) :: setter
+      class(key_setter), intent(inout) :: setter
       type(message_list), intent(inout) :: messages
       integer :: first, last
       logical :: ok
@@ -68,7 +69,7 @@ contains
       character(len=*), intent(in) :: item
       real(c_double), intent(in) :: number(:)
       integer, intent(inout) :: at
-      type(setter_type), intent(inout) :: setter
+      class(key_setter), intent(inout) :: setter
       type(message_list), intent(inout) :: messages
       integer :: mark, place, count
 

@@ -11,10 +11,15 @@ module rbs_case_key_list
    use rbs_case_spring_entry, only: keys_of_group, is_spring_group
    use rbs_case_text_buffer, only: text_buffer
    use rbs_hysteresis_registry, only: rule_names, keys_of, places_of
+   use rbs_section_section_setter, only: section_group_keys, section_groups
+   use rbs_section_shapes, only: shape_names
    implicit none
    private
 
    public :: keys_as_json, keys_as_table
+
+   !> Groups of a section, and the shapes with their sizes.
+   character(len=9), parameter :: section_parts(*) = [character(len=9) :: section_groups, shape_names]
 
 contains
 
@@ -49,7 +54,8 @@ contains
       keys = v%keys(:v%count)
    end subroutine group_keys
 
-   !> {"groups": {name: [key, ...]}, "rules": {name: {"places": [...], "keys": [key, ...]}}}
+   !> {"groups": {name: [key, ...]}, "rules": {name: {"places": [...], "keys": [key, ...]}},
+   !>  "section": {name: [key, ...]}}; a section comes from Python, with its groups and the sizes of shapes.
    subroutine keys_as_json(buffer)
       type(text_buffer), intent(inout) :: buffer
       type(key_type), allocatable :: keys(:)
@@ -71,6 +77,14 @@ contains
                             trim(places_of(rule_names(i)))//'", "keys": [')
          call append_keys(buffer, keys)
          call buffer%append(']}')
+      end do
+      call buffer%append(new_line('a')//'}, "section": {')
+      do i = 1, size(section_parts)
+         call section_group_keys(section_parts(i), keys)
+         if (i > 1) call buffer%append(',')
+         call buffer%append(new_line('a')//'  "'//trim(section_parts(i))//'": [')
+         call append_keys(buffer, keys)
+         call buffer%append(']')
       end do
       call buffer%append(new_line('a')//'}}'//new_line('a'))
    end subroutine keys_as_json

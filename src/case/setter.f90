@@ -2,6 +2,7 @@
 !> the bindings for Python both use it, so that a value has one name, one check and one message.
 module rbs_case_setter
    use rbs_base_error, only: message_list
+   use rbs_base_key_setter, only: key_setter
    use rbs_base_key_visitor, only: key_visitor
    use rbs_base_keys, only: key_type, find_key, choice_place, choice_name, choice_length, integer_kind, &
                             word_kind, text_kind, force, deformation, stiffness
@@ -24,7 +25,7 @@ module rbs_case_setter
    !> The result of `find` for a key that is ignored because the rule of its spring is unknown.
    integer, parameter, public :: ignored = -1
 
-   type :: setter_type
+   type, extends(key_setter) :: setter_type
       type(case_record) :: case
       !> Units of the numbers that are set
       type(unit_system) :: units

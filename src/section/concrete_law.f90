@@ -7,13 +7,15 @@
 module rbs_section_concrete_law
    use rbs_base_constants, only: unset, unbounded
    use rbs_base_error, only: message_list
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: above_zero, bound_type, not_negative
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_base_check, only: is_given, check_positive, check_not_negative
+   use rbs_base_check, only: is_given
    implicit none
    private
 
-   public :: concrete_type, plain_concrete, confined_concrete, spalling_concrete, check_concrete
+   public :: concrete_record, concrete_type, plain_concrete, confined_concrete, spalling_concrete
    public :: concrete_stress, concrete_tangent, concrete_both
 
    !> Tension laws: no tension at any strain; none beyond f_t; tension stiffening f_t/(1 + sqrt(500 eps))
@@ -22,6 +24,25 @@ module rbs_section_concrete_law
    integer, parameter, public :: tension_zero = 1, tension_bare = 2, tension_ts = 3
 
    real(wp), parameter :: mpa = 1.0e6_wp
+
+   !> Bounds of strength, modulus and strain at the peak.
+   type(bound_type), parameter :: strengths = &
+      bound_type(5.0_wp*mpa, 200.0_wp*mpa, reason='(30 MPa is fc = 30e6)')
+   type(bound_type), parameter :: moduli = bound_type(1.0e9_wp, 1.0e12_wp, reason='(25 GPa is ec = 25e9)')
+   type(bound_type), parameter :: peak_strains = &
+      bound_type(0.0_wp, 0.02_wp, least_open=.true., reason='(2 per mille is eps0 = 0.002)')
+
+   !> What is given of a concrete.
+   type :: concrete_record
+      !> Cylinder strength, tensile strength, modulus of elasticity [Pa]
+      real(wp) :: fc = unset, ft = unset, ec = unset
+      !> Strain at the peak; strain at which a cover has spalled
+      real(wp) :: eps0 = unset, eps_spall = 0.006_wp
+   contains
+      procedure :: visit
+      procedure :: validate
+      procedure :: law
+   end type concrete_record
 
    type :: concrete_type
       !> Peak stress in compression and in tension [Pa], modulus of elasticity [Pa]
@@ -170,57 +191,55 @@ contains
       end if
    end subroutine in_tension
 
-   !> Add a message for every value that is refused.
-   subroutine check_concrete(fc, ft, ec, eps0, eps_spall, messages)
-      !> As for `plain_concrete`
-      real(wp), intent(in) :: fc, ft, ec, eps0, eps_spall
-      type(message_list), intent(inout) :: messages
-      type(concrete_type) :: law
-      logical :: ok, all_ok
+   !> The keys of a concrete.
+   subroutine visit(self, v)
+      class(concrete_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
 
-      call check_positive(fc, 'concrete: fc', 'Pa', messages, all_ok)
-      if (all_ok .and. (fc < 5.0_wp*mpa .or. fc > 200.0_wp*mpa)) then
-         call messages%add('concrete: fc = '//to_text(fc)//' Pa must be between 5e6 and 200e6: '// &
-                           '30 MPa is fc = 30e6')
-         all_ok = .false.
+      call v%key('fc', self%fc, 'Pa', strengths, 'cylinder strength')
+      call v%key('ft', self%ft, 'Pa', not_negative, 'tensile strength; without it 0.45 fc^0.4 (MPa)', &
+                 optional=.true.)
+      call v%key('ec', self%ec, 'Pa', moduli, &
+                 'modulus of elasticity; without it 3320 sqrt(fc) + 6900 (MPa)', optional=.true.)
+      call v%key('eps0', self%eps0, '', peak_strains, &
+                 'strain at the peak; without it fc/ec n/(n - 1) with n = 0.8 + fc/17 (MPa)', optional=.true.)
+      call v%key('eps_spall', self%eps_spall, '', above_zero, 'strain at which the cover has spalled')
+   end subroutine visit
+
+   !> Add a message for every value that is refused.
+   subroutine validate(self, messages)
+      class(concrete_record), intent(inout) :: self
+      type(message_list), intent(inout) :: messages
+      type(key_visitor) :: v
+      type(concrete_type) :: law
+
+      call v%start_check('concrete')
+      call self%visit(v)
+      call v%end_check(messages)
+      if (.not. v%sound) return
+      if (is_given(self%ft) .and. .not. self%ft < self%fc) then
+         call messages%add('concrete: ft = '//to_text(self%ft)//' Pa must be below fc = '// &
+                           to_text(self%fc)//' Pa')
       end if
-      if (is_given(ft)) then
-         call check_not_negative(ft, 'concrete: ft', 'Pa', messages, ok)
-         if (ok .and. all_ok .and. .not. ft < fc) then
-            call messages%add('concrete: ft = '//to_text(ft)//' Pa must be below fc = '//to_text(fc)//' Pa')
+      law = plain_concrete(self%fc, self%ft, self%ec, unset)
+      if (is_given(self%eps0)) then
+         if (law%ec*self%eps0 < 1.02_wp*self%fc) then
+            call messages%add('concrete: eps0 = '//to_text(self%eps0)//' must be above fc/ec = '// &
+                              to_text(self%fc/law%ec)//', where the curve would be straight up to its peak')
          end if
-         all_ok = all_ok .and. ok
+         law%eps0 = self%eps0
       end if
-      if (is_given(ec)) then
-         call check_positive(ec, 'concrete: ec', 'Pa', messages, ok)
-         if (ok .and. (ec < 1.0e9_wp .or. ec > 1.0e12_wp)) then
-            call messages%add('concrete: ec = '//to_text(ec)//' Pa must be between 1e9 and 1e12: '// &
-                              '25 GPa is ec = 25e9')
-            ok = .false.
-         end if
-         all_ok = all_ok .and. ok
+      if (self%eps_spall < 1.2_wp*law%eps0) then
+         call messages%add('concrete: eps_spall = '//to_text(self%eps_spall)//' must be above 1.2 times '// &
+                           'the strain at the peak, '//to_text(law%eps0))
       end if
-      if (is_given(eps0)) then
-         call check_positive(eps0, 'concrete: eps0', '', messages, ok)
-         all_ok = all_ok .and. ok
-      end if
-      call check_positive(eps_spall, 'concrete: eps_spall', '', messages, ok)
-      if (.not. all_ok) return
-      law = plain_concrete(fc, ft, ec, unset)
-      if (is_given(eps0)) then
-         if (law%ec*eps0 < 1.02_wp*fc) then
-            call messages%add('concrete: eps0 = '//to_text(eps0)//' must be above fc/ec = '// &
-                              to_text(fc/law%ec)//', where the curve would be straight up to its peak')
-         else if (eps0 > 0.02_wp) then
-            call messages%add('concrete: eps0 = '//to_text(eps0)//' must be below 0.02; 2 per mille is '// &
-                              'eps0 = 0.002')
-         end if
-         law%eps0 = eps0
-      end if
-      if (ok .and. eps_spall < 1.2_wp*law%eps0) then
-         call messages%add('concrete: eps_spall = '//to_text(eps_spall)//' must be above 1.2 times the '// &
-                           'strain at the peak, '//to_text(law%eps0))
-      end if
-   end subroutine check_concrete
+   end subroutine validate
+
+   !> The law without confinement.
+   pure type(concrete_type) function law(self)
+      class(concrete_record), intent(in) :: self
+
+      law = plain_concrete(self%fc, self%ft, self%ec, self%eps0)
+   end function law
 
 end module rbs_section_concrete_law

@@ -6,7 +6,6 @@ module rbs_section_events
    use rbs_section_resultants, only: laws_type
    use rbs_section_cross_section, only: section_type
    use rbs_section_steel_law, only: steel_yield_strain
-   use rbs_base_check, only: check_name, check_positive
    implicit none
    private
 
@@ -322,20 +321,13 @@ contains
       as_point = point_type(.true., state%curvature, state%moment, state%eps0)
    end function as_point
 
-   !> Find the rules by their names; add a message for every name and strain that is refused.
-   subroutine check_rules(section, confined, yield, ultimate, rule, messages)
+   !> Add a message for every rule that does not apply to the section.
+   subroutine check_rules(section, confined, rule, messages)
       type(section_type), intent(in) :: section
       logical, intent(in) :: confined
-      !> One of `yield_names` and of `ultimate_names`
-      character(len=*), intent(in) :: yield, ultimate
-      !> Its strains are checked, its rules are set
-      type(rule_type), intent(inout) :: rule
+      type(rule_type), intent(in) :: rule
       type(message_list), intent(inout) :: messages
 
-      call check_name(yield, yield_names, 'yield', messages, rule%yield)
-      call check_name(ultimate, ultimate_names, 'ultimate', messages, rule%ultimate)
-      call check_positive(rule%eps_yield, 'eps_yield', '', messages)
-      call check_positive(rule%eps_cover, 'eps_cover', '', messages)
       if (rule%ultimate == ultimate_mander .and. .not. (confined .and. section%core%eps_cu < 1.0_wp)) then
          call messages%add("ultimate = 'mander' needs the confined core: give ties and confined = true, "// &
                            "or take 'cover'")

@@ -5,18 +5,22 @@
 !> from that without. B_1 follows from eq 7 of the paper at a rotation D_m.
 module rbs_section_flexural_spring
    use rbs_base_constants, only: unset
-   use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
+   use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_section_concrete_law, only: tension_bare, tension_ts
    use rbs_section_events, only: events_type, point_type, rule_type, find_events, reach_moment
    use rbs_section_resultants, only: laws_type, section_laws
    use rbs_section_cross_section, only: section_type
-   use rbs_base_check, only: is_given, check_positive, check_not_negative
+   use rbs_base_check, only: is_given
    implicit none
    private
 
-   public :: hinge_type, flexural_spring_type, fit_flexural_spring, check_hinge, hinge_length
+   public :: hinge_type, flexural_spring_type, fit_flexural_spring, hinge_length
+
+   !> Names of the figures of `as_array`.
+   character(len=12), parameter, public :: spring_figures(10) = [character(len=12) :: &
+      'k_c', 'd_c', 'k_y', 'd_y', 'k_u', 'b0', 'b1', 'k_u_found', 'hinge_length', 'd_m']
 
    !> How the spring is read from the diagrams.
    type :: hinge_type
@@ -46,6 +50,8 @@ module rbs_section_flexural_spring
       real(wp) :: hinge_length = 0.0_wp, d_m = 0.0_wp
       !> The points of the diagram that the line goes through, and the largest moment
       type(point_type) :: cracking, yield, peak, ultimate
+   contains
+      procedure :: as_array
    end type flexural_spring_type
 
 contains
@@ -173,18 +179,13 @@ contains
                      section%bar_diameter
    end function hinge_length
 
-   !> Add a message for every value that is refused.
-   subroutine check_hinge(hinge, messages)
-      type(hinge_type), intent(in) :: hinge
-      type(message_list), intent(inout) :: messages
+   !> The figures in the order of their names.
+   pure function as_array(self) result(figures)
+      class(flexural_spring_type), intent(in) :: self
+      real(wp) :: figures(size(spring_figures))
 
-      call check_positive(hinge%length, 'springs: length', 'm', messages)
-      if (is_given(hinge%hinge_length)) then
-         call check_positive(hinge%hinge_length, 'springs: hinge_length', 'm', messages)
-      end if
-      call check_positive(hinge%moment_factor, 'springs: moment_factor', '', messages)
-      call check_not_negative(hinge%b0, 'springs: b0', '', messages)
-      if (is_given(hinge%d_m)) call check_positive(hinge%d_m, 'springs: d_m', 'rad', messages)
-   end subroutine check_hinge
+      figures = [self%k_c, self%d_c, self%k_y, self%d_y, self%k_u, self%b0, self%b1, self%k_u_found, &
+                 self%hinge_length, self%d_m]
+   end function as_array
 
 end module rbs_section_flexural_spring

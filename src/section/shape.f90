@@ -3,17 +3,17 @@
 !> y runs from mid-depth. The concrete outline of a section is a shape, and so is the core that its hoops
 !> enclose. A new shape is one file with a type that extends this one, and two lines in `shapes.f90`.
 module rbs_section_shape
-   use rbs_base_check, only: check_positive
-   use rbs_base_error, only: message_list
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: bound_type
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: to_text
    implicit none
    private
 
-   public :: shape_type, check_size
+   public :: shape_type
 
-   !> Largest size [m]; a larger one was probably given in millimetres.
-   real(wp), parameter, public :: largest_size = 50.0_wp
+   !> Sizes of columns [m]: a larger number was given in millimetres.
+   type(bound_type), parameter, public :: column_size = &
+      bound_type(0.0_wp, 50.0_wp, least_open=.true., reason='(400 mm is 0.4)')
 
    type, abstract :: shape_type
       !> Sizes of the smallest rectangle around the figure: across and along the direction of loading [m]
@@ -32,8 +32,8 @@ module rbs_section_shape
       procedure :: leg_share
       !> Reduce the sizes, not below zero
       procedure(reduce), deferred :: shrink
-      !> Add a message for every size that is refused
-      procedure(check_sizes), deferred :: check
+      !> Show the sizes as keys
+      procedure(show_keys), deferred :: visit
    end type shape_type
 
    abstract interface
@@ -67,13 +67,12 @@ module rbs_section_shape
          real(wp), intent(in) :: width_by, depth_by
       end subroutine reduce
 
-      subroutine check_sizes(self, messages, ok)
-         import :: message_list, shape_type
+      subroutine show_keys(self, v)
+         import :: key_visitor, shape_type
          implicit none
-         class(shape_type), intent(in) :: self
-         type(message_list), intent(inout) :: messages
-         logical, intent(out) :: ok
-      end subroutine check_sizes
+         class(shape_type), intent(inout) :: self
+         type(key_visitor), intent(inout) :: v
+      end subroutine show_keys
    end interface
 
 contains
@@ -88,20 +87,5 @@ contains
       leg_share = 0.0_wp
       if (self%width > 0.0_wp) leg_share = self%width_at(min(abs(y), 0.5_wp*self%depth))/self%width
    end function leg_share
-
-   !> Add a message if a size is not positive, or too large for a column.
-   subroutine check_size(size_of, name, messages, ok)
-      !> [m]
-      real(wp), intent(in) :: size_of
-      character(len=*), intent(in) :: name
-      type(message_list), intent(inout) :: messages
-      logical, intent(out) :: ok
-
-      call check_positive(size_of, name, 'm', messages, ok)
-      if (.not. ok) return
-      ok = size_of <= largest_size
-      if (ok) return
-      call messages%add(name//' = '//to_text(size_of)//' m is larger than any column; 400 mm is 0.4')
-   end subroutine check_size
 
 end module rbs_section_shape

@@ -1,9 +1,9 @@
 !> A circle; its diameter is its width and its depth.
 module rbs_section_shape_circle
    use rbs_base_constants, only: pi
-   use rbs_base_error, only: message_list
+   use rbs_base_key_visitor, only: key_visitor
    use rbs_base_kinds, only: wp
-   use rbs_section_shape, only: check_size, shape_type
+   use rbs_section_shape, only: column_size, shape_type
    implicit none
    private
 
@@ -18,7 +18,7 @@ module rbs_section_shape_circle
       procedure :: second_moment
       procedure :: shear_area
       procedure :: shrink
-      procedure :: check
+      procedure :: visit
    end type circle_type
 
 contains
@@ -82,12 +82,12 @@ contains
       self%width = self%depth
    end subroutine shrink
 
-   subroutine check(self, messages, ok)
-      class(circle_type), intent(in) :: self
-      type(message_list), intent(inout) :: messages
-      logical, intent(out) :: ok
+   subroutine visit(self, v)
+      class(circle_type), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
 
-      call check_size(self%depth, 'section: diameter', messages, ok)
-   end subroutine check
+      call v%key('diameter', self%depth, 'm', column_size, 'diameter')
+      self%width = self%depth
+   end subroutine visit
 
 end module rbs_section_shape_circle

@@ -1,8 +1,8 @@
 !> A rectangle.
 module rbs_section_shape_rectangle
-   use rbs_base_error, only: message_list
+   use rbs_base_key_visitor, only: key_visitor
    use rbs_base_kinds, only: wp
-   use rbs_section_shape, only: check_size, shape_type
+   use rbs_section_shape, only: column_size, shape_type
    implicit none
    private
 
@@ -17,7 +17,7 @@ module rbs_section_shape_rectangle
       procedure :: second_moment
       procedure :: shear_area
       procedure :: shrink
-      procedure :: check
+      procedure :: visit
    end type rectangle_type
 
 contains
@@ -73,15 +73,12 @@ contains
       self%depth = max(0.0_wp, self%depth - depth_by)
    end subroutine shrink
 
-   subroutine check(self, messages, ok)
-      class(rectangle_type), intent(in) :: self
-      type(message_list), intent(inout) :: messages
-      logical, intent(out) :: ok
-      logical :: width_ok
+   subroutine visit(self, v)
+      class(rectangle_type), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
 
-      call check_size(self%width, 'section: width', messages, width_ok)
-      call check_size(self%depth, 'section: depth', messages, ok)
-      ok = ok .and. width_ok
-   end subroutine check
+      call v%key('width', self%width, 'm', column_size, 'width, across the direction of loading')
+      call v%key('depth', self%depth, 'm', column_size, 'depth, in the direction of loading')
+   end subroutine visit
 
 end module rbs_section_shape_rectangle

@@ -10,6 +10,8 @@ module rbs_section_shapes
    public :: new_shape, new_core
 
    character(len=9), parameter, public :: shape_names(2) = ['rectangle', 'circle   ']
+   !> The names as choices of a key
+   character(len=*), parameter, public :: shape_choices = 'rectangle circle'
    integer, parameter, public :: shape_rectangle = 1, shape_circle = 2
 
 contains
@@ -17,7 +19,7 @@ contains
    !> Make the shape at a place among `shape_names`.
    subroutine new_shape(place, width, depth, shape)
       integer, intent(in) :: place
-      !> Sizes across and along the direction of loading [m]
+      !> Sizes across and along the direction of loading [m]; `unset` where keys will put them
       real(wp), intent(in) :: width, depth
       class(shape_type), allocatable, intent(inout) :: shape
 

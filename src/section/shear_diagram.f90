@@ -14,11 +14,11 @@ module rbs_section_shear_diagram
    use rbs_section_cross_section, only: section_type, slice
    use rbs_section_shear_coupling, only: couple
    use rbs_section_shear_flow, only: flow_type, begin_flow, shear_stresses, transverse_ratio
-   use rbs_base_check, only: check_finite, check_positive
+   use rbs_base_check, only: check_positive
    implicit none
    private
 
-   public :: shear_point, shear_diagram_type, follow_shear, check_shear
+   public :: shear_point, shear_diagram_type, follow_shear, check_curvatures
 
    !> Layers over the depth.
    integer, parameter, public :: default_layers = 80
@@ -27,7 +27,9 @@ module rbs_section_shear_diagram
    !> calibrated on table 3 of the paper, whose columns have 0.41 to 0.53.
    real(wp), parameter, public :: default_knee = 0.48_wp
 
-   integer, parameter :: most_bisections = 40, fewest_layers = 4, most_layers = 10000
+   integer, parameter, public :: fewest_layers = 4, most_layers = 10000
+
+   integer, parameter :: most_bisections = 40
 
    !> A point of the diagram: curvature [1/m], moment [N m], shear force [N], shear strain.
    type :: shear_point
@@ -255,27 +257,15 @@ contains
       end do
    end subroutine find_end
 
-   !> Add a message for every value that is refused.
-   subroutine check_shear(axial_load, span, layers, knee_share, curvature, messages)
-      !> As for `follow_shear`
-      real(wp), intent(in) :: axial_load, span, knee_share, curvature(:)
-      integer, intent(in) :: layers
+   !> The curvatures must be positive and increase.
+   subroutine check_curvatures(curvature, messages)
+      !> [1/m]
+      real(wp), intent(in) :: curvature(:)
       type(message_list), intent(inout) :: messages
       real(wp) :: before
       logical :: ok
       integer :: i
 
-      call check_finite(axial_load, 'shear: axial_load', 'N', messages)
-      call check_positive(span, 'shear: length', 'm', messages)
-      call check_positive(knee_share, 'shear: knee', '', messages, ok)
-      if (ok .and. knee_share >= 1.0_wp) then
-         call messages%add('shear: knee = '//to_text(knee_share)//' must be below 1, the secant of the '// &
-                           'section before it cracks')
-      end if
-      if (layers < fewest_layers .or. layers > most_layers) then
-         call messages%add('shear: layers = '//to_text(layers)//' must be from '//to_text(fewest_layers)// &
-                           ' to '//to_text(most_layers)//'; 80 are enough')
-      end if
       if (size(curvature) == 0) call messages%add('shear: curvature is empty; give at least one')
       before = 0.0_wp
       do i = 1, size(curvature)
@@ -288,6 +278,6 @@ contains
          end if
          before = curvature(i)
       end do
-   end subroutine check_shear
+   end subroutine check_curvatures
 
 end module rbs_section_shear_diagram

@@ -4,14 +4,17 @@
 !> stress beyond, as the bar is broken (Response-2000, manual table 2-2: quadratic with zero slope at its
 !> maximum).
 module rbs_section_steel_law
+   use rbs_base_check, only: is_given
+   use rbs_base_constants, only: unset, unset_integer
    use rbs_base_error, only: message_list
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: above_zero, any_number, bound_type
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_base_check, only: check_positive
    implicit none
    private
 
-   public :: steel_type, steel_stress, steel_tangent, steel_both, steel_yield_strain, check_steel
+   public :: steel_record, steel_type, steel_stress, steel_tangent, steel_both, steel_yield_strain
 
    type :: steel_type
       !> Yield stress, largest stress, modulus of elasticity [Pa]
@@ -19,6 +22,26 @@ module rbs_section_steel_law
       !> Strain at which hardening begins, and of rupture
       real(wp) :: eps_sh = 0.007_wp, eps_u = 0.1_wp
    end type steel_type
+
+   !> Bounds of yield stress, modulus and strain at rupture.
+   type(bound_type), parameter :: strengths = &
+      bound_type(50.0e6_wp, 3.0e9_wp, reason='(450 MPa is fy = 450e6)')
+   type(bound_type), parameter :: moduli = bound_type(1.0e10_wp, 1.0e12_wp, reason='(200 GPa is es = 200e9)')
+   type(bound_type), parameter :: rupture_strains = &
+      bound_type(0.0_wp, 0.6_wp, least_open=.true., reason='(10 per cent is eps_u = 0.1)')
+
+   !> What is given of a steel.
+   type :: steel_record
+      !> Number by which bars and hoops refer to it
+      integer :: id = unset_integer
+      !> As in `steel_type`
+      real(wp) :: fy = unset, fu = unset, es = 200.0e9_wp
+      real(wp) :: eps_sh = 0.007_wp, eps_u = 0.1_wp
+   contains
+      procedure :: visit
+      procedure :: validate
+      procedure :: law
+   end type steel_record
 
 contains
 
@@ -69,45 +92,52 @@ contains
       end if
    end subroutine steel_both
 
-   !> Add a message for every value that is refused.
-   subroutine check_steel(law, name, messages)
-      type(steel_type), intent(in) :: law
-      !> Which steel: 'steel of bar 3'
-      character(len=*), intent(in) :: name
-      type(message_list), intent(inout) :: messages
-      logical :: ok(5)
+   !> The keys of a steel.
+   subroutine visit(self, v)
+      class(steel_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
 
-      call check_positive(law%fy, name//': fy', 'Pa', messages, ok(1))
-      call check_positive(law%fu, name//': fu', 'Pa', messages, ok(2))
-      call check_positive(law%es, name//': es', 'Pa', messages, ok(3))
-      call check_positive(law%eps_sh, name//': eps_sh', '', messages, ok(4))
-      call check_positive(law%eps_u, name//': eps_u', '', messages, ok(5))
-      if (.not. all(ok)) return
-      if (law%fy < 50.0e6_wp .or. law%fy > 3.0e9_wp) then
-         call messages%add(name//': fy = '//to_text(law%fy)//' Pa must be between 50e6 and 3e9: '// &
-                           '450 MPa is fy = 450e6')
-         return
-      end if
-      if (law%es < 1.0e10_wp .or. law%es > 1.0e12_wp) then
-         call messages%add(name//': es = '//to_text(law%es)//' Pa must be between 10e9 and 1000e9: '// &
-                           '200 GPa is es = 200e9')
-         return
-      end if
+      call v%key('id', self%id, '', any_number, 'number by which bars and hoops refer to the steel', &
+                 optional=.true.)
+      call v%key('fy', self%fy, 'Pa', strengths, 'yield stress')
+      call v%key('fu', self%fu, 'Pa', above_zero, 'largest stress; without it 1.5 fy', optional=.true.)
+      call v%key('es', self%es, 'Pa', moduli, 'modulus of elasticity')
+      call v%key('eps_sh', self%eps_sh, '', above_zero, 'strain at which hardening begins')
+      call v%key('eps_u', self%eps_u, '', rupture_strains, 'strain of the largest stress, and of rupture')
+   end subroutine visit
+
+   !> Add a message for every value that is refused.
+   subroutine validate(self, messages)
+      class(steel_record), intent(inout) :: self
+      type(message_list), intent(inout) :: messages
+      type(key_visitor) :: v
+      type(steel_type) :: law
+
+      call v%start_check('steel')
+      call self%visit(v)
+      call v%end_check(messages)
+      if (.not. v%sound) return
+      law = self%law()
       if (law%fu < law%fy) then
-         call messages%add(name//': fu = '//to_text(law%fu)//' Pa must not be below fy = '// &
+         call messages%add('steel: fu = '//to_text(law%fu)//' Pa must not be below fy = '// &
                            to_text(law%fy)//' Pa')
       end if
       if (law%eps_sh < steel_yield_strain(law)) then
-         call messages%add(name//': eps_sh = '//to_text(law%eps_sh)//' must not be below the yield '// &
+         call messages%add('steel: eps_sh = '//to_text(law%eps_sh)//' must not be below the yield '// &
                            'strain fy/es = '//to_text(steel_yield_strain(law)))
       end if
       if (law%eps_u <= law%eps_sh) then
-         call messages%add(name//': eps_u = '//to_text(law%eps_u)//' must be above eps_sh = '// &
+         call messages%add('steel: eps_u = '//to_text(law%eps_u)//' must be above eps_sh = '// &
                            to_text(law%eps_sh))
-      else if (law%eps_u > 0.6_wp) then
-         call messages%add(name//': eps_u = '//to_text(law%eps_u)//' must be below 0.6; 10 per cent is '// &
-                           'eps_u = 0.1')
       end if
-   end subroutine check_steel
+   end subroutine validate
+
+   !> The law.
+   pure type(steel_type) function law(self)
+      class(steel_record), intent(in) :: self
+
+      law = steel_type(self%fy, self%fu, self%es, self%eps_sh, self%eps_u)
+      if (.not. is_given(self%fu)) law%fu = 1.5_wp*self%fy
+   end function law
 
 end module rbs_section_steel_law

@@ -12,8 +12,9 @@ module test_shear
    use rbs_section_resultants, only: section_laws
    use rbs_section_cross_section, only: section_type, slice, spiral, ties
    use rbs_section_section_build, only: build_section
+   use rbs_section_section_setter, only: section_setter
    use rbs_section_shapes, only: new_shape, shape_circle, shape_names, shape_rectangle
-   use rbs_section_shear_diagram, only: check_shear, follow_shear, shear_diagram_type
+   use rbs_section_shear_diagram, only: check_curvatures, follow_shear, shear_diagram_type
    use rbs_section_shear_coupling, only: couple
    use rbs_section_shear_flow, only: begin_flow, flow_type, shear_stresses, transverse_ratio
    use rbs_section_steel_law, only: steel_stress, steel_type
@@ -597,8 +598,19 @@ contains
    subroutine refused(error)
       type(error_type), allocatable, intent(inout) :: error
       type(message_list) :: messages
+      type(section_setter) :: setter
+      character(len=10), parameter :: names(4) = ['axial_load', 'length    ', 'layers    ', 'knee      ']
+      real(wp), parameter :: values(4) = [0.0_wp, -1.0_wp, 2.0_wp, 1.5_wp]
+      integer :: i, place
+      logical :: ok
 
-      call check_shear(0.0_wp, -1.0_wp, 2, 1.5_wp, [2.0e-3_wp, 1.0e-3_wp], messages)
+      call setter%open('shear', '', messages, ok)
+      do i = 1, size(names)
+         call setter%find(trim(names(i)), '', place, messages)
+         call setter%put_numbers(place, values(i:i))
+      end do
+      call setter%check('shear', messages)
+      call check_curvatures([2.0e-3_wp, 1.0e-3_wp], messages)
       call check_equal(error, messages%count, 4, 'messages')
       call check_contains(error, messages%text, 'shear: length = -1 m', 'span')
       call check_contains(error, messages%text, 'shear: layers = 2 must be', 'layers')

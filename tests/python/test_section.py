@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -19,6 +20,7 @@ from rbsdem import (
     Spiral,
     Steel,
     Ties,
+    _core,
 )
 
 STEEL = Steel(450e6, 650e6)
@@ -358,7 +360,7 @@ def test_tension_axial_load():
         (lambda: tied(layout=None, bars=[(0.21, 2e-4, STEEL)]), "outside the concrete"),
         (lambda: tied(layout=None, bars=[(math.nan, 2e-4, STEEL)]), "finite"),
         (lambda: tied(layout=None, bars=[(0.1, 200, STEEL)]), "200e-6"),
-        (lambda: tied(layout=None, bars=[(0.1, -2e-4, STEEL)]), "area of bar 1"),
+        (lambda: tied(layout=None, bars=[(0.1, -2e-4, STEEL)]), "bars: area = -0.0002 m2"),
         (lambda: tied(layout=None, bars=[(0.1, 2e-4)]), "must be \\(y, area, steel\\)"),
         (lambda: tied(layout=None, bars=[(0.1, 2e-4, 450e6)]), "must be a Steel"),
         (lambda: tied(layout=None, bars=[(0.1, 9e-3, STEEL)]), "bar_diameter of one bar"),
@@ -388,6 +390,26 @@ def test_all_faults_of_a_section_come_at_once():
     with pytest.raises(InputError) as caught:
         RectangularSection(0.4, 0.4, Concrete(30e6), bars=[(0.3, 2e-4, STEEL), (-0.3, 2e-4, STEEL)])
     assert len(str(caught.value).splitlines()) == 2
+
+
+def test_parameters_are_the_keys():
+    """Each value has one name: that of its key."""
+    keys = _core.keys()["section"]
+
+    def names(group: str) -> set[str]:
+        return {key["name"] for key in keys[group]}
+
+    for record, group, more in (
+        (Concrete, "concrete", set()),
+        (Steel, "steel", {"id"}),
+        (Ties, "ties", set()),
+        (Spiral, "spiral", set()),
+    ):
+        assert {field.name for field in dataclasses.fields(record)} | more == names(group)
+    given = {"shape", "cover", "side_cover", "bar_diameter", "strips"}
+    assert names("section") == given
+    assert names("rectangle") == {"width", "depth"}
+    assert names("circle") == {"diameter"}
 
 
 def test_sections_are_values():

@@ -104,6 +104,13 @@ def layer_stresses(eps_x: float, eps_z: float, gamma: float) -> np.ndarray:
     return tensor
 
 
+def layer_states(steel: Steel, rho_z: float, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    concrete = Concrete(FC * MPA)
+    return _core.layer_response(
+        concrete.statement(), steel.statement(), {"rho_z": rho_z, "tension": "ts"}, path
+    )
+
+
 @pytest.mark.parametrize(
     ("eps_x", "tau"),
     [
@@ -117,10 +124,9 @@ def layer_stresses(eps_x: float, eps_z: float, gamma: float) -> np.ndarray:
     ],
 )
 def test_layer_by_an_independent_solution(eps_x: float, tau: float) -> None:
-    concrete = [FC * MPA, _core.UNSET, _core.UNSET, _core.UNSET]
-    stirrup = [RHO, FYT * MPA, 1.5 * FYT * MPA, 200e9, 0.02, 0.1]
+    steel = Steel(FYT * MPA, 1.5 * FYT * MPA, eps_sh=0.02)
     path = np.asfortranarray([np.linspace(0.0, eps_x, 12), np.linspace(0.0, tau * MPA, 12)])
-    states, carried = _core.layer_response(concrete, 3, stirrup, path)
+    states, carried = layer_states(steel, RHO, path)
     assert carried.all()
     eps_z, gamma, sigma_x, sigma_z, tau_found = states[:, -1]
 
@@ -140,10 +146,9 @@ def test_layer_by_an_independent_solution(eps_x: float, tau: float) -> None:
 
 
 def test_layer_without_stirrups_has_no_sum_of_transverse_stress() -> None:
-    concrete = [FC * MPA, _core.UNSET, _core.UNSET, _core.UNSET]
-    stirrup = [0.0, FYT * MPA, FYT * MPA, 200e9, 0.02, 0.1]
+    steel = Steel(FYT * MPA, FYT * MPA, eps_sh=0.02)
     path = np.asfortranarray([[5e-4] * 8, np.linspace(0.1, 0.9, 8) * MPA])
-    states, carried = _core.layer_response(concrete, 3, stirrup, path)
+    states, carried = layer_states(steel, 0.0, path)
     assert carried.all()
     # sigma_z = 0: sigma_x = f_1 + f_2 and tau^2 = -f_1 f_2.
     for eps_z, gamma, sigma_x, _, tau in states.T:

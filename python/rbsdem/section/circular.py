@@ -65,7 +65,10 @@ class CircularSection(Section):
             raise InputError(f"section: spiral = {self.spiral!r} must be a Spiral")
         for name in ("diameter", "cover"):
             self._put(name, _core.number(getattr(self, name), f"section: {name}"))
-        self._finish(self.diameter, self.diameter, self.cover, self.spiral)
+        self._finish()
+
+    def _sizes(self) -> dict[str, float]:
+        return {"diameter": self.diameter}
 
     def _lay_out(self, layout: Layout, inset: float) -> list[Bar]:
         return layout.circular(self.diameter, inset)
@@ -89,11 +92,6 @@ class CircularSection(Section):
     def ties(self) -> Spiral | None:
         """The spiral."""
         return self.spiral
-
-    @property
-    def gross_area(self) -> float:
-        """Area of the concrete outline [m2]."""
-        return 0.25 * math.pi * self.diameter**2
 
     @property
     def effective_depth(self) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem.errors import InputError
-from rbsdem.section.materials import tension_place
+from rbsdem.section.materials import Tension
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -151,16 +151,17 @@ class Diagram:
         return _views.view(self, "plot", ax, **line)
 
 
-def make_point(numbers: Array) -> Point | None:
-    """Return a point from curvature, moment, strain and whether it was found."""
-    curvature, moment, strain, found = numbers.tolist()
-    return Point(curvature, moment, strain) if found else None
+def make_point(values: dict[str, float]) -> Point | None:
+    """Return a point, or None if it was not found."""
+    if not values["found"]:
+        return None
+    return Point(**{field.name: values[field.name] for field in fields(Point)})
 
 
 def make_diagram(
     section: Section,
     axial_load: float,
-    tension: str,
+    tension: Tension,
     confined: bool,
     rules: tuple[str, str],
     strains: tuple[float, float],
@@ -168,12 +169,18 @@ def make_diagram(
     furthest: float | None,
 ) -> Diagram:
     """Return the diagram; see `Section.diagram`."""
-    place = tension_place(tension)
-    numbers, lost = _core.section_events(
-        section._packed, axial_load, place, confined, *rules, np.array(strains, dtype=np.float64)
-    )
-    events = Events(*(make_point(column) for column in numbers.T[:4]))
-    end = make_point(numbers.T[4])
+    settings = {
+        "axial_load": axial_load,
+        "tension": tension,
+        "confined": confined,
+        "yielding": rules[0],
+        "ultimate": rules[1],
+        "eps_yield": _core.number(strains[0], "diagram: eps_yield"),
+        "eps_cover": _core.number(strains[1], "diagram: eps_cover"),
+    }
+    points_found, lost = _core.section_events(section._statement, settings)
+    *named_points, end = (make_point(point) for point in points_found)
+    events = Events(*named_points)
     if end is None:
         raise AssertionError("every diagram ends")
     if furthest is None:

@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, ClassVar
-
-import numpy as np
 
 from rbsdem import _core
 from rbsdem._core import Array
@@ -19,14 +17,6 @@ from rbsdem.section.reinforcement import Bar, Layout, Spiral, Ties
 from rbsdem.section.strips import Strips, cut
 
 __all__ = ["DrawnSection"]
-
-#: Shapes in the Fortran part, from 1.
-_SHAPES = ("rectangle", "circle")
-
-#: Kinds of transverse reinforcement in the Fortran part, from 0.
-_KINDS = ("none", "ties", "spiral", "hoops")
-
-_NO_STEEL = (1.0, 1.0, 1.0, 1.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -45,10 +35,9 @@ class DrawnSection(ABC):
     def _lay_out(self, layout: Layout, inset: float) -> list[Bar]:
         """Return the bars of a layout; `inset` is from the face to the edge of the bars [m]."""
 
-    @property
     @abstractmethod
-    def gross_area(self) -> float:
-        """Area of the concrete outline [m2]."""
+    def _sizes(self) -> dict[str, float]:
+        """Return the sizes of the shape, by the names of their keys [m]."""
 
     @property
     @abstractmethod
@@ -74,29 +63,35 @@ class DrawnSection(ABC):
     def _put(self, name: str, value: object) -> None:
         object.__setattr__(self, name, value)
 
-    def _finish(
-        self, width: float, depth: float, side_cover: float, transverse: Ties | Spiral | None
-    ) -> None:
-        """Set bars and bar diameter, and pack the section for the Fortran part, which checks it."""
-        concrete, cover = self.concrete, self.cover
-        if not isinstance(concrete, Concrete):
-            raise InputError(f"section: concrete = {concrete!r} must be a Concrete")
-        if not (isinstance(self.strips, int) and 10 <= self.strips <= 100_000):
-            raise InputError(f"section: strips = {self.strips!r} must be from 10 to 100000")
-        self._take_bars(cover, transverse)
-        bars = self.bars
-        steels = list(dict.fromkeys(steel for _, _, steel in bars))
-        kind, tie_numbers = _transverse_numbers(transverse)
-        places = [steels.index(steel) + 1 for _, _, steel in bars]
-        codes = [_SHAPES.index(self.shape) + 1, kind, self.strips, len(steels), len(bars), *places]
-        numbers = [width, depth, cover, side_cover, self.bar_diameter or 0.0]
-        numbers += concrete.numbers() + tie_numbers
-        for steel in steels:
-            numbers += steel.numbers()
-        numbers += [y for y, _, _ in bars] + [area for _, area, _ in bars]
-        self._put("_codes", np.array(codes, dtype=np.int32))
-        self._put("_numbers", np.array(numbers, dtype=np.float64))
-        self._put("_figures", _core.check_section(self._packed))
+    def _finish(self) -> None:
+        """Set bars and bar diameter; state the section to the Fortran part, which checks it."""
+        if not isinstance(self.concrete, Concrete):
+            raise InputError(f"section: concrete = {self.concrete!r} must be a Concrete")
+        if not isinstance(self.strips, int):
+            raise InputError(f"section: strips = {self.strips!r} must be a whole number")
+        ties = self.ties
+        self._take_bars(self.cover, ties)
+        numbers = {
+            steel: i for i, steel in enumerate(dict.fromkeys(bar[2] for bar in self.bars), 1)
+        }
+        if ties is not None:
+            numbers.setdefault(ties.steel, len(numbers) + 1)
+        given = {"cover": self.cover, "side_cover": self.side_cover, "strips": self.strips}
+        diameter = self.bar_diameter if self.bars else None
+        statement = _core.group(
+            "section", {"shape": self.shape} | self._sizes() | given | {"bar_diameter": diameter}
+        )
+        statement += self.concrete.statement()
+        for steel, number in numbers.items():
+            statement += steel.statement(number)
+        if self.bars:
+            y, area, steels = zip(*self.bars, strict=True)
+            bars = {"y": y, "area": area, "steel": [numbers[steel] for steel in steels]}
+            statement += _core.group("bars", bars)
+        if ties is not None:
+            statement += ties.statement(numbers[ties.steel])
+        self._put("_statement", statement)
+        self._put("_figures", _core.check_section(statement))
 
     def _take_bars(self, cover: float, transverse: Ties | Spiral | None) -> None:
         """Set the bars, from list or layout, and the diameter of the outermost one in tension."""
@@ -116,11 +111,13 @@ class DrawnSection(ABC):
             self._put("bar_diameter", value)
         elif self.bars:
             area = max(self.bars, key=lambda bar: bar[0])[1]
-            self._put("bar_diameter", math.sqrt(4.0 * max(area, 0.0) / math.pi))
+            if area > 0.0:
+                self._put("bar_diameter", math.sqrt(4.0 * area / math.pi))
 
     @property
-    def _packed(self) -> tuple[Any, Any]:
-        return self._codes, self._numbers
+    def gross_area(self) -> float:
+        """Area of the concrete outline [m2]."""
+        return self._figures["area"]
 
     @property
     def steel_area(self) -> float:
@@ -135,20 +132,19 @@ class DrawnSection(ABC):
     @property
     def axial_capacity(self) -> tuple[float, float]:
         """Least (tension, negative) and largest axial load without bending or confinement [N]."""
-        return _core.axial_capacity(self._packed)
+        return _core.axial_capacity(self._statement)
 
     @property
     def concrete_law(self) -> dict[str, float]:
         """Parameters of the law of the unconfined concrete: fc, ft, ec [Pa], eps0, n, decay."""
-        names = ("fc", "ft", "ec", "eps0", "n", "decay")
-        return dict(zip(names, self._figures[:6].tolist(), strict=True))
+        return {name: self._figures[name] for name in ("fc", "ft", "ec", "eps0", "n", "decay")}
 
     @property
     def confinement(self) -> Confinement | None:
         """The confined core (Mander, Priestley, Park 1988); None without ties."""
         if self.ties is None:
             return None
-        return Confinement(*self._figures[6:15].tolist())
+        return Confinement(**{f.name: self._figures[f.name] for f in fields(Confinement)})
 
     def cut(
         self, number: int, *, restrained: int | None = None, round_core: bool = False
@@ -186,11 +182,3 @@ def _bar(bar: Any, number: int) -> Bar:
         _core.number(area, f"section: area of bar {number}"),
         steel,
     )
-
-
-def _transverse_numbers(ties: Ties | Spiral | None) -> tuple[int, list[float]]:
-    """Return kind and numbers of the transverse bars."""
-    if ties is None:
-        return _KINDS.index("none"), [0.0, 0.0, 0.0, 0.0, *_NO_STEEL]
-    sizes = [ties.diameter, ties.spacing, ties.legs, float(ties.legs_across or 0.0)]
-    return _KINDS.index(ties.kind), sizes + ties.steel.numbers()

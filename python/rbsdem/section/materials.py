@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rbsdem import _core
-from rbsdem._core import UNSET, Array
-from rbsdem.errors import InputError
+from rbsdem._core import Array
 
-__all__ = ["TENSION", "Concrete", "Steel", "tension_place"]
+__all__ = ["Concrete", "Steel", "Tension"]
 
-TENSION = ("zero", "bare", "ts")
-"""Tension laws of concrete: no tension; up to f_t only; with tension stiffening beyond f_t."""
-
-
-def tension_place(tension: str) -> int:
-    """Return the place of a tension law in the Fortran list, from 1."""
-    if tension not in TENSION:
-        raise InputError(f"tension = {tension!r} is not known; it is one of {', '.join(TENSION)}")
-    return TENSION.index(tension) + 1
+Tension = Literal["ts", "bare", "zero"]
+"""Tension laws of concrete: with tension stiffening beyond f_t; up to f_t only; no tension."""
 
 
 @dataclass(frozen=True)
@@ -64,14 +57,13 @@ class Concrete:
             if getattr(self, name) is not None:
                 value = _core.number(getattr(self, name), f"concrete: {name}")
                 object.__setattr__(self, name, value)
-        _core.concrete_response(self.numbers(), 1, np.zeros(1))
+        _core.concrete_response(self.statement(), "ts", np.zeros(1))
 
-    def numbers(self) -> list[float]:
-        """Return the numbers in the order of the Fortran part."""
-        given = (self.fc, self.ft, self.ec, self.eps0, self.eps_spall)
-        return [UNSET if value is None else value for value in given]
+    def statement(self) -> _core.Statement:
+        """Return the keys of the concrete with their values."""
+        return _core.group("concrete", {f.name: getattr(self, f.name) for f in fields(self)})
 
-    def stress(self, strain: ArrayLike, tension: str = "ts") -> Array:
+    def stress(self, strain: ArrayLike, tension: Tension = "ts") -> Array:
         """Return the stress of the unconfined concrete.
 
         Parameters
@@ -93,7 +85,7 @@ class Concrete:
         """
         strain = np.asarray(strain)
         flat = _core.finite_vector(strain.ravel(), "strain")
-        stress = _core.concrete_response(self.numbers(), tension_place(tension), flat)
+        stress = _core.concrete_response(self.statement(), tension, flat)
         return stress.reshape(strain.shape)[()]
 
 
@@ -133,11 +125,12 @@ class Steel:
             object.__setattr__(self, "fu", 1.5 * _core.number(self.fy, "steel: fy"))
         for name in ("fy", "fu", "es", "eps_sh", "eps_u"):
             object.__setattr__(self, name, _core.number(getattr(self, name), f"steel: {name}"))
-        _core.steel_response(self.numbers(), np.zeros(1))
+        _core.steel_response(self.statement(), np.zeros(1))
 
-    def numbers(self) -> list[float]:
-        """Return the numbers in the order of the Fortran part."""
-        return [self.fy, float(self.fu or 0.0), self.es, self.eps_sh, self.eps_u]
+    def statement(self, number: int | None = None) -> _core.Statement:
+        """Return the keys of the steel with their values; `number` is what bars refer to."""
+        values = {f.name: getattr(self, f.name) for f in fields(self)}
+        return _core.group("steel", {"id": number} | values)
 
     def stress(self, strain: ArrayLike) -> Array:
         """Return the stress.
@@ -159,4 +152,4 @@ class Steel:
         """
         strain = np.asarray(strain)
         flat = _core.finite_vector(strain.ravel(), "strain")
-        return _core.steel_response(self.numbers(), flat).reshape(strain.shape)[()]
+        return _core.steel_response(self.statement(), flat).reshape(strain.shape)[()]

@@ -87,15 +87,13 @@ class RectangularSection(Section):
         if self.side_cover is None:
             self._put("side_cover", self.cover)
         self._put("side_cover", _core.number(self.side_cover, "section: side_cover"))
-        self._finish(self.width, self.depth, self.side_cover, self.ties)
+        self._finish()
+
+    def _sizes(self) -> dict[str, float]:
+        return {"width": self.width, "depth": self.depth}
 
     def _lay_out(self, layout: Layout, inset: float) -> list[Bar]:
         return layout.rectangular(self.depth, inset)
-
-    @property
-    def gross_area(self) -> float:
-        """Area of the concrete outline [m2]."""
-        return self.width * self.depth
 
     @property
     def effective_depth(self) -> float:

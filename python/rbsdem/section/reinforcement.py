@@ -166,7 +166,6 @@ class Ties:
         If a number is refused.
     """
 
-    kind: ClassVar[str] = "ties"
     #: Whether the hoops are round.
     is_round: ClassVar[bool] = False
 
@@ -184,6 +183,11 @@ class Ties:
             object.__setattr__(self, name, value)
         if not isinstance(self.steel, Steel):
             raise InputError(f"ties: steel = {self.steel!r} must be a Steel")
+
+    def statement(self, steel: int) -> _core.Statement:
+        """Return the keys of the ties with their values; `steel` is the number of their steel."""
+        names = ("diameter", "spacing", "legs", "legs_across")
+        return _core.group("ties", {"steel": steel} | {n: getattr(self, n) for n in names})
 
 
 @dataclass(frozen=True)
@@ -226,10 +230,10 @@ class Spiral:
         if not isinstance(self.steel, Steel):
             raise InputError(f"spiral: steel = {self.steel!r} must be a Steel")
 
-    @property
-    def kind(self) -> str:
-        """What it is: "spiral" or "hoops"."""
-        return "hoops" if self.hoops else "spiral"
+    def statement(self, steel: int) -> _core.Statement:
+        """Return the keys of the spiral with their values; `steel` is the number of its steel."""
+        names = ("diameter", "spacing", "hoops")
+        return _core.group("spiral", {"steel": steel} | {n: getattr(self, n) for n in names})
 
 
 def _area(diameter: float) -> float:

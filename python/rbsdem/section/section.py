@@ -14,7 +14,7 @@ from rbsdem._core import Array
 from rbsdem.errors import InputError
 from rbsdem.section.diagram import Diagram, make_diagram
 from rbsdem.section.drawn import DrawnSection
-from rbsdem.section.materials import tension_place
+from rbsdem.section.materials import Tension
 from rbsdem.section.model import DEFAULT, LayeredColumn, Model, make_column
 from rbsdem.section.shear_diagram import ShearDiagram, shear_diagram
 from rbsdem.section.spring_fit import SectionSprings, fit_springs
@@ -37,7 +37,7 @@ class Section(DrawnSection):
         self,
         axial_load: float,
         curvature: ArrayLike,
-        tension: str = "ts",
+        tension: Tension = "ts",
         confined: bool = False,
     ) -> Array:
         """Return the moment of each curvature under a constant axial load.
@@ -72,7 +72,7 @@ class Section(DrawnSection):
         self,
         axial_load: float,
         curvature: ArrayLike,
-        tension: str = "ts",
+        tension: Tension = "ts",
         confined: bool = False,
     ) -> tuple[Array, Array]:
         """Return the moments of `moment_curvature` with the strains at mid-depth.
@@ -101,8 +101,11 @@ class Section(DrawnSection):
                 f"curvature: {flat[over[0]]} 1/m makes strains of {flat[over[0]] * self.depth:.3g} "
                 f"over the depth; curvatures are in 1/m: 10 mrad/m is 0.01"
             )
-        load = self._load(axial_load)
-        confined = self._confined(confined)
+        settings = {
+            "axial_load": self._load(axial_load),
+            "tension": tension,
+            "confined": self._confined(confined),
+        }
         moment = np.empty_like(flat)
         strain = np.empty_like(flat)
         for side in (flat >= 0.0, flat < 0.0):
@@ -110,7 +113,7 @@ class Section(DrawnSection):
             if places.size:
                 places = places[np.argsort(np.abs(flat[places]), kind="stable")]
                 moment[places], strain[places] = _core.moment_curvature(
-                    self._packed, load, tension_place(tension), confined, flat[places]
+                    self._statement, settings, flat[places]
                 )
         return moment.reshape(shape)[()], strain.reshape(shape)[()]
 
@@ -118,7 +121,7 @@ class Section(DrawnSection):
         self,
         axial_load: float,
         *,
-        tension: str = "ts",
+        tension: Tension = "ts",
         confined: bool = False,
         yielding: str = "tension",
         ultimate: str = "cover",

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem.errors import InputError
-from rbsdem.section.materials import tension_place
+from rbsdem.section.materials import Tension
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -159,7 +159,7 @@ def shear_diagram(
     *,
     furthest: float | None = None,
     points: int = 60,
-    tension: str = "ts",
+    tension: Tension = "ts",
     confined: bool = False,
     coupled: bool = False,
     layers: int = 80,
@@ -223,25 +223,24 @@ def shear_diagram(
             )
     load = _core.number(axial_load, "axial_load")
     span = _core.number(length, "length")
-    numbers, profile, (found, sheared, lost), ends = _core.section_shear(
-        section._packed,
-        load,
-        span,
-        tension_place(tension),
-        section._confined(confined),
-        _core.switch(coupled, "coupled"),
-        _core.whole(layers, "layers"),
-        _core.number(knee, "knee"),
-        path,
-    )
+    settings = {
+        "length": span,
+        "axial_load": load,
+        "tension": tension,
+        "confined": section._confined(confined),
+        "coupled": _core.switch(coupled, "coupled"),
+        "layers": _core.whole(layers, "layers"),
+        "knee": _core.number(knee, "knee"),
+    }
+    run = _core.section_shear(section._statement, settings, path)
     return ShearDiagram(
-        section,
-        span,
-        load,
-        *(row.copy() for row in numbers),
-        ShearPoint(*ends[:, 0].tolist()) if found else None,
-        ShearPoint(*ends[:, 1].tolist()),
-        sheared,
-        lost,
-        ShearLayers(*(row.copy() for row in profile)),
+        section=section,
+        length=span,
+        axial_load=load,
+        **run.points,
+        knee=ShearPoint(**run.knee) if run.knee else None,
+        end=ShearPoint(**run.end),
+        sheared=run.sheared,
+        lost=run.lost,
+        layers=ShearLayers(**run.profile),
     )

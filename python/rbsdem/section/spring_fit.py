@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rbsdem import _core, _views
-from rbsdem._core import UNSET
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.section.diagram import Events, make_point
 from rbsdem.section.shear_spring import ShearSpring, closed_form_shear, fit_shear_spring
@@ -154,17 +153,12 @@ def fit_springs(
     AccuracyWarning
         If the moment falls after yield (K_u is then zero), or shear governs.
     """
-    if yield_rule not in YIELD_RULES:
-        raise InputError(
-            f"springs: yield_rule = {yield_rule!r} is not known; it is one of "
-            f"{', '.join(YIELD_RULES)}"
-        )
     if shear not in SHEAR:
         raise InputError(
             f"springs: shear = {shear!r} is not known; it is one of {', '.join(SHEAR)}"
         )
     confined = section._confined(confined)
-    given = {
+    numbers = {
         "length": length,
         "axial_load": axial_load,
         "hinge_length": hinge_length,
@@ -174,27 +168,23 @@ def fit_springs(
         "eps_yield": eps_yield,
         "eps_cover": eps_cover,
     }
-    settings = [
-        UNSET if value is None else _core.number(value, f"springs: {name}")
-        for name, value in given.items()
-    ]
-    points, figures = _core.section_flexure(
-        section._packed,
-        settings,
-        yield_rule == "B",
-        confined,
-        "first" if yield_rule == "first" else "tension",
-        ultimate,
+    settings = {
+        name: None if value is None else _core.number(value, f"springs: {name}")
+        for name, value in numbers.items()
+    }
+    words = {"yield_rule": yield_rule, "ultimate": ultimate}
+    points, found = _core.section_flexure(
+        section._statement, settings | words | {"confined": confined}
     )
-    k_c, d_c, k_y, d_y, k_u, b0, b1_found, k_u_found, l_p, d_m = figures.tolist()
     notes = []
-    if k_u_found < 0.0:
+    if found["k_u_found"] < 0.0:
         notes.append(
-            f"K_u = {k_u_found:.4g} N m/rad: the moment falls from yield to the ultimate point; "
-            f"the spring has K_u = 0"
+            f"K_u = {found['k_u_found']:.4g} N m/rad: the moment falls from yield to the ultimate "
+            "point; the spring has K_u = 0"
         )
-    flexure = Takeda(k_c, d_c, k_y, d_y, k_u, b0=b0, b1=b1_found if b1 is None else b1)
-    events = Events(*(make_point(column) for column in points.T))
+    names = ("k_c", "d_c", "k_y", "d_y", "k_u", "b0", "b1")
+    flexure = Takeda(**({n: found[n] for n in names} | ({} if b1 is None else {"b1": b1})))
+    events = Events(*(make_point(point) for point in points))
     spring, shear_fit = None, None
     if shear == "mcft":
         shear_fit = fit_shear_spring(
@@ -215,10 +205,10 @@ def fit_springs(
         spring,
         shear_fit,
         events,
-        l_p,
+        found["hinge_length"],
         float(length),
         axial_load,
-        d_m,
+        found["d_m"],
         tuple(notes),
         "",
     )

@@ -78,22 +78,20 @@ def cut(section: Section, number: int, restrained: int | None, round_core: bool)
     # By how much the core, between the centre lines of the hoops, is smaller than the outline.
     less = [2 * float(section.side_cover or 0.0) + tie, 2 * section.cover + tie]
     round_core = round_core or (section.ties is not None and section.ties.is_round)
-    core, cover, figures = _core.section_strips(
-        section.shape, [section.width, section.depth, *less], round_core, number
-    )
+    core, cover = _core.section_strips(section._statement, round_core, number)
     if round_core:
         confinement = _spiral(section, section.depth - less[1])
     else:
         confinement = _hoops(section, section.width - less[0], section.depth - less[1], restrained)
-    area, inertia, shear_area = figures.tolist()
+    figures = section._figures
     # Slivers along the rim of the core are round-off.
-    least = 1e-9 * area
+    least = 1e-9 * figures["area"]
     return Strips(
         core=tuple(Strip(y, part) for y, part in core.T.tolist() if part > least),
         cover=tuple(Strip(y, part) for y, part in cover.T.tolist() if part > least),
-        area=area,
-        inertia=inertia,
-        shear_area=shear_area,
+        area=figures["area"],
+        inertia=figures["inertia"],
+        shear_area=figures["shear_area"],
         confining_stress=confinement[0],
         tie_ratio=confinement[1],
     )

@@ -1,0 +1,194 @@
+!> What is given of a section: its shape, cover, concrete, steels, bars and hoops, under the names of keys.
+module rbs_section_section_record
+   use rbs_base_constants, only: unset, unset_integer
+   use rbs_base_error, only: message_list
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: above_zero, any_number, bound_type, not_negative
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_section_concrete_law, only: concrete_record
+   use rbs_section_cross_section, only: no_ties, ties, spiral, circular_hoops
+   use rbs_section_shape, only: column_size, shape_type
+   use rbs_section_shapes, only: shape_choices
+   use rbs_section_steel_law, only: steel_record
+   implicit none
+   private
+
+   public :: section_record, bars_record, hoops_record, append_steel, find_steel
+
+   integer, parameter :: most_bars = 100000
+
+   type(bound_type), parameter :: strip_counts = bound_type(10.0_wp, 100000.0_wp)
+   type(bound_type), parameter :: spacings = &
+      bound_type(0.0_wp, 50.0_wp, least_open=.true., reason='(100 mm is 0.1)')
+
+   !> Longitudinal bars, an entry for each bar or row of bars.
+   type :: bars_record
+      !> Distance from mid-depth [m], positive to the tension face, and area [m2]
+      real(wp), allocatable :: y(:), area(:)
+      !> Numbers of their steels
+      integer, allocatable :: steel(:)
+   contains
+      procedure :: visit => visit_bars
+   end type bars_record
+
+   !> Ties, a spiral, or round hoops.
+   type :: hoops_record
+      !> One of the kinds of `rbs_section_cross_section`
+      integer :: kind = no_ties
+      !> Diameter of the bar, distance between hoops or pitch along the column [m]
+      real(wp) :: diameter = unset, spacing = unset
+      !> Of ties: bars that cross the section along the depth and across it
+      real(wp) :: legs = 2.0_wp, legs_across = 2.0_wp
+      !> Of round bars: whether they are single hoops, not a spiral
+      logical :: hoops = .false.
+      !> Number of the steel
+      integer :: steel = unset_integer
+   contains
+      procedure :: visit => visit_hoops
+      procedure :: name => name_of_hoops
+   end type hoops_record
+
+   type :: section_record
+      !> Name of the shape
+      character(len=16) :: shape_name = ''
+      !> Outline of the concrete with its sizes, made when the name is put
+      class(shape_type), allocatable :: shape
+      !> Clear cover to the outer edge of the hoops, at the faces y = +-depth/2 and at the sides [m]
+      real(wp) :: cover = 0.0_wp, side_cover = unset
+      !> Diameter of the main bars [m]
+      real(wp) :: bar_diameter = unset
+      integer :: strips = 400
+      type(concrete_record) :: concrete
+      type(steel_record), allocatable :: steels(:)
+      type(bars_record) :: bars
+      type(hoops_record) :: hoops
+   contains
+      procedure :: visit => visit_section
+      procedure :: validate => validate_section
+   end type section_record
+
+contains
+
+   !> The keys of the section; those of its shape follow when that is known.
+   subroutine visit_section(self, v)
+      class(section_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%word('shape', self%shape_name, 'outline of the concrete', shape_choices)
+      if (allocated(self%shape)) call self%shape%visit(v)
+      call v%key('cover', self%cover, 'm', not_negative, 'clear cover to the outer edge of the hoops')
+      call v%key('side_cover', self%side_cover, 'm', not_negative, &
+                 'clear cover at the sides; without it the same', optional=.true.)
+      call v%key('bar_diameter', self%bar_diameter, 'm', above_zero, &
+                 'diameter of the main bars, for hinge length and confinement', optional=.true.)
+      call v%key('strips', self%strips, '', strip_counts, 'number of strips over the depth')
+   end subroutine visit_section
+
+   subroutine visit_bars(self, v)
+      class(bars_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%key('y', self%y, 'm', any_number, 'distance from mid-depth, positive to the tension face', &
+                 most_bars)
+      call v%key('area', self%area, 'm2', above_zero, 'area', most_bars)
+      call v%key('steel', self%steel, '', any_number, 'numbers of their steels', most_bars)
+   end subroutine visit_bars
+
+   !> Ties have legs to count; a spiral or round hoops have not.
+   subroutine visit_hoops(self, v)
+      class(hoops_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%key('diameter', self%diameter, 'm', column_size, 'diameter of the bar')
+      call v%key('spacing', self%spacing, 'm', spacings, 'distance between hoops, or pitch of the spiral')
+      call v%key('steel', self%steel, '', any_number, 'number of the steel')
+      if (self%kind == ties) then
+         call v%key('legs', self%legs, '', above_zero, 'bars that cross the section along its depth')
+         call v%key('legs_across', self%legs_across, '', above_zero, &
+                    'bars that cross the section along its width')
+      else
+         call v%key('hoops', self%hoops, 'single hoops in place of a spiral')
+         if (self%hoops) self%kind = circular_hoops
+      end if
+   end subroutine visit_hoops
+
+   !> Name of the group that the hoops come from.
+   pure function name_of_hoops(self) result(name)
+      class(hoops_record), intent(in) :: self
+      character(len=6) :: name
+
+      name = merge('ties  ', 'spiral', self%kind == ties)
+   end function name_of_hoops
+
+   !> Add a message for every value that is refused.
+   subroutine validate_section(self, messages)
+      class(section_record), intent(inout) :: self
+      type(message_list), intent(inout) :: messages
+      type(key_visitor) :: v
+      integer :: i
+
+      call v%start_check('section')
+      call self%visit(v)
+      call v%end_check(messages)
+      if (.not. allocated(self%shape)) call messages%add('section: shape is missing; give it a value')
+      call self%concrete%validate(messages)
+      do i = 1, size(self%steels)
+         call self%steels(i)%validate(messages)
+      end do
+      call v%start_check('bars')
+      call self%bars%visit(v)
+      call v%end_check(messages)
+      call check_references(self, messages)
+      if (self%hoops%kind == no_ties) return
+      call v%start_check(self%hoops%name())
+      call self%hoops%visit(v)
+      call v%end_check(messages)
+   end subroutine validate_section
+
+   !> The lists of the bars have one length, and every steel is there.
+   subroutine check_references(self, messages)
+      type(section_record), intent(in) :: self
+      type(message_list), intent(inout) :: messages
+      integer :: i
+
+      if (self%hoops%kind /= no_ties .and. find_steel(self, self%hoops%steel) == 0) then
+         call messages%add(trim(self%hoops%name())//': steel is not one of the steels of the section')
+      end if
+      if (.not. allocated(self%bars%y)) return
+      if (.not. (allocated(self%bars%area) .and. allocated(self%bars%steel))) then
+         call messages%add('bars: area or steel is missing; give them for each y')
+      else if (size(self%bars%area) /= size(self%bars%y) .or. size(self%bars%steel) /= size(self%bars%y)) then
+         call messages%add('bars: y, area and steel must have the same number of values')
+      else
+         do i = 1, size(self%bars%steel)
+            if (find_steel(self, self%bars%steel(i)) > 0) cycle
+            call messages%add('bars: steel('//to_text(i)//') is not one of the steels of the section')
+            return
+         end do
+      end if
+   end subroutine check_references
+
+   !> Place of a steel by its number, 0 if it is not there.
+   pure integer function find_steel(self, id) result(place)
+      type(section_record), intent(in) :: self
+      integer, intent(in) :: id
+
+      do place = 1, size(self%steels)
+         if (self%steels(place)%id == id) return
+      end do
+      place = 0
+   end function find_steel
+
+   !> One more steel, without values.
+   subroutine append_steel(self)
+      type(section_record), intent(inout) :: self
+      type(steel_record), allocatable :: more(:)
+
+      if (.not. allocated(self%steels)) allocate (self%steels(0))
+      allocate (more(size(self%steels) + 1))
+      more(:size(self%steels)) = self%steels
+      call move_alloc(more, self%steels)
+   end subroutine append_steel
+
+end module rbs_section_section_record
