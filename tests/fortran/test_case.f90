@@ -15,7 +15,7 @@ module test_case
    use rbs_column_column_record, only: column_record, most_bodies, most_dense
    use rbs_loading_loading_record, only: loading_record, units_of
    use rbs_hysteresis_spring_record, only: spring_record
-   use rbs_base_units, only: unit_type, to_si, length_units, force_units, acceleration_units
+   use rbs_base_units, only: unit_system, unit_type, to_si, length_units, force_units, acceleration_units
    use samples, only: elastic, bilinear, takeda, bilinear_1, takeda_1, column_1, chain, k_c, d_c, k_y, &
                       d_y, k_u, s_k
    implicit none
@@ -689,6 +689,7 @@ contains
    subroutine units(error)
       type(error_type), allocatable, intent(inout) :: error
       type(unit_type) :: unit
+      type(unit_system) :: system
       integer :: i
 
       ! 0.017*0.001 and 0.017e-3 are different numbers.
@@ -705,6 +706,12 @@ contains
          unit = length_units(i)
          call check_same(error, to_si(0.0_wp, unit), 0.0_wp, '0 '//trim(unit%name))
       end do
+      system%force = force_units(2)
+      system%length = length_units(2)
+      call check_same(error, system%into_si(2.0_wp, 'N/m'), 2.0e6_wp, '2 kN/mm')
+      call check_same(error, system%out_of_si(2.0e6_wp, 'N/m'), 2.0_wp, '2 kN/mm and back')
+      call check_same(error, system%into_si(3.0_wp, 'N m/rad'), 3.0_wp, '3 kN mm/rad')
+      call check_same(error, system%out_of_si(3.0_wp, 'N m/rad'), 3.0_wp, '3 kN mm/rad and back')
    end subroutine units
 
 end module test_case
