@@ -15,6 +15,8 @@ module test_case
    use rbs_column_column_record, only: column_record, most_bodies, most_dense
    use rbs_loading_loading_record, only: loading_record, units_of
    use rbs_hysteresis_spring_record, only: spring_record
+   use rbs_base_keys, only: deformation, force, stiffness
+   use rbs_case_setter, only: unit_in_group
    use rbs_base_units, only: unit_system, unit_type, to_si, length_units, force_units, acceleration_units
    use samples, only: elastic, bilinear, takeda, bilinear_1, takeda_1, column_1, chain, k_c, d_c, k_y, &
                       d_y, k_u, s_k
@@ -712,6 +714,12 @@ contains
       call check_same(error, system%out_of_si(2.0e6_wp, 'N/m'), 2.0_wp, '2 kN/mm and back')
       call check_same(error, system%into_si(3.0_wp, 'N m/rad'), 3.0_wp, '3 kN mm/rad')
       call check_same(error, system%out_of_si(3.0_wp, 'N m/rad'), 3.0_wp, '3 kN mm/rad and back')
+      call check_equal(error, trim(unit_in_group(force, 'flexure')), 'N m', 'a moment')
+      call check_equal(error, trim(unit_in_group(force, 'shear')), 'N', 'a force')
+      call check_equal(error, trim(unit_in_group(stiffness, 'flexure')), 'N m/rad', 'against rotation')
+      call check_equal(error, trim(unit_in_group(stiffness, 'axial_spring')), 'N/m', 'against opening')
+      call check_equal(error, trim(unit_in_group(deformation, 'flexure')), 'rad', 'a rotation')
+      call check_equal(error, trim(unit_in_group(deformation, 'layer_spring')), 'm', 'an opening')
    end subroutine units
 
 end module test_case

@@ -230,6 +230,13 @@ def test_half_cycles_of_an_elastoplastic_spring():
     assert h.damping[1:].tolist() == pytest.approx(3 * [damping], rel=1e-3)
 
 
+def test_the_zero_of_the_force_lies_between_two_rows():
+    """Work 1.5 to the tip; the force falls from 1 to -1 on the next unit, and gives 0.25 back."""
+    h = cycles.half_cycles([0.0, 1.0, 2.0, 1.0, 0.0], [0.0, 1.0, 1.0, -1.0, -1.0])
+    assert h.row.tolist() == [2]
+    assert h.energy.tolist() == [1.25]
+
+
 def test_an_elastic_spring_dissipates_nothing():
     d = wave(4.0, 0.01, 4001)
     h = cycles.half_cycles(d, 5e6 * d)
