@@ -189,6 +189,8 @@ contains
       call new_shape(shape_circle, 0.5_wp, 0.5_wp, section%shape)
       section%transverse%kind = spiral
       section%transverse%diameter = 0.01_wp
+      section%transverse%spacing = 0.1_wp
+      section%transverse%steel = steel_type(450.0e6_wp, 650.0e6_wp)
       call build_section(section, 0.006_wp, 400)
       call check_close(error, sum(section%strips%area), section%shape%area(), 1.0e-13_wp, 0.0_wp, 'circle')
       call check_close(error, sum(section%strips%area), 0.25_wp*pi*0.25_wp, 1.0e-13_wp, 0.0_wp, 'pi d^2/4')
