@@ -5,7 +5,8 @@ module rbs_case_analysis_record
    use rbs_base_error, only: message_list
    use rbs_base_text, only: to_text
    use rbs_base_check, only: is_given
-   use rbs_case_methods, only: method_type, methods, method_named, method_choices, quoted_names
+   use rbs_case_methods, only: method_type, methods, method_named, method_choices, methods_taking, &
+                               quoted_names
    use rbs_base_key_visitor, only: key_visitor
    use rbs_base_keys, only: bound_type, above_zero, one_or_more
    implicit none
@@ -140,25 +141,23 @@ contains
       method = method_named(self%method)
       ! A name that is not known has been reported already.
       if (method%name == '') return
-      call refuse(is_given(self%dt) .and. .not. method%dt, 'dt', methods%dt)
-      call refuse(is_given(self%duration) .and. .not. method%in_time, 'duration', methods%in_time)
-      call refuse(self%events /= '' .and. .not. method%events, 'events', methods%events)
-      call refuse(is_given(self%tolerance) .and. .not. method%tolerance, 'tolerance', methods%tolerance)
-      call refuse(is_given(self%rho_infinity) .and. .not. method%rho_infinity, 'rho_infinity', &
-                  methods%rho_infinity)
-      call refuse(self%allow_unstable .and. .not. method%allow_unstable, 'allow_unstable', &
-                  methods%allow_unstable)
+      call refuse(is_given(self%dt) .and. .not. method%dt, 'dt')
+      call refuse(is_given(self%duration) .and. .not. method%in_time, 'duration')
+      call refuse(self%events /= '' .and. .not. method%events, 'events')
+      call refuse(is_given(self%tolerance) .and. .not. method%tolerance, 'tolerance')
+      call refuse(is_given(self%rho_infinity) .and. .not. method%rho_infinity, 'rho_infinity')
+      call refuse(self%allow_unstable .and. .not. method%allow_unstable, 'allow_unstable')
 
    contains
 
-      subroutine refuse(unused, key, takes)
+      subroutine refuse(unused, key)
          logical, intent(in) :: unused
          character(len=*), intent(in) :: key
-         !> For each method, whether it uses the setting
-         logical, intent(in) :: takes(:)
          character(len=:), allocatable :: names
+         logical :: takes(size(methods))
 
          if (.not. unused) return
+         takes = methods_taking(key)
          call quoted_names(takes, names)
          call messages%add('analysis: '//key//" has no meaning for method = '"//trim(method%name)// &
                            "'; remove it or set method = "//names)

@@ -6,7 +6,7 @@ module rbs_case_methods
    implicit none
    private
 
-   public :: method_type, methods, method_named, method_choices, quoted_names, method_rows
+   public :: method_type, methods, method_named, method_choices, methods_taking, quoted_names, method_rows
    public :: usual_tolerance, usual_rho_infinity, methods_columns
 
    !> Defaults: error of a step of rk45, spectral radius at infinite frequency.
@@ -78,6 +78,27 @@ contains
          names = trim(names)//' '//methods(i)%name
       end do
    end function method_choices
+
+   !> For each method, whether it uses a setting of the analysis.
+   pure function methods_taking(key) result(takes)
+      character(len=*), intent(in) :: key
+      logical :: takes(size(methods))
+
+      select case (key)
+      case ('dt')
+         takes = methods%dt
+      case ('duration')
+         takes = methods%in_time
+      case ('events')
+         takes = methods%events
+      case ('tolerance')
+         takes = methods%tolerance
+      case ('rho_infinity')
+         takes = methods%rho_infinity
+      case default
+         takes = methods%allow_unstable
+      end select
+   end function methods_taking
 
    !> Some of the methods by their quoted names: "'rk4' or 'rk45'".
    subroutine quoted_names(wanted, text)

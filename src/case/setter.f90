@@ -133,6 +133,7 @@ contains
       integer, intent(out) :: place
       type(message_list), intent(inout) :: messages
       type(key_type), allocatable :: others(:)
+      character(len=len(self%keys%name)) :: names(size(self%keys))
       integer :: i
 
       place = find_key(self%keys, name)
@@ -158,8 +159,9 @@ contains
             return
          end do
       end if
+      names = self%keys%name
       call messages%add(adjustl(trim(where)//' &'//trim(self%group)//" has no '"//trim(name)// &
-                                "'; did you mean '"//nearest_name(name, self%keys%name)//"'?"))
+                                "'; did you mean '"//nearest_name(name, names)//"'?"))
    end subroutine find
 
    !> Set the key at a place to numbers, whole numbers, or 0 and 1.

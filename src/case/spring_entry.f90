@@ -280,7 +280,7 @@ contains
       type(spring_record), intent(inout) :: spring
       type(spring_entry), intent(in) :: layers
       type(message_list), intent(inout) :: messages
-      integer, allocatable :: entry(:)
+      type(spring_record), allocatable :: springs(:)
       integer :: i, j
 
       if (.not. allocated(layers%y) .or. .not. allocated(layers%layer)) then
@@ -294,7 +294,7 @@ contains
                                    ' of spring; give one of each for each layer'))
          return
       end if
-      allocate (entry(size(layers%y)))
+      allocate (springs(size(layers%y)))
       do i = 1, size(layers%y)
          do j = 1, list%count
             if (list%entry(j)%group == 'layer_spring' .and. list%entry(j)%id == layers%layer(i)) exit
@@ -304,9 +304,9 @@ contains
                                       to_text(layers%layer(i))))
             return
          end if
-         entry(i) = j
+         springs(i) = list%entry(j)%spring
       end do
-      call spring%set_layers(layers%y, list%entry(entry)%spring)
+      call spring%set_layers(layers%y, springs)
    end subroutine set_layers
 
 end module rbs_case_spring_entry

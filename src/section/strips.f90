@@ -40,10 +40,11 @@ contains
       class(shape_type), intent(in) :: outline, core
       type(strips_type), intent(in) :: strips
       real(wp), intent(out) :: core_y(:), cover_y(:)
-      real(wp), dimension(size(core_y)) :: low, high, moment, core_moment, cover_area
+      real(wp), dimension(size(core_y)) :: low, high, middle, moment, core_moment, cover_area
 
-      call find_edges(outline, size(core_y), low, high, core_y)
-      cover_y = core_y
+      call find_edges(outline, size(core_y), low, high, middle)
+      core_y = middle
+      cover_y = middle
       moment = outline%moment_between(low, high)
       core_moment = core%moment_between(low, high)
       cover_area = strips%area - strips%core_area
