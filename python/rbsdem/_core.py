@@ -21,10 +21,7 @@ from rbsdem.errors import InputError, SolveError
 
 Array = NDArray[np.float64]
 
-#: Stands for a number that is not given (the constant `unset` of the Fortran part).
-UNSET = -float(np.finfo(np.float64).max)
-
-#: The same for a whole number.
+#: Stands for a whole number that is not given (the constant `unset_integer` of the Fortran part).
 UNSET_INTEGER = -int(np.iinfo(np.int32).max)
 
 #: Larger numbers have no meaning in any unit (the constant `beyond_meaning`).

@@ -1,14 +1,12 @@
 !> The list of all keys, as JSON for other programs and as a table for readers.
 module rbs_case_key_list
    use rbs_base_check, only: is_given
-   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_error, only: message_list
    use rbs_base_keys, only: key_type, bound_text, choice_name, choice_length, real_kind, integer_kind, &
                             logical_kind, word_kind
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: exact_text, to_text
-   use rbs_case_case_record, only: case_record
-   use rbs_case_setter, only: group_names, unit_in_group
-   use rbs_case_spring_entry, only: keys_of_group, is_spring_group
+   use rbs_case_setter, only: group_names, setter_type
    use rbs_case_text_buffer, only: text_buffer
    use rbs_hysteresis_registry, only: rule_names, keys_of, places_of
    use rbs_section_section_setter, only: section_group_keys, section_groups
@@ -27,31 +25,12 @@ contains
    subroutine group_keys(group, keys)
       character(len=*), intent(in) :: group
       type(key_type), allocatable, intent(out) :: keys(:)
-      type(case_record) :: new
-      type(key_visitor) :: v
+      type(setter_type) :: setter
+      type(message_list) :: messages
+      logical :: ok
 
-      if (is_spring_group(group)) then
-         keys = keys_of_group(group)
-         return
-      end if
-      call v%collect(group)
-      select case (group)
-      case ('case')
-         call new%visit(v)
-      case ('units')
-         call new%units%visit(v)
-      case ('column')
-         call new%column%visit(v)
-      case ('damping')
-         call new%column%damping%visit(v)
-      case ('loading')
-         call new%loading(1)%visit(v)
-      case ('analysis')
-         call new%analysis%visit(v)
-      case default
-         call new%output%visit(v)
-      end select
-      keys = v%keys(:v%count)
+      call setter%open(group, '', messages, ok)
+      keys = setter%keys
    end subroutine group_keys
 
    !> {"groups": {name: [key, ...]}, "rules": {name: {"places": [...], "keys": [key, ...]}},

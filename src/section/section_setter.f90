@@ -106,11 +106,13 @@ contains
       character(len=*), intent(in) :: name, where
       integer, intent(out) :: place
       type(message_list), intent(inout) :: messages
+      character(len=len(self%keys%name)) :: names(size(self%keys))
 
       place = find_key(self%keys, name)
       if (place > 0) return
+      names = self%keys%name
       call messages%add(adjustl(trim(where)//' '//trim(self%group)//" has no '"//trim(name)// &
-                                "'; did you mean '"//nearest_name(name, self%keys%name)//"'?"))
+                                "'; did you mean '"//nearest_name(name, names)//"'?"))
    end subroutine find
 
    subroutine put_numbers(self, place, number)
