@@ -466,22 +466,32 @@ def test_split_bodies_keeps_mass_height_and_inertia():
     assert [spring.k for spring in halves.flexure] == [2e8, 2e8, 4e8, 4e8]
 
 
-@pytest.mark.parametrize(
-    "spring",
-    [
-        rbsdem.Elastic(3.0),
-        rbsdem.Bilinear(3.0, 1.0, 0.5),
-        rbsdem.Takeda(10.0, 0.1, 4.0, 1.0, 0.4, b1=0.3),
-        rbsdem.Takeda(10.0, 0.1, 4.0, 1.0, 0.4, b1=0.6, inner="kr"),
-        rbsdem.Compression(3.0),
-        rbsdem.PeakOriented(1.0, 3.0, 3.0, 3.5, 6.0, 0.2, d_c=0.1, f_c=0.8, lambda_s=40, d_u=20),
-        rbsdem.Pinching(1.0, 3.0, 3.0, 3.5, 6.0, kappa_f=0.3, kappa_d=0.4, lambda_a=50),
-        rbsdem.ConcreteSpring(3.0, 2.0, 1.5, 0.3, contact=0.3, misfit=0.2, wear=0.05),
-        rbsdem.SteelSpring(3.0, 2.0, 0.1, isotropic_hardening=0.01, half_strength_work=90),
-        rbsdem.Layered([(-1.0, rbsdem.SteelSpring(3.0, 2.0, 0.1)), (1.0, rbsdem.Elastic(2.0))]),
-    ],
-    ids=lambda spring: type(spring).__name__,
-)
+#: A spring of each rule, in arbitrary units.
+SPRINGS = [
+    rbsdem.Elastic(3.0),
+    rbsdem.Bilinear(3.0, 1.0, 0.5),
+    rbsdem.Takeda(10.0, 0.1, 4.0, 1.0, 0.4, b1=0.3),
+    rbsdem.Takeda(10.0, 0.1, 4.0, 1.0, 0.4, b1=0.6, inner="kr"),
+    rbsdem.Compression(3.0),
+    rbsdem.PeakOriented(1.0, 3.0, 3.0, 3.5, 6.0),
+    rbsdem.PeakOriented(1.0, 3.0, 3.0, 3.5, 6.0, 0.2, d_c=0.1, f_c=0.8, lambda_s=40, d_u=20),
+    rbsdem.Pinching(1.0, 3.0, 3.0, 3.5, 6.0, kappa_f=0.3, kappa_d=0.4, lambda_a=50),
+    rbsdem.ConcreteSpring(3.0, 2.0, 1.5, 0.3, contact=0.3, misfit=0.2, wear=0.05),
+    rbsdem.SteelSpring(3.0, 2.0, 0.1, isotropic_hardening=0.01, half_strength_work=90),
+    rbsdem.SteelBank(3.0, 2.0, 0.1, f_u=2.6, plateau=2.0, endurance=90),
+    rbsdem.Layered([(-1.0, rbsdem.SteelSpring(3.0, 2.0, 0.1)), (1.0, rbsdem.Elastic(2.0))]),
+]
+
+
+def kind(spring: rbsdem.springs.Spring) -> str:
+    return type(spring).__name__
+
+
+def test_every_rule_is_among_the_springs_here():
+    assert {spring.rule for spring in SPRINGS} == set(rbsdem.springs.SPRINGS)
+
+
+@pytest.mark.parametrize("spring", SPRINGS, ids=kind)
 def test_two_half_springs_in_series_are_the_spring(spring):
     path = np.random.default_rng(1).uniform(-4.0, 4.0, 300)
     half = spring.split(2)
@@ -490,6 +500,21 @@ def test_two_half_springs_in_series_are_the_spring(spring):
     for n in (0, 1.5):
         with pytest.raises(rbsdem.InputError, match="split: n"):
             spring.split(n)
+
+
+@pytest.mark.parametrize("spring", SPRINGS, ids=kind)
+def test_every_rule_can_be_traded(spring):
+    place = "axial_spring" if spring.rule == "compression" else "flexure"
+    if spring.rule == "concrete":
+        # Concrete stands in axial springs and layers only.
+        spring, place = rbsdem.Layered([(-1.0, spring), (1.0, rbsdem.Elastic(2.0))]), "flexure"
+    springs = {"shear": rbsdem.Elastic(9.0), "flexure": rbsdem.Elastic(9.0), place: spring}
+    column = rbsdem.Column(1.0, 1.0, **springs, axial_load=0.1, kinematics="pdelta")
+    path = 0.5 * rbsdem.protocol([1.0, 2.0], cycles=1)
+    found = trade(column, displacement=path, repeats=1, budget=20.0)
+    effect = next(effect for effect in found.physics.effects if effect.part == "2 bodies")
+    assert effect.status == "completed", effect.reason
+    assert math.isfinite(effect.largest)
 
 
 # ---- faults --------------------------------------------------------------------------------------
