@@ -210,9 +210,12 @@ def keys() -> dict[str, Any]:
 
 
 @cache
-def quantities(opens: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return the names of the values of a row (joints: with an asterisk) and of a summary."""
-    rows, figures = _rbsdem.rbs_quantities(int(opens))
+def quantities(opens: bool, with_base: bool = False) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the names of the values of a row (joints: with an asterisk) and of a summary.
+
+    `with_base`: whether the row ends with the forces at the base, as in time with damping.
+    """
+    rows, figures = _rbsdem.rbs_quantities(int(opens), int(with_base))
     return tuple(_text(rows).split()), tuple(_text(figures).split())
 
 
@@ -265,12 +268,16 @@ def mass_matrix(column: Statement, unknowns: int, paper: bool) -> Array:
 
 
 def cyclic(
-    column: Statement, shape: tuple[int, bool], by_force: bool, values: Array, every: int | None
+    column: Statement,
+    shape: tuple[int, bool, bool],
+    by_force: bool,
+    values: Array,
+    every: int | None,
 ) -> Run:
     """Follow a static path.
 
-    `column` holds the settings of the analysis too; `shape` is the number of bodies and whether
-    joints open.
+    `column` holds the settings of the analysis too; `shape` is the number of bodies, whether joints
+    open, and whether the rows end with the forces at the base.
     """
     rows = _empty_rows(
         shape, _rbsdem.rbs_kept_rows(values.size, UNSET_INTEGER if every is None else every)
@@ -283,7 +290,7 @@ def cyclic(
 
 def time_history(
     column: Statement,
-    shape: tuple[int, bool],
+    shape: tuple[int, bool, bool],
     time: Array,
     loads: Mapping[str, Array],
     initial: Array,
@@ -501,10 +508,10 @@ def _path(path: str) -> str:
     return path
 
 
-def _empty_rows(shape: tuple[int, bool], rows: int) -> Array:
+def _empty_rows(shape: tuple[int, bool, bool], rows: int) -> Array:
     """Return the array that Fortran fills; each column is a row of the result."""
-    bodies, opens = shape
-    names = quantities(opens)[0]
+    bodies, opens, with_base = shape
+    names = quantities(opens, with_base)[0]
     joints = sum(name.endswith("*") for name in names)
     return np.empty((len(names) + (bodies - 1) * joints, rows), order="F")
 

@@ -143,7 +143,7 @@ def cyclic(
     settings = _settings(every, collapse_drift=collapse_drift)
     run = _core.cyclic(
         _checked(column)._statement + settings,
-        (column.n, column.opens),
+        (column.n, column.opens, False),
         by_force,
         values,
         every,
@@ -260,7 +260,7 @@ def time_history(
     )
     run = _core.time_history(
         _checked(column)._statement + settings,
-        (column.n, column.opens),
+        (column.n, column.opens, column.damped),
         _core.vector(time, "time"),
         loads,
         *_initial_state(initial, column),

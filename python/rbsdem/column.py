@@ -152,6 +152,11 @@ class Column:
         """Whether the joints have axial springs and open."""
         return self.axial_spring is not None
 
+    @property
+    def damped(self) -> bool:
+        """Whether the column has viscous damping."""
+        return isinstance(self.damping, Damping) and self.damping.acts
+
     def joints(self, name: Literal["shear", "flexure", "axial_spring"]) -> tuple[Spring, ...]:
         """Return the springs of one kind, one for each joint from the ground up.
 

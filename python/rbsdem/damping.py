@@ -57,6 +57,11 @@ class Damping:
         modal = ratios.tolist()[0] if ratios.size == 1 else tuple(ratios.tolist())
         object.__setattr__(self, "modal", modal)
 
+    @property
+    def acts(self) -> bool:
+        """Whether there is any damping."""
+        return self.mass > 0 or self.stiffness > 0 or self.modal is not None
+
     @classmethod
     def rayleigh(
         cls, ratio: float, frequency_1: float, frequency_2: float, tangent: bool = False

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from rbsdem._curve import Curve, pair
 from rbsdem._optional import need_matplotlib
 from rbsdem.errors import InputError
+from rbsdem.result import Result
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -153,7 +154,8 @@ def loop(
     Parameters
     ----------
     curve : Result, PeerTest, pair of arrays, or array_like of shape (n,)
-        The loop, or its displacements [m].
+        The loop, or its displacements [m]. That of a response in time is the base shear against the
+        displacement of the top.
     force : array_like, shape (n,), optional
         Forces [N], if `curve` holds displacements.
     height : float, optional
@@ -181,10 +183,15 @@ def loop(
     >>> ax.get_xlabel()
     'Top displacement (mm)'
     """
+    shaken = force is None and isinstance(curve, Result) and curve.dynamic
+    if shaken:
+        curve, force = curve.displacement, curve.base_shear
     d, f = _curve((curve, force) if force is not None else curve, "the loop")
     with axes_or_new(ax) as drawn:
         drawn.plot(d, f, **line_of(MODEL_LINE, line))
         _dress(drawn, height)
+        if shaken:
+            drawn.set_ylabel("Base shear (kN)")
     return drawn
 
 

@@ -35,6 +35,11 @@ class Result:
         Slip [m] and relative rotation [rad] of the joints, from the ground up.
     shear, moment : ndarray, shape (steps, n)
         Forces [N] and moments [N m] of their springs.
+    base_shear, base_moment : ndarray, shape (steps,)
+        What holds the column at the ground: horizontal force [N], and moment about the lowest joint
+        [N m]. Those of the springs of that joint and, in time, of the damping, which may also act
+        between the bodies and the ground (``docs/theory.md``). In a static analysis the shear is
+        `force`.
     energy : dict of ndarray, shape (steps,)
         Energies [J]: "input" (work of lateral force and ground motion), "kinetic", "spring"
         (stored and dissipated), "damping", "axial" (potential of axial load and weight), and
@@ -44,8 +49,9 @@ class Result:
         "method" that was used and, if the program chose it, the "reason"; "status": "completed",
         "collapsed" (`collapse_drift` was reached) or "failed" (the result of a `SolveError`).
         Values: steps, rows, events (how often a spring left its line), time_step and stable_step
-        [s], peak_displacement [m], peak_force [N], displacement_at_peak_force [m], energies at the
-        end [J], energy_residual [J] and relative_energy_residual (largest of the kept rows),
+        [s], peak_displacement [m], peak_force [N], displacement_at_peak_force [m], peak_base_shear
+        [N] (in time of the kept rows), energies at the end [J], energy_residual [J] and
+        relative_energy_residual (largest of the kept rows),
         peak_rotation (largest absolute rotation of a body in the kept rows [rad]), cut_steps
         (steps cut at an event, for accuracy, or because they did not converge).
     opening : ndarray, shape (steps, n)
@@ -67,6 +73,8 @@ class Result:
     rotation: Array
     shear: Array
     moment: Array
+    base_shear: Array
+    base_moment: Array
     energy: dict[str, Array]
     summary: dict[str, Any]
     opening: Array
@@ -74,6 +82,11 @@ class Result:
     top: Array
     column: Column
     case: Case | None = None
+
+    @property
+    def dynamic(self) -> bool:
+        """Whether it is a response in time."""
+        return bool(self.summary["analysis"] == "dynamic")
 
     def __repr__(self) -> str:
         about = self.summary
@@ -109,7 +122,8 @@ def result_from_rows(rows: Array, column: Column, summary: dict[str, Any]) -> Re
     """Return the result whose arrays are views of rows of the Fortran part."""
     values: dict[str, Array] = {}
     at = 0
-    for name in _core.quantities(column.opens)[0]:
+    with_base = column.damped and summary["analysis"] == "dynamic"
+    for name in _core.quantities(column.opens, with_base)[0]:
         if name.endswith("*"):
             values[name[:-1]] = rows[:, at : at + column.n]
             at += column.n
@@ -124,6 +138,8 @@ def result_from_rows(rows: Array, column: Column, summary: dict[str, Any]) -> Re
         rotation=values["rotation"],
         shear=values["shear"],
         moment=values["moment"],
+        base_shear=values.get("base_shear", values["shear"][:, 0]),
+        base_moment=values.get("base_moment", values["moment"][:, 0]),
         energy={name: values[name] for name in ENERGIES},
         summary=summary,
         opening=values.get("opening", np.zeros(values["slip"].shape)),

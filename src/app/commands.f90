@@ -204,7 +204,8 @@ contains
          if (allocated(error)) return
       end if
       recorder%units = case%units%system()
-      call row_labels(column%n, column%opens, case%analysis%dynamic(), recorder%units, labels, recorder%si)
+      call row_labels(column%n, column%opens, case%analysis%dynamic(), &
+                      case%analysis%dynamic() .and. column%damped, recorder%units, labels, recorder%si)
       call recorder%open(path, header(case, plan%method), labels, error)
       if (allocated(error)) return
       call progress%start(quiet)
@@ -321,6 +322,8 @@ contains
             ! reported apart.
             if (summary_units(i) == 's' .and. .not. values(i) > 0.0_wp) cycle
             if (summary_names(i) == 'collapsed') cycle
+            ! Without inertia it is the peak force.
+            if (summary_names(i) == 'peak_base_shear' .and. .not. case%analysis%dynamic()) cycle
             name = summary_names(i)
             if (summary_units(i) /= '') name = trim(name)//'_'//summary_units(i)
             call say('  '//name//'  '//to_text(values(i)), error)

@@ -63,6 +63,8 @@ module rbs_column_column
       logical :: tangent_damping = .false.
       !> Damping ratios of the modes (first modes, or one for all); not allocated without modal damping
       real(wp), allocatable :: modal_damping(:)
+      !> Whether there is damping at all
+      logical :: damped = .false.
       !> Springs (unknowns), shear first, and their initial stiffness
       type(spring_record), allocatable :: spring(:)
       real(wp), allocatable :: initial_stiffness(:)
@@ -104,6 +106,8 @@ contains
       column%stiffness_damping = spec%damping%stiffness
       column%tangent_damping = spec%damping%tangent
       if (allocated(spec%damping%modal)) column%modal_damping = spec%damping%modal
+      column%damped = column%mass_damping > 0.0_wp .or. column%stiffness_damping > 0.0_wp .or. &
+                      allocated(column%modal_damping)
       column%axial_follows = spec%axial_follows
       column%force_follows = spec%force_follows
 

@@ -22,6 +22,9 @@ module rbs_output_row
    !> the same order n shear forces [N], n moments [N m] and n axial forces [N].
    integer, parameter :: row_joints = 11
 
+   !> Where the column is damped in an analysis in time, the row ends with shear and moment at the base
+   !> [N, N m]. Else those are the forces of the lowest joint.
+
    !> One value of a row, or one for each joint, with its SI unit.
    type :: quantity_type
       character(len=12) :: name
@@ -39,20 +42,27 @@ module rbs_output_row
       quantity_type('slip', 'm'), quantity_type('rotation', 'rad'), quantity_type('opening', 'm'), &
       quantity_type('shear', 'N'), quantity_type('moment', 'N m'), quantity_type('axial_force', 'N')]
 
+   type(quantity_type), parameter :: of_base(2) = [ &
+      quantity_type('base_shear', 'N'), quantity_type('base_moment', 'N m')]
+
 contains
 
    !> Number of values in a row of a column.
-   pure integer function row_size(unknowns)
+   pure integer function row_size(unknowns, with_base)
       !> Number of its joint deformations
       integer, intent(in) :: unknowns
+      !> Whether the row ends with the forces at the base; without it, it does not
+      logical, intent(in), optional :: with_base
 
       row_size = row_joints - 1 + 2*unknowns
+      if (.not. present(with_base)) return
+      if (with_base) row_size = row_size + size(of_base)
    end function row_size
 
    !> Names of the quantities in their order, separated by blanks; an asterisk marks one value a joint.
-   pure function row_quantities(opens) result(names)
-      !> Whether the joints open
-      logical, intent(in) :: opens
+   pure function row_quantities(opens, with_base) result(names)
+      !> Whether the joints open, and whether the row ends with the forces at the base
+      logical, intent(in) :: opens, with_base
       character(len=512) :: names
       integer :: i
 
@@ -64,13 +74,18 @@ contains
          if (.not. opens .and. mod(i, 3) == 0) cycle
          names = trim(names)//' '//trim(of_joints(i)%name)//'*'
       end do
+      if (.not. with_base) return
+      do i = 1, size(of_base)
+         names = trim(names)//' '//of_base(i)%name
+      end do
    end function row_quantities
 
    !> Names of the values with their units, and the SI units themselves.
-   subroutine row_labels(n, opens, dynamic, units, labels, si)
+   subroutine row_labels(n, opens, dynamic, with_base, units, labels, si)
       integer, intent(in) :: n
-      !> Whether the joints open, and whether the first value is a time
-      logical, intent(in) :: opens, dynamic
+      !> Whether the joints open, whether the first value is a time, and whether the row ends with the forces
+      !> at the base
+      logical, intent(in) :: opens, dynamic, with_base
       !> Units of the labels
       type(unit_system), intent(in) :: units
       !> (values of a row)
@@ -78,7 +93,8 @@ contains
       character(len=4), allocatable, intent(out) :: si(:)
       integer :: i, j, at
 
-      allocate (labels(row_size(merge(3, 2, opens)*n)), si(row_size(merge(3, 2, opens)*n)))
+      at = row_size(merge(3, 2, opens)*n, with_base)
+      allocate (labels(at), si(at))
       do i = 1, size(fixed)
          labels(i) = trim(fixed(i)%name)//'_'//compact(units%name_of(fixed(i)%unit))
          si(i) = fixed(i)%unit
@@ -93,6 +109,12 @@ contains
                    compact(units%name_of(of_joints(j)%unit))
             si(at) = of_joints(j)%unit
          end do
+      end do
+      if (.not. with_base) return
+      do i = 1, size(of_base)
+         at = at + 1
+         labels(at) = trim(of_base(i)%name)//'_'//compact(units%name_of(of_base(i)%unit))
+         si(at) = of_base(i)%unit
       end do
    end subroutine row_labels
 

@@ -7,15 +7,15 @@ module rbs_output_summary
 
    public :: summary_type, summary_size, summary_names, summary_units, figure_names
 
-   integer, parameter :: summary_size = 16
+   integer, parameter :: summary_size = 17
 
    !> Names of the figures of `as_array`, and their SI units.
    character(len=26), parameter :: summary_names(summary_size) = [character(len=26) :: &
       'steps', 'rows', 'events', 'time_step', 'stable_step', 'peak_displacement', 'peak_force', &
-      'displacement_at_peak_force', 'input_energy', 'spring_energy', 'damping_energy', 'energy_residual', &
-      'relative_energy_residual', 'peak_rotation', 'cut_steps', 'collapsed']
+      'displacement_at_peak_force', 'peak_base_shear', 'input_energy', 'spring_energy', 'damping_energy', &
+      'energy_residual', 'relative_energy_residual', 'peak_rotation', 'cut_steps', 'collapsed']
    character(len=4), parameter :: summary_units(summary_size) = [character(len=4) :: &
-      '', '', '', 's', 's', 'm', 'N', 'm', 'J', 'J', 'J', 'J', '', 'rad', '', '']
+      '', '', '', 's', 's', 'm', 'N', 'm', 'N', 'J', 'J', 'J', 'J', '', 'rad', '', '']
 
    type :: summary_type
       !> Steps or increments taken, rows offered to the recorder, lines that springs have left
@@ -25,6 +25,8 @@ module rbs_output_summary
       !> Largest displacement and force in size, with sign [m, N], and the displacement where the force
       !> is largest [m]; over all points (static) or steps (dynamic)
       real(wp) :: peak_displacement = 0.0_wp, peak_force = 0.0_wp, displacement_at_peak = 0.0_wp
+      !> Largest shear force at the base in size, with sign [N]; over all points (static) or rows (dynamic)
+      real(wp) :: peak_base_shear = 0.0_wp
       !> Energies at the end [J]
       real(wp) :: input = 0.0_wp, spring = 0.0_wp, damping = 0.0_wp
       !> Largest absolute rotation of a body over the rows, in size [rad]
@@ -40,6 +42,7 @@ module rbs_output_summary
       real(wp) :: residual = 0.0_wp, largest = 0.0_wp
    contains
       procedure :: see_peak
+      procedure :: see_base
       procedure :: see
       procedure :: as_array
    end type summary_type
@@ -58,6 +61,15 @@ contains
          self%displacement_at_peak = displacement
       end if
    end subroutine see_peak
+
+   !> Take a shear force at the base into account.
+   pure subroutine see_base(self, shear)
+      class(summary_type), intent(inout) :: self
+      !> [N]
+      real(wp), intent(in) :: shear
+
+      if (abs(shear) > abs(self%peak_base_shear)) self%peak_base_shear = shear
+   end subroutine see_base
 
    !> Take the energies of a kept row into account.
    pure subroutine see(self, row)
@@ -80,7 +92,7 @@ contains
 
       values = [real(self%steps, wp), real(self%rows, wp), real(self%events, wp), self%time_step, &
                 self%stable_step, self%peak_displacement, self%peak_force, self%displacement_at_peak, &
-                self%input, self%spring, self%damping, self%residual, &
+                self%peak_base_shear, self%input, self%spring, self%damping, self%residual, &
                 self%residual/max(self%largest, tiny(1.0_wp)), self%peak_rotation, &
                 real(self%cut_steps, wp), merge(1.0_wp, 0.0_wp, self%collapsed)]
    end function as_array

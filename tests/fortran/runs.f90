@@ -69,7 +69,7 @@ contains
       loads = loads_of(data)
       call plan_dynamic(column, data%analysis, data%time, loads, data%plan, data%outcome)
       if (allocated(data%outcome)) return
-      allocate (kept(row_size(column%unknowns), data%plan%rows(data%every)))
+      allocate (kept(row_size(column%unknowns, column%damped), data%plan%rows(data%every)))
       recorder%rows => kept
       call run_dynamic(column, data%analysis, data%plan, data%time, loads, data%initial, data%every, &
                        recorder, data%summary, data%outcome)

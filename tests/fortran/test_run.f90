@@ -175,7 +175,8 @@ contains
       real(wp), allocatable :: unit(:)
       integer :: level, method
 
-      allocate (unit(row_size(9)))
+      ! Of a damped column: with shear and moment at the base.
+      allocate (unit(row_size(9, .true.)))
       unit(row_time) = time
       unit(row_displacement) = length
       unit(row_force) = mass*length/time**2
@@ -185,6 +186,7 @@ contains
       unit(row_joints:row_joints + 8) = length
       unit(row_joints + 3:row_joints + 5) = 1.0_wp
       unit(row_joints + 12:row_joints + 14) = unit(row_force)*length
+      unit(size(unit)) = unit(row_force)*length
       do level = 1, 3
          do method = 0, methods
             if (level == 3 .and. method > 3) cycle

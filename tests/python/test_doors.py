@@ -249,6 +249,8 @@ def rows_of(result: rbsdem.Result) -> dict[str, np.ndarray]:
             continue
         for i, values in enumerate(getattr(result, name).T):
             rows[f"{name}_{i + 1}_{unit}"] = values
+    if result.column.damped and not static:
+        rows |= {"base_shear_N": result.base_shear, "base_moment_Nm": result.base_moment}
     return rows
 
 

@@ -829,7 +829,10 @@ def rows_of(result: rbsdem.Result) -> list[np.ndarray]:
         joints[2:2] = [result.opening]
         joints += [result.axial_force]
     columns = [result.time, result.displacement, result.force, *energies, result.top[:, 1]]
-    return columns + [values for joint in joints for values in joint.T]
+    columns += [values for joint in joints for values in joint.T]
+    if result.dynamic and result.column.damped:
+        columns += [result.base_shear, result.base_moment]
+    return columns
 
 
 @pytest.fixture(scope="module")

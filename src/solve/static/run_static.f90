@@ -44,6 +44,8 @@ contains
       else
          call trace(column, by_force, target, every, collapse_drift, recorder, summary, error, progress)
       end if
+      ! Without inertia the ground holds what drives the column.
+      summary%peak_base_shear = summary%peak_force
       summary%method = 'static'
    end subroutine run_static
 

@@ -60,7 +60,7 @@ contains
 
       call start_state(state, column, loads, initial, plan%begin, error)
       if (allocated(error)) return
-      allocate (row(row_size(column%unknowns)))
+      allocate (row(row_size(column%unknowns, column%damped)))
       furthest = huge(1.0_wp)
       if (is_given(collapse_drift)) furthest = collapse_drift*column%joint_height(column%n + 1)
       summary%time_step = plan%dt
@@ -222,7 +222,7 @@ contains
       class(recorder_type), intent(inout) :: recorder
       type(summary_type), intent(inout) :: summary
       type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: top(2)
+      real(wp) :: top(2), base
       integer :: m
 
       m = state%springs%count
@@ -239,7 +239,14 @@ contains
                           - row(row_damping) - row(row_axial)
       row(row_top) = top(2)
       row(row_joints:row_joints + m - 1) = state%q
-      row(row_joints + m:) = state%springs%f0 + state%springs%k*(state%q - state%springs%d0)
+      row(row_joints + m:row_joints + 2*m - 1) = state%springs%f0 &
+                                                 + state%springs%k*(state%q - state%springs%d0)
+      base = row(row_joints + m)
+      if (state%motion%damped) then
+         row(row_joints + 2*m:) = state%motion%base_reaction(state%springs, state%q, state%v)
+         base = row(row_joints + 2*m)
+      end if
+      call summary%see_base(base)
       summary%events = state%springs%events
       summary%peak_rotation = max(summary%peak_rotation, largest_rotation(state))
       call summary%see(row)

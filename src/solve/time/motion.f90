@@ -15,6 +15,7 @@ module rbs_solve_time_motion
    use rbs_column_column, only: column_type, small, finite
    use rbs_column_energy, only: kinetic_energy
    use rbs_column_finite, only: finite_work, finite_acceleration, finite_power
+   use rbs_column_momentum, only: momentum_at_foot
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_modal_damping, only: modal_damping
    use rbs_solve_time_loads, only: lateral, horizontal, vertical, axial
@@ -74,6 +75,7 @@ module rbs_solve_time_motion
       procedure :: damping_power
       procedure :: top_velocity
       procedure :: momentum
+      procedure :: base_reaction
    end type motion_type
 
 contains
@@ -100,11 +102,10 @@ contains
       self%column = column
       self%acts = acts
       self%joint_damping = column%stiffness_damping*column%initial_stiffness
-      self%damped = column%mass_damping > 0.0_wp .or. column%stiffness_damping > 0.0_wp
+      self%damped = column%damped
       if (allocated(column%modal_damping)) then
          call modal_damping(column, self%modal, error)
          if (allocated(error)) return
-         self%damped = .true.
       end if
       self%second_order = column%kinematics /= small .and. &
                           (column%axially_loaded .or. acts(vertical) .or. acts(axial))
@@ -370,5 +371,31 @@ contains
 
       momentum = inner_product(size(v), self%column%ground_arm, v)
    end function momentum
+
+   !> What the ground holds the column with: shear and moment of the lowest joint and of the damping, that
+   !> between the bodies and the ground included [N, N m].
+   function base_reaction(self, springs, q, v) result(base)
+      class(motion_type), intent(in) :: self
+      type(spring_array), intent(in) :: springs
+      real(wp), intent(in), contiguous :: q(:), v(:)
+      real(wp) :: base(2)
+      integer :: i, place
+
+      do i = 1, 2
+         place = merge(1, self%column%n + 1, i == 1)
+         base(i) = springs%f0(place) + springs%k(place)*(q(place) - springs%d0(place))
+         if (.not. self%damped) cycle
+         if (self%column%tangent_damping) then
+            base(i) = base(i) + self%column%stiffness_damping*max(springs%k(place), 0.0_wp)*v(place)
+         else
+            base(i) = base(i) + self%joint_damping(place)*v(place)
+         end if
+         ! The matrix is symmetric: its columns lie together.
+         if (allocated(self%modal)) base(i) = base(i) + inner_product(size(v), self%modal(:, place), v)
+      end do
+      if (self%column%mass_damping > 0.0_wp) then
+         base = base + self%column%mass_damping*momentum_at_foot(self%column, q, v)
+      end if
+   end function base_reaction
 
 end module rbs_solve_time_motion
