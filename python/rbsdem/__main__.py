@@ -42,7 +42,8 @@ def main() -> int:
     except FileNotFoundError as error:
         print(error, file=sys.stderr)
         return 2
-    sys.stdout.flush()
+    if sys.stdout is not None:  # as it is if it was closed
+        sys.stdout.flush()
     os.execv(program, [program, *sys.argv[1:]])
     return 2
 

@@ -1,8 +1,8 @@
 !> The commands: from a case file to a csv and a summary.
 module rbs_app_commands
-   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_null_char, c_ptr
    use rbs_app_progress, only: terminal_progress
    use rbs_app_say, only: say
+   use rbs_app_signals, only: keep_if_stopped, remove_if_stopped
    use rbs_base_constants, only: pi
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_kinds, only: wp
@@ -13,6 +13,8 @@ module rbs_app_commands
    use rbs_io_case_file, only: case_history, load_case
    use rbs_io_csv, only: csv_recorder
    use rbs_io_namelist, only: read_case
+   use rbs_io_output_file, only: partial
+   use rbs_io_posix, only: is_standard_output, same_file, standard_input
    use rbs_output_notes, only: rotation_note
    use rbs_output_row, only: row_labels
    use rbs_output_summary, only: summary_type, summary_names, summary_units
@@ -31,17 +33,6 @@ module rbs_app_commands
 
    !> Exit code of a run that ended because the user's criterion of collapse was met.
    integer, parameter :: column_collapsed = 3
-
-   interface
-      !> C: the path of an existing file, without links and dots; a null pointer if there is no such file.
-      function c_realpath(path, real_path) bind(c, name='realpath') result(status)
-         import :: c_char, c_ptr
-         implicit none
-         character(kind=c_char), intent(in) :: path(*)
-         character(kind=c_char), intent(out) :: real_path(*)
-         type(c_ptr) :: status
-      end function c_realpath
-   end interface
 
 contains
 
@@ -62,20 +53,25 @@ contains
 
       call prepare(path, case, column, history, error)
       if (allocated(error)) return
-      file = output_path(path, case, output)
+      call output_path(path, case, output, file, error)
+      if (allocated(error)) return
       call check_output(file, path, case, error)
       if (allocated(error)) return
       call solve(case, column, history, file, recorder, summary, quiet, error)
+      call keep_if_stopped()
       call recorder%close(.not. allocated(error), closing)
       if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
       if (allocated(error)) then
          if (recorder%count > 0) then
-            error%message = error%message//new_line('a')//'the '//to_text(recorder%count)// &
-                            ' rows up to there are in '//recorder%path//'.partial'
+            if (recorder%file%kept /= '') then
+               error%message = error%message//new_line('a')//'the '//to_text(recorder%count)// &
+                               ' rows up to there are in '//recorder%file%kept
+            end if
          end if
          return
       end if
-      if (.not. quiet) then
+      ! Among rows on standard output a summary would be in the way.
+      if (.not. (quiet .or. is_standard_output(file))) then
          call print_summary(case, recorder, summary, error)
          call print_notes(case, column, error)
          call print_rotation(column, summary, error)
@@ -98,7 +94,7 @@ contains
       call fatal_error(error, column_collapsed, 'collapsed at '//place//': the top is at '// &
                        to_text(summary%peak_displacement)//' m, beyond collapse_drift = '// &
                        to_text(case%analysis%collapse_drift)//' of the height; the rows up to there '// &
-                       'are in '//recorder%path)
+                       'are in '//recorder%file%path)
    end subroutine report_collapse
 
    !> rbsdem check: report all errors of the input without solving the case.
@@ -206,7 +202,10 @@ contains
       recorder%units = case%units%system()
       call row_labels(column%n, column%opens, case%analysis%dynamic(), &
                       case%analysis%dynamic() .and. column%damped, recorder%units, labels, recorder%si)
-      call recorder%open(path, header(case, plan%method), labels, error)
+      call recorder%open(path, error)
+      if (allocated(error)) return
+      call remove_if_stopped(recorder%file%own)
+      call recorder%write_head(header(case, plan%method), labels, error)
       if (allocated(error)) return
       call progress%start(quiet)
       if (case%analysis%dynamic()) then
@@ -254,12 +253,14 @@ contains
       integer :: i
       logical :: clash
 
-      clash = same_file(file, case_path)
+      clash = same_file(file, standard_input(case_path))
       do i = 1, case%loadings
          if (.not. allocated(case%loading(i)%file)) cycle
          input = case%loading(i)%file
          if (input(1:1) /= '/') input = case_path(:index(case_path, '/', back=.true.))//input
          if (same_file(file, input)) clash = .true.
+         ! A failed run keeps its rows there.
+         if (same_file(file//partial, input)) clash = .true.
       end do
       if (clash) then
          call fatal_error(error, bad_input, 'output: '//file//' is an input of the case and would '// &
@@ -267,28 +268,13 @@ contains
       end if
    end subroutine check_output
 
-   !> Whether two paths lead to the same existing file.
-   logical function same_file(a, b)
-      character(len=*), intent(in) :: a, b
-      !> Longest path in POSIX
-      integer, parameter :: longest = 4097
-      character(kind=c_char) :: real_a(longest), real_b(longest)
-
-      real_a = c_null_char
-      real_b = c_null_char
-      same_file = .false.
-      if (.not. c_associated(c_realpath(a//c_null_char, real_a))) return
-      if (.not. c_associated(c_realpath(b//c_null_char, real_b))) return
-      same_file = all(real_a(:findloc(real_a, c_null_char, dim=1)) == &
-                      real_b(:findloc(real_a, c_null_char, dim=1)))
-   end function same_file
-
-   !> Path of the csv.
-   function output_path(case_path, case, output) result(path)
+   !> Path of the csv: that of the command line, else that of the case, else the case's name with .csv.
+   subroutine output_path(case_path, case, output, path, error)
       character(len=*), intent(in) :: case_path
       type(case_record), intent(in) :: case
       character(len=:), allocatable, intent(in) :: output
-      character(len=:), allocatable :: path
+      character(len=:), allocatable, intent(out) :: path
+      type(error_type), allocatable, intent(out) :: error
       integer :: dot, slash
 
       slash = index(case_path, '/', back=.true.)
@@ -297,12 +283,16 @@ contains
       else if (allocated(case%output%file)) then
          path = case%output%file
          if (path(1:1) /= '/') path = case_path(:slash)//path
+      else if (case_path == '-' .or. index(case_path, '/dev/') == 1 .or. &
+               index(case_path, '/proc/') == 1) then
+         call fatal_error(error, bad_input, 'output: a case from '//standard_input(case_path)// &
+                          ' has no name for its rows; give one with --output')
       else
          dot = index(case_path, '.', back=.true.)
          if (dot <= slash + 1) dot = len(case_path) + 1
          path = case_path(:dot - 1)//'.csv'
       end if
-   end function output_path
+   end subroutine output_path
 
    !> Print the summary of a run without the values that do not apply to it.
    subroutine print_summary(case, recorder, summary, error)
@@ -330,7 +320,7 @@ contains
          end do
       end associate
       name = 'rows in'
-      call say('  '//name//'  '//recorder%path, error)
+      call say('  '//name//'  '//recorder%file%path, error)
    end subroutine print_summary
 
    !> A method, with the reason if the program chose it.

@@ -5,6 +5,7 @@ program rbsdem
    use rbs_app_command_line, only: command_type, read_command_line
    use rbs_app_commands, only: run_case, check_case, show_modes, show_keys
    use rbs_app_say, only: say
+   use rbs_app_signals, only: prepare_process
    use rbs_base_error, only: error_type
    use rbs_version, only: version
    implicit none
@@ -22,6 +23,7 @@ program rbsdem
    type(error_type), allocatable :: error
    integer(c_int) :: status
 
+   call prepare_process()
    call read_command_line(command, error)
    if (.not. allocated(error)) then
       select case (command%name)
@@ -67,11 +69,11 @@ contains
 
    subroutine print_help(error)
       type(error_type), allocatable, intent(inout) :: error
-      character(len=*), parameter :: text(27) = [character(len=84) :: &
+      character(len=*), parameter :: text(29) = [character(len=84) :: &
          'rbsdem '//version//': reinforced-concrete columns as rigid bodies and springs', &
          '', &
          'usage:', &
-         '  rbsdem run CASE.nml [--output FILE] [--quiet]  solve a case, write a csv', &
+         '  rbsdem run CASE.nml [--output FILE] [--quiet]   solve a case, write a csv', &
          '  rbsdem check CASE.nml [--quiet]                 find all errors of the input', &
          '  rbsdem modes CASE.nml                           natural frequencies, stable step', &
          '  rbsdem keys [--json]                            groups, rules and all their keys', &
@@ -80,9 +82,11 @@ contains
          'rbsdem trade CASE.nml needs the command that comes with the Python package,', &
          'and so does rbsdem peer DIR.', &
          '', &
+         'CASE.nml may be -, which is standard input.', &
+         '', &
          'options:', &
          '  -o, --output FILE   file for the rows (default: the file of &output, or the', &
-         '                      name of the case with .csv)', &
+         '                      name of the case with .csv); - is standard output', &
          '  -q, --quiet         no summary and no progress', &
          '', &
          'exit code:', &

@@ -1,23 +1,12 @@
 !> Lines on standard output, through C: the Fortran library does not report a full disk.
 module rbs_app_say
-   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_size_t
+   use, intrinsic :: iso_c_binding, only: c_size_t
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
+   use rbs_io_posix, only: c_write, standard_output
    implicit none
    private
 
    public :: say
-
-   interface
-      !> C: write to a file descriptor; the number of bytes written, -1 if it failed.
-      function c_write(descriptor, text, length) bind(c, name='write') result(written)
-         import :: c_char, c_int, c_size_t
-         implicit none
-         integer(c_int), value :: descriptor
-         character(kind=c_char), intent(in) :: text(*)
-         integer(c_size_t), value :: length
-         integer(c_size_t) :: written
-      end function c_write
-   end interface
 
 contains
 
@@ -33,7 +22,7 @@ contains
       text = line//new_line('a')
       at = 1
       do while (at <= len(text))
-         written = c_write(1_c_int, text(at:), int(len(text) - at + 1, c_size_t))
+         written = c_write(standard_output, text(at:), int(len(text) - at + 1, c_size_t))
          if (written < 1_c_size_t) then
             call fatal_error(error, analysis_failed, 'standard output cannot be written; is the disk full?')
             return

@@ -1,10 +1,13 @@
 !> A text file in memory: its lines, with any line ending, and strict reading of numbers.
 module rbs_io_text_file
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use, intrinsic :: iso_c_binding, only: c_int, c_null_char, c_size_t
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: lower, to_text
+   use rbs_io_posix, only: c_close, c_dup, c_open, c_poll, c_read, is_folder, is_special, poll_in, &
+                           poll_type, to_read, without_waiting
    implicit none
    private
 
@@ -16,6 +19,15 @@ module rbs_io_text_file
 
    !> Longest text that is read as a number.
    integer, parameter :: most_digits = 4096
+
+   !> How long the writer of a pipe is waited for [ms].
+   integer(c_int), parameter :: writer_time = 5000_c_int
+
+   !> Bytes that are made room for at first, and that are read at most, of a pipe, whose size is not known.
+   integer, parameter :: first_of_pipe = 65536, most_of_pipe = 250000000
+
+   !> What `read_some` returns in place of a number of bytes.
+   integer(c_size_t), parameter :: nobody_writes = -2_c_size_t, cannot_read = -1_c_size_t
 
    character(len=1), parameter :: cr = achar(13), lf = achar(10)
 
@@ -33,42 +45,30 @@ module rbs_io_text_file
 
 contains
 
-   !> Read a whole file.
+   !> Read a whole file, a pipe, or with `-` standard input.
    subroutine load_text(file, path, most, error)
       type(text_file), intent(out) :: file
       character(len=*), intent(in) :: path
       !> Largest size that is accepted [bytes]
       integer, intent(in) :: most
       type(error_type), allocatable, intent(out) :: error
-      character(len=256) :: message
-      integer(int64) :: size
-      integer :: unit, status
-      logical :: there
+      integer(c_int) :: descriptor, status
 
-      inquire (file=path//'/.', exist=there)
-      if (there) then
+      if (is_folder(path)) then
          call fatal_error(error, bad_input, path//': is a folder; give the path of a file')
          return
       end if
-      open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', &
-            iostat=status, iomsg=message)
-      if (status /= 0) then
-         call fatal_error(error, bad_input, path//': cannot be opened ('//trim(message)// &
-                          '); check the path and the permissions')
+      if (path == '-') then
+         descriptor = c_dup(0_c_int)
+      else
+         descriptor = c_open(path//c_null_char, to_read + without_waiting)
+      end if
+      if (descriptor < 0_c_int) then
+         call report_open(path, error)
          return
       end if
-      inquire (unit=unit, size=size)
-      if (size > int(most, int64)) then
-         call fatal_error(error, bad_input, path//': has '//to_text(real(size, wp))// &
-                          ' bytes, more than the '//to_text(most)//' that are read; is it the right file?')
-      else if (size < 1_int64) then
-         call fatal_error(error, bad_input, path//': is empty')
-      else
-         allocate (character(len=int(size)) :: file%text)
-         read (unit, iostat=status, iomsg=message) file%text
-         if (status /= 0) call fatal_error(error, bad_input, path//': cannot be read ('//trim(message)//')')
-      end if
-      close (unit)
+      call read_all(file, path, descriptor, most, error)
+      status = c_close(descriptor)
       if (allocated(error)) return
       if (len(file%text) >= 3) then
          if (file%text(:3) == char(239)//char(187)//char(191)) file%text = file%text(4:)
@@ -77,6 +77,142 @@ contains
          call fatal_error(error, bad_input, path//': is not a text file (it has a zero byte)')
       end if
    end subroutine load_text
+
+   !> Read from a descriptor to the end.
+   subroutine read_all(file, path, descriptor, most, error)
+      type(text_file), intent(inout) :: file
+      character(len=*), intent(in) :: path
+      integer(c_int), intent(in) :: descriptor
+      integer, intent(in) :: most
+      type(error_type), allocatable, intent(inout) :: error
+      character(len=:), allocatable :: longer
+      character(len=1) :: one
+      integer(c_size_t) :: count
+      integer(int64) :: size
+      integer :: length, room, limit, status
+
+      ! The size of a file is known, that of a pipe is not.
+      size = 0
+      if (path /= '-') inquire (file=path, size=size)
+      limit = most
+      if (size < 1_int64) limit = min(most, most_of_pipe)
+      if (size > int(limit, int64)) then
+         call report_size(path, real(size, wp), limit, error)
+         return
+      end if
+      room = int(size)
+      if (size < 1_int64) room = first_of_pipe
+      allocate (character(len=room) :: file%text, stat=status)
+      length = 0
+      do while (status == 0)
+         if (length < room) then
+            count = read_some(descriptor, file%text(length + 1:room), length == 0)
+         else
+            count = read_some(descriptor, one, .false.)
+         end if
+         if (count < 0_c_size_t) then
+            call report_read(path, count, error)
+            return
+         end if
+         if (count == 0_c_size_t) exit
+         length = length + int(count)
+         if (length > limit) then
+            call report_size(path, real(length, wp), limit, error)
+            return
+         end if
+         if (length <= room) cycle
+         room = int(min(2*int(room, int64), int(limit, int64)))
+         allocate (character(len=room) :: longer, stat=status)
+         if (status /= 0) exit
+         longer(:length - 1) = file%text
+         longer(length:length) = one
+         call move_alloc(longer, file%text)
+      end do
+      if (status /= 0) then
+         call fatal_error(error, bad_input, path//': there is not enough memory to read it; raise the '// &
+                          'limit of the process or make the file shorter')
+      else if (length == 0) then
+         call fatal_error(error, bad_input, path//': is empty')
+      else if (length < room) then
+         file%text = file%text(:length)
+      end if
+   end subroutine read_all
+
+   !> Read what is there, and wait if there is nothing yet: the number of bytes, 0 at the end, or
+   !> `nobody_writes` or `cannot_read`.
+   function read_some(descriptor, text, at_start) result(count)
+      integer(c_int), intent(in) :: descriptor
+      character(len=*), intent(inout) :: text
+      !> Whether nothing has been read before: a pipe may still be waiting for its writer
+      logical, intent(in) :: at_start
+      integer(c_size_t) :: count
+      type(poll_type) :: what
+      integer(c_int) :: ready
+      integer :: failures
+
+      failures = 0
+      do
+         count = c_read(descriptor, text, len(text, kind=c_size_t))
+         if (count > 0_c_size_t) return
+         what = poll_type(descriptor, poll_in, 0)
+         if (count < 0_c_size_t) then
+            ! A pipe with a writer and nothing in it, or a file that cannot be read.
+            failures = failures + 1
+            if (failures == 2) count = cannot_read
+            if (failures == 2) return
+            ready = c_poll(what, 1_c_size_t, -1_c_int)
+         else
+            ! The end of a file, or a pipe whose writer has not opened it: only the pipe is not ready.
+            if (.not. at_start .or. failures > 0) return
+            ready = c_poll(what, 1_c_size_t, writer_time)
+            if (ready == 0_c_int) count = nobody_writes
+            if (ready == 0_c_int .or. iand(what%answered, poll_in) == 0) return
+            failures = failures + 1
+         end if
+      end do
+   end function read_some
+
+   subroutine report_open(path, error)
+      character(len=*), intent(in) :: path
+      type(error_type), allocatable, intent(inout) :: error
+      character(len=256) :: message
+      integer :: unit, status
+
+      message = 'it cannot be opened'
+      if (path == '-') then
+         message = 'standard input is closed'
+      else if (.not. is_special(path)) then
+         ! Opened once more, since Fortran gives the reason in words.
+         open (newunit=unit, file=path, action='read', status='old', iostat=status, iomsg=message)
+         if (status == 0) close (unit)
+      end if
+      call fatal_error(error, bad_input, path//': cannot be opened ('//trim(message)// &
+                       '); check the path and the permissions')
+   end subroutine report_open
+
+   subroutine report_size(path, size, most, error)
+      character(len=*), intent(in) :: path
+      real(wp), intent(in) :: size
+      integer, intent(in) :: most
+      type(error_type), allocatable, intent(inout) :: error
+
+      call fatal_error(error, bad_input, path//': has '//to_text(size)//' bytes, more than the '// &
+                       to_text(most)//' that are read; is it the right file?')
+   end subroutine report_size
+
+   subroutine report_read(path, fault, error)
+      character(len=*), intent(in) :: path
+      !> `nobody_writes` or `cannot_read`
+      integer(c_size_t), intent(in) :: fault
+      type(error_type), allocatable, intent(inout) :: error
+
+      if (fault == nobody_writes) then
+         call fatal_error(error, bad_input, path//': is a pipe that nobody writes to; start its writer '// &
+                          'first, or give the path of a file')
+      else
+         call fatal_error(error, bad_input, path//': cannot be read; check the path and the permissions')
+      end if
+   end subroutine report_read
 
    !> First and last character of the next line in `text`; lines end with LF, CR or both. `found` is false
    !> after the last line.

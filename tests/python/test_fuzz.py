@@ -243,7 +243,7 @@ def shows_progress(command: list[str | Path], cwd: Path, output: Path | None) ->
                     break
             if b" s left" in shown:
                 return True
-            partial = output.with_name(output.name + ".partial") if output else None
+            partial = output and output.with_name(f"{output.name}.{process.pid}-1.partial")
             if partial and partial.exists() and partial.stat().st_size > 1_000_000:
                 return True
     finally:
@@ -363,8 +363,8 @@ def test_mutated_namelists(executable, folder):
             rows = output if command[0] == "run" else None
             if fault := fault_of([executable, *command], folder, rows):
                 found.append((f"{base}, {command[0]}: {fault}", case.as_posix()))
-        output.unlink(missing_ok=True)
-        output.with_name(output.name + ".partial").unlink(missing_ok=True)
+        for path in folder.glob(f"{output.name}*"):
+            path.unlink()
         if not found:
             case.unlink()
         return found
@@ -389,8 +389,8 @@ def test_mutated_histories(executable, folder):
         output = case.with_suffix(".csv")
         command = [executable, "run", case.name, "--output", output.name]
         fault = fault_of(command, folder, output)
-        output.unlink(missing_ok=True)
-        output.with_name(output.name + ".partial").unlink(missing_ok=True)
+        for path in folder.glob(f"{output.name}*"):
+            path.unlink()
         if fault:
             return [(f"{base}: {fault}", case.as_posix())]
         history.unlink()
@@ -414,8 +414,8 @@ def test_mutated_ground_motions(executable, folder):
         output = case.with_suffix(".csv")
         command = [executable, "run", case.name, "--output", output.name]
         fault = fault_of(command, folder, output)
-        output.unlink(missing_ok=True)
-        output.with_name(output.name + ".partial").unlink(missing_ok=True)
+        for path in folder.glob(f"{output.name}*"):
+            path.unlink()
         if fault:
             return [(f"{base}: {fault}", case.as_posix())]
         history.unlink()

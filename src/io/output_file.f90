@@ -1,0 +1,248 @@
+!> A file that is written under a name of its own and gets its final name when it is whole.
+!>
+!> The name of its own is made anew for each process and is opened exclusively: it never replaces a file,
+!> never follows a link, and two processes with one output do not meet. Pipes and devices, which nothing
+!> can be renamed onto, are written directly.
+module rbs_io_output_file
+   use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_null_char, c_null_ptr, c_ptr, c_size_t
+   use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
+   use rbs_base_text, only: to_text
+   use rbs_io_posix, only: c_close, c_dup, c_fclose, c_fileno, c_fopen, c_getpid, c_open, c_poll, c_read, &
+                           c_rename, c_unlink, c_write, exists, is_folder, is_link, is_special, &
+                           is_standard_output, is_taken, poll_out, poll_type, standard_output, &
+                           to_read, to_write, without_waiting
+   implicit none
+   private
+
+   public :: output_file, first_words
+
+   !> Ending of the name until the file is whole.
+   character(len=*), parameter, public :: partial = '.partial'
+
+   !> How every file of rows starts. An earlier `.partial` that starts like this is one of ours.
+   character(len=*), parameter :: first_words = '# rbsdem '
+
+   !> Letters of a name that a disk takes, and those of it that go into the name of its own.
+   integer, parameter :: longest_name = 255, longest_start = 200
+
+   !> Names that are tried before the folder is taken to be at fault.
+   integer, parameter :: most_tries = 100
+
+   integer, parameter :: buffer_size = 16384
+
+   type :: output_file
+      !> Path of the whole file
+      character(len=:), allocatable :: path
+      !> Its name until it is whole; empty if it is written directly
+      character(len=:), allocatable :: own
+      !> Where an unfinished file was kept; empty if it was not
+      character(len=:), allocatable :: kept
+      integer(c_int), private :: descriptor = -1_c_int
+      type(c_ptr), private :: stream = c_null_ptr
+      logical, private :: broken = .false.
+      integer, private :: used = 0
+      character(len=buffer_size), private :: buffer
+   contains
+      procedure :: open => open_file
+      procedure :: put
+      procedure :: close => close_file
+      procedure, private :: flush => flush_buffer
+      procedure, private :: open_own
+      procedure, private :: keep
+   end type output_file
+
+contains
+
+   !> Start the file.
+   subroutine open_file(self, path, error)
+      class(output_file), intent(inout) :: self
+      !> Path of the whole file; `-` is standard output
+      character(len=*), intent(in) :: path
+      type(error_type), allocatable, intent(out) :: error
+      type(c_ptr) :: stream
+      integer(c_int) :: status
+
+      self%path = path
+      self%own = ''
+      self%kept = ''
+      self%used = 0
+      self%broken = .false.
+      if (is_folder(path)) then
+         call fatal_error(error, bad_input, 'output: '//path//' is a folder; give the path of a file')
+      else if (is_standard_output(path)) then
+         self%descriptor = c_dup(standard_output)
+         if (self%descriptor < 0_c_int) then
+            call fatal_error(error, bad_input, 'output: standard output is closed; name a file with --output')
+         end if
+      else if (is_special(path)) then
+         self%descriptor = c_open(path//c_null_char, to_write + without_waiting)
+         if (self%descriptor < 0_c_int) then
+            call fatal_error(error, bad_input, 'output: '//path//' is a pipe that nobody reads, or a '// &
+                             'device that cannot be written; start its reader first, or choose another '// &
+                             'file with --output')
+         end if
+      else if (exists(path)) then
+         stream = c_fopen(path//c_null_char, 'r+'//c_null_char)
+         if (c_associated(stream)) then
+            status = c_fclose(stream)
+            call self%open_own(error)
+         else
+            call fatal_error(error, bad_input, 'output: '//path//' is there and is protected from '// &
+                             'writing; change its permissions, or choose another file with --output')
+         end if
+      else
+         call self%open_own(error)
+      end if
+   end subroutine open_file
+
+   !> Open the file under its own name.
+   subroutine open_own(self, error)
+      class(output_file), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i, slash
+
+      slash = index(self%path, '/', back=.true.)
+      do i = 1, merge(most_tries, 0, len(self%path) - slash <= longest_name)
+         self%own = self%path(:min(len(self%path), slash + longest_start))//'.'// &
+                    to_text(int(c_getpid()))//'-'//to_text(i)//partial
+         self%stream = c_fopen(self%own//c_null_char, 'wx'//c_null_char)
+         if (c_associated(self%stream)) exit
+         if (.not. is_taken(self%own)) exit
+      end do
+      if (c_associated(self%stream)) then
+         self%descriptor = c_fileno(self%stream)
+      else
+         call fatal_error(error, bad_input, 'output: cannot write '//self%path//'; check its folder, '// &
+                          'name and permissions, or choose another file with --output')
+      end if
+   end subroutine open_own
+
+   !> Write a text.
+   subroutine put(self, text, error)
+      class(output_file), intent(inout) :: self
+      character(len=*), intent(in) :: text
+      type(error_type), allocatable, intent(inout) :: error
+      integer :: at, length
+
+      at = 0
+      do while (at < len(text))
+         if (self%used == buffer_size) call self%flush(error)
+         if (allocated(error)) return
+         length = min(len(text) - at, buffer_size - self%used)
+         self%buffer(self%used + 1:self%used + length) = text(at + 1:at + length)
+         self%used = self%used + length
+         at = at + length
+      end do
+   end subroutine put
+
+   subroutine flush_buffer(self, error)
+      class(output_file), intent(inout) :: self
+      type(error_type), allocatable, intent(inout) :: error
+      type(poll_type) :: what
+      integer(c_size_t) :: written
+      integer(c_int) :: ready
+      integer :: at, failures
+
+      at = 1
+      failures = 0
+      do while (at <= self%used .and. .not. self%broken)
+         written = c_write(self%descriptor, self%buffer(at:self%used), int(self%used - at + 1, c_size_t))
+         if (written > 0_c_size_t) then
+            at = at + int(written)
+            failures = 0
+         else
+            failures = failures + 1
+            self%broken = self%own /= '' .or. failures == most_tries
+            if (self%broken) exit
+            ! The reader of a pipe takes its time.
+            what = poll_type(self%descriptor, poll_out, 0)
+            ready = c_poll(what, 1_c_size_t, -1_c_int)
+            if (what%answered /= poll_out) self%broken = .true.
+         end if
+      end do
+      self%used = 0
+      if (self%broken .and. .not. allocated(error)) then
+         call fatal_error(error, analysis_failed, 'output: cannot write all of '//self%path// &
+                          '; the disk is full or files may not be so large: free some space, raise the '// &
+                          'limit or choose another file with --output')
+      end if
+   end subroutine flush_buffer
+
+   !> Close the file. A whole file gets its final name. An unfinished one is removed or kept; in both cases an
+   !> earlier file with the final name is untouched.
+   subroutine close_file(self, whole, worth, error)
+      class(output_file), intent(inout) :: self
+      !> Whether the file is whole
+      logical, intent(in) :: whole
+      !> Whether an unfinished file is worth keeping
+      logical, intent(in) :: worth
+      type(error_type), allocatable, intent(inout) :: error
+      integer(c_int) :: status
+
+      if (self%descriptor < 0_c_int) return
+      call self%flush(error)
+      if (c_associated(self%stream)) then
+         status = c_fclose(self%stream)
+      else
+         status = c_close(self%descriptor)
+      end if
+      self%stream = c_null_ptr
+      self%descriptor = -1_c_int
+      if (status /= 0 .and. .not. allocated(error)) then
+         call fatal_error(error, analysis_failed, 'output: '//self%path//' could not be closed; is the '// &
+                          'disk full?')
+         self%broken = .true.
+      end if
+      if (self%own == '') return
+      if (self%broken .or. .not. (whole .or. worth)) then
+         status = c_unlink(self%own//c_null_char)
+      else if (whole) then
+         status = c_rename(self%own//c_null_char, self%path//c_null_char)
+         if (status /= 0) then
+            self%kept = self%own
+            call fatal_error(error, analysis_failed, 'output: '//self%own//' is whole but could not be '// &
+                             'renamed to '//self%path//'; move it by hand')
+         else if (is_ours(self%path//partial)) then
+            ! What an earlier run has left would be taken for a part of this one.
+            status = c_unlink(self%path//partial//c_null_char)
+         end if
+      else
+         call self%keep()
+      end if
+   end subroutine close_file
+
+   !> Keep an unfinished file, as PATH.partial if this name is free or has been left by an earlier run.
+   subroutine keep(self)
+      class(output_file), intent(inout) :: self
+      character(len=:), allocatable :: name
+      logical :: free
+
+      self%kept = self%own
+      name = self%path//partial
+      free = .not. is_taken(name)
+      if (.not. free) free = is_ours(name)
+      if (.not. free) return
+      if (c_rename(self%own//c_null_char, name//c_null_char) == 0_c_int) self%kept = name
+   end subroutine keep
+
+   !> Whether a path is an ordinary file that a run has left.
+   logical function is_ours(path)
+      character(len=*), intent(in) :: path
+      character(len=len(first_words)) :: words
+      integer(c_size_t) :: count
+      integer(c_int) :: descriptor, status
+
+      is_ours = .false.
+      if (.not. exists(path)) return
+      if (is_link(path)) return
+      if (is_folder(path)) return
+      if (is_special(path)) return
+      descriptor = c_open(path//c_null_char, to_read + without_waiting)
+      if (descriptor < 0_c_int) return
+      words = ''
+      count = c_read(descriptor, words, len(words, kind=c_size_t))
+      status = c_close(descriptor)
+      is_ours = count == len(words, kind=c_size_t) .and. words == first_words
+   end function is_ours
+
+end module rbs_io_output_file
