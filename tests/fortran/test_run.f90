@@ -461,7 +461,7 @@ contains
       call check_contains(error, data%summary%reason, 'located', 'yields')
       call run(data, made(column_1('finite')))
       call check_passed(error, data%outcome, 'finite')
-      call check_equal(error, trim(data%summary%method), 'rk4', 'finite')
+      call check_equal(error, trim(data%summary%method), 'rk45', 'finite')
       call check_contains(error, data%summary%reason, 'finite rotations', 'finite')
       data%analysis%tolerance = 1.0e-8_wp
       call run(data, made(column_1('small')))

@@ -16,8 +16,7 @@ module test_static_finite
    use rbs_column_column_record, only: column_record
    use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: bilinear, bilinear_1, chain, column_1, compression, elastic, made, random_type, &
-      takeda_1, &
-                      f_y, d_y, k_u, s_k, height_1, mass_1
+      takeda, takeda_1, f_y, d_y, k_u, s_k, height_1, mass_1
    implicit none
    private
 
@@ -40,6 +39,7 @@ contains
                unit_test('one increment or a hundred', increments), &
                unit_test('driven by its own force, the column follows the same path', both_drives), &
                unit_test('loops through yield close', closed_loops), &
+               unit_test('back to a peak, and on', back_to_a_peak), &
                unit_test('the residual of the energy decreases with the fourth power', energy_order), &
                unit_test('softening column: capacity under a force, peak under a displacement', softening), &
                unit_test('a smooth peak of the force', smooth_peak), &
@@ -497,6 +497,28 @@ contains
          call check_true(error, rows(row_spring, 24) - rows(row_spring, 18) > 0.0_wp, 'work is lost')
       end do
    end subroutine closed_loops
+
+   !> Where a target is a former peak, springs meet the ends of their lines in its last digits.
+   subroutine back_to_a_peak(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_record) :: spec
+      real(wp), allocatable :: rows(:, :)
+      real(wp), parameter :: x = 0.007_wp, y = 0.025_wp
+
+      spec = column_1('finite')
+      spec%n = 2
+      spec%axial_load = 7.0e5_wp
+      spec%shear(1) = elastic(7.0e8_wp)
+      spec%flexure(1) = takeda(2.5e8_wp, 3.0e-4_wp, 6.0e7_wp, 3.0e-3_wp, 7.0e6_wp, 0.4_wp, 1.0_wp, 'kc')
+      spec%mass = 600.0_wp
+      call run(spec, .false., [-x, y, -x, -y, x, -x, y], rows, outcome)
+      call check_passed(error, outcome, 'static path')
+      if (allocated(error)) return
+      call check_close(error, rows(row_force, 3), rows(row_force, 1), 1.0e-10_wp, 0.0_wp, 'at the peak')
+      call check_close(error, rows(row_force, 4), -rows(row_force, 2), 1.0e-10_wp, 0.0_wp, 'symmetric')
+      call check_close(error, rows(row_force, 7), rows(row_force, 2), 1.0e-10_wp, 0.0_wp, 'and again')
+   end subroutine back_to_a_peak
 
    subroutine energy_order(error)
       type(error_type), allocatable, intent(inout) :: error

@@ -49,6 +49,7 @@ module rbs_solve_static_finite_equilibrium
       procedure :: create
       procedure :: find_point
       procedure :: find_rates
+      procedure :: settle
       procedure :: remember
    end type finite_equilibrium
 
@@ -108,6 +109,23 @@ contains
       end do
       if (found) call see(self, springs, point)
    end subroutine find_point
+
+   !> Take away what little a point is out of equilibrium: one step of Newton's method.
+   subroutine settle(self, springs, point, value)
+      class(finite_equilibrium), intent(inout) :: self
+      type(spring_array), intent(in) :: springs
+      type(path_point), intent(inout) :: point
+      !> What is driven, there
+      real(wp), intent(in) :: value
+      real(wp) :: more_force
+      logical :: regular
+
+      call find_correction(self, springs, point, 0, value, more_force, regular)
+      if (.not. regular) return
+      if (relative_change(self, point%q) > no_progress) return
+      point%q = point%q + self%joints
+      point%force = point%force + more_force
+   end subroutine settle
 
    !> Loads less springs and the tangent, and the displacement of the top.
    subroutine see(self, springs, point)

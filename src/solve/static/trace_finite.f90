@@ -16,7 +16,7 @@ module rbs_solve_static_trace_finite
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_curve, only: curve_type, clean, first_ahead, largest_turn, most_turn, same_rate
    use rbs_solve_static_finite_equilibrium, only: finite_equilibrium, path_point
-   use rbs_solve_static_path, only: static_path, describe_state, name_spring, is_on_end
+   use rbs_solve_static_path, only: static_path, describe_state, name_spring, is_on_end, on_the_end
    implicit none
    private
 
@@ -24,6 +24,13 @@ module rbs_solve_static_trace_finite
 
    !> A stride below this share of what is driven, or of what was tried, does not count as one.
    real(wp), parameter :: no_stride = 1.0e-11_wp
+
+   !> What round-off leaves of a displacement or force, as a share of the largest.
+   real(wp), parameter :: round_off = 32.0_wp*epsilon(1.0_wp)
+
+   !> A way below this share of the largest value is straight to the last digit, and too short for Newton's
+   !> method, whose points are off by round-off.
+   real(wp), parameter :: close_by = 1.0e-9_wp
 
    !> A stride may be cut at least this often, however short it becomes.
    integer, parameter :: fewest_cuts = 20
@@ -34,8 +41,10 @@ module rbs_solve_static_trace_finite
       type(path_point) :: here, there
       !> The curve between the present point and the farthest tried
       type(curve_type) :: curve
-      !> Length of the next stride, as what is driven [m or N]
-      real(wp) :: stride = huge(1.0_wp)
+      !> Length of the next stride, and largest value so far, as what is driven [m or N]
+      real(wp) :: stride = huge(1.0_wp), extent = 0.0_wp
+      !> Where the path goes to at present
+      real(wp) :: target = 0.0_wp
       !> Largest work of the lateral force so far, in size [J]
       real(wp) :: most_work = 0.0_wp
       !> Strides in a row that made no progress
@@ -93,12 +102,16 @@ contains
       integer :: direction, strides
 
       self%standing = 0
+      self%target = target
+      self%extent = max(self%extent, abs(target))
       do strides = 1, 10000 + 100*self%moving
          if (.not. abs(target - self%control) > 0.0_wp) return
          direction = merge(1, -1, target > self%control)
          if (self%direction /= direction) then
             call turn_corner(self, direction, target, error)
             if (allocated(error)) return
+            ! A spring that was put on the end of its line left the column a little out of equilibrium.
+            call self%equilibrium%settle(self%springs, self%here, self%control)
          end if
          call take_stride(self, target, error)
          if (allocated(error)) return
@@ -123,7 +136,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: way, length, shortest, goal, turn
       integer :: cuts
-      logical :: done
+      logical :: done, straight
 
       way = abs(target - self%control)
       turn = largest_turn(self%column, self%here%rate)
@@ -134,7 +147,7 @@ contains
       do
          goal = self%control + self%direction*length
          if (length >= way) goal = target
-         call try_stride(self, goal, length, done)
+         call try_stride(self, goal, length, done, straight)
          if (done) exit
          cuts = cuts + 1
          self%cuts = self%cuts + 1
@@ -143,24 +156,34 @@ contains
          call report_no_way(self, target, error)
          return
       end do
-      self%stride = 2.0_wp*length
+      if (.not. straight) self%stride = 2.0_wp*length
       if (self%standing <= 20 + 4*self%moving) return
       call report_no_way(self, target, error)
    end subroutine take_stride
 
    !> One stride, to a goal or to the first event before it.
-   subroutine try_stride(self, goal, length, done)
+   subroutine try_stride(self, goal, length, done, straight)
       class(turning_path), intent(inout) :: self
       !> What is driven, there, and its change in size
       real(wp), intent(in) :: goal, length
       logical, intent(out) :: done
+      !> Whether the way was so short that it tells nothing of how far the next stride may go
+      logical, intent(out) :: straight
       real(wp) :: reached, share
       integer :: spring, way, before, side
       logical :: turns
 
       turns = .false.
       associate (here => self%here, there => self%there)
-         call aim(self, goal, length, reached, spring, way, done)
+         call first_ahead(self%springs, here, length, spring, way, share)
+         straight = is_straight(self, share*length, spring > 0 .or. .not. abs(self%target - goal) > 0.0_wp)
+         if (straight) then
+            call go_straight(self, goal, length, spring, way, share, reached)
+            call accept(self, reached, spring, way, turns)
+            done = .true.
+            return
+         end if
+         call aim(self, goal, length, share, reached, spring, way, done)
          if (done) call self%equilibrium%find_rates(self%springs, there, self%direction, done)
          if (.not. done) return
          call self%curve%set(self%column, abs(reached - self%control), here, there)
@@ -189,20 +212,54 @@ contains
       if (done) call accept(self, reached, spring, way, turns)
    end subroutine try_stride
 
-   !> Find a point ahead: where the tangent says that the first spring reaches its end, if this is before
-   !> the goal, else the goal.
-   subroutine aim(self, goal, length, reached, spring, way, done)
+   !> Whether the path is straight up to a point ahead. A part of a way that was too long does not count:
+   !> before a limit point the path bends within any distance.
+   pure logical function is_straight(self, way, whole)
+      class(turning_path), intent(in) :: self
+      !> Change of what is driven up to there, and whether an end of a line or the target is there
+      real(wp), intent(in) :: way
+      logical, intent(in) :: whole
+
+      is_straight = whole .and. way <= close_by*self%extent
+      if (is_straight) is_straight = way*largest_turn(self%column, self%here%rate) <= close_by
+   end function is_straight
+
+   !> A point so near that the path is straight up to it: an end of a spring's line, or the goal.
+   subroutine go_straight(self, goal, length, spring, way, share, reached)
       class(turning_path), intent(inout) :: self
       real(wp), intent(in) :: goal, length
+      !> The spring that stands on its end there, 0 if none, and which end
+      integer, intent(in) :: spring, way
+      !> Share of the length up to there
+      real(wp), intent(in) :: share
       !> What is driven there
       real(wp), intent(out) :: reached
-      !> The spring that stands on its end there, 0 if none, and which end
-      integer, intent(out) :: spring, way
+
+      reached = goal
+      if (spring > 0) reached = self%control + share*(goal - self%control)
+      self%there = self%here
+      associate (here => self%here, there => self%there)
+         there%q = here%q + here%rate*(share*length)
+         if (spring > 0) there%q(spring) = self%springs%end_toward(spring, way)
+         there%force = here%force + here%force_rate*(reached - self%control)
+         there%displacement = here%displacement + here%displacement_rate*(reached - self%control)
+         call self%curve%set(self%column, abs(reached - self%control), here, there)
+      end associate
+   end subroutine go_straight
+
+   !> Find a point ahead: where the tangent says that the first spring reaches its end, if this is before
+   !> the goal, else the goal.
+   subroutine aim(self, goal, length, share, reached, spring, way, done)
+      class(turning_path), intent(inout) :: self
+      !> Share of the length after which the first spring reaches its end by the tangent
+      real(wp), intent(in) :: goal, length, share
+      !> What is driven there
+      real(wp), intent(out) :: reached
+      !> The spring that stands on its end there, 0 if none, and which end; on entry by the tangent
+      integer, intent(inout) :: spring, way
       logical, intent(out) :: done
-      real(wp) :: share
 
       associate (here => self%here, there => self%there)
-         call first_ahead(self%springs, here, length, spring, way, share)
          if (spring > 0) then
             there%q = here%q + here%rate*(share*length)
             there%force = here%force + here%force_rate*(share*(goal - self%control))
@@ -314,13 +371,19 @@ contains
    subroutine accept(self, reached, spring, way, turns)
       class(turning_path), intent(inout) :: self
       !> What is driven there
-      real(wp), intent(in) :: reached
+      real(wp), intent(inout) :: reached
       !> The spring that stands on its end, 0 if none, and the end
       integer, intent(in) :: spring, way
       !> Whether a motion turns back there
       logical, intent(in) :: turns
       real(wp) :: change
+      logical :: closed
 
+      ! An end that is met where the path goes to, but for round-off, is met there: beyond it, the path would
+      ! turn back.
+      if (abs(self%target - reached) <= on_the_end*abs(self%target) + round_off*self%extent) then
+         reached = self%target
+      end if
       change = reached - self%control
       if (self%by_force) then
          self%there%force = reached
@@ -331,9 +394,11 @@ contains
       self%most_work = max(self%most_work, abs(self%work))
       self%standing = merge(0, self%standing + 1, abs(change) > 0.0_wp)
       if (spring > 0) then
+         closed = merge(self%springs%hi_closed(spring), self%springs%lo_closed(spring), way > 0)
          call self%springs%arrive(spring, way)
-         ! Where it made no progress its rate is zero and does not show that it goes on.
-         if (.not. abs(change) > 0.0_wp) call self%springs%leave(spring, way)
+         ! Where it made no progress its rate is zero and does not show that it goes on. From an open end
+         ! it has gone on already.
+         if (closed .and. .not. abs(change) > 0.0_wp) call self%springs%leave(spring, way)
       end if
       call put_springs(self)
       ! A motion may have turned by less than the search resolves.

@@ -153,11 +153,14 @@ contains
          plan%method = implicit_choice%name
          plan%reason = 'stiff: rk4 would take '//to_text(anint(explicit_steps))//' steps for its '// &
                        'stability, this method takes about '//to_text(anint(implicit_steps))
+      else if (column%kinematics == finite) then
+         ! How fast the column turns, and with it the step that resolves it, is not known in advance.
+         plan%method = 'rk45'
+         plan%reason = 'finite rotations: the steps follow from a tolerance'
       else
          plan%method = explicit_choice%name
          plan%located = any(column%spring%rule /= 'elastic')
          plan%reason = to_text(anint(explicit_steps))//' steps take little time'
-         if (column%kinematics == finite) plan%reason = 'finite rotations: explicit'
          if (plan%located) plan%reason = trim(plan%reason)//'; events located'
       end if
    end subroutine choose_method
