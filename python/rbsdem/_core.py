@@ -237,9 +237,11 @@ def spring_response(statement: Statement, axial_load: float, deformation: Array)
 Run = tuple[Array, dict[str, Any], SolveError | None, str]
 
 
-def check_column(column: Statement) -> None:
-    """Raise `InputError` for everything that is wrong with a column."""
-    _raise(*_rbsdem.rbs_check_column(*_crossing(column)))
+def check_column(column: Statement) -> list[str]:
+    """Raise `InputError` for everything wrong with a column; return notes on what is allowed."""
+    status, message = _rbsdem.rbs_check_column(*_crossing(column))
+    _raise(status, message)
+    return [] if message.startswith(b" ") else _text(message).splitlines()
 
 
 def to_namelist(statement: Statement) -> str:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -12,8 +15,8 @@ from numpy.typing import ArrayLike
 from rbsdem import _core
 from rbsdem._renamed import renamed
 from rbsdem.damping import Damping
-from rbsdem.errors import InputError
-from rbsdem.springs import Layered, Spring, classes_for, layer_springs
+from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.springs import Layered, Spring, classes_for, layer_springs, whole_column
 
 #: Standard acceleration of gravity [m/s2].
 STANDARD_GRAVITY = 9.80665
@@ -21,9 +24,22 @@ STANDARD_GRAVITY = 9.80665
 #: Levels of kinematics.
 Kinematics = Literal["small", "pdelta", "finite"]
 
+#: Whether notes on new columns are told. A context variable, as columns are made in threads too.
+_TELLING: ContextVar[bool] = ContextVar("_TELLING", default=True)
+
 _NUMBERS = ("height", "axial_load", "gravity", "top_mass", "top_inertia", "depth")
 _SWITCHES = ("self_weight", "axial_follows", "force_follows")
 _LISTS = ("lengths", "masses", "rotary_inertia")
+
+
+@contextmanager
+def without_notes() -> Iterator[None]:
+    """Make columns without a word on what does nothing in them, where that is known and meant."""
+    token = _TELLING.set(False)
+    try:
+        yield
+    finally:
+        _TELLING.reset(token)
 
 
 @renamed(
@@ -85,6 +101,12 @@ class Column:
     ------
     InputError
         With a line for everything that is wrong.
+
+    Warns
+    -----
+    AccuracyWarning
+        If the axial load or the weight does nothing with `kinematics` "small", or if a mass at the
+        top has no weight because the axial load is zero.
     """
 
     height: float
@@ -129,11 +151,15 @@ class Column:
         put("flexure", _springs(self.flexure, "flexure", self.n))
         if self.axial_spring is not None:
             put("axial_spring", _springs(self.axial_spring, "axial_spring", self.n))
+        for name in ("shear", "flexure"):
+            _refuse_whole(getattr(self, name), name, self.n)
         if self.damping is not None and not isinstance(self.damping, Damping):
             put("damping", Damping(modal=_core.number(self.damping, "column: damping")))
         # Once for all analyses, as a frozen column does not change.
         put("_statement", self._state())
-        _core.check_column(self._statement)
+        notes = _core.check_column(self._statement)
+        for note in notes if _TELLING.get() else ():
+            warnings.warn(note, AccuracyWarning, stacklevel=3)
 
     def __repr__(self) -> str:
         kinds = [type(spring).__name__ for spring in dict.fromkeys(self.joints("flexure"))]
@@ -218,6 +244,24 @@ def _parts(values: ArrayLike, name: str) -> tuple[float, ...]:
     if parts.size == 0:
         raise InputError(f"column: {name} is empty; give one for each of the n bodies")
     return tuple(parts.tolist())
+
+
+def _refuse_whole(springs: Spring | Sequence[Spring], name: str, n: int) -> None:
+    """Refuse springs of a whole column in the wrong place, or in several joints."""
+    joints = (springs,) * n if isinstance(springs, Spring) else springs
+    places = [place for place in map(whole_column, joints) if place]
+    for place in places:
+        if place != name:
+            raise InputError(
+                f"column: {name} is the {place} spring of a section; give it as {place}="
+            )
+    if len(places) > 1:
+        split = f", or give {name}.split({n})" if name == "shear" else ""
+        raise InputError(
+            f"column: {name} is the spring of a whole column, from section.springs, but stands in "
+            f"{len(places)} joints; section.column(height, axial_load=..., model='paper', n={n}) "
+            f"shares it among them{split}"
+        )
 
 
 def _springs(springs: Any, name: str, n: int) -> Spring | tuple[Spring, ...]:

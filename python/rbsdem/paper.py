@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _data
 from rbsdem._core import Array
-from rbsdem.column import Column
+from rbsdem.column import Column, without_notes
 from rbsdem.errors import InputError
 from rbsdem.section import (
     Concrete,
@@ -288,13 +288,13 @@ def paper_columns(kinematics: str = "small", **changes: Any) -> dict[str, Column
         for key in KEYS:
             springs[key][row["spring"], row["parameter"]] = float(row[key])
     sections = paper_sections()
-    columns = {key: _column(sections[key], springs[key], kinematics) for key in KEYS}
-    if not changes:
-        return columns
-    try:
-        return {key: replace(column, **changes) for key, column in columns.items()}
-    except TypeError as error:
-        raise InputError(f"paper_columns: {error}") from error
+    # The axial load waits for other kinematics.
+    with without_notes():
+        columns = {key: _column(sections[key], springs[key], kinematics) for key in KEYS}
+        try:
+            return {key: replace(column, **changes) for key, column in columns.items()}
+        except TypeError as error:
+            raise InputError(f"paper_columns: {error}") from error
 
 
 def _column(section: PaperSection, s: dict[tuple[str, str], float], kinematics: str) -> Column:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cache
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,6 +22,8 @@ from rbsdem.errors import InputError
 if TYPE_CHECKING:
     from typing_extensions import Self
 
+
+AnySpring = TypeVar("AnySpring", bound="Spring")
 
 #: Classes of springs by the name of their rule.
 SPRINGS: dict[str, type[Spring]] = {}
@@ -124,6 +126,30 @@ class Spring:
         if path.size == 0:
             return np.empty(0)
         return _core.spring_response(self.statement("flexure"), axial_load, path)
+
+
+def for_whole_column(spring: AnySpring, place: str) -> AnySpring:
+    """Mark a new spring as the one of a whole column, which several joints have to share.
+
+    Parameters
+    ----------
+    spring : Spring
+        The spring; those made from it by `Spring.split` or ``dataclasses.replace`` are unmarked.
+    place : str
+        "shear" or "flexure".
+
+    Returns
+    -------
+    Spring
+        The same spring.
+    """
+    object.__setattr__(spring, "_whole_column", place)
+    return spring
+
+
+def whole_column(spring: Spring) -> str:
+    """Return the place of a spring that is for a whole column; empty for the spring of a joint."""
+    return str(spring.__dict__.get("_whole_column", ""))
 
 
 def classes_for(place: str) -> list[str]:

@@ -9,13 +9,13 @@ module rbs_app_commands
    use rbs_base_text, only: to_text
    use rbs_case_key_list, only: keys_as_json, keys_as_table
    use rbs_case_text_buffer, only: text_buffer
-   use rbs_column_column, only: column_type, small
+   use rbs_column_column, only: column_type
    use rbs_io_case_file, only: case_history, load_case
    use rbs_io_csv, only: csv_recorder
    use rbs_io_namelist, only: read_case
    use rbs_io_output_file, only: partial
    use rbs_io_posix, only: is_standard_output, same_file, standard_input
-   use rbs_output_notes, only: rotation_note
+   use rbs_output_notes, only: column_notes, rotation_note
    use rbs_output_row, only: row_labels
    use rbs_output_summary, only: summary_type, summary_names, summary_units
    use rbs_solve_make_column, only: make_column
@@ -73,7 +73,7 @@ contains
       ! Among rows on standard output a summary would be in the way.
       if (.not. (quiet .or. is_standard_output(file))) then
          call print_summary(case, recorder, summary, error)
-         call print_notes(case, column, error)
+         call print_notes(case, error)
          call print_rotation(column, summary, error)
       end if
       if (summary%collapsed .and. .not. allocated(error)) then
@@ -116,7 +116,7 @@ contains
       if (quiet) return
       call say(path//': no errors', error)
       if (plan%reason /= '') call say('method: '//method_text(plan%method, plan%reason), error)
-      call print_notes(case, column, error)
+      call print_notes(case, error)
    end subroutine check_case
 
    !> rbsdem modes: frequencies, mode shapes if the joints are few, stable step.
@@ -332,17 +332,21 @@ contains
       if (reason /= '') text = text//' ('//trim(reason)//')'
    end function method_text
 
-   !> Print notes on input that is valid but may be a mistake.
-   subroutine print_notes(case, column, error)
+   !> Print notes on input that is valid but may be a mistake, a line each.
+   subroutine print_notes(case, error)
       type(case_record), intent(in) :: case
-      type(column_type), intent(in) :: column
       type(error_type), allocatable, intent(inout) :: error
+      type(message_list) :: notes
+      integer :: first, last
 
-      if (column%kinematics == small .and. .not. column%opens .and. &
-          (abs(case%column%axial_load) > 0.0_wp .or. case%column%self_weight)) then
-         call say('note: axial load and weight do no work with kinematics = '// &
-                  "'small'; 'pdelta' takes them into account", error)
-      end if
+      call column_notes(case%column, notes)
+      if (notes%count == 0) return
+      first = 1
+      do while (first <= len(notes%text))
+         last = index(notes%text(first:)//new_line('a'), new_line('a')) + first - 2
+         call say('note: '//notes%text(first:last), error)
+         first = last + 2
+      end do
    end subroutine print_notes
 
    !> Print a note if rotations are larger than the kinematics allow.

@@ -88,12 +88,14 @@ subroutine rbs_spring_response(statement, nn, number, axial_load, m, deformation
 end subroutine rbs_spring_response
 
 subroutine rbs_check_column(statement, nn, number, status, message)
+   ! A column that is allowed may have notes in the message, a line each.
    use iso_c_binding, only: c_double, c_int
-   use rbs_base_error, only: error_type
+   use rbs_base_error, only: error_type, message_list
    use rbs_bindings_runs, only: tell
    use rbs_bindings_statements, only: column_from_statements
    use rbs_case_case_record, only: case_record
    use rbs_column_column, only: column_type
+   use rbs_output_notes, only: column_notes
    implicit none
    character(len=*), intent(in) :: statement
    integer(c_int), intent(in) :: nn
@@ -103,10 +105,14 @@ subroutine rbs_check_column(statement, nn, number, status, message)
    !f2py threadsafe
    type(case_record) :: case
    type(column_type) :: column
+   type(message_list) :: notes
    type(error_type), allocatable :: error
 
    call column_from_statements(statement, number, column, case, error)
    call tell(error, status, message)
+   if (status /= 0) return
+   call column_notes(case%column, notes)
+   if (notes%count > 0) message = notes%text
 end subroutine rbs_check_column
 
 subroutine rbs_to_namelist(statement, nn, number, most, text, length, status, message)

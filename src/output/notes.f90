@@ -1,18 +1,61 @@
-!> Notes on a run: what is allowed but perhaps not intended.
+!> Notes on a column and on a run: what is allowed but perhaps not intended.
 module rbs_output_notes
+   use rbs_base_constants, only: standard_gravity
+   use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, small, finite
+   use rbs_column_column_record, only: column_record
    use rbs_output_summary, only: summary_type
    implicit none
    private
 
-   public :: rotation_note
+   public :: column_notes, rotation_note
+
+   !> Least and largest height of a column [m]: one in millimetres is outside.
+   real(wp), parameter :: shortest = 0.05_wp, longest = 100.0_wp
 
    !> Rotations larger than this are not small [rad].
    real(wp), parameter :: largest_small = 0.1_wp
 
 contains
+
+   !> Sizes in a wrong unit, springs that seem exchanged, loads of a column that do nothing, masses without
+   !> weight: each with what to do.
+   subroutine column_notes(spec, notes)
+      !> Validated
+      type(column_record), intent(in) :: spec
+      type(message_list), intent(inout) :: notes
+      logical :: carried
+
+      if (spec%height < shortest .or. spec%height > longest) then
+         call notes%add('column: height = '//to_text(spec%height)//' m is that of no column; lengths are '// &
+                        'in m, and 1750 mm is 1.75')
+      end if
+      if (all(spec%shear%rule == 'takeda') .and. all(spec%flexure%rule == 'bilinear')) then
+         call notes%add("column: shear has the rule 'takeda' and flexure 'bilinear', usually it is the "// &
+                        'other way round; exchange them if that is meant')
+      end if
+      ! Axial springs and layers carry the load whatever the kinematics.
+      carried = allocated(spec%axial_spring)
+      carried = carried .or. any(spec%flexure%rule == 'layered')
+      if (spec%kinematics == 'small' .and. .not. carried) then
+         if (abs(spec%axial_load) > 0.0_wp) then
+            call notes%add('column: axial_load = '//to_text(spec%axial_load)//' N does nothing with '// &
+                           "kinematics = 'small'; set kinematics = 'pdelta', which has its second-order "// &
+                           'moments, or remove it')
+         end if
+         if (spec%self_weight .and. spec%gravity > 0.0_wp) then
+            call notes%add("column: self_weight does nothing with kinematics = 'small'; set "// &
+                           "kinematics = 'pdelta', or remove it")
+         end if
+      end if
+      if (spec%top_mass > 0.0_wp .and. spec%gravity > 0.0_wp .and. .not. abs(spec%axial_load) > 0.0_wp) then
+         call notes%add('column: top_mass = '//to_text(spec%top_mass)//' kg has no weight, as axial_load '// &
+                        'is zero; give axial_load = '//to_text(anint(spec%top_mass*standard_gravity))// &
+                        " N with kinematics = 'pdelta', or gravity = 0 if something else carries it")
+      end if
+   end subroutine column_notes
 
    !> Rotations that are taken as small but have grown large. The first term that is left out of sin(th) is
    !> th^3/6, an error of th^2/6; in cos(th), which lever arms contain, the error is th^2/2.
@@ -34,7 +77,7 @@ contains
          percent = 0.01_wp*anint(1.0e4_wp*summary%peak_rotation**2/6.0_wp)
          text = text//'errs by about '//to_text(percent)//' % (th^2/6)'
       else
-         text = text//'has no meaning then'
+         text = text//'has no meaning then (displacements are in m, forces in N)'
       end if
       text = text//"; use 'finite'"
    end subroutine rotation_note

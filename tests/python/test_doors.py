@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +27,8 @@ SOFT = (
     "f_cap_neg = 2e5, d_pc_neg = 0.2, f_res_neg = 2e4, d_u_neg = 0.16, d_c_neg = 3e-4, "
     "f_c_neg = 5e4"
 )
-HEAVY = "height = 3.0, mass = 9e3, top_mass = 2e4"
+# What carries the mass at the top is no part of the column.
+HEAVY = "height = 3.0, mass = 9e3, top_mass = 2e4, gravity = 0"
 GROUND = "drive = 'ground_acceleration', unit = 'g', amplitudes = 0.3, period = 0.4, points = 4"
 VERTICAL = "drive = 'vertical_acceleration', unit = 'g', amplitudes = 0.2, period = 0.4, points = 4"
 AXIAL = "drive = 'axial_load', unit = 'kN', amplitudes = 50, period = 0.4, points = 4"
@@ -104,7 +105,10 @@ CASES = {
         {},
     ),
     "lumped mass and rotary inertia": (
-        {"column": "n = 2, height = 3, mass = 9e3, top_mass = 2e4, rotary_inertia = 5, 7"},
+        {
+            "column": "n = 2, height = 3, mass = 9e3, top_mass = 2e4, gravity = 0, "
+            "rotary_inertia = 5, 7"
+        },
         {"top_mass": 2e4, "top_inertia": 0.0, "rotary_inertia": (5.0, 7.0), "depth": 0.0},
         {},
     ),
@@ -513,6 +517,66 @@ def test_collapse_of_a_static_path_is_told_by_exit_code_and_status(
     run = rbsdem.read_case(path).run()
     assert run.summary["status"] == "collapsed"
     assert np.array_equal(run.force, rows["force_N"])
+
+
+@pytest.mark.parametrize(
+    ("column", "springs", "words"),
+    [
+        (
+            "axial_load = 744e3",
+            {},
+            ["axial_load = 744000 N does nothing .*set kinematics = 'pdelta'"],
+        ),
+        ("self_weight = .true.", {}, ["self_weight does nothing .*set kinematics = 'pdelta'"]),
+        (
+            "top_mass = 75e3, kinematics = 'pdelta'",
+            {},
+            ["top_mass = 75000 kg has no weight.*axial_load = 735499 N .*or gravity = 0"],
+        ),
+        (
+            "top_mass = 75e3, self_weight = .true.",
+            {},
+            ["self_weight does nothing", "top_mass = 75000 kg has no weight"],
+        ),
+        ("height = 1750", {}, ["height = 1750 m .* 1750 mm is 1.75"]),
+        ("", {"shear": TAKEDA, "flexure": BILINEAR}, ["shear has the rule 'takeda' and flexure"]),
+        ("axial_load = 744e3, kinematics = 'finite'", {}, []),
+        ("top_mass = 75e3, axial_load = 1", {"kinematics": "pdelta"}, []),
+        ("top_mass = 75e3, gravity = 0", {}, []),
+    ],
+)
+def test_what_does_nothing_in_a_column_is_told_through_both_doors(
+    run_cli, tmp_path, column, springs, words
+):
+    given = {"height": "1.6", "mass": "600"}
+    for item in filter(None, column.split(", ")):
+        name, value = item.split(" = ")
+        given[name] = value
+    if "kinematics" in springs:
+        given["kinematics"] = "'pdelta'"
+    text = "&column " + ", ".join(f"{name} = {value}" for name, value in given.items()) + " /\n"
+    for kind, spring in (("shear", BILINEAR), ("flexure", TAKEDA)):
+        placed = springs.get(kind, spring)
+        values = ", ".join(f"{key} = {value}" for key, value in vars_of(placed).items())
+        text += f"&{kind} rule = '{placed.rule}', {values} /\n"
+    text += "&loading drive = 'displacement', values = 1e-4 /\n"
+    path = write(tmp_path, text)
+    for command in ("check", "run"):
+        result = run_cli([command, "case.nml"], tmp_path)
+        assert (result.returncode, result.stderr) == (0, "")
+        notes = [line for line in result.stdout.splitlines() if line.startswith("note: ")]
+        assert len(notes) == len(words)
+        for note, word in zip(notes, words, strict=True):
+            assert re.search(word, note)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        rbsdem.read_case(path)
+    assert [f"note: {warning.message}" for warning in caught] == notes
+    assert run_cli(["run", "case.nml", "--quiet"], tmp_path).stdout == ""
+
+
+def vars_of(spring: rbsdem.springs.Spring) -> dict[str, float]:
+    return {f.name: getattr(spring, f.name) for f in fields(spring) if f.name != "inner"}
 
 
 SOFT = {"shear": "rule = 'elastic', k = 7e8", "flexure": "rule = 'elastic', k = 2.5e8"}

@@ -23,6 +23,11 @@ from scipy.linalg import expm
 import rbsdem
 from rbsdem import _core
 
+# The same column is made at every level of kinematics, and masses without weight are tried.
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:column. (axial_load|self_weight|top_mass|height|shear has) "
+)
+
 SHEAR = rbsdem.Bilinear(7.0387e8, 1.2960e-4, 8.3185e6)
 FLEXURE = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
 HEIGHT, MASS = 1.6, 614.4

@@ -18,6 +18,11 @@ from scipy.linalg import eigh
 
 import rbsdem
 
+# The same column is made at every level of kinematics, and masses without weight are tried.
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:column. (axial_load|self_weight|top_mass|height|shear has) "
+)
+
 IMPLICIT = ("newmark", "hht", "generalised_alpha")
 METHODS = ("rk4", "rk45", *IMPLICIT)
 

@@ -14,6 +14,11 @@ import pytest
 
 import rbsdem
 
+# The same column is made at every level of kinematics, and masses without weight are tried.
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:column. (axial_load|self_weight|top_mass|height|shear has) "
+)
+
 NAN, INF = float("nan"), float("inf")
 #: No number, and numbers whose products would not be finite or would vanish.
 MEANINGLESS = [NAN, INF, -INF, 5e-324, 1e-51, 1e51, 1.7976931348623157e308]

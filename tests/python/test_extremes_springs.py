@@ -15,6 +15,11 @@ import reference_springs
 
 import rbsdem
 
+# The same column is made at every level of kinematics, and masses without weight are tried.
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:column. (axial_load|self_weight|top_mass|height|shear has) "
+)
+
 EPS = np.finfo(float).eps
 BILINEAR = rbsdem.Bilinear(7.0387e8, 1.296e-4, 8.3185e6)
 PLASTIC = rbsdem.Bilinear(7.0387e8, 1.296e-4, 0.0)

@@ -368,18 +368,36 @@ def test_each_parameter_has_its_say_up_to_its_bounds(column):
         for place in (0.0, 0.5, 0.9):
             nearer, further = one.at(place), one.at(place + 0.1)
             assert springs(**{name: nearer}) != springs(**{name: further}), (name, place)
-    for name in ("hinge_length", "compression_length", "stiffness", "contact"):
-        limit = column.recipe.joint.limits[name]
-        column.with_parameters(**{name: limit})
-        with pytest.raises(InputError, match=f"{name} = .* is above .* changes nothing"):
-            column.with_parameters(**{name: 1.001 * limit})
+    beyond = 0
+    for name, (least, most) in column.recipe.limits.items():
+        if math.isfinite(most):
+            column.with_parameters(**{name: most})
+            with pytest.raises(InputError, match=f"{name} = .* is above .* changes nothing"):
+                column.with_parameters(**{name: most + 1e-3 * max(abs(most), 1.0)})
+            beyond += 1
+        if 0 < least < math.inf:
+            column.with_parameters(**{name: least})
+            with pytest.raises(InputError, match=f"{name} = .* is below .* changes nothing"):
+                column.with_parameters(**{name: 0.999 * least})
+            beyond += 1
+    assert beyond == 12
+
+
+def test_parameters_of_another_model_are_held_to_the_same_limits():
+    changed = parameters().with_values(hinge_length=3.9)
+    with pytest.raises(InputError, match=r"hinge_length = 3.9 is above .* changes nothing"):
+        SECTION.column(1.6, axial_load=1.2e6, model_parameters=changed)
+    for name, value in (("shear_hardening", 0.9), ("fatigue", -0.1)):
+        changed = parameters().with_values(**{name: value})
+        with pytest.raises(InputError, match=f"{name} = {value:g} is below"):
+            SECTION.column(1.6, axial_load=1.2e6, model_parameters=changed)
 
 
 def test_a_parameter_beyond_its_limit_starts_at_the_limit():
     """The version's stiffness above a stocky hinge of high axial load would be above 2."""
     column = SECTION.column(1.6, axial_load=5e6)
     stiffness = column.parameters["stiffness"]
-    assert column.recipe.parameters.hinge.stiffness > column.recipe.joint.limits["stiffness"]
-    assert stiffness.value == stiffness.high == column.recipe.joint.limits["stiffness"]
+    assert column.recipe.parameters.hinge.stiffness > column.recipe.limits["stiffness"][1]
+    assert stiffness.value == stiffness.high == column.recipe.limits["stiffness"][1]
     same = column.with_parameters(stiffness=stiffness.value)
     assert same.flexure[1].k == pytest.approx(column.joints("flexure")[1].k)

@@ -9,7 +9,7 @@ import pytest
 
 import rbsdem
 from rbsdem import peer
-from rbsdem.errors import InputError
+from rbsdem.errors import AccuracyWarning, InputError
 
 SQUARE = peer.Specimen(
     name="Square",
@@ -91,8 +91,6 @@ def test_an_octagon_is_a_circle_and_a_square_spiral_is_square():
 @pytest.mark.parametrize(
     ("change", "name", "value", "said"),
     [
-        ({"corner_yield_stress": None, "intermediate_yield_stress": None}, "bars", 420e6, "420"),
-        ({"transverse_yield_stress": None}, "tie_yield_stress", 450e6, "transverse_yield"),
         ({"cover": None}, "cover", 0.025, "cover"),
         ({"cover": None, "cover_perpendicular": None}, "side_cover", 0.025, "cover"),
         ({"transverse_spacing": None}, "tie_diameter", 0.0, "no transverse"),
@@ -111,6 +109,24 @@ def test_what_the_table_leaves_open(change, name, value, said):
     assert any(said in text for text in d.assumed) if said else not d.assumed
 
 
+@pytest.mark.parametrize(
+    ("change", "name", "value"),
+    [
+        ({"corner_yield_stress": None, "intermediate_yield_stress": None}, "bars", 420e6),
+        ({"transverse_yield_stress": None}, "tie_yield_stress", 450e6),
+    ],
+)
+def test_a_yield_stress_that_is_guessed_is_a_warning(change, name, value):
+    missing = next(iter(change))
+    with pytest.warns(AccuracyWarning, match=f"{missing} is not given; taken as"):
+        d = peer.draw(replace(SQUARE, **change))
+    found = getattr(d, name)
+    if name == "bars":
+        found = max(bar.yield_stress for bar in found)
+    assert found == pytest.approx(value)
+    assert any(missing in text for text in d.assumed)
+
+
 def test_ultimate_stress_by_default():
     d = peer.draw(
         replace(SQUARE, longitudinal_ultimate_stress=None, transverse_ultimate_stress=None)
@@ -122,7 +138,8 @@ def test_ultimate_stress_by_default():
 
 def test_faces_that_do_not_add_up_keep_the_number_of_bars():
     """24 bars, of which the faces tell 12: the others are bundled with them."""
-    d = peer.draw(replace(SQUARE, longitudinal_number=24))
+    with pytest.warns(AccuracyWarning, match="bundled bars"):
+        d = peer.draw(replace(SQUARE, longitudinal_number=24))
     assert d.steel_area == pytest.approx(4 * area(0.02) + 20 * area(0.016))
     assert "times 2.5" in d.assumed[0]
 
@@ -134,6 +151,17 @@ def test_faces_that_do_not_add_up_keep_the_number_of_bars():
         ({"corner_diameter": None, "intermediate_diameter": None}, "no diameter"),
         ({"cover": 0.3}, "do not fit"),
         ({"cover": 0.3, "section": "circular"}, "do not fit"),
+        ({"longitudinal_number": 8}, r"8 contradicts.*2 x 1 .*2 x 3 .*are 12"),
+        (
+            {"intermediate_perpendicular": 0, "intermediate_parallel": 0},
+            "12 contradicts.* are 4;",
+        ),
+        ({"longitudinal_number": 3, "intermediate_parallel": None}, "four corners"),
+        ({"longitudinal_number": 12.5}, "12.5 bars must be a whole number"),
+        ({"intermediate_parallel": -3}, "-3 bars must be a whole number"),
+        ({"corner_diameter": 20.0}, "corner_diameter = 20 m must be .* 16 mm is 0.016"),
+        ({"cover": 20.0}, "cover = 20 m must be .* 20 mm is 0.020"),
+        ({"corner_yield_stress": 450.0}, "450 Pa must be .* 450 MPa is 450e6"),
     ],
 )
 def test_what_cannot_be_drawn(change, words):
@@ -173,6 +201,7 @@ def test_the_papers_columns_are_drawn_as_table_2_has_them(peer_folder):
         assert not d.assumed
 
 
+@pytest.mark.filterwarnings("ignore:.*(is not given; taken as|bundled bars)")
 def test_every_specimen_of_the_database_is_drawn(peer_folder):
     for i, specimen in enumerate(peer.read_specimens(peer_folder)):
         d = peer.draw(specimen)

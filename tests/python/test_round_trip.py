@@ -13,6 +13,11 @@ import pytest
 import rbsdem
 from rbsdem.springs import Spring
 
+# The same column is made at every level of kinematics, and masses without weight are tried.
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:column. (axial_load|self_weight|top_mass|height|shear has) "
+)
+
 Rng = np.random.Generator
 LOADING = "&loading drive = 'displacement', amplitudes = 0.001 /\n"
 

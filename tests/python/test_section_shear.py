@@ -323,7 +323,7 @@ def test_section_without_a_knee_has_one_line() -> None:
     ("arguments", "words"),
     [
         ({"length": -1.0}, "length = -1"),
-        ({"length": math.nan}, "length = NaN"),
+        ({"length": math.nan}, "length = nan"),
         ({"axial_load": math.inf}, "axial_load"),
         ({"axial_load": 1e9}, "axial load"),
         ({"layers": 1}, "layers = 1"),

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
+import pickle
+
 import matplotlib as mpl
 import numpy as np
 import pytest
@@ -197,6 +200,110 @@ def test_columns_with_computed_springs_run():
     )
     result = rbsdem.cyclic(column, displacement=[0.0, 0.016, -0.016, 0.032])
     assert 1.4e5 < result.force.max() < 2.5e5
+
+
+SECTION = paper_sections()["soesianawati_1"].section
+LOAD = 744e3
+
+
+def tip_stiffness(column: rbsdem.Column) -> float:
+    """Of the virgin column, as its static path has it."""
+    return float(rbsdem.cyclic(column, force=[1.0]).force[0]) / float(
+        rbsdem.cyclic(column, force=[1.0]).displacement[0]
+    )
+
+
+def without_load(column: rbsdem.Column) -> rbsdem.Column:
+    """Without second-order effects, which are not the subject here."""
+    return dataclasses.replace(column, axial_load=0.0, kinematics="small")
+
+
+def test_bodies_share_the_springs_of_a_section_as_theory_says():
+    """A hinge at the foot, the slip of the whole length, and beyond one body the curvature above.
+
+    The flexibility of the top is H^2/K + 1/K_V + (H - l_p)^3/(3 E I) for any number of bodies from
+    2 on; one body has no flexibility above its hinge. The foot alone yields.
+    """
+    height = 1.6
+    springs = SECTION.springs(height, LOAD, yield_rule="first")
+    k, l_p = springs.flexure.k_c, springs.hinge_length
+    above = (height - l_p) ** 3 / (3 * k * l_p)
+    strength = []
+    for n in (1, 2, 3, 4, 8):
+        column = without_load(SECTION.column(height, axial_load=LOAD, model="paper", n=n))
+        flexibility = height**2 / k + 1 / springs.shear.k + (n > 1) * above
+        assert tip_stiffness(column) == pytest.approx(1 / flexibility, rel=1e-9)
+        # At one rotation of the foot the force is the same, whatever is above it.
+        loop = rbsdem.cyclic(column, displacement=np.linspace(0.0, 0.04, 401))
+        strength.append(np.interp(0.015, loop.rotation[:, 0], loop.force))
+    np.testing.assert_allclose(strength, strength[0], rtol=1e-6)
+
+
+def test_bodies_share_the_layered_model():
+    height = 1.6
+    several = [without_load_layers(SECTION.column(height, axial_load=LOAD, n=n)) for n in (2, 3, 8)]
+    stiffness = [tip_stiffness(column) for column in several]
+    # The joints above the hinge are as flexible as the column there, but for the slip of joints
+    # that stand for none: each a thousandth of that of the foot.
+    np.testing.assert_allclose(stiffness, stiffness[0], rtol=1e-3)
+
+
+def without_load_layers(column: rbsdem.Column) -> rbsdem.Column:
+    """The layers keep their axial load, but it does no second-order work."""
+    return dataclasses.replace(column, kinematics="small")
+
+
+@pytest.mark.parametrize("kind", ["shear", "flexure"])
+def test_springs_of_a_whole_column_are_refused_in_several_joints(kind):
+    springs = SECTION.springs(1.6, LOAD)
+    elastic = rbsdem.Elastic(1e9)
+    given = {"shear": elastic, "flexure": elastic}
+    for several in (getattr(springs, kind), [getattr(springs, kind)] * 4):
+        with pytest.raises(InputError, match=rf"{kind} is .* whole column.*4 joints.*column\("):
+            rbsdem.Column(1.6, 600.0, **(given | {kind: several}), n=4)
+    # One of them at the foot, or shared by hand, is what a user may want.
+    rbsdem.Column(1.6, 600.0, **(given | {kind: [getattr(springs, kind), *[elastic] * 3]}), n=4)
+    rbsdem.Column(1.6, 600.0, **(given | {kind: getattr(springs, kind).split(4)}), n=4)
+    again = pickle.loads(pickle.dumps(getattr(springs, kind)))
+    with pytest.raises(InputError, match="whole column"):
+        rbsdem.Column(1.6, 600.0, **(given | {kind: again}), n=2)
+
+
+def test_exchanged_springs_of_a_section_are_refused():
+    springs = SECTION.springs(1.6, LOAD)
+    with pytest.raises(InputError, match="shear is the flexure spring of a section"):
+        rbsdem.Column(1.6, 600.0, springs.flexure, springs.shear)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda length: SECTION.springs(length, LOAD),
+        lambda length: SECTION.column(length, axial_load=LOAD),
+        lambda length: SECTION.shear_diagram(length, LOAD),
+        lambda length: SECTION.shear_strength(length, LOAD),
+    ],
+    ids=["springs", "column", "shear_diagram", "shear_strength"],
+)
+def test_lengths_that_no_column_has_come_with_a_hint(call):
+    with pytest.raises(InputError, match=r"= 1600 m must be between .*; 1600 mm is 1.6"):
+        call(1600.0)
+    with pytest.raises(InputError, match="the length comes before the axial load"):
+        call(LOAD)
+
+
+def test_an_axial_load_in_kn_is_noticed():
+    for call in (
+        lambda: SECTION.springs(1.6, 744.0),
+        lambda: SECTION.column(1.6, axial_load=744.0),
+    ):
+        with pytest.warns(AccuracyWarning, match="744 N is only .* of f'c A; loads are in N"):
+            call()
+
+
+def test_a_hinge_longer_than_the_column_is_refused():
+    with pytest.raises(InputError, match=r"hinge_length = 1.7 m is longer than the column"):
+        SECTION.springs(1.6, LOAD, hinge_length=1.7)
 
 
 def test_figures():

@@ -10,6 +10,11 @@ import pytest
 
 import rbsdem
 
+# The same column is made at every level of kinematics, and masses without weight are tried.
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:column. (axial_load|self_weight|top_mass|height|shear has) "
+)
+
 LENGTH, MASS, K_SHEAR = 2.0, 1e3, 5e7
 # In moments and rotations: stiffness 1e8, cap at (0.01, 240e3), softening -4e6 to 40e3 at 0.06.
 FLEXURE = rbsdem.PeakOriented(2e-3, 200e3, 0.01, 240e3, 0.06, 40e3)

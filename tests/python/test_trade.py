@@ -292,6 +292,7 @@ def chain(n: int) -> rbsdem.Column:
         spring,
         n=n,
         top_mass=75000.0,
+        gravity=0.0,
         damping=rbsdem.Damping(stiffness=1e-5),
     )
 
@@ -324,6 +325,7 @@ def test_no_time_at_all():
 # ---- static --------------------------------------------------------------------------------------
 
 
+@pytest.mark.filterwarnings("ignore:column. axial_load ")
 @pytest.mark.parametrize("kinematics", ["small", "pdelta", "finite"])
 def test_static_path_and_its_inverse(kinematics):
     column = dataclasses.replace(PAPER, kinematics=kinematics)

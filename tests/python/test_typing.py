@@ -65,7 +65,7 @@ section = rbsdem.RectangularSection(
 )
 springs = section.springs(1.6, axial_load=744e3)
 assert springs.shear is not None
-made = rbsdem.Column(1.6, 614.4, springs.shear, springs.flexure, axial_load=744e3)
+made = rbsdem.Column(1.6, 614.4, springs.shear, springs.flexure)
 print(pushed(made).summary["status"], pushed(section.column(1.6, axial_load=744e3)).force[-1])
 
 Path("column.nml").write_text(column.to_namelist() + "&loading drive = 'force', amplitudes = 1e3 /")

@@ -710,7 +710,13 @@ PINCHED = rbsdem.Pinching(
 
 def run_rk4_pinching() -> rbsdem.Result:
     column = rbsdem.Column(
-        1.0, 500.0, PINCHED, rbsdem.Elastic(5e7), top_mass=20e3, damping=rbsdem.Damping(mass=0.5)
+        1.0,
+        500.0,
+        PINCHED,
+        rbsdem.Elastic(5e7),
+        top_mass=20e3,
+        gravity=0.0,
+        damping=rbsdem.Damping(mass=0.5),
     )
     ground = rbsdem.protocol(np.array([0.35, 0.6]) * G, points=3)
     time = np.append(np.arange(25) * (0.6 / 24), 1.2)

@@ -12,7 +12,7 @@ from rbsdem.accuracy.answer import Answer, Run, Setting, errors_of
 from rbsdem.accuracy.ladder import LEVELS, Budget, Probe, predicted, too_expensive
 from rbsdem.accuracy.reference import Reference
 from rbsdem.accuracy.scene import VERTICAL, Scene
-from rbsdem.column import Column
+from rbsdem.column import Column, without_notes
 from rbsdem.damping import Damping
 from rbsdem.errors import InputError
 from rbsdem.methods import IMPLICIT, METHODS
@@ -275,7 +275,8 @@ def _effect(
 ) -> Effect:
     """Return the effect of one change of the model."""
     try:
-        column = variant.make()
+        with without_notes():
+            column = variant.make()
     except InputError as error:
         return Effect(variant.name, status="refused", reason=str(error))
     loads = {load: values for load, values in scene.loads.items() if load != variant.without}

@@ -17,7 +17,7 @@ from rbsdem._core import Array
 from rbsdem.accuracy.answer import Answer, Run, Setting
 from rbsdem.accuracy.path import along, at_times, reversals
 from rbsdem.analysis import cyclic, time_history
-from rbsdem.column import Column
+from rbsdem.column import Column, without_notes
 from rbsdem.errors import AccuracyWarning, InputError, SolveError
 from rbsdem.result import Result
 
@@ -69,7 +69,8 @@ class Scene:
         """Return the answer of a setting, for another column if one is given."""
         column = self.column if column is None else column
         if column.kinematics != setting.kinematics:
-            column = dataclasses.replace(column, kinematics=setting.kinematics)
+            with without_notes():
+                column = dataclasses.replace(column, kinematics=setting.kinematics)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", AccuracyWarning)
             if self.static:

@@ -16,10 +16,11 @@ What the table does not report is filled in by rules, each named in `Drawing.ass
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
-from rbsdem.errors import InputError
+from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.peer.specimen import Specimen
 from rbsdem.section import (
     CircularSection,
@@ -175,6 +176,22 @@ class _Sheet:
         self.assumed.append(f"{name}: {said}")
         return otherwise
 
+    def guessed(self, name: str, otherwise: float, said: str) -> float:
+        """Return a property that a prediction depends on much, or what is assumed, with a warning.
+
+        Parameters
+        ----------
+        name, otherwise, said
+            As for `known`.
+        """
+        if getattr(self.specimen, name) is None:
+            self.warn(f"{name} is not given; taken as {said}")
+        return self.known(name, otherwise, said)
+
+    def warn(self, what: str) -> None:
+        """Warn of an assumption."""
+        warnings.warn(f"{self.specimen.name}: {what}", AccuracyWarning, stacklevel=4)
+
 
 def draw(specimen: Specimen) -> Drawing:
     """Draw the section of a specimen.
@@ -192,10 +209,17 @@ def draw(specimen: Specimen) -> Drawing:
     Raises
     ------
     InputError
-        If the shape is not known, a value is not plausible in SI units, the bars have no diameter,
-        or they do not fit.
+        If the shape is not known, a value is not plausible in SI units, the numbers of bars
+        contradict each other, or the bars have no diameter or do not fit.
+
+    Warns
+    -----
+    AccuracyWarning
+        If a yield stress is not reported, and where bars beyond those of the faces are taken as
+        bundled.
     """
     _check(specimen)
+    _check_bars(specimen)
     sheet = _Sheet(specimen)
     shape = {
         "rectangular": "rectangular",
@@ -224,7 +248,9 @@ def draw(specimen: Specimen) -> Drawing:
         bars = _rectangle(sheet, cover + (tie or 0.0), diameter, corner, intermediate)
     else:
         bars = _round(specimen, cover + (tie or 0.0), diameter, corner)
-    tie_yield = sheet.known("transverse_yield_stress", corner[0], "that of longitudinal bars")
+    tie_yield = corner[0]
+    if tie:
+        tie_yield = sheet.guessed("transverse_yield_stress", corner[0], "that of longitudinal bars")
     legs = specimen.shear_legs if specimen.shear_legs and tie else 2.0 if tie else 0.0
     return Drawing(
         shape=shape,
@@ -246,6 +272,39 @@ def draw(specimen: Specimen) -> Drawing:
     )
 
 
+def _check_bars(specimen: Specimen) -> None:
+    """Refuse numbers of bars that contradict each other, as fewer in all than on the faces."""
+    whole = specimen.longitudinal_number
+    counts = {
+        "longitudinal_number": whole,
+        "intermediate_perpendicular": specimen.intermediate_perpendicular,
+        "intermediate_parallel": specimen.intermediate_parallel,
+    }
+    for name, count in counts.items():
+        if count is not None and (count != round(count) or count < 0):
+            raise InputError(
+                f"{specimen.name}: {name} = {count:g} bars must be a whole number, 0 or more"
+            )
+    if specimen.section != "rectangular":
+        return
+    across, along = specimen.intermediate_perpendicular, specimen.intermediate_parallel
+    if across is None or along is None:
+        if whole < 4:
+            raise InputError(
+                f"{specimen.name}: longitudinal_number = {whole} bars, but a rectangular section "
+                "has one in each of its four corners; count all of them"
+            )
+        return
+    # More bars than there are places stand in bundles.
+    drawn = 4 + 2 * (across + along)
+    if whole < drawn or (whole > drawn == 4):
+        raise InputError(
+            f"{specimen.name}: longitudinal_number = {whole} contradicts the bars of the faces: "
+            f"4 in the corners, 2 x {across} (intermediate_perpendicular) and 2 x {along} "
+            f"(intermediate_parallel) are {drawn}; correct one of them"
+        )
+
+
 # Plausible ranges in SI units, with a hint for values in other units.
 _RANGES = {
     "length": (0.05, 100.0, "m", "1600 mm is 1.6"),
@@ -260,6 +319,11 @@ _RANGES = {
     "transverse_diameter": (1e-3, 0.1, "m", "10 mm is 0.010"),
     "transverse_spacing": (2e-3, 10.0, "m", "80 mm is 0.080"),
     "longitudinal_number": (1, 10000, "bars", "count all of them"),
+    "corner_diameter": (1e-3, 0.1, "m", "16 mm is 0.016"),
+    "intermediate_diameter": (1e-3, 0.1, "m", "16 mm is 0.016"),
+    "cover": (0.0, 1.0, "m", "20 mm is 0.020"),
+    "cover_perpendicular": (0.0, 1.0, "m", "20 mm is 0.020"),
+    "shear_legs": (0.0, 1000.0, "bars", "count those that cross the section along the loading"),
 }
 
 
@@ -287,7 +351,7 @@ def _steel(yield_stress: float, ultimate_stress: float) -> Steel:
 def _steels(sheet: _Sheet) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return yield and ultimate stress of corner and intermediate bars."""
     specimen = sheet.specimen
-    corner = sheet.known("corner_yield_stress", DEFAULT_YIELD_STRESS, "Grade 60, 420 MPa")
+    corner = sheet.guessed("corner_yield_stress", DEFAULT_YIELD_STRESS, "Grade 60, 420 MPa")
     intermediate = specimen.intermediate_yield_stress or corner
     ultimate = specimen.longitudinal_ultimate_stress
     if ultimate is None or ultimate <= corner:
@@ -314,7 +378,11 @@ def _rectangle(
     between = 2 * (across + along)
     share = (specimen.longitudinal_number - 4) / between if between else 0.0
     if between and specimen.longitudinal_number != 4 + between:
-        sheet.assumed.append(f"areas of the {between} bars between the corners: times {share:.4g}")
+        said = f"areas of the {between} bars between the corners: times {share:.4g}"
+        sheet.assumed.append(said)
+        sheet.warn(
+            f"longitudinal_number = {specimen.longitudinal_number} with bundled bars; {said}"
+        )
     area = max(share, 0.0) * math.pi / 4 * inner**2
     edge = specimen.depth / 2 - to_bars
     y_corner, y_inner = edge - diameter / 2, edge - inner / 2

@@ -28,6 +28,8 @@ _STIFFEST = 2.0
 # Longest hinges over the length of the column, and the largest contact.
 _LONGEST_STEEL, _LONGEST_CONCRETE = 0.4, 0.8
 _LARGEST_CONTACT = 0.9
+# Least slope of softening concrete [Pa], and least hardening of bars over their modulus.
+_LEAST_SOFTENING, _LEAST_HARDENING = 1e6, 0.0005
 
 
 @dataclass(frozen=True)
@@ -44,16 +46,16 @@ class HingeJoint:
         E I of the column above [N m2].
     shear_stiffness : float
         G A of the column [N].
-    limits : dict of str to float
-        Largest values of the parameters that have one for this column: beyond it they would change
-        nothing.
+    limits : dict of str to (float, float)
+        Least and largest values of the parameters that have them for this column: beyond them they
+        would change nothing.
     """
 
     spring: Layered
     length: float
     flexural_stiffness: float
     shear_stiffness: float
-    limits: dict[str, float]
+    limits: dict[str, tuple[float, float]]
 
 
 def hinge_joint(
@@ -127,7 +129,7 @@ def hinge_joint(
             k=max(modulus, secant) * area / concrete_length,
             f_peak=stress * area,
             d_peak=strain * concrete_length,
-            k_soft=max(softening, 1e6) * area / concrete_length,
+            k_soft=max(softening, _LEAST_SOFTENING) * area / concrete_length,
             f_res=rest * area,
             plastic=hinge.plastic,
             contact=contact,
@@ -136,11 +138,13 @@ def hinge_joint(
         )
 
     layers: list[tuple[float, ConcreteSpring | SteelSpring]] = []
-    softening = hinge.core_softening * 0.2 * core / max(core_ultimate - core_peak, 0.002)
+    core_slope = 0.2 * core / max(core_ultimate - core_peak, 0.002)
+    softening = hinge.core_softening * core_slope
     for strip in strips.core:
         spring = concrete(round(strip.area, 12), core, core_peak, softening, hinge.residual * core)
         layers.append((strip.y, spring))
-    softening = hinge.cover_softening * 0.8 * strength / 0.004
+    cover_slope = 0.8 * strength / 0.004
+    softening = hinge.cover_softening * cover_slope
     for strip in strips.cover:
         layers.append((strip.y, concrete(round(strip.area, 12), strength, peak, softening, 0.0)))
     slip = by_axial(hinge.slip_length, hinge.slip_axial) * bond
@@ -152,7 +156,7 @@ def hinge_joint(
         return SteelSpring(
             k=stiffness,
             f_y=fy * area,
-            k_post=stiffness * max(0.0005, hinge.hardening * (fu - fy) / 0.08 / steel.es),
+            k_post=stiffness * max(_LEAST_HARDENING, hinge.hardening * (fu - fy) / 0.08 / steel.es),
             r0=by_axial(hinge.r0, hinge.r0_axial),
             cr1=hinge.cr1,
             cr2=hinge.cr2,
@@ -170,12 +174,29 @@ def hinge_joint(
         min(_STIFFEST, by_axial(hinge.stiffness, hinge.stiffness_axial)) * uncracked,
         hinge.shear_stiffness * modulus / 2.4 * strips.shear_area,
         {
-            "hinge_length": (_LONGEST_STEEL * length - hinge.hinge_depth * depth) / one_length,
-            "compression_length": _LONGEST_CONCRETE * length / steel_length,
-            "stiffness": _STIFFEST / by_axial(1.0, hinge.stiffness_axial),
-            "contact": _LARGEST_CONTACT / by_axial(1.0, hinge.contact_axial),
+            "hinge_length": (
+                0.0,
+                (_LONGEST_STEEL * length - hinge.hinge_depth * depth) / one_length,
+            ),
+            "hinge_depth": (
+                -math.inf,
+                (_LONGEST_STEEL * length - hinge.hinge_length * one_length) / depth,
+            ),
+            "compression_length": (0.0, _LONGEST_CONCRETE * length / steel_length),
+            "stiffness": (0.0, _STIFFEST / by_axial(1.0, hinge.stiffness_axial)),
+            "contact": (0.0, _LARGEST_CONTACT / by_axial(1.0, hinge.contact_axial)),
+            "core_softening": (_LEAST_SOFTENING / core_slope, math.inf),
+            "cover_softening": (_LEAST_SOFTENING / cover_slope, math.inf),
+            "hardening": (_least_hardening(section, hinge), math.inf),
+            "fatigue": (0.0, math.inf),
         },
     )
+
+
+def _least_hardening(section: Section, hinge: HingeParameters) -> float:
+    """Return the factor below which no bar hardens less."""
+    rises = [hinge.steel_strength * (steel.fu - steel.fy) / steel.es for *_, steel in section.bars]
+    return _LEAST_HARDENING * 0.08 / max(rises) if max(rises) > 0 else math.inf
 
 
 def _check(axial_load: float, layers: list[tuple[float, ConcreteSpring | SteelSpring]]) -> None:

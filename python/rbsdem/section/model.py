@@ -5,6 +5,9 @@ Both stand on the section alone; no number of a test at hand enters.
 
 from __future__ import annotations
 
+import math
+import warnings
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -12,11 +15,13 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 from rbsdem import _core
 from rbsdem.column import Column
-from rbsdem.errors import InputError
+from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.parameter import Parameter
 from rbsdem.section.hinge import HingeJoint, hinge_joint
 from rbsdem.section.parameters import ModelParameters, parameters
-from rbsdem.section.shear_model import shear_spring
+from rbsdem.section.ranges import axial_load_note, column_length
+from rbsdem.section.shear_model import shear_limits, shear_spring
+from rbsdem.section.spring_fit import fit_springs
 from rbsdem.springs import Elastic, Spring
 
 if TYPE_CHECKING:
@@ -45,9 +50,6 @@ DEFAULT: Model = "layered"
 
 CONCRETE_DENSITY = 2400.0
 """Density of reinforced concrete for the mass of a column [kg/m3]."""
-
-# A column is between these heights [m]: a number in millimetres is not.
-_LEAST_HEIGHT, _LARGEST_HEIGHT = 0.05, 100.0
 
 
 def check_model(model: str) -> None:
@@ -97,13 +99,11 @@ def make_column(
 ) -> Column:
     """Make the column of a section; `rbsdem.section.Section.column` says what the arguments are."""
     check_model(model)
-    height = _core.number(height, "height")
-    if not _LEAST_HEIGHT <= height <= _LARGEST_HEIGHT:
-        raise InputError(
-            f"height = {height:g} m must be between {_LEAST_HEIGHT:g} and {_LARGEST_HEIGHT:g}; "
-            "1600 mm is 1.6"
-        )
+    height = column_length(height, "height")
     axial_load = _core.number(axial_load, "axial_load")
+    note = axial_load_note(axial_load, section.concrete.fc, section.gross_area)
+    if note:
+        warnings.warn(note, AccuracyWarning, stacklevel=3)
     if mass is None:
         mass = section.gross_area * height * CONCRETE_DENSITY
     common = {
@@ -135,6 +135,8 @@ def make_column(
         restrained=restrained,
         round_core=round_core,
     )
+    if model_parameters is not None:
+        recipe.check(model_parameters.own)
     return LayeredColumn(height, n=recipe.n, recipe=recipe, **recipe.made, **common)
 
 
@@ -162,10 +164,16 @@ def _paper(
         # Each joint has its share of the slip, and the curvature of its part.
         shear = shear.split(n)
         lengths, part = _parts(height, springs.hinge_length, n)
-        above = section.springs(
-            height, axial_load, yield_rule="first", hinge_length=part / _lumping(n), shear="none"
+        above = fit_springs(
+            section,
+            height,
+            axial_load,
+            yield_rule="first",
+            hinge_length=part / _lumping(n),
+            shear="none",
         )
-        flexure += [above.flexure] * (n - 1)
+        # A spring of its own for each joint, no longer that of a whole column.
+        flexure += [above.flexure.split(1)] * (n - 1)
     return Column(
         height, shear=shear, flexure=flexure, n=n, lengths=lengths, model="paper", **common
     )
@@ -228,6 +236,43 @@ class LayeredModel:
             restrained=self.restrained,
             round_core=self.round_core,
         )
+
+    @cached_property
+    def limits(self) -> dict[str, tuple[float, float]]:
+        """Least and largest values of parameters that would change nothing beyond them."""
+        joint = self.joint
+        of_shear = shear_limits(
+            self.section, self.height, self.axial_load, joint.shear_stiffness, self.parameters.shear
+        )
+        return joint.limits | {f"shear_{name}": ends for name, ends in of_shear.items()}
+
+    def check(self, names: Iterable[str]) -> None:
+        """Refuse values of some parameters beyond what they can change.
+
+        Parameters
+        ----------
+        names : iterable of str
+            Names of the parameters that a user gave.
+
+        Raises
+        ------
+        InputError
+            If one of them is beyond its limits.
+        """
+        values, names = self.parameters.values, tuple(names)
+        # Those of the shear spring are not worth their time where only the hinge changes.
+        of_shear = any(_made_from(name) == "shear" for name in names)
+        limits = self.limits if of_shear else self.joint.limits
+        for name in names:
+            least, most = limits.get(name, (-math.inf, math.inf))
+            slack = 1e-9 * abs(values[name])
+            if least - slack <= values[name] <= most + slack:
+                continue
+            side = f"above {most:.4g}" if values[name] > most else f"below {least:.4g}"
+            raise InputError(
+                f"parameters: {name} = {values[name]:g} is {side}, beyond which it changes nothing "
+                "in this column"
+            )
 
     @cached_property
     def made(self) -> dict[str, tuple[Spring, ...] | tuple[float, ...] | str]:
@@ -312,15 +357,16 @@ class LayeredColumn(Column):
     def parameters(self) -> dict[str, Parameter]:
         """Parameters that `rbsdem.calibrate` may fit, the most telling first; `shear_...` last.
 
-        The bounds end where a larger value would change nothing.
+        The bounds end where a value beyond them would change nothing.
         """
-        values, limits = self._recipe.parameters.values, self._recipe.joint.limits
+        values, limits = self._recipe.parameters.values, self._recipe.limits
         found = {}
         for name, (low, high, unit, what) in _FREE.items():
             if not self._kept(_made_from(name)):
-                limit = limits.get(name, float("inf"))
-                value = min(values[name], limit)
-                found[name] = Parameter(value, low * value, min(high * value, limit), unit, what)
+                least, most = limits.get(name, (0.0, math.inf))
+                value = min(max(values[name], least), most)
+                ends = max(low * value, least), min(high * value, most)
+                found[name] = Parameter(value, *ends, unit, what)
         return found
 
     def with_parameters(self, **values: float) -> LayeredColumn:
@@ -338,19 +384,14 @@ class LayeredColumn(Column):
             the springs it belongs to were replaced by others.
         """
         recipe = replace(self._recipe, parameters=self._recipe.parameters.with_values(**values))
-        for name, value in values.items():
+        for name in values:
             field = _made_from(name)
             if self._kept(field):
                 raise InputError(
                     f"parameters: {name} belongs to springs that were replaced: {field} of this "
                     "column is not that of its model"
                 )
-            limit = recipe.joint.limits.get(name)
-            if limit is not None and value > limit * (1 + 1e-9):
-                raise InputError(
-                    f"parameters: {name} = {value:g} is above {limit:.4g}, beyond which it changes "
-                    "nothing in this column"
-                )
+        recipe.check(values)
         made = {name: value for name, value in recipe.made.items() if not self._kept(name)}
         return replace(self, recipe=recipe, **made)
 

@@ -183,6 +183,13 @@ class ModelParameters:
         return VERSIONS.get(self.version) != self
 
     @property
+    def own(self) -> tuple[str, ...]:
+        """Names of the parameters that differ from those of the version; all if it has none."""
+        known = VERSIONS.get(self.version)
+        of_version = known.values if known else {}
+        return tuple(name for name, value in self.values.items() if of_version.get(name) != value)
+
+    @property
     def label(self) -> str:
         """The version, as "2026.1", or "2026.1 changed" where parameters differ from it."""
         return f"{self.version} changed" if self.changed else self.version

@@ -199,6 +199,12 @@ class Section(DrawnSection):
             If a value is refused, or the section has no trilinear line (controlled by compression,
             cracked by the axial load, lightly reinforced).
         """
+        hinge = options.get("hinge_length")
+        if hinge is not None and _core.number(hinge, "springs: hinge_length") > length:
+            raise InputError(
+                f"springs: hinge_length = {hinge:g} m is longer than the column, length = "
+                f"{length:g} m"
+            )
         return fit_springs(self, length, self._load(axial_load), **options)
 
     @overload

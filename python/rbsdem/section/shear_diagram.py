@@ -17,6 +17,7 @@ from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem.errors import InputError
 from rbsdem.section.materials import Tension
+from rbsdem.section.ranges import column_length
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -222,7 +223,7 @@ def shear_diagram(
                 f"are in 1/m: 10 mrad/m is 0.01"
             )
     load = _core.number(axial_load, "axial_load")
-    span = _core.number(length, "length")
+    span = column_length(length, "length")
     settings = {
         "length": span,
         "axial_load": load,

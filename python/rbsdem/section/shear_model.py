@@ -7,6 +7,7 @@ is critical in shear: one that yields in flexure first never leaves the lines be
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from rbsdem.section.strength import (
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from rbsdem.section.parameters import ShearParameters
     from rbsdem.section.section import Section
 
-__all__ = ["cracked_shear_stiffness", "shear_spring"]
+__all__ = ["cracked_shear_stiffness", "shear_limits", "shear_spring"]
 
 _ES = 200e9
 
@@ -86,10 +87,44 @@ def shear_spring(
     InputError
         If the length is not positive.
     """
+    return _shear(section, length, axial_load, stiffness, given)[0]
+
+
+def shear_limits(
+    section: Section,
+    length: float,
+    axial_load: float,
+    stiffness: float,
+    given: ShearParameters,
+) -> dict[str, tuple[float, float]]:
+    """Return least and largest values of parameters, beyond which they would change nothing.
+
+    Parameters
+    ----------
+    section, length, axial_load, stiffness, given
+        As for `shear_spring`.
+
+    Returns
+    -------
+    dict of str to (float, float)
+        By the names of `ShearParameters`.
+    """
+    return _shear(section, length, axial_load, stiffness, given)[1]
+
+
+def _shear(
+    section: Section,
+    length: float,
+    axial_load: float,
+    stiffness: float,
+    given: ShearParameters,
+) -> tuple[Pinching, dict[str, tuple[float, float]]]:
+    """Return the spring and the limits of its parameters."""
     sizes = shear_sizes(section)
     # A section without bars in tension, which has no strength, still needs a spring with one.
-    f_y = given.strength * shear_strength_mcft(section, length, axial_load)
-    f_y = max(f_y, 1e-4 * sizes.fc * sizes.gross_area)
+    by_theory = shear_strength_mcft(section, length, axial_load)
+    least = 1e-4 * sizes.fc * sizes.gross_area
+    f_y = max(given.strength * by_theory, least)
     f_cap = max(given.hardening, 1.0) * f_y
     by_ties = sizes.tie_area * sizes.tie_yield * sizes.d / sizes.spacing
     by_concrete = shear_strength_sezen(section, length, axial_load) - by_ties
@@ -99,8 +134,16 @@ def shear_spring(
     d_c = f_c / whole
     d_y = d_c + (f_y - f_c) / cracked
     # Behind yield it may not go up steeper than before.
-    rise = max(given.cap * length, 1.01 * (f_cap - f_y) / cracked)
-    return Pinching(
+    least_rise = 1.01 * (f_cap - f_y) / cracked
+    rise = max(given.cap * length, least_rise)
+    limits = {
+        "strength": (least / by_theory if by_theory > 0.0 else 0.0, math.inf),
+        "hardening": (1.0, math.inf),
+        "cap": (least_rise / length, math.inf),
+        "residual": (0.0, 0.9 * f_y / f_cap),
+        "endurance": (0.0, math.inf),
+    }
+    spring = Pinching(
         d_c=d_c,
         f_c=f_c,
         d_y=d_y,
@@ -113,3 +156,4 @@ def shear_spring(
         kappa_f=given.pinch_force,
         kappa_d=given.pinch_slip,
     )
+    return spring, limits

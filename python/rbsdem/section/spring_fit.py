@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 from rbsdem import _core, _views
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.section.diagram import Events, make_point
+from rbsdem.section.ranges import axial_load_note, column_length
 from rbsdem.section.shear_spring import ShearSpring, closed_form_shear, fit_shear_spring
-from rbsdem.springs import Bilinear, Takeda
+from rbsdem.springs import Bilinear, Takeda, for_whole_column
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -30,6 +31,9 @@ SHEAR = ("mcft", "closed", "none")
 @dataclass(frozen=True)
 class SectionSprings:
     """Springs of a column, with the points that they were fitted to.
+
+    They are those of a whole column, for one body. `Section.column` shares them among the joints of
+    several bodies; `rbsdem.Column` refuses them in more than one joint.
 
     Attributes
     ----------
@@ -158,6 +162,7 @@ def fit_springs(
             f"springs: shear = {shear!r} is not known; it is one of {', '.join(SHEAR)}"
         )
     confined = section._confined(confined)
+    length = column_length(length, "springs: length")
     numbers = {
         "length": length,
         "axial_load": axial_load,
@@ -177,6 +182,9 @@ def fit_springs(
         section._statement, settings | words | {"confined": confined}
     )
     notes = []
+    note = axial_load_note(axial_load, section.concrete.fc, section.gross_area)
+    if note:
+        notes.append(f"springs: {note}")
     if found["k_u_found"] < 0.0:
         notes.append(
             f"K_u = {found['k_u_found']:.4g} N m/rad: the moment falls from yield to the ultimate "
@@ -184,6 +192,7 @@ def fit_springs(
         )
     names = ("k_c", "d_c", "k_y", "d_y", "k_u", "b0", "b1")
     flexure = Takeda(**({n: found[n] for n in names} | ({} if b1 is None else {"b1": b1})))
+    for_whole_column(flexure, "flexure")
     events = Events(*(make_point(point) for point in points))
     spring, shear_fit = None, None
     if shear == "mcft":
@@ -196,6 +205,8 @@ def fit_springs(
         spring = Bilinear(
             *closed_form_shear(section, float(length), events.cracking.moment), k_post=0.0
         )
+    if spring is not None:
+        for_whole_column(spring, "shear")
     for note in notes:
         warnings.warn(note, AccuracyWarning, stacklevel=3)
     springs = SectionSprings(

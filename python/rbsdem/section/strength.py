@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rbsdem.errors import InputError
+from rbsdem.section.ranges import column_length
 
 if TYPE_CHECKING:
     from rbsdem.section.section import Section
@@ -149,7 +150,7 @@ def shear_strength_mcft(
     0.06 sqrt(f'c)/f_yt the crack spacing s_ze is 300 mm, else 35 z/(16 + aggregate) >= 0.85 z (mm).
     """
     sizes = shear_sizes(section)
-    span = _positive(length, "length")
+    span = column_length(length, "length")
     if not sizes.tension_steel > 0.0:
         return 0.0
     z = 0.9 * sizes.d
@@ -216,7 +217,7 @@ def shear_strength_sezen(
     Sezen, Moehle 2004 (ASCE Journal of Structural Engineering 130(11)).
     """
     sizes = shear_sizes(section)
-    span = _positive(length, "length")
+    span = column_length(length, "length")
     if not ductility >= 0.0:
         raise InputError(f"shear strength: ductility = {ductility} must not be negative")
     tensile = 0.5 * math.sqrt(sizes.fc / _MPA) * _MPA
@@ -341,9 +342,3 @@ def axial_failure_drift(section: Section, axial_load: float, angle: float = 65.0
     if not ties > 0.0:
         return 0.0 if load > 0.0 else 0.04 * (1.0 + tangent**2) / tangent
     return 0.04 * (1.0 + tangent**2) / (tangent + load / (ties * tangent))
-
-
-def _positive(value: float, name: str) -> float:
-    if not (math.isfinite(value) and value > 0.0):
-        raise InputError(f"shear strength: {name} = {value} m must be above zero")
-    return value
