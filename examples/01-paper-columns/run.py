@@ -37,7 +37,7 @@ try:
     from rich.console import Console
     from rich.table import Table
 except ImportError:
-    sys.exit("run.py: the tables need rich, which is not installed: pip install rbsdem[plot]")
+    sys.exit("run.py: the tables need rich, which is not installed: pip install rich")
 
 BESIDE = Path(__file__).resolve().parents[3] / "shared" / "peer"
 

@@ -2,46 +2,71 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any
 
 
 def need_matplotlib() -> None:
     """Raise `ImportError` with the installation command if matplotlib is not installed."""
-    try:
-        import matplotlib  # noqa: PLC0415
-    except ImportError as error:
-        raise ImportError(
-            "plots need matplotlib, which is not installed: pip install rbsdem[plot]"
-        ) from error
-    del matplotlib
-
-
-def need_rich() -> Any:
-    """Return rich, or raise `ImportError` with the installation command."""
-    try:
-        import rich.box  # noqa: PLC0415
-        import rich.progress  # noqa: PLC0415
-        import rich.table  # noqa: PLC0415
-    except ImportError as error:
-        raise ImportError(
-            "tables and progress need rich, which is not installed: pip install rbsdem[plot]"
-        ) from error
-    return rich
+    _need("matplotlib", "figures need", "plot")
 
 
 def need_jinja2() -> Any:
     """Return jinja2, or raise `ImportError` with the installation command."""
+    return _need("jinja2", "the gallery needs", "gallery")
+
+
+def need_pandas() -> Any:
+    """Return pandas, or raise `ImportError` with the installation command."""
+    return _need("pandas", "a DataFrame needs", "pandas")
+
+
+def need_rich() -> Any:
+    """Return rich, or raise `ImportError` with the installation command."""
+    rich = _need("rich", "tables and progress need", "")
+    for part in ("box", "progress", "table"):
+        import_module(f"rich.{part}")
+    return rich
+
+
+def _need(package: str, who: str, extra: str) -> Any:
     try:
-        import jinja2  # noqa: PLC0415
+        return import_module(package)
     except ImportError as error:
-        raise ImportError(
-            "the gallery needs jinja2, which is not installed: pip install rbsdem[gallery]"
-        ) from error
-    return jinja2
+        what = f'"rbsdem[{extra}]"' if extra else package
+        raise ImportError(f"{who} {package}, which is not installed: pip install {what}") from error
 
 
-def escaped(text: str) -> str:
-    """Return a text with the markup of rich escaped."""
-    from rich.markup import escape  # noqa: PLC0415
+def console(width: int) -> Any:
+    """Return the console of rich on standard output.
 
-    return escape(text)
+    Parameters
+    ----------
+    width : int
+        Letters of a line where standard output is no terminal.
+    """
+    from rich.console import Console  # noqa: PLC0415
+
+    class Terminal(Console):
+        """A console whose reader may leave: what called it decides what that means."""
+
+        def on_broken_pipe(self) -> None:
+            raise BrokenPipeError
+
+    out = Terminal(highlight=False)
+    return out if out.is_terminal else Terminal(highlight=False, width=width)
+
+
+def plain(text: str, **style: Any) -> Any:
+    """Return a text of rich that has no markup, for words that come from outside.
+
+    Parameters
+    ----------
+    text : str
+        The words; what cannot be printed, such as the codes that steer a terminal, becomes "?".
+    **style
+        Of `rich.text.Text`.
+    """
+    from rich.text import Text  # noqa: PLC0415
+
+    return Text("".join(c if c.isprintable() else "?" for c in text), **style)

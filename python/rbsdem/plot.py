@@ -1,6 +1,6 @@
 """Figures of force-displacement loops for publication: mm and kN, the model over the test.
 
-Needs matplotlib (``pip install rbsdem[plot]``), which is imported when a figure is asked for.
+Needs matplotlib (``pip install "rbsdem[plot]"``), which is imported when a figure is asked for.
 Functions take SI and draw millimetres and kilonewtons. Without axes they make a figure in the house
 style, the dictionary `RC`; axes that are given keep the style of the caller.
 """
@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rbsdem._curve import Curve, pair
+from rbsdem._files import write_figure
 from rbsdem._optional import need_matplotlib
 from rbsdem.errors import InputError
 from rbsdem.result import Result
@@ -340,7 +341,7 @@ def save(figure: Figure, path: str | os.PathLike[str], *, pdf: bool = False) -> 
     files = [target, target.with_suffix(".pdf")] if pdf else [target]
     with style():
         for file in files:
-            figure.savefig(file, dpi=DPI)
+            write_figure(figure.savefig, file, dpi=DPI)
     return files
 
 

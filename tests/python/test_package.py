@@ -35,6 +35,7 @@ ELASTIC = rbsdem.Elastic(1e6)
 BILINEAR = rbsdem.Bilinear(1e6, 1e-3, 0.0)
 TAKEDA = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
 COLUMN = rbsdem.Column(1.6, 614.4, BILINEAR, TAKEDA)
+ROOT = Path(__file__).resolve().parents[2]
 PUBLIC = [getattr(rbsdem, name) for name in rbsdem.__all__]
 FUNCTIONS = [thing for thing in PUBLIC if inspect.isfunction(thing)]
 CLASSES = [thing for thing in PUBLIC if inspect.isclass(thing)]
@@ -429,3 +430,42 @@ def test_a_module_that_has_moved_names_its_new_place():
             getattr(rbsdem, old)
     with pytest.raises(AttributeError, match="has no attribute 'nothing'"):
         _ = rbsdem.nothing
+
+
+@pytest.mark.parametrize(
+    ("package", "extra", "what"),
+    [
+        ("matplotlib", "plot", "rbsdem.plot.loop([0, 1], [0, 1])"),
+        ("scipy", "calibrate", "rbsdem.calibrate(column, test, free=['flexure.k_u'])"),
+        ("jinja2", "gallery", "rbsdem.peer.Predictions([]).gallery('x.html')"),
+        ("pandas", "pandas", "rbsdem.peer.Predictions([]).to_pandas()"),
+        ("pandas", "pandas", "rbsdem.peer.Specimens([]).to_pandas()"),
+    ],
+)
+def test_extra_that_is_missing_is_named(package, extra, what):
+    """The line for pip names an extra that pyproject.toml has, and the README knows it."""
+    code = f"""
+import sys
+sys.modules[{package!r}] = None
+import rbsdem
+column = rbsdem.paper_columns("pdelta")["zahn_7"]
+test = ([0.0, 0.01, -0.01], [0.0, 1e5, -1e5])
+try:
+    {what}
+except ImportError as error:
+    print(error)
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True
+    )
+    assert f'{package}, which is not installed: pip install "rbsdem[{extra}]"' in done.stdout
+    project = (ROOT / "pyproject.toml").read_text()
+    assert re.search(rf'^{extra} = \["{package}>=', project, re.M)
+    assert f".[{extra}]" in (ROOT / "README.md").read_text()
+
+
+def test_base_has_what_the_commands_need():
+    """`trade` and `peer` print tables of rich."""
+    project = (ROOT / "pyproject.toml").read_text()
+    base = re.search(r"^dependencies = \[(.*)\]", project, re.M)[1]
+    assert re.findall(r'"(\w+)', base) == ["numpy", "rich"]

@@ -9,10 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from rbsdem._optional import need_rich
-from rbsdem._parser import CommandParser
+from rbsdem._parser import CommandParser, run_command
 from rbsdem.accuracy import figure, table, trade
 from rbsdem.case import Case, read_case
-from rbsdem.errors import InputError, RbsdemError
 
 DESCRIPTION = """\
 What accuracy costs in a case, and which parts of the model it needs: the case is run over methods,
@@ -52,15 +51,7 @@ def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
 def main(arguments: Sequence[str]) -> int:
     """Run the command; return its exit code."""
     given = _arguments(arguments)
-    try:
-        return _run(given)
-    except InputError as error:
-        code, text = 2, str(error)
-    except (RbsdemError, ImportError, OSError) as error:
-        code, text = 1, str(error)
-    for line in text.splitlines():
-        sys.stderr.write(f"rbsdem: {line}\n")
-    return code
+    return run_command("rbsdem", lambda: _run(given))
 
 
 def _run(given: argparse.Namespace) -> int:
@@ -89,7 +80,7 @@ def _run(given: argparse.Namespace) -> int:
     if not given.quiet:
         table.report(found, case.title or given.case.stem)
         if picture is None:
-            print("no figure: it needs matplotlib (pip install rbsdem[plot]) and a reference")
+            print('no figure: it needs matplotlib (pip install "rbsdem[plot]") and a reference')
         for path in written:
             print(f"wrote {path}")
     return 0

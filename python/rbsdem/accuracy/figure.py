@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rbsdem import plot
+from rbsdem._files import write_figure
 from rbsdem._views import view_of
 from rbsdem.accuracy.ladder import LEVELS
 from rbsdem.accuracy.outcome import Trade
@@ -140,6 +141,6 @@ def save(trade: Trade, path: Path, title: str) -> Path | None:
 
     with plot.style():
         ax.set_title(title, loc="left")
-        ax.figure.savefig(path, dpi=200)
+        write_figure(ax.figure.savefig, path, dpi=200)
     plt.close(ax.figure)
     return path

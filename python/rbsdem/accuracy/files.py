@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import csv
-import math
 import os
-from collections.abc import Sequence
-from pathlib import Path
 
+from rbsdem._files import write_csv
 from rbsdem._views import view_of
 from rbsdem.accuracy.outcome import Trade
 
@@ -54,18 +51,25 @@ def write_settings(trade: Trade, path: str | os.PathLike[str]) -> None:
             row.setting.method,
             row.setting.events or "",
             row.setting.kinematics,
-            *(_cell(v) for v in (row.setting.dt, row.setting.tolerance, row.setting.parts)),
-            _cell(row.seconds),
+            row.setting.dt,
+            row.setting.tolerance,
+            row.setting.parts,
+            row.seconds,
             row.repeats,
-            *(_cell(v) for v in (row.response_rms, row.response_max, row.moment, row.energy)),
-            *(_cell(v) for v in (row.peak, row.error, row.move)),
+            row.response_rms,
+            row.response_max,
+            row.moment,
+            row.energy,
+            row.peak,
+            row.error,
+            row.move,
             int(row.pareto),
             row.status,
             row.reason,
         )
         for row in trade.rows
     ]
-    _write(path, COLUMNS, rows)
+    write_csv(path, [COLUMNS, *rows])
 
 
 @view_of(Trade, "physics_to_csv")
@@ -75,27 +79,16 @@ def write_physics(trade: Trade, path: str | os.PathLike[str]) -> None:
     rows = [
         (
             effect.part,
-            *(_cell(v) for v in (effect.peak, effect.residual, effect.moment, effect.energy)),
-            *(_cell(v) for v in (effect.history, effect.time_ratio)),
+            effect.peak,
+            effect.residual,
+            effect.moment,
+            effect.energy,
+            effect.history,
+            effect.time_ratio,
             "" if effect.matters is None else int(effect.matters),
             effect.status,
             effect.reason,
         )
         for effect in effects
     ]
-    _write(path, EFFECT_COLUMNS, rows)
-
-
-def _write(path: str | os.PathLike[str], names: Sequence[str], rows: Sequence[tuple]) -> None:
-    """Write a csv whole or not at all."""
-    target = Path(path)
-    partial = target.with_name(f"{target.name}.partial")
-    with partial.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(names)
-        writer.writerows(rows)
-    partial.replace(target)
-
-
-def _cell(value: float | None) -> str:
-    return "" if value is None or not math.isfinite(value) else f"{value:.6g}"
+    write_csv(path, [EFFECT_COLUMNS, *rows])

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rbsdem._optional import escaped, need_rich
+from rbsdem._optional import console, need_rich, plain
 from rbsdem._views import view_of
 from rbsdem.accuracy.outcome import Trade
 from rbsdem.accuracy.rows import seconds_text
@@ -47,7 +47,7 @@ def settings_table(trade: Trade) -> Table:
         if row.setting.method == "auto" and row.reason:
             value = f"chose {row.reason.split(':')[0]}"
         style = "bold" if chosen else None
-        table.add_row(mark, f"  {value}", *cells, style=style)
+        table.add_row(mark, plain(f"  {value}"), *cells, style=style)
     return table
 
 
@@ -63,16 +63,13 @@ def reasons(rows: Sequence[Row]) -> list[str]:
 def report(trade: Trade, title: str) -> None:
     """Print the whole trade."""
     need_rich()
-    from rich.console import Console  # noqa: PLC0415
-
-    out = Console(highlight=False)
-    if not out.is_terminal:
-        out = Console(highlight=False, width=132)
+    out = console(132)
 
     def say(text: str = "") -> None:
         out.print(text, markup=False, soft_wrap=not out.is_terminal)
 
-    out.print(f"[bold]{escaped(title)}[/bold]\n")
+    out.print(plain(title, style="bold"))
+    say()
     reference = trade.reference
     if reference is not None:
         say(f"Reference: {reference.first}, against {reference.second}.")

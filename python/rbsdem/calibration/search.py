@@ -196,6 +196,6 @@ def need_scipy() -> Any:
         import scipy.optimize  # noqa: PLC0415
     except ImportError as error:
         raise ImportError(
-            "calibration needs scipy, which is not installed: pip install rbsdem[calibrate]"
+            'calibration needs scipy, which is not installed: pip install "rbsdem[calibrate]"'
         ) from error
     return scipy.optimize

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
 import pickle
 import signal
+import threading
 import time
 import warnings
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
+from multiprocessing import connection
 from multiprocessing.synchronize import Event
 from typing import Any, TypeAlias
 
@@ -22,6 +25,7 @@ from rbsdem.column import Column
 from rbsdem.comparison import compare
 from rbsdem.errors import InputError, RbsdemError, SolveError
 from rbsdem.peer.columns import column as column_of
+from rbsdem.peer.journal import Journal
 from rbsdem.peer.measured import MeasuredTest
 from rbsdem.peer.predictions import Prediction, Predictions
 from rbsdem.peer.progress import progress_bar
@@ -45,6 +49,7 @@ def predict(
     *,
     jobs: int = 1,
     progress: bool = False,
+    journal: str | os.PathLike[str] | None = None,
     **options: Any,
 ) -> Predictions:
     """Predict tests from their properties, and compare with what was measured.
@@ -62,7 +67,12 @@ def predict(
     jobs : int, optional
         Processes to use. Above 1 a script needs ``if __name__ == "__main__":``.
     progress : bool, optional
-        Show a bar on stderr; needs rich.
+        Show a bar on stderr.
+    journal : path, optional
+        File to which each prediction is written as it comes. Predictions that are there already,
+        of the same tests by the same model, options and version of rbsdem, are not done again, so
+        that a batch that was ended in any way goes on from where it stopped. The model must be
+        given by name. The file stays; remove it to predict everything anew.
     **options
         Passed to `rbsdem.peer.column`, such as ``n=4``.
 
@@ -75,9 +85,8 @@ def predict(
     Raises
     ------
     InputError
-        If the model or its version is not known, or `jobs` is below 1.
-    ImportError
-        If progress is asked for without rich.
+        If the model or its version is not known, if `jobs` is below 1, or if there is a journal
+        for a model that is a function.
     """
     if _core.whole(jobs, "jobs") < 1:
         raise InputError(f"jobs = {jobs} must be 1 or more")
@@ -86,23 +95,42 @@ def predict(
         _check_sent(model, options)
     tests = list(specimens)
     begin = time.perf_counter()
-    rows: dict[int, Prediction] = {}
-    run = _in_processes if jobs > 1 and len(tests) > 1 else _here
+    kept = None
+    if journal is not None:
+        if callable(model):
+            raise InputError(
+                f"journal: the model {name} is a function, of which nobody knows whether it has "
+                "changed; give a model by name, or no journal"
+            )
+        kept = Journal(journal, tests, name, options)
+    rows = kept.finished() if kept else {}
+    resumed = len(rows)
+    left = [number for number in range(len(tests)) if number not in rows]
+    run = _in_processes if jobs > 1 and len(left) > 1 else _here
     interrupted = False
+    others = set(multiprocessing.active_children())
     with ExitStack() as stack:
-        told = stack.enter_context(progress_bar(len(tests))) if progress else None
+        told = stack.enter_context(progress_bar(len(tests), resumed)) if progress else None
         try:
-            for number, row in run(tests, model, options, jobs):
-                rows[number] = row
+            for place, row in run([tests[number] for number in left], model, options, jobs):
+                rows[left[place]] = row
+                # A process that died may live the next time.
+                if kept and not (row.status == "failed" and row.comparison is None):
+                    kept.add(left[place], row)
                 if told:
                     told(row)
         except KeyboardInterrupt:
             interrupted = True
+        except SystemExit:  # told to end: nobody waits for the tests that are under way
+            for child in set(multiprocessing.active_children()) - others:
+                child.kill()
+            raise
     return Predictions(
         (rows[number] for number in sorted(rows)),
         model=name,
         seconds=time.perf_counter() - begin,
         interrupted=interrupted,
+        resumed=resumed,
     )
 
 
@@ -238,6 +266,15 @@ def _begin(stop: Event) -> None:
     """Prepare a process: a keyboard interrupt reaches all of them, the main one handles it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     _shared["stop"] = stop
+    threading.Thread(target=_end_with_main, daemon=True).start()
+
+
+def _end_with_main() -> None:
+    """End this process as soon as the main one is gone, by whatever signal."""
+    main = multiprocessing.parent_process()
+    if main is not None:
+        connection.wait([main.sentinel])
+        os._exit(1)
 
 
 def _chunk(tests: list[Specimen], model: Model, options: dict[str, Any]) -> list[Prediction]:

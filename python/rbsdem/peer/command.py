@@ -9,10 +9,11 @@ from collections.abc import Sequence
 from fnmatch import fnmatch
 from pathlib import Path
 
-from rbsdem._optional import need_rich
-from rbsdem._parser import CommandParser
-from rbsdem.errors import InputError, RbsdemError
+from rbsdem._optional import console, need_rich
+from rbsdem._parser import INTERRUPTED, CommandParser, run_command
+from rbsdem.errors import InputError
 from rbsdem.peer.batch import predict
+from rbsdem.peer.journal import Journal
 from rbsdem.peer.predictions import Predictions
 from rbsdem.peer.specimen import Specimen
 from rbsdem.peer.specimens import Specimens, read_specimens
@@ -27,11 +28,14 @@ EPILOG = """\
 Files (--out): results.csv (a row for each test), summary.csv (medians and quartiles of
 groups), gallery.html (all loops, to sort and filter; needs jinja2), loops.png (all loops; needs
 matplotlib).
+A batch that did not come to its end leaves what was finished in unfinished.jsonl; a second start
+with the same --out goes on from there.
 Exit codes: 0 every test was analysed to its end, 1 some were not, 2 the input is wrong,
 130 interrupted by the keyboard (what was finished is reported).
 """
 
-INTERRUPTED = 130
+#: Name of the journal in the folder of `--out`, as long as the batch is not finished.
+UNFINISHED = "unfinished.jsonl"
 
 
 def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
@@ -75,17 +79,7 @@ def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
 def main(arguments: Sequence[str]) -> int:
     """Run the command; return its exit code."""
     given = _arguments(arguments)
-    try:
-        return _run(given)
-    except InputError as error:
-        code, text = 2, str(error)
-    except (RbsdemError, ImportError, OSError) as error:
-        code, text = 1, str(error)
-    except KeyboardInterrupt:
-        code, text = INTERRUPTED, "broken off"
-    for line in text.splitlines():
-        sys.stderr.write(f"rbsdem: peer: {line}\n")
-    return code
+    return run_command("rbsdem: peer", lambda: _run(given))
 
 
 def _run(given: argparse.Namespace) -> int:
@@ -100,17 +94,24 @@ def _run(given: argparse.Namespace) -> int:
         raise InputError("--loops writes files; say where with --out DIR")
     if given.out is not None:
         given.out.mkdir(parents=True, exist_ok=True)
+    journal = None if given.out is None else given.out / UNFINISHED
     found = predict(
         tests,
         given.model,
         jobs=given.jobs,
         progress=not given.quiet and sys.stderr.isatty(),
+        journal=journal,
         **options,
     )
-    _report(found, given.by, given.quiet)
+    # The files come first: whoever reads the report may stop reading.
+    lines = []
     if given.out is not None:
-        for path in written(found, given.out, given.by, given.loops):
-            print(f"wrote {path}")
+        lines = written(found, given.out, given.by, given.loops)
+    if journal is not None and not found.interrupted:
+        Journal(journal, tests, found.model, options).forget()
+    _report(found, given.by, given.quiet)
+    for line in lines:
+        print(line)
     if found.interrupted:
         sys.stderr.write(f"rbsdem: peer: broken off after {len(found)} of {len(tests)} tests\n")
         return INTERRUPTED
@@ -156,29 +157,28 @@ def _is_meant(row: Specimen, name: str) -> bool:
 
 
 def _report(found: Predictions, by: str, quiet: bool) -> None:
-    from rich.console import Console  # noqa: PLC0415
-
-    out = Console(highlight=False)
-    if not out.is_terminal:
-        out = Console(highlight=False, width=168)
+    out = console(168)
     if not quiet:
         out.print(found.table())
         out.print()
     out.print(found.summary_table(by))
     print(f"\nModel {found.model}: {len(found)} tests in {found.seconds:.1f} s")
+    if found.resumed:
+        print(f"{found.resumed} of them are from an earlier start that was broken off")
 
 
-def written(found: Predictions, folder: Path, by: str, loops: bool) -> list[Path]:
-    """Write the files; return which."""
+def written(found: Predictions, folder: Path, by: str, loops: bool) -> list[str]:
+    """Write the files; return lines that say which."""
     files = [folder / "results.csv", folder / "summary.csv"]
     found.to_csv(files[0])
     found.summary_to_csv(files[1], by)
+    missing = []
     for name, write in (("gallery.html", found.gallery), ("loops.png", found.contact_sheet)):
         try:
             files.append(write(folder / name))
         except ImportError as error:
-            print(f"no {name}: {error}")
+            missing.append(f"no {name}: {error}")
     if loops:
         found.loops_to_csv(folder / "loops")
         files.append(folder / "loops")
-    return files
+    return [*missing, *(f"wrote {file}" for file in files)]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rbsdem import plot
+from rbsdem._files import write_figure
 from rbsdem._optional import need_matplotlib
 from rbsdem._views import view_of
 from rbsdem.peer.predictions import Predictions
@@ -60,7 +61,7 @@ def write_contact_sheet(predictions: Predictions, path: Path) -> Path:
         ax.add_collection(LineCollection(models, colors="#c2410c", linewidths=0.4))
         # Of many thin lines a png hardly gets smaller by trying hard.
         fast = {"pil_kwargs": {"compress_level": 3}} if path.suffix.lower() == ".png" else {}
-        figure.savefig(path, dpi=200, **fast)
+        write_figure(figure.savefig, path, dpi=200, **fast)
     return path
 
 

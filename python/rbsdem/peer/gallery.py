@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from rbsdem._core import Array
+from rbsdem._files import whole_file
 from rbsdem._optional import need_jinja2
 from rbsdem._views import view_of
 from rbsdem.peer.pictures import Picture
@@ -64,7 +65,8 @@ def write_gallery(predictions: Predictions, path: Path) -> Path:
         inf=math.inf,
     )
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(page, encoding="utf-8")
+    with whole_file(path) as file:
+        file.write(page.encode())
     return path
 
 

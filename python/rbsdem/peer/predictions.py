@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-import csv
+import hashlib
 import math
 import os
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
 from rbsdem import _views
+from rbsdem._files import whole_file, write_csv
+from rbsdem._optional import need_pandas
 from rbsdem.comparison import SCORES, Comparison
 from rbsdem.errors import InputError
 from rbsdem.peer.pictures import Picture, picture
@@ -28,6 +31,9 @@ SUMMARY_SCORES = ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio", "end
 """Scores of which groups have quartiles."""
 
 _NOT_RUN = ("failed", "no history")
+
+#: Bytes of the longest part of a path that is written.
+_LONGEST_NAME = 120
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,6 +151,8 @@ class Predictions(Sequence[Prediction]):
         Wall time of everything [s].
     interrupted : bool, optional
         Whether the user interrupted it: the rows are those that were finished.
+    resumed : int, optional
+        How many of the rows were taken from the journal of an earlier start.
     """
 
     def __init__(
@@ -154,11 +162,13 @@ class Predictions(Sequence[Prediction]):
         model: str = "",
         seconds: float = math.nan,
         interrupted: bool = False,
+        resumed: int = 0,
     ) -> None:
         self._rows = tuple(rows)
         self.model = model
         self.seconds = seconds
         self.interrupted = interrupted
+        self.resumed = resumed
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -251,12 +261,12 @@ class Predictions(Sequence[Prediction]):
 
     def to_pandas(self) -> Any:
         """Return `records` as a DataFrame; needs pandas."""
-        import pandas as pd  # noqa: PLC0415
-
-        return pd.DataFrame(self.records())
+        return need_pandas().DataFrame(self.records())
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write `records` as csv.
+        """Write `records` as csv, whole or not at all.
+
+        Texts that a spreadsheet would take for a formula get an apostrophe in front.
 
         Parameters
         ----------
@@ -298,19 +308,22 @@ class Predictions(Sequence[Prediction]):
         Parameters
         ----------
         folder : path
-            Folder, which is made. The files hold the measured forces, which belong to the database.
+            Folder, which is made. A file has the path below it that the history has below its own
+            folder; two that would be the same get a number. The files hold the measured forces,
+            which belong to the database.
         """
         where = Path(folder)
         where.mkdir(parents=True, exist_ok=True)
         header = "displacement_m,test_force_N,model_force_N"
-        for i, row in enumerate(self._rows):
+        files = [row.specimen.file or f"test_{i + 1}" for i, row in enumerate(self._rows)]
+        for row, name in zip(self._rows, _loop_names(files), strict=True):
             if row.comparison is not None:
                 c = row.comparison
-                name = Path(row.specimen.file or f"test_{i + 1}").stem
                 rows = np.column_stack((c.displacement, c.test_force, c.model_force))
-                np.savetxt(
-                    where / f"{name}.csv", rows, "%.7g", delimiter=",", header=header, comments=""
-                )
+                path = where / name
+                path.parent.mkdir(parents=True, exist_ok=True)
+                with whole_file(path) as file:
+                    np.savetxt(file, rows, "%.7g", delimiter=",", header=header, comments="")
 
     def gallery(self, path: str | os.PathLike[str]) -> Path:
         """Write one page of html with all loops, to sort and to filter; needs jinja2.
@@ -398,14 +411,29 @@ def _record(row: Prediction) -> dict[str, Any]:
 
 
 def _write(path: str | os.PathLike[str], rows: list[dict[str, Any]]) -> None:
-    with Path(path).open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        if rows:
-            writer.writerow(rows[0])
-        writer.writerows([_cell(value) for value in row.values()] for row in rows)
+    write_csv(path, [list(rows[0]) if rows else [], *(list(row.values()) for row in rows)])
 
 
-def _cell(value: Any) -> str:
-    if value is None or (isinstance(value, float) and math.isnan(value)):
-        return ""
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+def _loop_names(files: Sequence[str]) -> list[PurePath]:
+    """Return a csv for each history: its path below the folder, in letters that any disk takes."""
+    taken: set[str] = set()
+    names = []
+    for file in files:
+        parts = [_safe(part) for part in PurePath(file).parts if part not in ("..", "/", "")]
+        stem = re.sub(r"\.(csv|txt)$", "", parts.pop() if parts else "test", flags=re.IGNORECASE)
+        number, name = 1, PurePath(*parts, f"{stem}.csv")
+        while str(name).casefold() in taken:
+            number += 1
+            name = PurePath(*parts, f"{stem}_{number}.csv")
+        taken.add(str(name).casefold())
+        names.append(name)
+    return names
+
+
+def _safe(part: str) -> str:
+    """Return a part of a path without letters that a disk may refuse, and not too long."""
+    kept = "".join(c if c.isprintable() and c not in '\\:*?"<>|' else "_" for c in part)
+    if len(kept.encode()) <= _LONGEST_NAME:
+        return kept
+    digest = hashlib.sha256(kept.encode()).hexdigest()[:12]
+    return f"{kept.encode()[: _LONGEST_NAME - 13].decode(errors='ignore')}_{digest}"

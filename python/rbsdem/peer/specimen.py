@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePath
 
 from rbsdem.errors import InputError
 from rbsdem.peer.file import PeerTest, read_peer
@@ -247,18 +247,24 @@ class Specimen:
             The text.
         """
         files = (self.file, Path(self.file).stem) if self.file else ()
-        return key.strip() in (self.name, str(self.peer_id), *files)
+        return key.strip() in {self.name, str(self.peer_id), *files} - {""}
 
     @property
     def path(self) -> Path | None:
-        """File of the history, a csv or the database's own text; None if it is not there."""
-        if self.file is None or self.folder is None:
+        """File of the history, a csv or the database's own text; None if it is not there.
+
+        It lies in the folder of the table or below.
+        """
+        if self.file is None or self.folder is None or not _stays_below(self.file):
             return None
         name = self.folder / self.file
         raw = self.folder / "raw" / name.name
         for path in (name, name.with_suffix(".txt"), raw, raw.with_suffix(".txt")):
-            if path.is_file():
-                return path
+            try:
+                if path.is_file():
+                    return path
+            except OSError:  # such as a name that is too long
+                continue
         return None
 
     def history(self) -> PeerTest:
@@ -278,6 +284,8 @@ class Specimen:
         if path is None:
             where = self.folder or "a folder"
             named = f"{self.file} is not in {where}" if self.file else "the table names no file"
+            if self.file and not _stays_below(self.file):
+                named = f"file = {self.file!r} is no file below the folder of the table"
             raise InputError(f"{self.name}: no history, {named}; put its csv or txt there")
         return read_peer(path)
 
@@ -322,3 +330,9 @@ class Specimen:
             pdelta_code=self.pdelta_code,
             axial_height=self.axial_height,
         )
+
+
+def _stays_below(file: str) -> bool:
+    """Whether the path of a table leads to a file in its folder or below."""
+    path = PurePath(file)
+    return bool(path.name) and not path.anchor and ".." not in path.parts and "\0" not in file

@@ -12,6 +12,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, overload
 
+from rbsdem._optional import need_pandas
 from rbsdem.errors import InputError
 from rbsdem.peer.specimen import Observed, Specimen
 
@@ -223,10 +224,8 @@ class Specimens(Sequence[Specimen]):
 
     def to_pandas(self) -> Any:
         """Return a DataFrame, a row for each test; needs pandas."""
-        import pandas as pd  # noqa: PLC0415
-
         rows = [asdict(row) for row in self._rows]
-        return pd.DataFrame([{**row, **row.pop("observed")} for row in rows])
+        return need_pandas().DataFrame([{**row, **row.pop("observed")} for row in rows])
 
     def _named(self, key: str) -> Specimen:
         for row in self._rows:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from rbsdem._optional import escaped, need_rich
+from rbsdem._optional import need_rich, plain
 from rbsdem._views import view_of
 from rbsdem.peer.predictions import Predictions, Quartiles
 
@@ -34,11 +34,11 @@ def tests_table(predictions: Predictions) -> Table:
         cells += [_number(100 * drift, 1) for drift in drifts]
         remark = "" if row.status == "completed" else f"{row.status}: {row.error}"
         table.add_row(
-            escaped(row.specimen.name),
-            row.specimen.failure_mode or "",
+            plain(row.specimen.name),
+            plain(row.specimen.failure_mode or ""),
             *cells,
             _number(1e3 * row.seconds, 1),
-            escaped(remark.splitlines()[0] if remark else ""),
+            plain(remark.splitlines()[0] if remark else ""),
             style=_MARKS.get(row.status),
         )
     return table
@@ -56,7 +56,7 @@ def summary_table(predictions: Predictions, by: str) -> Table:
         q = group.quartiles
         cells = [_three(q["nrmse"], 3), *(_three(q[name], 2) for name in _RATIOS)]
         table.add_row(
-            escaped(group.name),
+            plain(group.name),
             *(str(count) if count else "-" for count in (group.tests, group.stopped, group.failed)),
             *cells,
             _three(group.seconds, 1, 1e3),

@@ -1,0 +1,171 @@
+"""The one way in which the package writes files: whole or not at all."""
+
+from __future__ import annotations
+
+import csv
+import errno
+import io
+import math
+import os
+import stat
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from itertools import count
+from pathlib import Path
+from typing import IO, Any
+
+from rbsdem.errors import InputError
+
+__all__ = ["harmless", "whole_file", "write_csv", "write_figure"]
+
+#: Bytes of a name that go into the temporary name, so that this does not become too long.
+_LONGEST = 180
+#: Names that are tried before the folder is taken to be at fault.
+_TRIES = 1000
+#: A cell that starts like this is a formula to a spreadsheet.
+_FORMULA = ("=", "+", "-", "@", "\t", "\n")
+_STANDARD_OUTPUT = ("/dev/stdout", "/dev/fd/1", "/proc/self/fd/1")
+
+
+@contextmanager
+def whole_file(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
+    """Open a file for writing that gets its name when the block ends without an error.
+
+    Until then it has a name of its own in the same folder, which is opened exclusively: no file is
+    replaced by it and no link is followed. After an error it is removed, and an earlier file with
+    the final name stays as it was. Devices and pipes, which nothing can take the place of, are
+    written directly.
+
+    Parameters
+    ----------
+    path : path
+        Final name.
+
+    Yields
+    ------
+    file
+        Binary, to be written.
+
+    Raises
+    ------
+    InputError
+        If the path is a folder, or a pipe that nobody reads.
+    OSError
+        If the file cannot be written.
+    """
+    target = Path(path).expanduser()
+    try:
+        mode = target.stat().st_mode
+    except OSError:
+        mode = stat.S_IFREG
+    if stat.S_ISDIR(mode):
+        raise InputError(f"{target} is a folder; give the path of a file")
+    if os.fspath(target) in _STANDARD_OUTPUT or not stat.S_ISREG(mode):
+        # Seen as a whole by its reader, too, and never half of it after an error.
+        with os.fdopen(_direct(target), "wb") as file:
+            buffer = io.BytesIO()
+            yield buffer
+            file.write(buffer.getvalue())
+        return
+    descriptor, own = _own_file(target)
+    try:
+        with os.fdopen(descriptor, "wb") as file:
+            yield file
+        own.replace(target)
+    except BaseException:
+        with suppress(OSError):
+            own.unlink()
+        raise
+
+
+def write_csv(path: str | os.PathLike[str], rows: Iterable[Sequence[object]]) -> None:
+    """Write rows as csv, whole or not at all.
+
+    Parameters
+    ----------
+    path : path
+        File to write.
+    rows : iterable of sequences
+        Cells: numbers are written with six digits, None and numbers that are not finite as blanks,
+        texts as `harmless` returns them.
+    """
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerows([_cell(value) for value in row] for row in rows)
+    with whole_file(path) as file:
+        file.write(text.getvalue().encode())
+
+
+def write_figure(save: Callable[..., Any], path: str | os.PathLike[str], **options: Any) -> None:
+    """Write a figure of matplotlib, whole or not at all.
+
+    Parameters
+    ----------
+    save : callable
+        `savefig` of the figure.
+    path : path
+        File to write; its ending says in which format.
+    **options
+        Of `savefig`.
+    """
+    ending = Path(path).suffix.lower().lstrip(".")
+    with whole_file(path) as file:
+        save(file, format=ending or "png", **options)
+
+
+def harmless(text: str) -> str:
+    """Return a text that a spreadsheet does not take for a formula.
+
+    Parameters
+    ----------
+    text : str
+        Of a table that may come from anywhere.
+
+    Returns
+    -------
+    str
+        With an apostrophe in front if it begins with = + - @, a tab or the end of a line.
+    """
+    # A reader of csv would take a bare carriage return for the end of a row.
+    text = text.replace("\r\n", "\n").replace("\r", "\n")
+    return f"'{text}" if text.startswith(_FORMULA) else text
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, str):
+        return harmless(value)
+    if value is None or (isinstance(value, float) and not math.isfinite(value)):
+        return ""
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _own_file(target: Path) -> tuple[int, Path]:
+    """Open a file that was not there; return its descriptor and its name."""
+    start = os.fsdecode(os.fsencode(target.name)[:_LONGEST])
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_CLOEXEC", 0)
+    flags |= getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
+    for number in count(1):
+        own = target.with_name(f"{start}.{os.getpid()}-{number}.partial")
+        try:
+            return os.open(own, flags, 0o666), own
+        except FileExistsError:
+            if number == _TRIES:
+                raise
+    raise AssertionError
+
+
+def _direct(target: Path) -> int:
+    """Open a device or a pipe without waiting for a reader; return the descriptor."""
+    if os.fspath(target) in _STANDARD_OUTPUT:
+        return os.dup(1)
+    try:
+        descriptor = os.open(target, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0))
+    except OSError as error:
+        if error.errno == errno.ENXIO:
+            raise InputError(
+                f"{target} is a pipe that nobody reads; start its reader first, or choose another "
+                "file"
+            ) from None
+        raise
+    os.set_blocking(descriptor, True)
+    return descriptor

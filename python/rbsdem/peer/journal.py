@@ -1,0 +1,169 @@
+"""The journal of a batch: what was predicted is written as it comes, and need not be done again."""
+
+from __future__ import annotations
+
+import base64
+import dataclasses
+import hashlib
+import importlib.util
+import json
+import os
+import pickle
+from collections.abc import Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rbsdem._files import whole_file
+from rbsdem.comparison import compare
+from rbsdem.errors import InputError, RbsdemError
+from rbsdem.peer.predictions import Prediction
+from rbsdem.peer.specimen import Specimen
+
+__all__ = ["Journal"]
+
+_TEXTS = ("status", "error", "note")
+_TIMES = ("seconds_model", "seconds_analysis")
+
+
+class Journal:
+    """A file with a line for each predicted test.
+
+    A line is found again by a digest of the test, its history, the model with its version, the
+    options, and the code of the installed package: after a change of any of these the test is
+    predicted anew. A line that was not written to its end is passed over.
+
+    Parameters
+    ----------
+    path : path
+        The file; it is made with the first line.
+    tests : sequence of Specimen
+        The tests of the batch.
+    model : str
+        Name of the model with the version of its parameters.
+    options : mapping
+        What else the model was given.
+
+    Raises
+    ------
+    InputError
+        If the path is not that of an ordinary file.
+    """
+
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        tests: Sequence[Specimen],
+        model: str,
+        options: Mapping[str, Any],
+    ) -> None:
+        self.path = Path(path)
+        self._tests = tests
+        self._model = model
+        given = hashlib.sha256(_code() + model.encode() + pickle.dumps(dict(options), 5)).digest()
+        self._keys = [_key(specimen, given) for specimen in tests]
+        if self.path.is_symlink() or (self.path.exists() and not self.path.is_file()):
+            raise InputError(f"journal: {self.path} is no ordinary file; give another path")
+
+    def finished(self) -> dict[int, Prediction]:
+        """Return the predictions that are in the journal, by the number of the test."""
+        known = {line["key"]: line for line in self._lines()}
+        rows = {}
+        for number, key in enumerate(self._keys):
+            row = self._row(self._tests[number], known[key]) if key in known else None
+            if row is not None:
+                rows[number] = row
+        return rows
+
+    def add(self, number: int, row: Prediction) -> None:
+        """Write a prediction.
+
+        Parameters
+        ----------
+        number : int
+            Number of its test.
+        row : Prediction
+            The prediction.
+        """
+        line: dict[str, Any] = {"name": row.specimen.name, "key": self._keys[number]}
+        line |= {name: getattr(row, name) for name in (*_TEXTS, *_TIMES)}
+        line["nrmse"] = row.nrmse
+        if row.comparison is not None:
+            force = row.comparison.model_force.astype("<f8")
+            line["model_force"] = base64.b64encode(force.tobytes()).decode("ascii")
+        text = json.dumps(line) + "\n"
+        flags = os.O_RDWR | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
+        with os.fdopen(os.open(self.path, flags, 0o666), "r+b") as file:
+            # Behind a line that was broken off.
+            size = file.seek(0, os.SEEK_END)
+            if size:
+                file.seek(size - 1)
+                text = text if file.read(1) == b"\n" else f"\n{text}"
+            file.write(text.encode())
+
+    def forget(self) -> None:
+        """Take the tests of this batch out; a journal without lines is removed."""
+        if not self.path.is_file():
+            return
+        own = set(self._keys)
+        rest = [json.dumps(line) + "\n" for line in self._lines() if line["key"] not in own]
+        if not rest:
+            self.path.unlink()
+            return
+        with whole_file(self.path) as file:
+            file.write("".join(rest).encode())
+
+    def _lines(self) -> list[dict[str, Any]]:
+        try:
+            text = self.path.read_bytes()
+        except FileNotFoundError:
+            return []
+        found = []
+        for line in text.splitlines():
+            try:
+                entry = json.loads(line)
+                if isinstance(entry, dict) and isinstance(entry["key"], str):
+                    found.append(entry)
+            except (ValueError, KeyError):
+                continue
+        return found
+
+    def _row(self, specimen: Specimen, line: dict[str, Any]) -> Prediction | None:
+        """Return the prediction of a line; None if there is something wrong with the line."""
+        try:
+            comparison = None
+            if "model_force" in line:
+                force = np.frombuffer(base64.b64decode(line["model_force"]), "<f8")
+                test = specimen.test()
+                comparison = compare((test.displacement, force.astype(np.float64)), test)
+            texts = {name: str(line[name]) for name in _TEXTS}
+            times = {name: float(line[name]) for name in _TIMES}
+        except (ValueError, TypeError, KeyError, RbsdemError):
+            return None
+        return Prediction(specimen, self._model, comparison=comparison, **texts, **times)
+
+
+def _key(specimen: Specimen, given: bytes) -> str:
+    """Return the digest of a test, its history and what it is predicted with."""
+    values = dataclasses.asdict(dataclasses.replace(specimen, folder=None))
+    digest = hashlib.sha256(given + repr(values).encode("utf-8", "backslashreplace"))
+    path = specimen.path
+    if path is not None:
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+@cache
+def _code() -> bytes:
+    """Return the digest of the code of the package: Python files and extension."""
+    root = Path(__file__).resolve().parents[1]
+    files = sorted(root.rglob("*.py"))
+    extension = importlib.util.find_spec("rbsdem._rbsdem")
+    if extension is not None and extension.origin is not None:
+        files.append(Path(extension.origin))
+    digest = hashlib.sha256()
+    for file in files:
+        digest.update(hashlib.sha256(file.read_bytes()).digest())
+    return digest.digest()

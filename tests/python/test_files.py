@@ -1,0 +1,125 @@
+"""The one way in which the Python package writes files."""
+
+from __future__ import annotations
+
+import csv
+import math
+import os
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+
+from rbsdem._files import harmless, whole_file, write_csv
+from rbsdem.errors import InputError
+
+SOURCES = Path(__file__).resolve().parents[2] / "python" / "rbsdem"
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(os.listdir(folder))
+
+
+def test_no_module_opens_a_file_for_writing_but_this_one():
+    """A table or a figure that is written in another way would follow links and be half of one."""
+    ways = ('open("w', ".write_text(", ".write_bytes(", "savefig(", "savetxt(where", ".to_csv(path")
+    for path in SOURCES.rglob("*.py"):
+        text = path.read_text(encoding="utf-8")
+        found = [way for way in ways if way in text]
+        assert not found or path.name == "_files.py", (path, found)
+
+
+def test_name_comes_when_the_file_is_whole(tmp_path):
+    target = tmp_path / "table.csv"
+    target.write_text("old")
+    with whole_file(target) as file:
+        file.write(b"ne")
+        assert target.read_text() == "old"
+        assert len(names(tmp_path)) == 2
+        file.write(b"w")
+    assert target.read_text() == "new"
+    assert names(tmp_path) == ["table.csv"]
+
+
+def test_error_leaves_the_old_file(tmp_path):
+    target = tmp_path / "table.csv"
+    target.write_text("old")
+
+    def broken_off() -> None:
+        with whole_file(target) as file:
+            file.write(b"half")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        broken_off()
+    assert target.read_text() == "old"
+    assert names(tmp_path) == ["table.csv"]
+
+
+def test_temporary_name_follows_no_link_and_replaces_nothing(tmp_path):
+    """Whatever has the first name that would be tried, the next is taken."""
+    (tmp_path / "precious").write_text("precious")
+    for number in (1, 2):
+        (tmp_path / f"t.csv.{os.getpid()}-{number}.partial").symlink_to("precious")
+    (tmp_path / "t.csv.partial").symlink_to("precious")
+    with whole_file(tmp_path / "t.csv") as file:
+        file.write(b"new")
+    assert (tmp_path / "t.csv").read_text() == "new"
+    assert (tmp_path / "precious").read_text() == "precious"
+    assert len(names(tmp_path)) == 5
+
+
+def test_long_names(tmp_path):
+    name = "ä" * 125 + ".csv"  # 254 bytes
+    with whole_file(tmp_path / name) as file:
+        file.write(b"new")
+    assert names(tmp_path) == [name]
+
+
+def test_folder_and_pipe_without_a_reader_are_refused(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    for name, words in (("", "is a folder"), ("pipe", "pipe that nobody reads")):
+        with pytest.raises(InputError, match=words), whole_file(tmp_path / name) as file:
+            file.write(b"x")
+    assert names(tmp_path) == ["pipe"]
+
+
+def test_pipe_and_device_are_written_directly(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    got: list[bytes] = []
+    reader = os.open(tmp_path / "pipe", os.O_RDONLY | os.O_NONBLOCK)
+    os.set_blocking(reader, True)
+
+    def read() -> None:
+        with os.fdopen(reader, "rb") as file:
+            got.append(file.read())
+
+    thread = threading.Thread(target=read)
+    with whole_file(tmp_path / "pipe") as file:
+        thread.start()
+        file.write(b"x" * 200_000)
+    thread.join()
+    assert got == [b"x" * 200_000]
+    with pytest.raises(OSError, match="No space"), whole_file("/dev/full") as file:
+        file.write(b"x")
+    assert not Path("/dev/full").is_file()
+
+
+def test_standard_output_is_not_replaced(tmp_path):
+    program = "from rbsdem._files import write_csv; write_csv('/dev/stdout', [('name',), (1.5,)])"
+    with open(tmp_path / "out.txt", "wb") as file:
+        subprocess.run([sys.executable, "-c", program], stdout=file, check=True)
+    assert (tmp_path / "out.txt").read_text() == "name\n1.5\n"
+
+
+def test_cells_of_a_table(tmp_path):
+    """Numbers keep their sign; a text that a spreadsheet would calculate gets an apostrophe."""
+    texts = ["=1+1", "+1", "-1", "@SUM(A1)", "\t=1", "\r=1", "a=b", "5", ""]
+    write_csv(tmp_path / "t.csv", [texts, [-1.5, 2, None, math.nan, math.inf, True, 1 / 3]])
+    with (tmp_path / "t.csv").open(newline="") as file:
+        first, second = csv.reader(file)
+    assert first == ["'=1+1", "'+1", "'-1", "'@SUM(A1)", "'\t=1", "'\n=1", "a=b", "5", ""]
+    assert second == ["-1.5", "2", "", "", "", "True", "0.333333"]
+    assert [harmless(text) for text in texts] == first
