@@ -16,7 +16,7 @@ from rbsdem.comparison import Comparison, compare
 from rbsdem.damping import Damping
 from rbsdem.errors import AccuracyWarning, InputError, RbsdemError, SolveError
 from rbsdem.paper import paper_columns, paper_sections
-from rbsdem.peer import PeerTest, read_peer
+from rbsdem.peer import PeerTest, read_peer, read_test
 from rbsdem.protocol import protocol
 from rbsdem.result import Result
 from rbsdem.section import (
@@ -89,6 +89,7 @@ __all__ = [
     "protocol",
     "read_case",
     "read_peer",
+    "read_test",
     "time_history",
     "trade",
 ]

@@ -360,10 +360,18 @@ def protocol(amplitudes: Array, cycles: NDArray[np.int32], repeats: int, points:
     return values
 
 
-def read_history(path: str, length: str, force: str) -> tuple[str, Array, Array]:
+def read_history(
+    path: str,
+    length: str,
+    force: str,
+    layout: tuple[str, str, int] | None = None,
+    columns: tuple[int, int] = (1, 2),
+) -> tuple[str, Array, Array]:
     """Return name, displacements [m] and forces [N] of a history file.
 
-    `length` and `force` are the units of the file; empty strings mean those given in the file.
+    `length` and `force` are the units of the file; empty strings mean those given in the file. With
+    a layout, which is separator, decimal point and the number of lines before the first row, the
+    columns are taken by their numbers; else the file says what it has.
     """
     path = _path(path)
     # No row is shorter than two digits, a separator and an end of line.
@@ -371,7 +379,11 @@ def read_history(path: str, length: str, force: str) -> tuple[str, Array, Array]
     if most > np.iinfo(np.int32).max:
         raise InputError(f"{path}: the file is too large")
     # As bytes: f2py takes no characters beyond ASCII.
-    answer = _rbsdem.rbs_read_history(os.fsencode(path), word(length), word(force), most)
+    separator, decimal, skip = layout or (",", ".", -1)
+    marks = ord(separator), ord(decimal), skip
+    answer = _rbsdem.rbs_read_history(
+        os.fsencode(path), word(length), word(force), *marks, columns, most
+    )
     rows, name, displacement, force, status, message = answer
     _raise(status, message)
     return _text(name), displacement[:rows].copy(), force[:rows].copy()

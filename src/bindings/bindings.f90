@@ -349,14 +349,17 @@ subroutine rbs_protocol(na, amplitudes, nc, cycles, repeats, points, m, values, 
    call tell(error, status, message)
 end subroutine rbs_protocol
 
-subroutine rbs_read_history(path, length_unit, force_unit, most, rows, name, displacement, force, &
-                            status, message)
+subroutine rbs_read_history(path, length_unit, force_unit, separator, decimal, skip, columns, most, rows, &
+                            name, displacement, force, status, message)
+   ! With skip < 0 the file says what its layout and its columns are.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_bindings_runs, only: tell
+   use rbs_io_history, only: layout_type
    use rbs_io_loading_file, only: read_test
    implicit none
    character(len=*), intent(in) :: path, length_unit, force_unit
+   integer(c_int), intent(in) :: separator, decimal, skip, columns(2)
    integer(c_int), intent(in) :: most
    real(c_double), intent(out) :: displacement(most), force(most)
    integer(c_int), intent(out) :: rows, status
@@ -369,7 +372,12 @@ subroutine rbs_read_history(path, length_unit, force_unit, most, rows, name, dis
 
    units(1) = length_unit
    units(2) = force_unit
-   call read_test(path, units, test, rows, displacement, force, error)
+   if (skip < 0) then
+      call read_test(path, units, test, rows, displacement, force, error)
+   else
+      call read_test(path, units, test, rows, displacement, force, error, columns, &
+                     layout_type(skip, achar(separator), achar(decimal)))
+   end if
    name = test
    call tell(error, status, message)
 end subroutine rbs_read_history

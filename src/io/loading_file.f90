@@ -4,7 +4,7 @@ module rbs_io_loading_file
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: lower, list_of, nearest_name, to_text
-   use rbs_io_history, only: history_type, read_history
+   use rbs_io_history, only: history_type, layout_type, read_history
    use rbs_io_text_file, only: is_integer
    use rbs_base_check, only: is_given
    use rbs_loading_loading_record, only: loading_record, units_of
@@ -61,7 +61,7 @@ contains
    end subroutine loading_values
 
    !> Read the displacements [m] and forces [N] of a measured test.
-   subroutine read_test(path, units, name, rows, displacement, force, error)
+   subroutine read_test(path, units, name, rows, displacement, force, error, columns, layout)
       character(len=*), intent(in) :: path
       !> Units of displacement and force; blank: units of the file, see `convert`
       character(len=*), intent(in) :: units(2)
@@ -71,8 +71,13 @@ contains
       integer(c_int), intent(out) :: rows
       real(wp), intent(out) :: displacement(:), force(:)
       type(error_type), allocatable, intent(out) :: error
+      !> Numbers of the two columns; by default they are found by their names
+      integer, intent(in), optional :: columns(2)
+      !> Layout of the file; by default it is found in the file
+      type(layout_type), intent(in), optional :: layout
       type(history_type) :: history
       real(wp), allocatable :: value(:)
+      character(len=12) :: wanted
       character(len=12), parameter :: drives(2) = ['displacement', 'force       ']
       integer :: column, i
 
@@ -80,7 +85,7 @@ contains
       name = ''
       displacement = 0.0_wp
       force = 0.0_wp
-      call read_history(path, 'auto', history, error)
+      call read_history(path, 'auto', history, error, layout)
       if (allocated(error)) return
       name = history%name
       if (history%columns < 2) then
@@ -89,7 +94,9 @@ contains
       end if
       if (history%columns == 2 .and. is_time(history%labels(1))) history%labels(1) = 'a time'
       do i = 1, 2
-         call find_column(history, path, drives(i), '', 'column', column, error)
+         wanted = ''
+         if (present(columns)) wanted = to_text(columns(i))
+         call find_column(history, path, drives(i), wanted, 'column', column, error)
          if (allocated(error)) return
          value = history%values(column, :)
          call check_range(value, path, column, 1.0e300_wp, error)

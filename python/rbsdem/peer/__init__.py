@@ -15,6 +15,7 @@ from rbsdem.peer.batch import predict, predict_one
 from rbsdem.peer.columns import column
 from rbsdem.peer.drawing import Drawing, DrawnBar, draw
 from rbsdem.peer.file import PeerTest, read_peer
+from rbsdem.peer.laboratory import read_test
 from rbsdem.peer.measured import PDELTA_CODES, MeasuredTest, net_force
 from rbsdem.peer.predictions import Group, Prediction, Predictions, Quartiles
 from rbsdem.peer.shipped import (
@@ -53,6 +54,7 @@ __all__ = [
     "predict_one",
     "read_peer",
     "read_specimens",
+    "read_test",
     "shipped_reversals",
 ]
 

@@ -1,0 +1,237 @@
+"""A laboratory's own file: its layout is found, its mistakes are noticed, its force is made net."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rbsdem
+from rbsdem import InputError, peer, read_test
+
+LENGTH, LOAD = 1.6, 744e3
+TIME = np.linspace(0.0, 3.0, 90)
+D = np.round(0.012 * TIME * np.sin(2 * np.pi * TIME), 6)
+# A loop that takes up energy: the force is ahead of the displacement.
+F = np.round(180e3 * np.tanh((D + 0.004 * np.cos(2 * np.pi * TIME) * (TIME > 0)) / 0.01), 1)
+
+
+def comma(value: float) -> str:
+    return f"{value:.6g}".replace(".", ",")
+
+
+def point(value: float) -> str:
+    return f"{value:.6g}"
+
+
+def write(
+    path: Path, head: str, separator: str, number=point, scale=(1e3, 1e-3), more=(), end=""
+) -> Path:
+    """Rows with the time, displacement, force, and what else there is."""
+    rows = [
+        separator.join([number(t), number(scale[0] * d), number(scale[1] * f), *more]) + end
+        for t, d, f in zip(TIME, D, F, strict=True)
+    ]
+    path.write_bytes((head + "\n".join(rows) + "\n").encode("latin-1"))
+    return path
+
+
+NAMED = {"pdelta_code": 2, "length": LENGTH}
+
+
+@pytest.mark.parametrize(
+    ("head", "separator", "number", "end", "given"),
+    [
+        ("time_s,displacement_mm,force_kN\n", ",", point, "", {}),
+        ("# of a pump\n# t,disp [mm],load [kN]\n", ",", point, "", {}),
+        ("Prüfung 7\nam 1.2.2020; 9:30\n\nZeit;Weg;Kraft\ns;mm;kN\n", ";", comma, "",
+         {"columns": ("weg", "Kraft")}),
+        ("t\tTop displacement (mm)\tLateral force (kN)\n", "\t", point, "\t", {}),
+        ("t\td\tf\n", "\t", comma, "", {"units": ("mm", "kN")}),
+        ("Test of a column\nthree columns, no names\n", " ", point, "",
+         {"columns": (2, 3), "units": ("mm", "kN")}),
+        ("", "   ", comma, "",
+         {"columns": {"displacement": 2, "force": 3},
+          "units": {"displacement": "mm", "force": "KN"}}),
+        ("1;2;3\n4;5;6\n7;8;9\nt;d;f\n", ";", comma, ";",
+         {"header": 4, "columns": ("d", "f"), "units": ("mm", "kN")}),
+        ("time,disp_mm,axial load_kN\n", ",", point, "", {"columns": (2, 3)}),
+    ],
+)  # fmt: skip
+def test_layouts(tmp_path, head, separator, number, end, given):
+    """Comments, titles, names, units below them; any separator; commas before decimals."""
+    path = write(tmp_path / "test 7.txt", head, separator, number, end=end)
+    test = read_test(path, **NAMED, **given)
+    np.testing.assert_allclose(test.displacement, D, rtol=1e-5, atol=1e-9)
+    np.testing.assert_allclose(test.force, F, rtol=1e-5, atol=1e-3)
+    assert test.name == "test 7"
+    assert (test.height, test.pdelta_code) == (LENGTH, 2)
+
+
+@pytest.mark.parametrize(
+    ("units", "scale"),
+    [
+        (("m", "N"), (1, 1)),
+        (("cm", "MN"), (1e2, 1e-6)),
+        (("in", "kip"), (1 / 0.0254, 1 / 4448.2216)),
+    ],
+)
+def test_units(tmp_path, units, scale):
+    path = write(tmp_path / "t.csv", "t,d,f\n", ",", lambda value: repr(float(value)), scale)
+    test = read_test(path, units=units, **NAMED)
+    np.testing.assert_allclose(test.displacement, D, rtol=1e-9, atol=1e-15)
+    np.testing.assert_allclose(test.force, F, rtol=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"pdelta_code": None}, ["pdelta_code is needed", "1: the base moment", "4: the actuator"]),
+        ({"pdelta_code": 5}, ["pdelta_code = 5 is not known", "2: the net horizontal force"]),
+        ({"pdelta_code": 1, "length": None}, ["pdelta_code = 1", "needs length"]),
+        ({"pdelta_code": 3}, ["pdelta_code = 3", "needs axial_load"]),
+        ({"pdelta_code": 4, "axial_load": LOAD}, ["top_length", "hinge"]),
+        ({"columns": 2}, ["columns = 2 must be two"]),
+        ({"columns": ("d", "f", "g")}, ["must be two"]),
+        ({"columns": ("e", "f")}, ["column 'e' is not there", "2 'd'", "a number from 1"]),
+        ({"columns": (2, 4)}, ["force = 4", "1 't'"]),
+        ({"columns": (3, 3)}, ["both column 3"]),
+        ({"columns": {"deflection": 2}}, ["'deflection' is neither"]),
+        ({"units": None}, ["column 'd', has no unit", "units=", "m, mm, cm, in"]),
+        ({"units": ("mm", "lbf")}, ["the force, column 'f', has the unit 'lbf'", "kip"]),
+        (
+            {"units": ("m", "kN")},
+            [f"the largest displacement is {max(abs(D)) * 1e3:.4g} m", "read in m", "units="],
+        ),
+        ({"units": ("mm", "N")}, [f"the largest force is {max(abs(F)) * 1e-3:.4g} N", "read in N"]),
+        ({"columns": (3, 2)}, ["the loop runs backward", "exchanged"]),
+        ({"force_sign": -1}, ["against the displacement", "force_sign=-1"]),
+        ({"force_sign": 2}, ["force_sign = 2 must be"]),
+        ({"length": 1600}, ["length = 1600 m", "metres"]),
+        ({"length": -1}, ["length = -1 m must be positive"]),
+        ({"axial_load": 744}, ["axial_load = 744 N", "newtons"]),
+        ({"separator": "|"}, ["separator = '|' must be"]),
+        ({"decimal": ","}, ["no rows", "decimal = ','"]),
+        ({"decimal": ",", "separator": ","}, ["both a comma"]),
+        ({"header": 1000}, ["header = 1000", "lines"]),
+    ],
+)
+def test_mistakes_are_named_with_a_remedy(tmp_path, given, words):
+    path = write(tmp_path / "t.csv", "t,d,f\n", ",")
+    with pytest.raises(InputError) as caught:
+        read_test(path, **{**NAMED, "units": ("mm", "kN"), **given})
+    for word in words:
+        assert word in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"", "no rows of two or more numbers"),
+        (b"one column\n1\n2\n3\n", "no rows of two or more numbers"),
+        (b"PK\x03\x04\0\0", "no text file; save it as csv"),
+        (b"d_mm,f_kN\n1,2\n3,4\n5,6\n7,x\n", "line 5, value 2: 'x' is not a number"),
+        (b"d_mm,f_kN\n1,2\n3,4\n5,6\n7\n", "line 5: has 1 values"),
+    ],
+)
+def test_files_that_are_no_tests(tmp_path, content, words):
+    (tmp_path / "t.csv").write_bytes(content)
+    with pytest.raises(InputError, match=words):
+        read_test(tmp_path / "t.csv", **NAMED)
+
+
+def test_paths_that_are_no_files(tmp_path):
+    for path, words in ((tmp_path, "no ordinary file"), (tmp_path / "none", "is not there")):
+        with pytest.raises(InputError, match=words):
+            read_test(path, **NAMED)
+
+
+def test_offset_of_the_first_row(tmp_path):
+    """Refused until the user says what it is."""
+    rows = np.column_stack((1e3 * D + 4, 1e-3 * F + 1))
+    np.savetxt(tmp_path / "t.csv", rows, delimiter=",", header="d_mm,f_kN", comments="")
+    with pytest.raises(InputError, match=r"first displacement is 0.004 m, 1. %.*zero=True"):
+        read_test(tmp_path / "t.csv", **NAMED)
+    zeroed = read_test(tmp_path / "t.csv", zero=True, **NAMED)
+    np.testing.assert_allclose(zeroed.displacement, D - D[0], atol=1e-12)
+    np.testing.assert_allclose(zeroed.force, F - F[0], atol=1e-6)
+    kept = read_test(tmp_path / "t.csv", zero=False, **NAMED)
+    assert kept.displacement[0] == pytest.approx(D[0] + 0.004)
+    assert read_test(tmp_path / "t.csv", checks=False, **NAMED).force[0] == kept.force[0]
+
+
+@pytest.mark.parametrize("code", [1, 2, 3, 4])
+def test_net_force_is_that_of_the_manual(tmp_path, code):
+    path = write(tmp_path / "t.csv", "t,d_m,f_N\n", ",", lambda v: repr(float(v)), (1, 1))
+    lengths = {"measured_length": 1.5, "top_length": 0.4, "bottom_length": 0.2, "length": LENGTH}
+    test = read_test(path, pdelta_code=code, axial_load=LOAD, **lengths)
+    d, lean = D * 2.0 / 1.5, 2.0 + 0.2
+    expected = {
+        1: F - LOAD * D / 1.5,
+        2: F,
+        3: F - LOAD * (d / lean) / np.sqrt(1 + (d / lean) ** 2),
+        4: F + LOAD * D / 0.4,
+    }[code]
+    np.testing.assert_allclose(test.force, expected, rtol=1e-12, atol=1e-6)
+    np.testing.assert_allclose(test.displacement, D * LENGTH / 1.5, rtol=1e-14)
+    assert test.axial_height == pytest.approx(LENGTH if code == 4 else LENGTH + 0.4)
+
+
+def test_it_goes_where_a_test_of_the_database_goes(tmp_path):
+    """Compared, calibrated and drawn; without a length there is no drift."""
+    column = rbsdem.paper_columns("pdelta")["zahn_7"]
+    d = column.height * rbsdem.protocol([0.005, 0.01], cycles=1, points=20)
+    model = rbsdem.cyclic(column, displacement=d)
+    np.savetxt(tmp_path / "t.txt", np.column_stack((1e3 * d, 1e-3 * model.force)), fmt="%.17g")
+    test = read_test(tmp_path / "t.txt", units=("mm", "kN"), pdelta_code=2)
+    assert math.isnan(test.length)
+    found = rbsdem.compare(rbsdem.cyclic(column, displacement=test.displacement), test)
+    assert found.nrmse < 1e-12
+    assert found.peak_ratio == pytest.approx(1.0)
+    pytest.importorskip("scipy")
+    fit = rbsdem.calibrate(column, test, free=["flexure.k_u"])
+    assert fit.nrmse < 1e-9
+    pytest.importorskip("matplotlib")
+    assert len(rbsdem.plot.loops_over_test(model, test).get_lines()) == 4
+
+
+def test_checks_against_all_tests_of_the_database(peer_folder):
+    """One reader with two doors; no false alarm on size, sign and order, and no miss of a sign.
+
+    Exchanged columns are found by the loop's area or the sizes. Where the loops hardly take up
+    energy they cannot be, and nothing else says it: few.
+    """
+    wrong = {"offset": 0, "other": 0}
+    missed = {"sign": 0, "order": 0}
+    tests = peer.read_specimens(peer_folder).with_history()
+    for specimen in tests:
+        given = {
+            "pdelta_code": specimen.pdelta_code or 2,
+            "length": specimen.length,
+            "axial_load": specimen.axial_load,
+            "measured_length": specimen.measured_length,
+            "top_length": specimen.top_length,
+            "bottom_length": specimen.bottom_length,
+        }
+        try:
+            read_test(specimen.path, **given)
+        except InputError as error:
+            wrong["offset" if "the first" in str(error) else "other"] += 1
+        test = read_test(specimen.path, zero=False, **given)
+        same = specimen.test()
+        assert np.array_equal(test.force, same.force)
+        assert np.array_equal(test.displacement, same.displacement)
+        for fault, change in (
+            ("sign", {"force_sign": -1}),
+            ("order", {"columns": (2, 1), "units": ("mm", "kN")}),
+        ):
+            try:
+                read_test(specimen.path, zero=False, **{**given, **change})
+                missed[fault] += 1
+            except InputError:
+                pass
+    assert wrong["other"] == missed["sign"] == 0
+    assert wrong["offset"] <= 0.05 * len(tests)
+    assert missed["order"] <= 0.05 * len(tests)
