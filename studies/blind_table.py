@@ -25,7 +25,7 @@ from rbsdem.section import MODELS
 SCORES = ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio")
 CLASSES = (-1.0, 0.05, 0.15, 0.3, 0.45, 1.0)
 SIZES = (2, 3, 5, 9, 17)
-# Files of tests that the fit of version 2026.1 did not have; nor any other of their series, but for
+# Files of tests that the fit of version 2026.2 did not have; nor any other of their series, but for
 # Saatcioglu and Grira 1999, which are rectangular.
 NOT_FITTED = (
     "Galeota_et_al_1996",
@@ -62,7 +62,7 @@ def table(
 
 
 def fitted(specimen: peer.Specimen) -> bool:
-    """Return whether a test was in the folder that version 2026.1 was fitted to."""
+    """Return whether a test was in the folder that version 2026.2 was fitted to."""
     return not (specimen.file or "").startswith(NOT_FITTED)
 
 

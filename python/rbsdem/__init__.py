@@ -36,7 +36,6 @@ from rbsdem.springs import (
     Layered,
     PeakOriented,
     Pinching,
-    SteelBank,
     SteelSpring,
     Takeda,
 )
@@ -71,7 +70,6 @@ __all__ = [
     "SolveError",
     "Spiral",
     "Steel",
-    "SteelBank",
     "SteelSpring",
     "Takeda",
     "Ties",

@@ -94,7 +94,7 @@ class Column:
     damping : float or Damping, optional
         Viscous damping; a number is the damping ratio of every mode.
     model : str, optional
-        The model that made the column and the version of its parameters ("layered 2026.1"). It has
+        The model that made the column and the version of its parameters ("layered 2026.2"). It has
         no effect on the analysis.
 
     Raises

@@ -418,53 +418,20 @@ class ConcreteSpring(Spring):
     wear: float = 0.0
 
 
-@renamed(r1="cr1", r2="cr2", growth="isotropic_hardening", endurance="half_strength_work")
+@renamed(
+    r1="cr1",
+    r2="cr2",
+    growth="isotropic_hardening",
+    half_strength_work="endurance, a plastic deformation over d_y",
+)
 @dataclass(frozen=True)
 class SteelSpring(Spring):
-    """Steel with a rounded yield curve, that of Menegotto and Pinto (1973) as straight lines.
-
-    Parameters
-    ----------
-    k : float
-        Elastic stiffness [N/m].
-    f_y : float
-        Yield force [N].
-    k_post : float
-        Stiffness of hardening [N/m], from 0 to below `k`.
-    r0, cr1, cr2 : float, optional
-        Roundness R = r0 (1 - cr1 xi/(cr2 + xi)) of a branch, where xi is the plastic excursion over
-        the yield deformation; cr1 is below 1.
-    isotropic_hardening : float, optional
-        Share by which the strength has grown when the deformations have covered the range from -d_y
-        to d_y (Filippou, Popov and Bertero 1983). It grows with the power 0.8 of that range.
-    half_strength_work : float, optional
-        Plastic work over f_y d_y at which the strength of new branches is halved. 0 means no loss.
-
-    Raises
-    ------
-    InputError
-        If a parameter is outside the rule.
-    """
-
-    rule: ClassVar[str] = "steel"
-    k: float
-    f_y: float
-    k_post: float
-    r0: float = 20.0
-    cr1: float = 0.925
-    cr2: float = 0.15
-    isotropic_hardening: float = 0.0
-    half_strength_work: float = 0.0
-
-
-@dataclass(frozen=True)
-class SteelBank(Spring):
     """Steel that yields round: elements side by side, each of which slips at a limit of its own.
 
-    Iwan 1966, with limits that follow the plastic reach. As `SteelSpring` it takes the roundness of
-    Menegotto and Pinto (1973). It depends continuously on its path, and closed loops never create
-    energy. ``docs/rules.md`` has its lines. Below, d_y = f_y/k, and the plastic reach is the range
-    of the deformation so far, which is at least that from -d_y to d_y, less 2 d_y.
+    Iwan 1966, with limits that follow the plastic reach and the roundness of Menegotto and Pinto
+    (1973). It depends continuously on its path, and closed loops never create energy.
+    ``docs/rules.md`` has its lines. Below, d_y = f_y/k, and the plastic reach is the range of the
+    deformation so far, which is at least that from -d_y to d_y, less 2 d_y.
 
     Parameters
     ----------
@@ -494,7 +461,7 @@ class SteelBank(Spring):
         If a parameter is outside the rule.
     """
 
-    rule: ClassVar[str] = "steel_bank"
+    rule: ClassVar[str] = "steel"
     k: float
     f_y: float
     k_post: float

@@ -30,7 +30,7 @@ module rbs_case_renamed
       change('*', 'r1', "'cr1'"), &
       change('*', 'r2', "'cr2'"), &
       change('*', 'growth', "'isotropic_hardening'"), &
-      change('*', 'endurance', "'half_strength_work'")]
+      change('*', 'half_strength_work', "'endurance', a plastic deformation over d_y")]
 
 contains
 

@@ -5,6 +5,11 @@
 !> closing after unloading: Karsan and Jirsa (1969). Faces that were apart do not match: they touch
 !> before the plastic closing is reached (Stanton and McNiven 1979 call it focal point), which makes the
 !> closing of a crack gradual.
+!>
+!> Between the envelope and zero force the spring follows an elastic path of two lines. What changes this
+!> path does so while there is no force, or on the envelope in such a way that the path never stores more
+!> than the envelope gave: closed loops give no energy. Every change is in proportion to the movement that
+!> causes it: small reversals have small effects.
 module rbs_hysteresis_concrete
    use rbs_base_error, only: message_list
    use rbs_base_keys, only: key_type, above_zero, not_negative, share_below_one, &
@@ -20,7 +25,7 @@ module rbs_hysteresis_concrete
    public :: concrete_rule
 
    !> Kinds of the present line
-   integer, parameter :: virgin = 0, envelope = 1, unloading = 2, contact = 3, opening = 4, closing = 5
+   integer, parameter :: envelope = 1, unloading = 2, contact = 3, opening = 4, closing = 5
 
    !> Corners of the chords of the rising curve, as shares of the closing at the peak
    real(wp), parameter :: chord_ends(4) = [0.25_wp, 0.5_wp, 0.75_wp, 1.0_wp]
@@ -43,7 +48,7 @@ module rbs_hysteresis_concrete
       key_type('misfit', bound=share_below_one, default=0.0_wp, &
                meaning='share of the widest opening at which the faces of a closing crack touch'), &
       key_type('wear', bound=share_below_one, default=0.0_wp, &
-               meaning='share of the strength lost each time the crack closes and opens again')]
+               meaning='share of the strength that a wide opening of the crack takes')]
 
    type, extends(rule_type) :: concrete_rule
       !> Initial stiffness [N/m]
@@ -58,15 +63,17 @@ module rbs_hysteresis_concrete
       real(wp) :: contact = 0.0_wp
       !> Share of the widest opening at which its faces touch
       real(wp) :: misfit = 0.0_wp
-      !> Share of the strength that each closing and opening takes, at twice the closing at the peak or more
+      !> Share of the strength that an opening takes, after twice the closing at the peak or more
       real(wp) :: wear = 0.0_wp
-      integer, private :: stage = virgin
+      integer, private :: stage = envelope
       !> Largest closing so far and the force there without wear; plastic closing [m, N]
       real(wp), private :: c_u = 0.0_wp, f_u = 0.0_wp, c_p = 0.0_wp
-      !> Widest opening so far, closing at which the faces touch [m]; remaining share of the strength
-      real(wp), private :: widest = 0.0_wp, c_touch = 0.0_wp, strength = 1.0_wp
-      !> Whether the crack was closed since it last opened
-      logical, private :: was_closed = .true.
+      !> Largest force so far, without wear [N]
+      real(wp), private :: f_largest = 0.0_wp
+      !> How far before the plastic closing the faces touch, and widest opening so far, from there too [m]
+      real(wp), private :: gap = 0.0_wp, widest = 0.0_wp
+      !> Where the present opening began [m]; remaining share of the strength
+      real(wp), private :: c_opened = 0.0_wp, strength = 1.0_wp
    contains
       procedure, nopass :: keys
       procedure, nopass :: places
@@ -132,15 +139,14 @@ contains
       class(concrete_rule), intent(inout) :: self
       type(segment), intent(out) :: line
 
-      self%stage = virgin
       self%c_u = 0.0_wp
       self%f_u = 0.0_wp
       self%c_p = 0.0_wp
+      self%f_largest = 0.0_wp
+      self%gap = 0.0_wp
       self%widest = 0.0_wp
-      self%c_touch = 0.0_wp
       self%strength = 1.0_wp
-      self%was_closed = .true.
-      line = chord(0.0_wp, 0.0_wp, chord_ends(1)*self%d_peak, curve(self, chord_ends(1)*self%d_peak))
+      call follow_envelope(self, 0.0_wp, 0.0_wp, line)
    end subroutine start
 
    subroutine next(self, line, direction)
@@ -153,29 +159,27 @@ contains
       f = -line%force(-c)
       if (direction < 0) then
          select case (self%stage)
-         case (virgin, envelope)
+         case (envelope)
             call follow_envelope(self, c, f, line)
          case (unloading)
             call follow_envelope(self, self%c_u, self%strength*self%f_u, line)
          case (contact)
             call unload(self, line)
          case (opening)
-            ! The crack begins to close: the wider it was, the earlier its faces touch.
-            self%widest = max(self%widest, self%c_p - c)
-            self%c_touch = self%c_p - self%misfit*self%widest
-            self%stage = closing
-            line = chord(c, 0.0_wp, self%c_touch, 0.0_wp)
+            call widen(self, c)
+            call close_up(self, c, line)
          case default
-            self%was_closed = .true.
             call touch(self, line)
          end select
       else
          select case (self%stage)
          case (envelope)
-            self%c_u = c
-            self%f_u = f/self%strength
-            call find_plastic(self)
-            call unload(self, line)
+            if (c > 0.0_wp) then
+               call leave_envelope(self, c, f/self%strength)
+               call unload(self, line)
+            else
+               call open_up(self, c, line)
+            end if
          case (unloading)
             call touch(self, line)
          case default
@@ -212,19 +216,35 @@ contains
       call set_one_way(line)
    end subroutine follow_envelope
 
-   !> Plastic closing after unloading from (c_u, f_u), Karsan and Jirsa (1969); a straight line beyond twice
-   !> the closing at the peak, and never so large that unloading is stiffer than `k`.
-   subroutine find_plastic(self)
+   !> The motion has turned back on the envelope at (c, f), f without wear.
+   pure subroutine leave_envelope(self, c, f)
       type(concrete_rule), intent(inout) :: self
-      real(wp) :: x, share
+      real(wp), intent(in) :: c, f
+      real(wp) :: largest, share
 
-      x = self%c_u/self%d_peak
-      share = 0.145_wp*x**2 + 0.13_wp*x
-      if (x > 2.0_wp) share = 0.84_wp + 0.834_wp*(x - 2.0_wp)
-      self%c_p = min(self%plastic*share*self%d_peak, self%c_u - self%strength*self%f_u/self%k)
-      self%c_p = max(self%c_p, 0.0_wp)
-      self%c_touch = min(self%c_touch, self%c_p)
-   end subroutine find_plastic
+      ! Crushing wears down what keeps the faces apart: gap times force does not grow, or the path of
+      ! unloading would store more than the envelope has given.
+      largest = f
+      if (c > self%d_peak) largest = self%f_peak
+      if (largest > self%f_largest) then
+         self%gap = self%gap*(self%f_largest/largest)
+         self%f_largest = largest
+      end if
+      self%c_u = c
+      self%f_u = f
+      share = karsan_jirsa(c/self%d_peak) - karsan_jirsa(chord_ends(1))
+      ! Unloading is never stiffer than `k`.
+      self%c_p = max(min(self%plastic*share*self%d_peak, c - f/self%k), 0.0_wp)
+   end subroutine leave_envelope
+
+   !> Plastic closing after unloading from x, both over the closing at the peak (Karsan and Jirsa 1969); a
+   !> straight line beyond x = 2.
+   elemental real(wp) function karsan_jirsa(x)
+      real(wp), intent(in) :: x
+
+      karsan_jirsa = 0.145_wp*x**2 + 0.13_wp*x
+      if (x > 2.0_wp) karsan_jirsa = 0.84_wp + 0.834_wp*(x - 2.0_wp)
+   end function karsan_jirsa
 
    !> On the line of unloading between full closing and the envelope.
    subroutine unload(self, line)
@@ -235,27 +255,26 @@ contains
       self%stage = unloading
       call full_closing(self, c_closed, f_closed)
       line = chord(c_closed, f_closed, self%c_u, self%strength*self%f_u)
-      line%hi_closed = .not. c_closed > self%c_touch
+      line%hi_closed = .not. self%gap > 0.0_wp
    end subroutine unload
 
    !> On the line between the first touch of the faces and full closing; without length it is skipped.
    subroutine touch(self, line)
       type(concrete_rule), intent(inout) :: self
       type(segment), intent(inout) :: line
-      real(wp) :: c_closed, f_closed, c
+      real(wp) :: c_closed, f_closed
 
       call full_closing(self, c_closed, f_closed)
-      if (c_closed > self%c_touch) then
+      if (self%gap > 0.0_wp) then
          self%stage = contact
          ! The lines before and after it lead both ways, so both corners belong to this line.
-         line = chord(self%c_touch, 0.0_wp, c_closed, f_closed)
+         line = chord(self%c_p - self%gap, 0.0_wp, c_closed, f_closed)
          line%lo_closed = .true.
          line%hi_closed = .true.
       else if (self%stage == closing) then
          call unload(self, line)
       else
-         c = self%c_touch
-         call open_up(self, c, line)
+         call open_up(self, self%c_p, line)
       end if
    end subroutine touch
 
@@ -267,7 +286,7 @@ contains
 
       c = self%c_p
       f = 0.0_wp
-      if (self%c_touch >= self%c_p) return
+      if (.not. self%gap > 0.0_wp) return
       c = self%c_p + self%contact*(self%c_u - self%c_p)
       f = self%contact*self%strength*self%f_u
    end subroutine full_closing
@@ -278,13 +297,45 @@ contains
       real(wp), intent(in) :: c
       type(segment), intent(out) :: line
 
-      if (self%was_closed .and. self%c_u > 0.0_wp) then
-         self%strength = self%strength*(1.0_wp - self%wear*min(1.0_wp, 0.5_wp*self%c_u/self%d_peak))
-         self%was_closed = .false.
-      end if
       self%stage = opening
+      self%c_opened = c
       line = segment(d0=-c, lo=-c, hi=unbounded, lo_closed=.true., one_way=1)
    end subroutine open_up
+
+   !> The line of zero force while the crack closes, from the closing c until the faces touch.
+   subroutine close_up(self, c, line)
+      type(concrete_rule), intent(inout) :: self
+      real(wp), intent(in) :: c
+      type(segment), intent(out) :: line
+
+      self%stage = closing
+      line = chord(c, 0.0_wp, self%c_p - self%gap, 0.0_wp)
+      ! Openings are added up only if they have an effect.
+      if (self%wear > 0.0_wp) call set_one_way(line)
+   end subroutine close_up
+
+   !> The crack has opened to a closing c: the wider it was, the earlier its faces touch, and the
+   !> strength falls with the way. There is no force, so neither is felt at once.
+   pure subroutine widen(self, c)
+      type(concrete_rule), intent(inout) :: self
+      real(wp), intent(in) :: c
+      real(wp) :: before, width, inside, openings
+
+      before = self%c_p - self%c_opened
+      width = self%c_p - c
+      self%gap = max(self%gap, self%misfit*width)
+      if (self%wear > 0.0_wp .and. self%c_u > 0.0_wp) then
+         ! The way over the width so far, integrated as the width grows.
+         inside = min(width, self%widest) - min(before, self%widest)
+         openings = inside/(self%widest + self%d_peak)
+         if (width > self%widest) then
+            openings = openings + log((width + self%d_peak)/(max(self%widest, before) + self%d_peak))
+         end if
+         self%strength = self%strength* &
+                         (1.0_wp - self%wear)**(openings*min(1.0_wp, 0.5_wp*self%c_u/self%d_peak))
+      end if
+      self%widest = max(self%widest, width)
+   end subroutine widen
 
    !> Rising curve of Popovics (1973) [N].
    pure real(wp) function curve(self, c)

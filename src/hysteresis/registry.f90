@@ -10,7 +10,6 @@ module rbs_hysteresis_registry
    use rbs_hysteresis_pinching, only: pinching_rule
    use rbs_hysteresis_rule, only: rule_type, rule_length, places_length
    use rbs_hysteresis_steel, only: steel_rule
-   use rbs_hysteresis_steel_bank, only: steel_bank_rule
    use rbs_hysteresis_takeda, only: takeda_rule
    implicit none
    private
@@ -19,7 +18,7 @@ module rbs_hysteresis_registry
 
    character(len=rule_length), parameter :: rule_names(*) = [character(len=rule_length) :: &
       'elastic', 'bilinear', 'takeda', 'compression', 'peak_oriented', 'pinching', 'concrete', 'steel', &
-      'steel_bank', 'layered']
+      'layered']
 
 contains
 
@@ -45,8 +44,6 @@ contains
          allocate (concrete_rule :: rule)
       case ('steel')
          allocate (steel_rule :: rule)
-      case ('steel_bank')
-         allocate (steel_bank_rule :: rule)
       case ('layered')
          allocate (layered_rule :: rule)
       case default                                  ! unknown: the caller reports it

@@ -1,18 +1,18 @@
-!> Steel with a rounded transition to yield: Menegotto and Pinto (1973) in straight lines.
+!> Steel with a rounded transition to yield: a bank of parallel elements, each elastic up to its own limit.
 !>
-!> A branch starts where the motion turned back and bends from the elastic stiffness to the line of
-!> hardening,  f* = b x + (1 - b) x/(1 + x^R)^(1/R),  R = r0 (1 - cr1 xi/(cr2 + xi)),  xi = plastic
-!> excursion over the yield deformation. Chords replace the curve; their ends depend on its roundness. A
-!> branch that meets the previous branch of its direction continues along that one: small cycles close
-!> and never overshoot. The strength of new branches grows with the range of the strains (Filippou, Popov
-!> and Bertero 1983) and decreases with the plastic work.
+!> The force is f = sum s_i with -y_i <= s_i <= y_i (Iwan 1966). An element inside its limits follows the
+!> deformation with its stiffness k_i; one that slips stays on its limit. The limits y_i = w k_i d_y Y_i(q)
+!> follow the plastic reach q = (H - L)/d_y - 2, with H and L the extremes of the deformation so far, along
+!> a table that gives the branches the roundness of Menegotto and Pinto (1973). No limit moves faster than
+!> its element can: small reversals have small effects, and closed loops never create energy. Plastic
+!> deformation inside the reach may reduce the strength through the factor w (wear).
 module rbs_hysteresis_steel
+   use rbs_base_check, only: is_given
+   use rbs_base_constants, only: unbounded, unset
    use rbs_base_error, only: message_list
-   use rbs_base_keys, only: key_type, above_zero, not_negative, share_below_one, &
-                           force, stiffness
+   use rbs_base_keys, only: key_type, above_zero, not_negative, share_below_one, force, stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_base_constants, only: unbounded
    use rbs_hysteresis_rule, only: rule_type, check_product, places_length, in_shear, in_flexure, &
       in_axial, in_layer
    use rbs_hysteresis_segment, only: segment
@@ -21,23 +21,23 @@ module rbs_hysteresis_steel
 
    public :: steel_rule
 
-   !> Ends of the chords: values of x^R
-   real(wp), parameter :: corners(8) = [0.03_wp, 0.15_wp, 0.4_wp, 0.8_wp, 1.5_wp, 3.0_wp, 8.0_wp, 30.0_wp]
-   !> Most branches that are remembered
-   integer, parameter :: most_branches = 16
+   !> Number of elements that yield, and number with the one of hardening
+   integer, parameter :: yielding = 7, elements = 8
+   !> Slopes of a branch between the limits of the elements, over k
+   real(wp), parameter :: slopes(0:yielding) = &
+      [1.0_wp, 0.94_wp, 0.75_wp, 0.5_wp, 0.25_wp, 0.08_wp, 0.015_wp, 0.0_wp]
+   !> Stiffness of each element over that of all that yield
+   real(wp), parameter :: share(yielding) = slopes(:yielding - 1) - slopes(1:)
+   !> Plastic reaches of the table, without those of the plateau
+   real(wp), parameter :: reaches(12) = [0.0_wp, 0.1_wp, 0.2_wp, 0.4_wp, 0.8_wp, 1.6_wp, 3.2_wp, 6.4_wp, &
+                                         12.8_wp, 25.6_wp, 51.2_wp, 102.4_wp]
+   integer, parameter :: most_rows = size(reaches) + 2
    !> Least roundness
    real(wp), parameter :: least_r = 0.8_wp
-
-   !> One curve from a reversal point to the line of hardening.
-   type :: branch_type
-      integer :: direction = 0
-      !> Its start, and the point where its two asymptotes meet [m, N]
-      real(wp) :: d_0 = 0.0_wp, f_0 = 0.0_wp, d_a = 0.0_wp, f_a = 0.0_wp
-      !> Roundness
-      real(wp) :: r = 20.0_wp
-      !> The point where it meets the previous branch of its direction
-      real(wp) :: d_meet = unbounded
-   end type branch_type
+   !> An element is on its limit if no more than this share of H - L is missing
+   real(wp), parameter :: near_limit = 1.0e-13_wp
+   !> A limit that moves with at least this share of its element's stiffness carries the element with it
+   real(wp), parameter :: as_fast = 1.0_wp - 1.0e-9_wp
 
    type(key_type), parameter :: parameters(*) = [ &
       key_type('k', unit=stiffness, bound=above_zero, &
@@ -47,33 +47,53 @@ module rbs_hysteresis_steel
       key_type('k_post', unit=stiffness, bound=not_negative, &
                meaning='stiffness of hardening, below k'), &
       key_type('r0', bound=above_zero, default=20.0_wp, &
-               meaning='roundness of the virgin branch'), &
+               meaning='roundness of branches after little yielding'), &
       key_type('cr1', bound=share_below_one, default=0.925_wp, &
-               meaning='largest share by which plastic excursions lower the roundness'), &
+               meaning='largest share by which the plastic reach lowers the roundness'), &
       key_type('cr2', bound=above_zero, default=0.15_wp, &
-               meaning='plastic excursion over the yield deformation at half of that share'), &
+               meaning='plastic reach over the yield deformation at half of that share'), &
       key_type('isotropic_hardening', bound=not_negative, default=0.0_wp, &
-               meaning='share by which the strength has grown at a reach of strains from -d_y to d_y'), &
-      key_type('half_strength_work', bound=not_negative, default=0.0_wp, &
-               meaning='plastic work over f_y d_y at which the strength is half; 0: it stays')]
+               meaning='share by which the strength has grown at a plastic reach of 2 hardening_reach'), &
+      key_type('hardening_reach', bound=above_zero, default=1.0_wp, &
+               meaning='half of that plastic reach, over the yield deformation'), &
+      key_type('f_u', unit=force, bound=above_zero, optional=.true., &
+               meaning='force at which hardening with k_post ends'), &
+      key_type('plateau', bound=not_negative, default=0.0_wp, &
+               meaning='length of the yield plateau over the yield deformation; needs f_u'), &
+      key_type('endurance', bound=not_negative, default=0.0_wp, &
+               meaning='plastic deformation over d_y inside the reach that halves the strength; 0: none')]
+
+   !> Limits over k_i d_y in rows of the plastic reach: linear between them, constant after the last.
+   type :: table_type
+      integer :: rows = 1
+      real(wp) :: q(most_rows) = 0.0_wp
+      real(wp) :: y(elements, most_rows) = 1.0_wp
+   end type table_type
 
    type, extends(rule_type) :: steel_rule
       !> Elastic stiffness [N/m], yield force [N], stiffness of hardening [N/m]
       real(wp) :: k = 0.0_wp, f_y = 0.0_wp, k_post = 0.0_wp
-      !> Roundness of the virgin branch and its decrease with the plastic excursion
+      !> Roundness, and its decrease with the plastic reach
       real(wp) :: r0 = 20.0_wp, cr1 = 0.925_wp, cr2 = 0.15_wp
-      !> Share by which the strength has grown when the strains have ranged from -d_y to d_y (Filippou,
-      !> Popov and Bertero 1983); it grows with the power 0.8 of that range
-      real(wp) :: isotropic_hardening = 0.0_wp
-      !> Plastic work over f_y d_y at which the strength is halved; 0: the strength does not decrease
-      real(wp) :: half_strength_work = 0.0_wp
-      type(branch_type), private :: branch(most_branches)
-      !> Branches in memory; 0: virgin
-      integer, private :: count = 0
-      !> Extremes of the deformation so far [m]
-      real(wp), private :: highest = 0.0_wp, lowest = 0.0_wp
-      !> Work up to the last corner [J], and that corner [m, N]
-      real(wp), private :: work = 0.0_wp, d_last = 0.0_wp, f_last = 0.0_wp
+      !> Growth of the strength with the plastic reach, and half of the reach that it belongs to
+      real(wp) :: isotropic_hardening = 0.0_wp, hardening_reach = 1.0_wp
+      !> Force at which hardening ends [N], `unset`: it does not end
+      real(wp) :: f_u = unset
+      !> Length of the plateau, and plastic deformation that halves the strength (0: none), over d_y
+      real(wp) :: plateau = 0.0_wp, endurance = 0.0_wp
+      !> Yield deformation [m]
+      real(wp), private :: d_y = 0.0_wp
+      type(table_type), private :: table
+      !> Elements that have limits: all, or all but that of hardening
+      integer, private :: limited = yielding
+      !> Stiffness of the elements [N/m], and their forces [N] at the last event
+      real(wp), private :: k_element(elements) = 0.0_wp, s(elements) = 0.0_wp
+      !> Their slopes on the present line [N/m]
+      real(wp), private :: rate(elements) = 0.0_wp
+      !> Deformation at the last event, and extremes of the deformation up to it [m]
+      real(wp), private :: d = 0.0_wp, highest = 0.0_wp, lowest = 0.0_wp
+      !> Plastic deformation inside the reach up to it [m], and its growth along the present line
+      real(wp), private :: worn = 0.0_wp, wear_rate = 0.0_wp
    contains
       procedure, nopass :: keys
       procedure, nopass :: places
@@ -109,7 +129,10 @@ contains
       self%cr1 = value(5)
       self%cr2 = value(6)
       self%isotropic_hardening = value(7)
-      self%half_strength_work = value(8)
+      self%hardening_reach = value(8)
+      self%f_u = value(9)
+      self%plateau = value(10)
+      self%endurance = value(11)
    end subroutine set
 
    pure real(wp) function initial_stiffness(self)
@@ -122,198 +145,284 @@ contains
       class(steel_rule), intent(in) :: self
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
+      real(wp) :: largest
+      integer :: before
 
+      before = messages%count
       if (self%k_post >= self%k) then
          call messages%add(name//': k_post = '//to_text(self%k_post)//' must be below k = '// &
                            to_text(self%k)//'; use an elastic spring for one that does not yield')
       end if
+      if (is_given(self%f_u)) then
+         if (self%f_u < self%f_y) then
+            call messages%add(name//': f_u = '//to_text(self%f_u)//' must not be below f_y = '// &
+                              to_text(self%f_y))
+         end if
+         if (.not. self%k_post > 0.0_wp) then
+            call messages%add(name//': f_u = '//to_text(self%f_u)//' is not reached with k_post = 0; '// &
+                              'remove f_u or give k_post above zero')
+         end if
+      else if (self%plateau > 0.0_wp) then
+         call messages%add(name//': plateau = '//to_text(self%plateau)//' needs f_u, where hardening ends')
+      end if
       call check_product(self%k, self%f_y/self%k, name, 'k d_y', messages)
+      if (messages%count > before .or. .not. self%endurance > 0.0_wp) return
+      largest = largest_limit(self)
+      if (self%endurance < largest) then
+         call messages%add(name//': endurance = '//to_text(self%endurance)//' must be '//to_text(largest)// &
+                           ' or more, the widest limit of an element over d_y; 0 means no wear')
+      end if
    end subroutine check
 
    subroutine start(self, line)
       class(steel_rule), intent(inout) :: self
       type(segment), intent(out) :: line
-      real(wp) :: d, d_y
-      type(branch_type) :: first
 
-      self%count = 0
-      self%highest = 0.0_wp
-      self%lowest = 0.0_wp
-      self%work = 0.0_wp
-      self%d_last = 0.0_wp
-      self%f_last = 0.0_wp
-      d_y = self%f_y/self%k
-      first = branch_type(direction=1, d_a=d_y, f_a=self%f_y, r=self%r0)
-      d = corners(1)**(1.0_wp/self%r0)*d_y
-      line = segment(k=curve(self, first, d)/d, lo=-d, hi=d)
+      self%d_y = self%f_y/self%k
+      self%k_element = [(self%k - self%k_post)*share, self%k_post]
+      self%limited = merge(elements, yielding, is_given(self%f_u))
+      call make_table(self, self%table)
+      self%s = 0.0_wp
+      self%rate = self%k_element
+      self%d = 0.0_wp
+      self%highest = self%d_y
+      self%lowest = -self%d_y
+      self%worn = 0.0_wp
+      self%wear_rate = 0.0_wp
+      line = segment(k=self%k, lo=-self%d_y, hi=self%d_y)
    end subroutine start
 
    subroutine next(self, line, direction)
       class(steel_rule), intent(inout) :: self
       type(segment), intent(inout) :: line
       integer, intent(in) :: direction
-      real(wp) :: d, f
+      !> As seen in the direction: forces, their limits, growth of the limits with the deformation
+      real(wp) :: s(elements), limit(elements), growth(elements)
+      real(wp) :: end_of_reach, reach, ahead, far, f, slope
+      integer :: i, n
+      logical :: growing, one_slips, slips(elements)
 
-      d = line%end_toward(direction)
-      f = line%force(d)
-      self%work = self%work + 0.5_wp*(f + self%f_last)*(d - self%d_last)
-      self%d_last = d
-      self%f_last = f
-      if (self%count == 0) then
-         self%count = 1
-         self%branch(1) = branch_type(direction=direction, d_a=direction*self%f_y/self%k, &
-                                      f_a=direction*self%f_y, r=self%r0, d_meet=direction*unbounded)
-      else if (self%branch(self%count)%direction /= direction) then
-         call turn_back(self, d, f)
-      else
-         ! Back on the previous branch: those in between are forgotten.
-         do while (direction*(d - self%branch(self%count)%d_meet) >= 0.0_wp)
-            self%count = self%count - 2
-         end do
+      n = self%limited
+      call bring(self, line%end_toward(direction))
+      reach = self%highest - self%lowest
+      end_of_reach = merge(self%highest, self%lowest, direction > 0)
+      growing = direction*(end_of_reach - self%d) <= 0.0_wp
+      call find_limits(self, growing, limit, growth, ahead)
+      s = direction*self%s
+      do i = 1, n
+         slips(i) = s(i) >= limit(i) - near_limit*reach*self%k_element(i) .and. &
+                    growth(i) < as_fast*self%k_element(i)
+         if (slips(i)) s(i) = limit(i)
+      end do
+      one_slips = any(slips(:n))
+      self%wear_rate = 0.0_wp
+      if (self%endurance > 0.0_wp .and. .not. growing .and. one_slips) then
+         call wear(self, limit, slips, growth, ahead)
       end if
-      call follow_branch(self, d, f, line)
+      self%rate(:n) = merge(growth(:n), self%k_element(:n), slips(:n))
+      do i = 1, n
+         if (growth(i) >= as_fast*self%k_element(i) .or. slips(i)) cycle
+         ahead = min(ahead, (limit(i) - s(i))/(self%k_element(i) - growth(i)))
+      end do
+      self%s(:n) = direction*s(:n)
+
+      f = 0.0_wp
+      if (n < elements) f = self%s(elements)
+      f = f + direction*sum(s(:n))
+      slope = self%k
+      if (one_slips) slope = sum(self%rate)
+      far = direction*unbounded
+      if (ahead < unbounded) far = self%d + direction*ahead
+      if (.not. growing .and. direction*(end_of_reach - far) <= 0.0_wp) far = end_of_reach
+      line = segment(d0=self%d, f0=f, k=slope)
+      line = line%outward(direction, near=self%d, far=far, near_closed=.true., one_way=growing .or. one_slips)
    end subroutine next
 
-   !> Start a branch at (d, f) in the direction opposite to the present one.
-   subroutine turn_back(self, d, f)
-      class(steel_rule), intent(inout) :: self
-      real(wp), intent(in) :: d, f
-      type(branch_type) :: new
-      real(wp) :: d_y, plastic, strength, xi
-      integer :: s
+   !> Move along the present line to its end at d.
+   pure subroutine bring(self, d)
+      type(steel_rule), intent(inout) :: self
+      real(wp), intent(in) :: d
+      integer :: n
 
-      d_y = self%f_y/self%k
-      s = -self%branch(self%count)%direction
-      ! A branch of the new direction that started less far out than this point is no longer needed. The
-      ! branch before it replaces the present one if the two would meet, as the present one only approaches
-      ! it; else the present one replaces it.
-      do while (self%count >= 2)
-         if (s*(d - self%branch(self%count - 1)%d_0) > 0.0_wp) exit
-         if (self%count >= 3 .and. abs(self%branch(self%count)%d_meet) < unbounded) then
-            self%count = self%count - 2
-         else
-            call forget(self, self%count - 1)
-         end if
-      end do
-      if (self%count == most_branches) call forget(self, 2)
+      n = self%limited
+      self%s(:n) = self%s(:n) + self%rate(:n)*(d - self%d)
+      ! Hardening without end is a line through the origin.
+      if (n < elements) self%s(elements) = self%k_post*d
+      self%worn = self%worn + self%wear_rate*abs(d - self%d)
+      self%d = d
       self%highest = max(self%highest, d)
       self%lowest = min(self%lowest, d)
+   end subroutine bring
+
+   !> Limits of the elements, their growth with the deformation, and distance to the next row of the table.
+   pure subroutine find_limits(self, growing, limit, growth, ahead)
+      type(steel_rule), intent(in) :: self
+      logical, intent(in) :: growing
+      !> (elements) [N], (elements) [N/m]
+      real(wp), intent(out) :: limit(elements), growth(elements)
+      !> [m], `unbounded` if no row follows
+      real(wp), intent(out) :: ahead
+      real(wp) :: q, way, strength
+      integer :: row
+
       strength = 1.0_wp
-      if (self%isotropic_hardening > 0.0_wp) then
-         strength = 1.0_wp + self%isotropic_hardening*(0.5_wp*(self%highest - self%lowest)/d_y)**0.8_wp
+      if (self%endurance > 0.0_wp) then
+         strength = max(0.0_wp, 1.0_wp - self%worn/(2.0_wp*self%endurance*self%d_y))
       end if
-      if (self%half_strength_work > 0.0_wp) then
-         plastic = max(0.0_wp, self%work - 0.5_wp*f**2/self%k)/(self%f_y*d_y)
-         strength = strength/(1.0_wp + (plastic/self%half_strength_work)**2)
-      end if
-      new%direction = s
-      new%d_0 = d
-      new%f_0 = f
-      ! The elastic line through (d, f) meets  f = s strength f_y + k_post (d - s d_y).
-      new%d_a = (s*(strength*self%f_y - self%k_post*d_y) - f + self%k*d)/(self%k - self%k_post)
-      if (s*(new%d_a - d) < 1.0e-9_wp*d_y) new%d_a = d + s*1.0e-9_wp*d_y
-      new%f_a = f + self%k*(new%d_a - d)
-      xi = abs(merge(self%highest, self%lowest, s > 0) - new%d_a)/d_y
-      new%r = max(least_r, self%r0*(1.0_wp - self%cr1*xi/(self%cr2 + xi)))
-      new%d_meet = s*unbounded
-      if (self%count >= 2) call find_meeting(self, self%branch(self%count - 1), new)
-      self%count = self%count + 1
-      self%branch(self%count) = new
-      ! Turned back at once without having moved: still on the previous branch.
-      if (abs(new%d_meet - d) <= 1.0e-9_wp*abs(new%d_a - d)) self%count = self%count - 2
-   end subroutine turn_back
-
-   !> Forget a branch and the one before it, which later branches have passed or will not meet any more.
-   subroutine forget(self, place)
-      class(steel_rule), intent(inout) :: self
-      integer, intent(in) :: place
-      integer :: first, i
-
-      first = max(place - 1, 1)
-      self%branch(first:self%count - place + first - 1) = self%branch(place + 1:self%count)
-      self%count = self%count - place + first - 1
-      do i = first, min(first + 1, self%count)
-         self%branch(i)%d_meet = self%branch(i)%direction*unbounded
-      end do
-   end subroutine forget
-
-   !> The point where a new branch meets the previous one of its direction.
-   subroutine find_meeting(self, old, new)
-      class(steel_rule), intent(in) :: self
-      type(branch_type), intent(in) :: old
-      type(branch_type), intent(inout) :: new
-      real(wp) :: near, far, middle, reach
-      integer :: i, s
-
-      s = new%direction
-      reach = abs(new%d_a - new%d_0)
-      near = new%d_0
-      ! With low roundness a branch may start above the old one and so has already passed it.
-      if (s*(new%f_0 - curve(self, old, near)) > 1.0e-9_wp*self%f_y) return
-      do i = 1, size(corners)
-         far = new%d_0 + s*reach*corners(i)**(1.0_wp/new%r)
-         if (s*(curve(self, new, far) - curve(self, old, far)) >= 0.0_wp) exit
-         near = far
-      end do
-      if (i > size(corners)) return
-      do i = 1, 60
-         middle = 0.5_wp*(near + far)
-         if (s*(curve(self, new, middle) - curve(self, old, middle)) >= 0.0_wp) then
-            far = middle
-         else
-            near = middle
-         end if
-         if (abs(far - near) <= 1.0e-10_wp*reach) exit
-      end do
-      new%d_meet = far
-   end subroutine find_meeting
-
-   !> The chord of the present branch that starts at (d, f).
-   subroutine follow_branch(self, d, f, line)
-      class(steel_rule), intent(in) :: self
-      real(wp), intent(in) :: d, f
-      type(segment), intent(out) :: line
-      real(wp) :: reach, far, f_far
-      integer :: i, s
-
-      associate (branch => self%branch(self%count))
-         s = branch%direction
-         reach = abs(branch%d_a - branch%d_0)
-         far = s*unbounded
-         do i = 1, size(corners)
-            far = branch%d_0 + s*reach*corners(i)**(1.0_wp/branch%r)
-            if (s*(far - d) > 1.0e-6_wp*reach) exit
-            far = s*unbounded
+      q = (self%highest - self%lowest)/self%d_y - 2.0_wp
+      growth = 0.0_wp
+      ahead = unbounded
+      associate (table => self%table)
+         do row = 1, table%rows - 1
+            if (q < table%q(row + 1) - 1.0e-12_wp*(2.0_wp + q)) exit
          end do
-         if (s*(far - branch%d_meet) > 0.0_wp) far = branch%d_meet
-         line = segment(d0=d, f0=f, k=self%k_post)
-         if (abs(far) < unbounded) then
-            f_far = curve(self, branch, far)
-            if (s*(far - branch%d_meet) >= 0.0_wp) f_far = curve(self, self%branch(self%count - 2), far)
-            line%k = (f_far - f)/(far - d)
-         end if
+         limit = strength*self%d_y*self%k_element*table%y(:, row)
+         if (row == table%rows) return
+         way = table%q(row + 1) - table%q(row)
+         growth = strength*self%k_element*(table%y(:, row + 1) - table%y(:, row))/way
+         limit = limit + growth*(q - table%q(row))*self%d_y
+         ahead = (table%q(row + 1) - q)*self%d_y
+         if (growing) return
+         growth = 0.0_wp
+         ahead = unbounded
       end associate
-      line = line%outward(s, near=d, far=far, near_closed=.true., one_way=.true.)
-   end subroutine follow_branch
+   end subroutine find_limits
 
-   !> Force of a branch at a deformation [N]; before its start, on the elastic line.
-   pure real(wp) function curve(self, branch, d) result(f)
-      class(steel_rule), intent(in) :: self
-      type(branch_type), intent(in) :: branch
-      !> Deformation [m]
-      real(wp), intent(in) :: d
-      real(wp) :: x, b
+   !> Wear and force along a line determine each other: the limits y_i lose e_i for each unit of plastic
+   !> deformation d - f/k, and its share in the deformation follows from the slope that this gives.
+   pure subroutine wear(self, limit, slips, growth, ahead)
+      type(steel_rule), intent(inout) :: self
+      real(wp), intent(in) :: limit(elements)
+      logical, intent(in) :: slips(elements)
+      !> (elements) [N/m]
+      real(wp), intent(out) :: growth(elements)
+      !> Distance to the deformation at which no strength is left [m]
+      real(wp), intent(inout) :: ahead
+      real(wp) :: left, loss(elements), slope, slipping
+      integer :: n
 
-      x = (d - branch%d_0)/(branch%d_a - branch%d_0)
-      if (x <= 0.0_wp) then
-         f = branch%f_0 + self%k*(d - branch%d_0)
+      n = self%limited
+      growth = 0.0_wp
+      left = 2.0_wp*self%endurance*self%d_y - self%worn
+      if (left <= near_limit*(self%highest - self%lowest)) then
+         self%worn = 2.0_wp*self%endurance*self%d_y
          return
       end if
-      b = self%k_post/self%k
-      ! Far out the curve equals its asymptote, and the power would overflow.
-      f = b*x + 1.0_wp - b
-      if (x < 1.0e6_wp) f = b*x + (1.0_wp - b)*x/(1.0_wp + x**branch%r)**(1.0_wp/branch%r)
-      f = branch%f_0 + f*(branch%f_a - branch%f_0)
-   end function curve
+      loss(:n) = limit(:n)/left
+      slipping = sum(loss(:n), mask=slips(:n))
+      slope = sum(self%k_element(:n), mask=.not. slips(:n)) - slipping
+      if (n < elements) slope = slope + self%k_post
+      slope = slope/(1.0_wp - slipping/self%k)
+      self%wear_rate = 1.0_wp - slope/self%k
+      growth(:n) = -loss(:n)*self%wear_rate
+      ahead = min(ahead, left/self%wear_rate)
+   end subroutine wear
+
+   !> The widest limit of an element that has one, over k_i d_y.
+   real(wp) function largest_limit(self)
+      type(steel_rule), intent(in) :: self
+      type(table_type) :: table
+      integer :: n
+
+      call make_table(self, table)
+      n = merge(elements, yielding, is_given(self%f_u))
+      largest_limit = maxval(table%y(:n, :table%rows))
+   end function largest_limit
+
+   !> The limits by plastic reach.
+   pure subroutine make_table(self, table)
+      type(steel_rule), intent(in) :: self
+      type(table_type), intent(out) :: table
+      real(wp) :: b, r, q, strength, way, y_u
+      integer :: j
+
+      table%rows = size(reaches)
+      table%q(:table%rows) = reaches
+      y_u = 1.0_wp
+      if (is_given(self%f_u)) then
+         b = self%k_post/self%k
+         y_u = max(1.0_wp, (self%f_u/self%f_y - (1.0_wp - b))/b)
+         if (self%plateau > 0.0_wp) then
+            call insert_row(table, self%plateau)
+            call insert_row(table, self%plateau + (y_u - 1.0_wp))
+         end if
+      end if
+      table%y(elements, :) = y_u
+      if (self%plateau > 0.0_wp) then
+         table%y(elements, :) = 1.0_wp + min(max(table%q - self%plateau, 0.0_wp), y_u - 1.0_wp)
+      end if
+      do j = 2, table%rows
+         associate (before => table%y(:yielding, j - 1), y => table%y(:yielding, j))
+            q = min(table%q(j), reaches(size(reaches)))
+            way = table%q(j) - table%q(j - 1)
+            r = max(least_r, self%r0*(1.0_wp - self%cr1*q/(self%cr2 + q)))
+            strength = 1.0_wp + self%isotropic_hardening*(0.5_wp*q/self%hardening_reach)**0.8_wp
+            strength = min(strength, sum(share*before) + 0.9_wp*way)
+            y = strength*round_limits(r)
+            call limit_row(y, strength, max(before - way, 0.0_wp), before + way)
+            ! Apart from round-off the limit moves as fast as its element.
+            where (y - before > as_fast*way) y = before + way
+         end associate
+      end do
+   end subroutine make_table
+
+   !> Make a corner of the plateau a row; it replaces a row next to it.
+   pure subroutine insert_row(table, q)
+      type(table_type), intent(inout) :: table
+      real(wp), intent(in) :: q
+      integer :: place
+
+      if (q <= 1.0e-6_wp) return
+      place = minloc(abs(table%q(:table%rows) - q), dim=1)
+      if (abs(table%q(place) - q) > 1.0e-6_wp*max(1.0_wp, q)) then
+         place = count(table%q(:table%rows) < q) + 1
+         table%q(place + 1:table%rows + 1) = table%q(place:table%rows)
+         table%rows = table%rows + 1
+      end if
+      table%q(place) = q
+   end subroutine insert_row
+
+   !> Limits of the elements for which the polygon follows g = x/(1 + x^R)^(1/R): its tangent of slope m meets
+   !> x = 0 at c with c^p + m^p = 1, p = R/(R + 1). The polygon is moved from outside the curve to both sides
+   !> of it; its asymptote is exact.
+   pure function round_limits(r) result(x)
+      real(wp), intent(in) :: r
+      real(wp) :: x(yielding), c(0:yielding), p
+
+      p = r/(r + 1.0_wp)
+      c = (1.0_wp - 0.03_wp/r)*(1.0_wp - slopes**p)**(1.0_wp/p)
+      c(0) = 0.0_wp
+      c(yielding) = 1.0_wp
+      x = (c(1:) - c(:yielding - 1))/share
+   end function round_limits
+
+   !> Keep limits within bounds, and shift all by one value so that the strength of the bank is unchanged.
+   pure subroutine limit_row(y, strength, least, most)
+      real(wp), intent(inout) :: y(:)
+      !> Strength of the bank over that of the virgin one
+      real(wp), intent(in) :: strength
+      real(wp), intent(in) :: least(:), most(:)
+      real(wp) :: from(size(y)), low, high, c, missing, free
+      integer :: i
+
+      from = y
+      low = minval(least - from)
+      high = maxval(most - from)
+      c = min(max(0.0_wp, low), high)
+      ! The sum is made of straight pieces in c: Newton's method ends on the right one.
+      do i = 1, 200
+         y = min(max(from + c, least), most)
+         missing = strength - sum(share*y)
+         if (abs(missing) <= 1.0e-15_wp*strength) exit
+         if (missing > 0.0_wp) low = c
+         if (missing < 0.0_wp) high = c
+         free = sum(share, mask=from + c > least .and. from + c < most)
+         if (free > 0.0_wp) then
+            c = max(min(c + missing/free, high), low)
+         else
+            c = 0.5_wp*(low + high)
+         end if
+      end do
+   end subroutine limit_row
 
 end module rbs_hysteresis_steel

@@ -17,6 +17,7 @@ program unit_tests
    use test_peak_oriented, only: collect_peak_oriented
    use test_protocol, only: collect_protocol
    use test_results, only: collect_results
+   use test_rules, only: collect_rules
    use test_run, only: collect_run
    use test_section, only: collect_section
    use test_segment, only: collect_segment
@@ -27,7 +28,6 @@ program unit_tests
    use test_static, only: collect_static
    use test_static_finite, only: collect_static_finite
    use test_steel, only: collect_steel
-   use test_steel_bank, only: collect_steel_bank
    use test_steppers, only: collect_steppers
    use test_takeda, only: collect_takeda
    use test_text, only: collect_text
@@ -59,8 +59,8 @@ program unit_tests
              suite_type('capped', collect_capped), &
              suite_type('peak_oriented', collect_peak_oriented), &
              suite_type('concrete', collect_concrete), &
-             suite_type('steel', collect_steel), suite_type('steel_bank', collect_steel_bank), &
-             suite_type('layered', collect_layered), &
+             suite_type('steel', collect_steel), &
+             suite_type('layered', collect_layered), suite_type('rules', collect_rules), &
              suite_type('springs', collect_springs), suite_type('column', collect_column), &
              suite_type('chain', collect_chain), &
              suite_type('band', collect_band), &

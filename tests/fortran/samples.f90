@@ -130,7 +130,7 @@ contains
       call spec%set('f_y', 7.2e5_wp)
       call spec%set('k_post', 8.0e6_wp)
       call spec%set('isotropic_hardening', 0.01_wp)
-      call spec%set('half_strength_work', 2000.0_wp)
+      call spec%set('endurance', 2000.0_wp)
    end function steel_1
 
    !> Column 1 as one body.

@@ -1,13 +1,15 @@
 """Concrete, steel and the joint of layers once more, from ``docs/rules.md`` and another way.
 
-Small steps instead of lines: the steel follows the smooth curve, not its chords; the joint finds
-its opening from the axial force at every step, not by straight lines between events. Springs are
+Small steps instead of lines: the elements of the steel are put back on their limits after each
+step, which is exact but for wear, and of first order in the step with it; the joint finds its
+opening from the axial force at every step, not by straight lines between events. Springs are
 values: `step` gives the force and the spring as it is then, and leaves the one it began from.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -29,13 +31,14 @@ class Concrete:
     contact: float = 0.0
     misfit: float = 0.0
     wear: float = 0.0
-    virgin: bool = True
     largest: float = 0.0  # closing so far
+    top: float = 0.0  # force there without wear
+    strongest: float = 0.0  # largest force so far without wear
     rest: float = 0.0  # plastic closing
-    touch: float = 0.0
+    gap: float = 0.0  # from there back to the touch
     widest: float = 0.0
     strength: float = 1.0
-    closed: bool = True
+    c: float = 0.0
 
     def envelope(self, c: float) -> float:
         r = self.k / (self.k - self.f_peak / self.d_peak)
@@ -44,67 +47,104 @@ class Concrete:
             return float(np.interp(c / self.d_peak, CHORDS, rising))
         return max(self.f_peak - self.k_soft * (c - self.d_peak), self.f_res)
 
+    def plastic_closing(self, c: float, force: float) -> float:
+        def share(x: float) -> float:
+            return 0.145 * x**2 + 0.13 * x if x <= 2 else 0.84 + 0.834 * (x - 2)
+
+        plastic = self.plastic * (share(c / self.d_peak) - share(0.25)) * self.d_peak
+        return max(0.0, min(plastic, c - force / self.k))
+
     def step(self, d: float) -> tuple[float, Concrete]:
         c = -d
-        if self.virgin and 0 <= c < 0.25 * self.d_peak:
-            return -self.envelope(c), self
-        new = replace(self, virgin=False)
+        new = replace(self, c=c)
         if c >= self.largest:
-            force = self.strength * self.envelope(c)
-            x = c / self.d_peak
-            share = 0.145 * x**2 + 0.13 * x if x <= 2 else 0.84 + 0.834 * (x - 2)
-            rest = max(0.0, min(self.plastic * share * self.d_peak, c - force / self.k))
-            return -force, replace(
-                new, largest=c, rest=rest, touch=min(self.touch, rest), closed=True
+            top = self.envelope(c)
+            # On the way there the force was largest at the peak of the envelope.
+            strongest = max(self.strongest, self.f_peak if c >= self.d_peak else top)
+            gap = self.gap * (self.strongest / strongest if strongest else 1.0)
+            rest = self.plastic_closing(c, top)
+            return -self.strength * top, replace(
+                new, largest=c, top=top, strongest=strongest, rest=rest, gap=gap
             )
-        top = self.strength * self.envelope(self.largest)
-        points = [(self.rest, 0.0), (self.largest, top)]
-        if self.touch < self.rest:
-            middle = self.rest + self.contact * (self.largest - self.rest)
-            points = [(self.touch, 0.0), (middle, self.contact * top), (self.largest, top)]
-        if c > self.touch:
-            places, forces = zip(*points, strict=True)
-            return -float(np.interp(c, places, forces)), replace(new, closed=True)
-        if self.closed and self.largest > 0:
-            loss = self.wear * min(1.0, 0.5 * self.largest / self.d_peak)
-            new = replace(new, strength=self.strength * (1 - loss), closed=False)
-        widest = max(self.widest, self.rest - c)
-        return 0.0, replace(new, widest=widest, touch=self.rest - self.misfit * widest)
+        touch = self.rest - self.gap
+        if c > touch:
+            shares = [0.0, self.contact, 1.0] if self.gap else [0.0, 1.0]
+            full = [self.rest + part * (self.largest - self.rest) for part in shares]
+            places = [touch, *full[1:]] if self.gap else full
+            force = np.interp(c, places, shares) * self.strength * self.top
+            return -float(force), new
+        start, width = self.rest - min(self.c, touch), self.rest - c
+        if width <= start:
+            return 0.0, new
+
+        def way(w: float) -> float:
+            """Integral of dw/(widest so far + d_peak)."""
+            inside = min(w, self.widest) / (self.widest + self.d_peak)
+            return inside + np.log(
+                (max(w, self.widest) + self.d_peak) / (self.widest + self.d_peak)
+            )
+
+        part = (way(width) - way(start)) * min(1.0, 0.5 * self.largest / self.d_peak)
+        return 0.0, replace(
+            new,
+            strength=self.strength * (1 - self.wear) ** part,
+            gap=max(self.gap, self.misfit * width),
+            widest=max(self.widest, width),
+        )
 
 
-@dataclass(frozen=True)
-class Branch:
-    """Curve of Menegotto and Pinto from one point of reversal."""
+SLOPES = np.array([1, 0.94, 0.75, 0.5, 0.25, 0.08, 0.015, 0])
+SHARES = SLOPES[:-1] - SLOPES[1:]
 
-    way: int
-    d: float
-    f: float
-    d_a: float
-    f_a: float
-    r: float
-    k: float
-    ratio: float
 
-    def force(self, d: float) -> float:
-        x = (d - self.d) / (self.d_a - self.d)
-        if x <= 0:
-            return self.f + self.k * (d - self.d)
-        # Far out the curve is its asymptote; the power would overflow.
-        bend = x / (1 + x**self.r) ** (1 / self.r) if self.r * np.log(x) < 500 else 1.0
-        return self.f + (self.ratio * x + (1 - self.ratio) * bend) * (self.f_a - self.f)
+@cache
+def limits(  # one argument for each parameter that shapes the table
+    r0: float,
+    cr1: float,
+    cr2: float,
+    hardening: float,
+    reach: float,
+    plateau: float,
+    last: float | None,
+) -> tuple[Any, Any]:
+    """Rows of the plastic reach, and the limits of the elements in them."""
+    rows = np.array([0.0, *(0.1 * 2**i for i in range(11))])
+    if last is not None and plateau:
+        for corner in (plateau, plateau + last - 1):
+            near = np.argmin(np.abs(rows - corner))
+            if abs(rows[near] - corner) <= 1e-6 * max(1, corner):
+                rows[near] = corner
+            else:
+                rows = np.sort([*rows, corner])
+    table = [np.ones(7)]
+    for q, way in zip(rows[1:], np.diff(rows), strict=True):
+        reached = min(q, 102.4)
+        r = max(0.8, r0 * (1 - cr1 * reached / (cr2 + reached)))
+        p = r / (r + 1)
+        c = (1 - 0.03 / r) * (1 - SLOPES**p) ** (1 / p)
+        c[0], c[-1] = 0, 1
+        before = table[-1]
+        strength = 1 + hardening * (reached / 2 / reach) ** 0.8
+        strength = min(strength, SHARES @ before + 0.9 * way)
+        wanted = strength * np.diff(c) / SHARES
+        low, high = np.maximum(before - way, 0), before + way
 
-    def meets(self, old: Branch) -> bool:
-        """Whether it comes up to an older one where it still bends."""
-        if self.way * (self.f - old.force(self.d)) > 1e-9 * abs(self.f_a):
-            return False
-        x = np.linspace(1e-6, 1, 200) * 30 ** (1 / self.r)
-        places = self.d + x * (self.d_a - self.d)
-        return any(self.way * (self.force(d) - old.force(d)) >= 0 for d in places)
+        def row(shift: float, wanted: Any = wanted, low: Any = low, high: Any = high) -> Any:
+            return np.clip(wanted + shift, low, high)
+
+        def excess(shift: float, row: Any = row, strength: float = strength) -> float:
+            return SHARES @ row(shift) - strength
+
+        table.append(row(brentq(excess, -1e3, 1e3, xtol=1e-15, rtol=1e-14)))
+    hardest = np.full(rows.size, np.inf if last is None else last)
+    if last is not None and plateau:
+        hardest = 1 + np.clip(rows - plateau, 0, last - 1)
+    return rows, np.column_stack([np.array(table), hardest])
 
 
 @dataclass(frozen=True)
 class Steel:
-    """Section 10."""
+    """Section 10: elements that are put back on their limits after every step."""
 
     k: float
     f_y: float
@@ -113,66 +153,52 @@ class Steel:
     cr1: float = 0.925
     cr2: float = 0.15
     isotropic_hardening: float = 0.0
-    half_strength_work: float = 0.0
+    hardening_reach: float = 1.0
+    f_u: float | None = None
+    plateau: float = 0.0
+    endurance: float = 0.0
     d: float = 0.0
     f: float = 0.0
-    work: float = 0.0
+    elements: tuple[float, ...] = (0.0,) * 8
     highest: float = 0.0
     lowest: float = 0.0
-    branches: tuple[Branch, ...] = ()
-
-    def begin(self, way: int) -> tuple[Branch, ...]:
-        """Return the branches when the motion goes on in a direction."""
-        d_y, branches = self.f_y / self.k, list(self.branches)
-        if not branches:
-            ends = way * d_y, way * self.f_y
-            return (Branch(way, 0.0, 0.0, *ends, self.r0, self.k, self.k_post / self.k),)
-        while len(branches) >= 2 and way * (self.d - branches[-2].d) <= 0:
-            if len(branches) >= 3 and branches[-1].meets(branches[-3]):
-                del branches[-2:]
-            else:
-                del branches[-3 if len(branches) >= 3 else -2 : -1]
-        high, low = max(self.highest, self.d), min(self.lowest, self.d)
-        strength = 1 + self.isotropic_hardening * ((high - low) / 2 / d_y) ** 0.8
-        if self.half_strength_work:
-            spent = max(0.0, self.work - self.f**2 / 2 / self.k) / (self.f_y * d_y)
-            strength /= 1 + (spent / self.half_strength_work) ** 2
-        # Where the elastic line through here meets the line of hardening of the other side.
-        line = way * (strength * self.f_y - self.k_post * d_y)
-        d_a = (line - self.f + self.k * self.d) / (self.k - self.k_post)
-        xi = abs((high if way > 0 else low) - d_a) / d_y
-        r = max(0.8, self.r0 * (1 - self.cr1 * xi / (self.cr2 + xi)))
-        f_a = self.f + self.k * (d_a - self.d)
-        new = Branch(way, self.d, self.f, d_a, f_a, r, self.k, self.k_post / self.k)
-        return (*branches, new)
+    worn: float = 0.0
 
     def step(self, d: float) -> tuple[float, Steel]:
-        if d == self.d:
-            return self.f, self
-        way, branches = (1 if d > self.d else -1), self.branches
-        d_y = self.f_y / self.k
-        if not branches and abs(d) <= 0.03 ** (1 / self.r0) * d_y:
-            # The first chord leads both ways.
-            force = self.k * d * (1 + 0.03) ** (-1 / self.r0)
-            work = self.work + (force + self.f) / 2 * (d - self.d)
-            return force, replace(self, d=d, f=force, work=work)
-        high, low = self.highest, self.lowest
-        if not branches or branches[-1].way != way:
-            if branches:
-                high, low = max(high, self.d), min(low, self.d)
-            branches = self.begin(way)
-        force = branches[-1].force(d)
-        while len(branches) >= 3:
-            new, old = branches[-1], branches[-3]
-            if new.way * (new.f - old.force(new.d)) > 1e-9 * self.f_y:
-                break
-            if way * (force - old.force(d)) < 0:
-                break
-            branches = branches[:-2]
-            force = old.force(d)
-        work = self.work + (force + self.f) / 2 * (d - self.d)
+        d_y, b = self.f_y / self.k, self.k_post / self.k
+        last = None if self.f_u is None else (self.f_u / self.f_y - (1 - b)) / b
+        rows, table = limits(
+            self.r0,
+            self.cr1,
+            self.cr2,
+            self.isotropic_hardening,
+            self.hardening_reach,
+            self.plateau,
+            last,
+        )
+        high, low = max(self.highest, d_y, d), min(self.lowest, -d_y, d)
+        q = (high - low) / d_y - 2
+        stiffness = np.append((self.k - self.k_post) * SHARES, self.k_post)
+        left = 1.0
+        if self.endurance:
+            left = max(0.0, 1 - self.worn / (2 * self.endurance * d_y))
+        reach = np.array([np.interp(q, rows, column) for column in table.T[:7]])
+        reach = np.append(reach, np.inf if last is None else np.interp(q, rows, table.T[7]))
+        bound = np.where(np.isinf(reach), np.inf, 1.0) * left * stiffness * d_y
+        bound = bound * np.where(np.isinf(reach), 1.0, reach)
+        bound[np.isnan(bound)] = np.inf
+        elements = np.clip(np.array(self.elements) + stiffness * (d - self.d), -bound, bound)
+        force, worn = float(elements.sum()), self.worn
+        if self.endurance and self.lowest < d < self.highest:
+            worn += abs((d - self.d) - (force - self.f) / self.k)
         return force, replace(
-            self, d=d, f=force, work=work, highest=high, lowest=low, branches=branches
+            self,
+            d=d,
+            f=force,
+            elements=tuple(elements),
+            highest=max(self.highest, d_y, d),
+            lowest=min(self.lowest, -d_y, d),
+            worn=worn,
         )
 
 

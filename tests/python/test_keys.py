@@ -102,7 +102,6 @@ GOOD = {
     "pinching": CAPPED | {"kappa_f": 0.5, "kappa_d": 0.5},
     "concrete": {"k": 1e9, "f_peak": 1e6, "d_peak": 2e-3, "k_soft": 1e8},
     "steel": {"k": 1e9, "f_y": 1e6, "k_post": 1e7},
-    "steel_bank": {"k": 1e9, "f_y": 1e6, "k_post": 1e7},
 }
 
 
@@ -198,7 +197,6 @@ def test_tables_of_the_rules_name_every_key_and_default():
         "Parameters": ("peak_oriented", "pinching"),
         "Concrete": ("concrete",),
         "Steel": ("steel",),
-        "Steel as a bank of elements": ("steel_bank",),
     }.items():
         keys = {key["name"]: key for rule in rules for key in RULES[rule]["keys"]}
         named = set()
@@ -306,7 +304,7 @@ OLD_PYTHON = [
     (lambda: rbsdem.ConcreteSpring(2, 1, 1, k_fall=1), "k_fall is now k_soft"),
     (lambda: rbsdem.SteelSpring(2, 1, 1, r1=0.9), "r1 is now cr1"),
     (lambda: rbsdem.SteelSpring(2, 1, 1, growth=1), "growth is now isotropic_hardening"),
-    (lambda: rbsdem.SteelSpring(2, 1, 1, endurance=1), "endurance is now half_strength_work"),
+    (lambda: rbsdem.SteelSpring(2, 1, 1, half_strength_work=1), "is now endurance, a plastic"),
     (
         lambda: rbsdem.Layered(layers=[(0, SPRING), (1, SPRING)], axial_load=1.0),
         "axial_load is now the axial load of the column",

@@ -175,7 +175,7 @@ def test_a_section_makes_the_column_of_the_specimen(model):
     column = SECTION.column(1.6, axial_load=1.2e6, model=model)
     drawn = peer.column(SPECIMEN, model)
     assert (column.height, column.n, column.kinematics) == (1.6, drawn.n, "pdelta")
-    assert column.model == {"layered": "layered 2026.1", "paper": "paper"}[model]
+    assert column.model == {"layered": "layered 2026.2", "paper": "paper"}[model]
     assert column.axial_load == drawn.axial_load
     assert column.mass == pytest.approx(0.4 * 0.4 * 1.6 * 2400)
     force = rbsdem.cyclic(column, displacement=LOOP).force
@@ -204,9 +204,10 @@ def test_a_circular_section_makes_both_models():
     ("options", "text"),
     [
         ({"height": 1600.0}, "height = 1600 m must be between .*; 1600 mm is 1.6"),
-        ({"version": "1999.1"}, "version = '1999.1' .* there are 2026.1"),
-        ({"version": "2026.1", "model_parameters": parameters()}, "not both"),
-        ({"model": "paper", "version": "2026.1"}, "version is for model = 'layered'; remove it"),
+        ({"version": "1999.1"}, "version = '1999.1' .* there are 2026.2"),
+        ({"version": "2026.1"}, "version = .2026.1. .* is gone: .* take 2026.2"),
+        ({"version": "2026.2", "model_parameters": parameters()}, "not both"),
+        ({"model": "paper", "version": "2026.2"}, "version is for model = 'layered'; remove it"),
         ({"model": "paper", "round_core": True}, "round_core is for model = 'layered'"),
         ({"axial_height": 0.0}, "axial_height = 0 m must be above zero"),
         ({"axial_load": 9e6}, "axial load = 9000 kN is not between"),
@@ -234,19 +235,19 @@ def test_a_refit_does_not_change_an_older_version(monkeypatch):
 
 def test_the_first_version_stands():
     """Its values are part of every answer that names it: a refit is a new version."""
-    values = parameters("2026.1").values
+    values = parameters("2026.2").values
     digest = hashlib.sha256(repr(sorted(values.items())).encode()).hexdigest()
-    assert (len(values), digest[:16]) == (37, "49181d2b5952f626")
+    assert (len(values), digest[:16]) == (37, "8aa4cba40dcbe0e8")
 
 
 def test_changed_parameters_are_named_as_changed():
     column = SECTION.column(1.6, axial_load=1.2e6)
     changed = column.with_parameters(steel_strength=1.0)
-    assert (column.version, changed.version) == ("2026.1", "2026.1 changed")
-    assert (column.model, changed.model) == ("layered 2026.1", "layered 2026.1 changed")
-    assert "model = 'layered 2026.1'" in column.to_namelist()
+    assert (column.version, changed.version) == ("2026.2", "2026.2 changed")
+    assert (column.model, changed.model) == ("layered 2026.2", "layered 2026.2 changed")
+    assert "model = 'layered 2026.2'" in column.to_namelist()
     assert repr(column) == (
-        "LayeredColumn(height=1.6, n=2, axial_load=1.2e+06, model='layered 2026.1')"
+        "LayeredColumn(height=1.6, n=2, axial_load=1.2e+06, model='layered 2026.2')"
     )
     back = changed.with_parameters(steel_strength=parameters().hinge.steel_strength)
     assert back == column
@@ -333,7 +334,7 @@ def test_a_calibrated_column_keeps_what_was_replaced():
     fit = rbsdem.calibrate(column, test, ["steel_strength"], evaluations=40)
     assert fit.values["steel_strength"] == pytest.approx(1.0, rel=1e-3)
     assert (fit.column.top_mass, fit.column.damping) == (2e4, column.damping)
-    assert fit.column.version == "2026.1 changed"
+    assert fit.column.version == "2026.2 changed"
 
 
 @pytest.mark.parametrize(("springs", "name"), [("shear", "shear_strength"), ("flexure", "wear")])
@@ -380,7 +381,7 @@ def test_each_parameter_has_its_say_up_to_its_bounds(column):
             with pytest.raises(InputError, match=f"{name} = .* is below .* changes nothing"):
                 column.with_parameters(**{name: 0.999 * least})
             beyond += 1
-    assert beyond == 12
+    assert beyond == 13
 
 
 def test_parameters_of_another_model_are_held_to_the_same_limits():

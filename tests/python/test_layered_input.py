@@ -15,10 +15,10 @@ CONCRETE = (
 )
 STEEL = (
     "rule = 'steel', k = 6e8, f_y = 5.4e5, k_post = 6e6, r0 = 8, cr1 = 0.83, cr2 = 0.42, "
-    "isotropic_hardening = 0.005, half_strength_work = 800"
+    "isotropic_hardening = 0.005, endurance = 800"
 )
 BLOCK = rbsdem.ConcreteSpring(2e9, 6e5, 6e-4, 4e7, 2e5, 1.2, 0.35, 0.4, 0.03)
-BAR = rbsdem.SteelSpring(6e8, 5.4e5, 6e6, 8, 0.83, 0.42, 0.005, 800)
+BAR = rbsdem.SteelSpring(6e8, 5.4e5, 6e6, 8, 0.83, 0.42, 0.005, endurance=800)
 LAYERED = "rule = 'layered'"
 PLACES = (-0.15, -0.05, 0.05, 0.15)
 SPRINGS = ["id = 1, " + CONCRETE, "id = 2, " + STEEL]

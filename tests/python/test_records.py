@@ -23,7 +23,7 @@ LAYERS = rbsdem.Layered(
 COLUMN = rbsdem.Column(
     3.0, None, [SHEAR, rbsdem.Elastic(1e9), SHEAR], [LAYERS, FLEXURE, FLEXURE], n=3,
     masses=[300.0, 200.0, 100.0], axial_load=7e5, kinematics="pdelta", damping=0.05,
-    rotary_inertia=[30.0, 20.0, 10.0], top_mass=1e3, model="layered 2026.1",
+    rotary_inertia=[30.0, 20.0, 10.0], top_mass=1e3, model="layered 2026.2",
 )  # fmt: skip
 OPEN = rbsdem.Column(
     2.0, 500.0, SHEAR, FLEXURE, n=2, kinematics="finite", axial_load=1e5,

@@ -53,7 +53,7 @@ def concrete(rng: Rng) -> rbsdem.ConcreteSpring:
 
 def steel(rng: Rng) -> rbsdem.SteelSpring:
     more = {"r0": near(rng, 8.0), "cr1": near(rng, 0.6), "cr2": near(rng, 0.4)}
-    more |= {"isotropic_hardening": near(rng, 0.01), "half_strength_work": near(rng, 800.0)}
+    more |= {"isotropic_hardening": near(rng, 0.01), "endurance": near(rng, 800.0)}
     given = more if rng.random() < 0.5 else {}
     return rbsdem.SteelSpring(near(rng, 6e8), near(rng, 5e5), near(rng, 6e6), **given)
 

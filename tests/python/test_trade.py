@@ -479,8 +479,7 @@ SPRINGS = [
     rbsdem.PeakOriented(1.0, 3.0, 3.0, 3.5, 6.0, 0.2, d_c=0.1, f_c=0.8, lambda_s=40, d_u=20),
     rbsdem.Pinching(1.0, 3.0, 3.0, 3.5, 6.0, kappa_f=0.3, kappa_d=0.4, lambda_a=50),
     rbsdem.ConcreteSpring(3.0, 2.0, 1.5, 0.3, contact=0.3, misfit=0.2, wear=0.05),
-    rbsdem.SteelSpring(3.0, 2.0, 0.1, isotropic_hardening=0.01, half_strength_work=90),
-    rbsdem.SteelBank(3.0, 2.0, 0.1, f_u=2.6, plateau=2.0, endurance=90),
+    rbsdem.SteelSpring(3.0, 2.0, 0.1, isotropic_hardening=0.01, f_u=2.6, plateau=2.0, endurance=90),
     rbsdem.Layered([(-1.0, rbsdem.SteelSpring(3.0, 2.0, 0.1)), (1.0, rbsdem.Elastic(2.0))]),
 ]
 

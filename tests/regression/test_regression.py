@@ -767,10 +767,10 @@ STRIP = rbsdem.ConcreteSpring(
     wear=0.03,
 )
 SIDE = rbsdem.SteelSpring(
-    6e8, 5.4e5, 6e6, r0=8, cr1=0.83, cr2=0.42, isotropic_hardening=0.005, half_strength_work=800
+    6e8, 5.4e5, 6e6, r0=8, cr1=0.83, cr2=0.42, isotropic_hardening=0.005, endurance=800
 )
 MIDDLE = rbsdem.SteelSpring(
-    4e8, 3.6e5, 4e6, r0=8, cr1=0.83, cr2=0.42, isotropic_hardening=0.005, half_strength_work=800
+    4e8, 3.6e5, 4e6, r0=8, cr1=0.83, cr2=0.42, isotropic_hardening=0.005, endurance=800
 )
 STRIPS = [(y, STRIP) for y in (-0.175, -0.125, -0.075, -0.025, 0.025, 0.075, 0.125, 0.175)]
 LAYERED = rbsdem.Layered((*STRIPS, (-0.16, SIDE), (0.0, MIDDLE), (0.16, SIDE)))
@@ -796,8 +796,7 @@ def reason_static_layered(rows: Rows) -> None:
         kind = reference.Concrete if spring is STRIP else reference.Steel
         layers.append((y, kind(**asdict(spring))))
     expected = reference.response(700e3, layers, turn, 10)
-    np.testing.assert_allclose(moment, expected, atol=0.02 * size)  # what the chords cut off
-    assert moment[-1] == pytest.approx(expected[-1], abs=0.01 * size)
+    np.testing.assert_allclose(moment, expected, atol=2e-3 * size)  # of first order in the steps
 
 
 # --------------------------------------------------------------------------------------------------

@@ -30,6 +30,8 @@ _LONGEST_STEEL, _LONGEST_CONCRETE = 0.4, 0.8
 _LARGEST_CONTACT = 0.9
 # Least slope of softening concrete [Pa], and least hardening of bars over their modulus.
 _LEAST_SOFTENING, _LEAST_HARDENING = 1e6, 0.0005
+# Bars endure at least as much as the widest limit of their elements may be (docs/rules.md).
+_LEAST_ENDURANCE = 103.4
 
 
 @dataclass(frozen=True)
@@ -161,7 +163,7 @@ def hinge_joint(
             cr1=hinge.cr1,
             cr2=hinge.cr2,
             isotropic_hardening=hinge.isotropic_hardening,
-            half_strength_work=1 / hinge.fatigue if hinge.fatigue > 0 else 0.0,
+            endurance=max(1 / hinge.fatigue, _LEAST_ENDURANCE) if hinge.fatigue > 0 else 0.0,
         )
 
     layers += [(y, bar(area, steel)) for y, area, steel in section.bars]
@@ -188,7 +190,7 @@ def hinge_joint(
             "core_softening": (_LEAST_SOFTENING / core_slope, math.inf),
             "cover_softening": (_LEAST_SOFTENING / cover_slope, math.inf),
             "hardening": (_least_hardening(section, hinge), math.inf),
-            "fatigue": (0.0, math.inf),
+            "fatigue": (0.0, 1 / _LEAST_ENDURANCE),
         },
     )
 

@@ -63,7 +63,7 @@ def check_model(model: str) -> None:
 def model_name(
     model: str, version: str | None = None, model_parameters: ModelParameters | None = None
 ) -> str:
-    """Return the name of a model with the version of its parameters, as "layered 2026.1".
+    """Return the name of a model with the version of its parameters, as "layered 2026.2".
 
     Parameters
     ----------
@@ -350,7 +350,7 @@ class LayeredColumn(Column):
 
     @property
     def version(self) -> str:
-        """Version of the parameters, as "2026.1", or "2026.1 changed"."""
+        """Version of the parameters, as "2026.2", or "2026.2 changed"."""
         return self._recipe.parameters.label
 
     @property

@@ -267,7 +267,7 @@ class Section(DrawnSection):
             flexure and bilinear shear by the section analysis, as the paper has them; with `n`
             above 1, joints with the section's springs of their tributary lengths above that hinge.
         version : str, optional
-            Version of the parameters of the layered model, as "2026.1"; the newest by default
+            Version of the parameters of the layered model, as "2026.2"; the newest by default
             (`rbsdem.section.versions` lists them).
         model_parameters : ModelParameters, optional
             Parameters in place of those of a version, as of `rbsdem.section.parameters`.
@@ -301,7 +301,7 @@ class Section(DrawnSection):
         ... )
         >>> column = section.column(1.6, axial_load=744e3)
         >>> column.n, column.version
-        (2, '2026.1')
+        (2, '2026.2')
         """
         return make_column(
             self,
