@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from weakref import WeakSet
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -84,6 +85,9 @@ TEST_POINTS: dict[str, Any] = {
 }
 ZERO_LINE: dict[str, Any] = {"color": "0.75", "linewidth": 0.4, "zorder": 1}
 
+# Figures that were made in the house style.
+_HOUSE: WeakSet[Any] = WeakSet()
+
 FIGURE_SIZE = (6.9, 6.0)
 DPI = 300
 
@@ -121,6 +125,48 @@ def style() -> Iterator[None]:
         yield
 
 
+def new_axes(rows: int, columns: int, size: tuple[float, float]) -> list[Axes]:
+    """Make a figure of pyplot in the house style.
+
+    Parameters
+    ----------
+    rows, columns : int
+        Axes below and beside each other.
+    size : tuple of float
+        Width and height [in].
+
+    Returns
+    -------
+    list of matplotlib Axes
+        Row by row. What is drawn on them later has the house style, too.
+    """
+    need_matplotlib()
+    import matplotlib.pyplot as plt  # noqa: PLC0415
+
+    with style():
+        figure, grid = plt.subplots(
+            rows, columns, figsize=size, layout="constrained", squeeze=False
+        )
+    _HOUSE.add(figure)
+    return list(grid.ravel())
+
+
+@contextmanager
+def style_of(ax: Axes) -> Iterator[None]:
+    """Use the house style in a ``with`` block if the axes were made in it, else that of the caller.
+
+    Parameters
+    ----------
+    ax : matplotlib Axes
+        Where is drawn.
+    """
+    if ax.get_figure() not in _HOUSE:
+        yield
+        return
+    with style():
+        yield
+
+
 @contextmanager
 def axes_or_new(ax: Axes | None, size: tuple[float, float] = (3.5, 3.0)) -> Iterator[Axes]:
     """Yield the axes of the caller in the caller's style, or new axes in the house style.
@@ -132,14 +178,12 @@ def axes_or_new(ax: Axes | None, size: tuple[float, float] = (3.5, 3.0)) -> Iter
     size : tuple of float
         Width and height of a new figure [in].
     """
-    need_matplotlib()
     if ax is not None:
-        yield ax
+        with style_of(ax):
+            yield ax
         return
-    import matplotlib.pyplot as plt  # noqa: PLC0415
-
     with style():
-        yield plt.subplots(figsize=size, layout="constrained")[1]
+        yield new_axes(1, 1, size)[0]
 
 
 def loop(
@@ -382,6 +426,9 @@ def _dress(ax: Axes, height: float | None) -> None:
     if not any(line.get_gid() == "zero" for line in ax.get_lines()):
         ax.axhline(0.0, gid="zero", **ZERO_LINE)
         ax.axvline(0.0, gid="zero", **ZERO_LINE)
+    for axis in (ax.xaxis, ax.yaxis):
+        # More ticks will be made, perhaps in another style than that in which the axes were.
+        _keep_letters(axis, axis)
     steps = [1, 2, 2.5, 5, 10]
     ax.xaxis.set_major_locator(MaxNLocator(nbins=7, symmetric=True, steps=steps))
     ax.yaxis.set_major_locator(MaxNLocator(nbins=9, symmetric=True, steps=steps))
@@ -398,4 +445,15 @@ def _dress(ax: Axes, height: float | None) -> None:
             "top", functions=(lambda d: d * share, lambda drift: drift / share), gid="drift"
         )
         top.xaxis.set_major_locator(MaxNLocator(nbins=9, symmetric=True, steps=[1, 2, 5, 10]))
-        top.set_xlabel("Drift ratio (%)")
+        # In the letters of the axes below, wherever those come from.
+        top.set_xlabel("Drift ratio (%)", fontproperties=ax.xaxis.label.get_fontproperties())
+        _keep_letters(top.xaxis, ax.xaxis)
+
+
+def _keep_letters(axis: Any, model: Any) -> None:
+    """Give all ticks of an axis, those to come as well, the letters that one of another has."""
+    label = model.get_major_ticks()[0].label1
+    options = {"labelsize": label.get_fontsize(), "labelcolor": label.get_color()}
+    axis.set_tick_params(**options)
+    with suppress(ValueError):  # matplotlib 3.7 does not know it
+        axis.set_tick_params(labelfontfamily=label.get_fontfamily())

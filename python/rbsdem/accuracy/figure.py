@@ -43,7 +43,7 @@ TOP = 10.0
 
 
 @view_of(Trade, "plot")
-def draw(trade: Trade, ax: Axes | None = None) -> Axes:
+def draw(trade: Trade, ax: Axes | None = None, **line: Any) -> Axes:
     """Draw error against wall time."""
     done = [row for row in trade.rows if math.isfinite(row.error)]
     if not done or trade.reference is None:
@@ -74,16 +74,15 @@ def draw(trade: Trade, ax: Axes | None = None) -> Axes:
             mark = MARKS[method, events]
             if own:
                 label, mark = "as given", OWN
-            drawn.plot(
-                *_points(rows, floor),
-                label=label,
-                linewidth=0.6,
-                linestyle=DASHES[levels.index(level)],
-                markersize=4,
-                markeredgewidth=0.7,
-                zorder=3,
-                **mark,
-            )
+            default = {
+                "label": label,
+                "linewidth": 0.6,
+                "linestyle": DASHES[levels.index(level)],
+                "markersize": 4,
+                "markeredgewidth": 0.7,
+                "zorder": 3,
+            }
+            drawn.plot(*_points(rows, floor), **plot.line_of({**default, **mark}, line))
         _dress(drawn, trade, floor)
     return drawn
 
@@ -106,7 +105,7 @@ def _dress(ax: Axes, trade: Trade, floor: float) -> None:
         floor,
         "agreement of the reference",
         transform=ax.get_yaxis_transform(),
-        fontsize=7,
+        fontsize="small",
         color="0.4",
         ha="right",
         va="top",
@@ -128,7 +127,7 @@ def _dress(ax: Axes, trade: Trade, floor: float) -> None:
                 zorder=4,
             )
     ax.tick_params(which="both", top=True, right=True)
-    ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7.5, handlelength=2.2)
+    ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small", handlelength=2.2)
 
 
 def save(trade: Trade, path: Path, title: str) -> Path | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rbsdem import _views
 from rbsdem.accuracy.physics import Physics
@@ -71,8 +71,15 @@ class Trade:
         """Write the effects of the parts of the model as csv."""
         _views.view(self, "physics_to_csv", path)
 
-    def plot(self, ax: Axes | None = None) -> Axes:
+    def plot(self, ax: Axes | None = None, **line: Any) -> Axes:
         """Draw error against wall time, both logarithmic, the Pareto front marked.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; a new figure without it.
+        **line
+            Properties of the lines, as for ``Axes.plot``.
 
         Raises
         ------
@@ -81,4 +88,4 @@ class Trade:
         ImportError
             If matplotlib is not installed.
         """
-        return _views.view(self, "plot", ax)
+        return _views.view(self, "plot", ax, **line)

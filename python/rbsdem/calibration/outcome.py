@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rbsdem import _views
 from rbsdem._core import Array
@@ -114,13 +114,15 @@ class Calibration:
         """Return the parameters as a table of rich."""
         return _views.view(self, "table")
 
-    def plot(self, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
+    def plot(self, axes: Sequence[Axes] | None = None, **line: Any) -> Sequence[Axes]:
         """Draw the loops before and after the fit over the test.
 
         Parameters
         ----------
         axes : sequence of two matplotlib Axes, optional
             Where to draw; by default a new figure is made.
+        **line
+            Properties of the model's line, as for ``Axes.plot``.
 
         Returns
         -------
@@ -132,4 +134,4 @@ class Calibration:
         ImportError
             If matplotlib is not installed.
         """
-        return _views.view(self, "plot", axes)
+        return _views.view(self, "plot", axes, **line)

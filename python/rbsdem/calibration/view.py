@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rbsdem import plot
-from rbsdem._optional import need_matplotlib, need_rich
+from rbsdem._optional import need_rich
 from rbsdem._views import view_of
 from rbsdem.calibration.outcome import Calibration, Fitted
 from rbsdem.errors import InputError
@@ -72,14 +72,10 @@ def table(fit: Calibration) -> Table:
 
 
 @view_of(Calibration, "plot")
-def draw(fit: Calibration, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
+def draw(fit: Calibration, axes: Sequence[Axes] | None = None, **line: Any) -> Sequence[Axes]:
     """Draw the loops before and after over the test, to the same scale."""
-    need_matplotlib()
     if axes is None:
-        import matplotlib.pyplot as plt  # noqa: PLC0415
-
-        with plot.style():
-            axes = plt.subplots(1, 2, figsize=(6.9, 3.2), layout="constrained")[1]
+        axes = plot.new_axes(1, 2, (6.9, 3.2))
     if len(axes) != 2:
         raise InputError(f"calibration: plot: {len(axes)} axes; give two, for before and after")
     for ax, name, scores in zip(axes, "ab", (fit.before, fit.after), strict=True):
@@ -90,6 +86,7 @@ def draw(fit: Calibration, axes: Sequence[Axes] | None = None) -> Sequence[Axes]
             title=f"({name}) {when}: NRMSE {scores.nrmse:.3f}",
             height=scores.height if scores.height > 0 else None,
             ax=ax,
+            **line,
         )
     highest = max(ax.get_ylim()[1] for ax in axes)
     for ax in axes:

@@ -1,0 +1,132 @@
+"""Figures: keywords of matplotlib pass through, and nothing of the caller's is changed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import rbsdem
+from rbsdem import plot
+
+matplotlib = pytest.importorskip("matplotlib")
+matplotlib.use("Agg")
+plt = pytest.importorskip("matplotlib.pyplot")
+
+COLUMN = rbsdem.paper_columns("pdelta")["zahn_7"]
+D = COLUMN.height * rbsdem.protocol([0.005, 0.01], cycles=1, points=20)
+RESULT = rbsdem.cyclic(COLUMN, displacement=D)
+TEST = (D, RESULT.force)
+HEIGHT = COLUMN.height
+
+
+@pytest.fixture(autouse=True)
+def closed():
+    """Close the figures of a test."""
+    yield
+    plt.close("all")
+
+
+@pytest.fixture(scope="module")
+def views():
+    """Whatever draws loops; each returns axes, the last line of which is the model's."""
+    pytest.importorskip("scipy")
+    fit = rbsdem.calibrate(COLUMN, TEST, free=["flexure.k_u"])
+    return {
+        "loop": lambda **line: plot.loop(RESULT, **line),
+        "drift": lambda **line: plot.loop(RESULT, height=HEIGHT, **line),
+        "over": lambda **line: plot.loops_over_test(RESULT, TEST, height=HEIGHT, **line),
+        "comparison": lambda **line: rbsdem.compare(RESULT, TEST).plot(**line),
+        "calibration": lambda **line: fit.plot(**line)[1],
+    }
+
+
+def ax_texts(drift):
+    """What an axis of drifts shows: the upper of its axes."""
+    return [*drift.get_xticklabels(), drift.xaxis.label]
+
+
+def fonts(figure):
+    """Family and size of every text."""
+    figure.canvas.draw()
+    found = set()
+    for own in figure.axes:
+        for ax in (own, *own.child_axes):
+            texts = [*ax.get_xticklabels(), *ax.get_yticklabels(), ax.xaxis.label, ax.yaxis.label]
+            texts += [ax.title, *ax.texts]
+            texts += ax.get_legend().get_texts() if ax.get_legend() else []
+            found |= {
+                (text.get_fontfamily()[0], text.get_fontsize())
+                for text in texts
+                if text.get_text() and text.get_visible() and (ax is own or text in ax_texts(ax))
+            }
+    return found
+
+
+@pytest.mark.parametrize("name", ["loop", "drift", "over", "comparison", "calibration"])
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ({"lw": 1}, {"linewidth": 1, "color": "black"}),
+        ({"linewidth": 2.5}, {"linewidth": 2.5}),
+        ({"c": "red", "ls": ":"}, {"color": "red", "linestyle": ":"}),
+        ({"color": "blue", "marker": "o", "ms": 3}, {"color": "blue", "markersize": 3}),
+        ({"alpha": 0.5, "label": "mine"}, {"alpha": 0.5, "label": "mine"}),
+    ],
+)
+def test_keywords_of_the_line_and_their_short_names(views, name, line, expected):
+    ax = views[name](**line)
+    wanted = line.get("label") or ("Model" if name in ("over", "comparison", "calibration") else "")
+    drawn = [one for one in ax.get_lines() if one.get_gid() != "zero"]
+    drawn = [one for one in drawn if one.get_label() == wanted or not wanted][-1]
+    for key, value in expected.items():
+        assert getattr(drawn, f"get_{key}")() == value
+
+
+def test_no_figure_changes_the_style_of_the_session(views):
+    before = dict(matplotlib.rcParams)
+    for draw in views.values():
+        draw()
+        draw(lw=1)
+    assert {key for key in before if before[key] != matplotlib.rcParams[key]} == set()
+
+
+@pytest.mark.parametrize("name", ["loop", "drift", "over", "comparison", "calibration"])
+def test_new_figure_has_one_style(views, name):
+    """That of the house, on the drift axis and after a second loop with a legend, too."""
+    ax = views[name]()
+    assert {family for family, _ in fonts(ax.figure)} == {"STIXGeneral"}
+    plot.loops_over_test(RESULT, TEST, height=HEIGHT, title="again", ax=ax)
+    ax.set_xlim(-3, 3)  # new ticks
+    assert {family for family, _ in fonts(ax.figure)} == {"STIXGeneral"}
+    assert max(size for _, size in fonts(ax.figure)) == 9.0
+
+
+@pytest.mark.parametrize("family", [None, "serif", "monospace"])
+def test_axes_of_the_caller_keep_their_letters(family):
+    """The axis of drifts has those of the axis below, whether from the session or from a block."""
+    style = {} if family is None else {"font.family": family, "font.size": 13.0}
+    with matplotlib.rc_context(style):
+        figure, (left, right) = plt.subplots(1, 2)
+        for ax in (left, right):
+            ax.plot([-1, 1], [-1, 1])
+            ax.set(xlabel="x", ylabel="y", title="mine")
+        before = fonts(figure)
+    plot.loop(RESULT, height=HEIGHT, ax=left)
+    plot.loop(RESULT, ax=right)
+    assert fonts(figure) <= before
+    left.set_xlim(-3, 3)
+    assert fonts(figure) <= before
+    assert left.get_title() == "mine"
+    (drift,) = left.child_axes
+    assert drift.xaxis.label.get_fontfamily() == left.xaxis.label.get_fontfamily()
+
+
+def test_trade_passes_keywords_on():
+    found = rbsdem.trade(COLUMN, displacement=D[:40], budget=2.0)
+    ax = found.plot(lw=2.5)
+    assert {one.get_linewidth() for one in ax.get_lines() if one.get_marker() == "o"} == {2.5}
+    figure, own = plt.subplots()
+    before = {family for family, _ in fonts(figure)}
+    found.plot(ax=own)
+    assert {family for family, _ in fonts(figure)} == before
+    assert np.isfinite(own.get_ylim()).all()
