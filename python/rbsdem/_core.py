@@ -274,19 +274,22 @@ def cyclic(
     shape: tuple[int, bool, bool],
     by_force: bool,
     values: Array,
+    axial_load: Array,
     every: int | None,
 ) -> Run:
     """Follow a static path.
 
-    `column` holds the settings of the analysis too; `shape` is the number of bodies, whether joints
-    open, and whether the rows end with the forces at the base.
+    `column` holds the settings of the analysis too; an empty `axial_load` is a constant one;
+    `shape` is the number of bodies, whether joints open, and whether the rows end with the forces
+    at the base.
     """
     rows = _empty_rows(
         shape, _rbsdem.rbs_kept_rows(values.size, UNSET_INTEGER if every is None else every)
     )
     figures = len(quantities(False)[1])
     return _finish(
-        rows, *_rbsdem.rbs_cyclic(*_crossing(column), int(by_force), values, rows, figures)
+        rows,
+        *_rbsdem.rbs_cyclic(*_crossing(column), int(by_force), values, axial_load, rows, figures),
     )
 
 
@@ -544,10 +547,14 @@ def _finish(
     named: dict[str, Any] = dict(zip(quantities(False)[1], figures.tolist(), strict=True))
     for name in _COUNTS:
         named[name] = int(named[name])
-    collapsed = named.pop("collapsed")
+    status = "collapsed" if named.pop("collapsed") else "completed"
+    lost_joint = int(named.pop("lost_joint"))
+    if lost_joint:
+        status = "axial_failure"
+        named["lost_joint"] = lost_joint
     named["method"] = _text(method[:_METHOD_LENGTH])
     named["reason"] = _text(method[_METHOD_LENGTH:])
-    named["status"] = "failed" if error else ("collapsed" if collapsed else "completed")
+    named["status"] = "failed" if error else status
     return rows[:, :kept].T, named, error, note
 
 

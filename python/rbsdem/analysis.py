@@ -94,6 +94,7 @@ def cyclic(
     *,
     displacement: ArrayLike | None = None,
     force: ArrayLike | None = None,
+    axial_load: ArrayLike | None = None,
     every: int | None = None,
     collapse_drift: float | None = None,
 ) -> Result:
@@ -109,6 +110,11 @@ def cyclic(
         The column.
     displacement, force : array_like, shape (m,)
         The loading, exactly one of the two: displacement of the top [m] or lateral force [N].
+    axial_load : array_like, shape (m,), optional
+        Axial load at the top at each point [N], compression positive, in place of the constant one
+        of the column; it changes in proportion on the way from point to point, and the path starts
+        under its first value. With `Column(axial_force_ratio=r)` the load is this one plus r F.
+        For `kinematics` "small" (layered joints) and "pdelta".
     every : int, optional
         Keep every n-th point and the last one. By default all points are kept.
     collapse_drift : float, optional
@@ -118,7 +124,9 @@ def cyclic(
     Returns
     -------
     Result
-        A row for each point kept.
+        A row for each point kept. Where the layers of a joint can no longer carry the axial load,
+        the path ends with the state there as its last row; `summary["status"]` is "axial_failure"
+        and `summary["lost_joint"]` is the number of the joint.
 
     Raises
     ------
@@ -146,6 +154,7 @@ def cyclic(
         (column.n, column.opens, False),
         by_force,
         values,
+        _NONE if axial_load is None else _core.vector(axial_load, "axial_load"),
         every,
     )
     return _return(column, run, {"analysis": "static", "driven": name})
@@ -200,7 +209,7 @@ def time_history(
     vertical_acceleration : array_like, shape (m,), optional
         Vertical acceleration of the ground, upward positive [m/s2].
     axial_load : array_like, shape (m,), optional
-        Axial load at the top besides that of the column, compression positive [N].
+        Axial load at the top [N], compression positive, in place of the constant one of the column.
     events : {"step", "located"}, optional
         For "rk4": a spring changes its line at the end of a step ("step", the default), or the step
         is cut where the line ends ("located").
@@ -221,7 +230,8 @@ def time_history(
     Returns
     -------
     Result
-        A row for each time kept; the first row is the start.
+        A row for each time kept; the first row is the start. Where the layers of a joint can no
+        longer carry the axial load, the analysis ends; `summary["status"]` is "axial_failure".
 
     Raises
     ------

@@ -39,7 +39,7 @@ class Case:
     ground_acceleration, vertical_acceleration : ndarray, shape (m,), or None
         Acceleration of the ground to +x and upward [m/s2].
     axial_load : ndarray, shape (m,), or None
-        Axial load besides that of the column [N].
+        Axial load at the top in place of that of the column [N].
     settings : dict
         The settings of the analysis that were given, as keywords of `cyclic` or `time_history`: dt,
         events, tolerance, rho_infinity, collapse_drift, allow_unstable, every.

@@ -27,7 +27,15 @@ Kinematics = Literal["small", "pdelta", "finite"]
 #: Whether notes on new columns are told. A context variable, as columns are made in threads too.
 _TELLING: ContextVar[bool] = ContextVar("_TELLING", default=True)
 
-_NUMBERS = ("height", "axial_load", "gravity", "top_mass", "top_inertia", "depth")
+_NUMBERS = (
+    "height",
+    "axial_load",
+    "axial_force_ratio",
+    "gravity",
+    "top_mass",
+    "top_inertia",
+    "depth",
+)
 _SWITCHES = ("self_weight", "axial_follows", "force_follows")
 _LISTS = ("lengths", "masses", "rotary_inertia")
 
@@ -64,6 +72,9 @@ class Column:
     axial_load : float, optional
         Axial load at the top, compression positive [N]. It acts with `kinematics` "pdelta" and
         "finite", and at every level on axial springs and layered joints.
+    axial_force_ratio : float, optional
+        How the axial load follows the lateral force F on a static path, N = axial_load + ratio F,
+        as in an exterior column of a frame; positive where a push to +x compresses the column.
     axial_height : float, optional
         Height at which the axial load acts [m], by default that of the column. The load leans with
         the column: its second-order moments are in proportion to this height. `kinematics`
@@ -129,6 +140,7 @@ class Column:
     force_follows: bool = False
     damping: float | Damping | None = None
     axial_height: float | None = None
+    axial_force_ratio: float = 0.0
     model: str = ""
 
     def __post_init__(self) -> None:

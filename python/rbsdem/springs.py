@@ -561,7 +561,7 @@ class Layered(Spring):
         Returns
         -------
         ndarray, shape (m,)
-            Moments [N m].
+            Moments [N m]; NaN from where the layers can no longer carry the axial load.
 
         Raises
         ------

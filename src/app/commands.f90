@@ -76,7 +76,10 @@ contains
          call print_notes(case, error)
          call print_rotation(column, summary, error)
       end if
-      if (summary%collapsed .and. .not. allocated(error)) then
+      if (allocated(error)) return
+      if (summary%lost_joint > 0) then
+         call report_axial_failure(case, recorder, summary, error)
+      else if (summary%collapsed) then
          call report_collapse(case, recorder, summary, error)
       end if
    end subroutine run_case
@@ -96,6 +99,21 @@ contains
                        to_text(case%analysis%collapse_drift)//' of the height; the rows up to there '// &
                        'are in '//recorder%file%path)
    end subroutine report_collapse
+
+   !> The error of a run that ended where a joint lost its axial load; the run itself has not failed.
+   subroutine report_axial_failure(case, recorder, summary, error)
+      type(case_record), intent(in) :: case
+      type(csv_recorder), intent(in) :: recorder
+      type(summary_type), intent(in) :: summary
+      type(error_type), allocatable, intent(out) :: error
+      character(len=:), allocatable :: place
+
+      place = 'step '//to_text(nint(recorder%last_time))
+      if (case%analysis%dynamic()) place = 'time '//to_text(recorder%last_time)//' s'
+      call fatal_error(error, column_collapsed, 'axial failure at '//place//': the layers of joint '// &
+                       to_text(summary%lost_joint)//' no longer carry the axial load; the rows up to '// &
+                       'there are in '//recorder%file%path)
+   end subroutine report_axial_failure
 
    !> rbsdem check: report all errors of the input without solving the case.
    subroutine check_case(path, quiet, error)
@@ -212,8 +230,10 @@ contains
          call run_dynamic(column, case%analysis, plan, history%time, history%loads, at_rest, &
                           case%output%every, recorder, summary, error, progress)
       else
-         call run_static(column, case%loading(1)%drive == 'force', history%target, case%output%every, &
-                         case%analysis%collapse_drift, recorder, summary, error, progress)
+         call run_static(column, any(case%loading(:case%loadings)%drive == 'force'), history%target, &
+                         case%output%every, case%analysis%collapse_drift, recorder, summary, error, &
+                             progress, &
+                         history%axial_load)
       end if
       call progress%finish()
    end subroutine solve
@@ -311,7 +331,7 @@ contains
             ! A static path has no steps in time, and an implicit method no stability limit. A collapse is
             ! reported apart.
             if (summary_units(i) == 's' .and. .not. values(i) > 0.0_wp) cycle
-            if (summary_names(i) == 'collapsed') cycle
+            if (summary_names(i) == 'collapsed' .or. summary_names(i) == 'lost_joint') cycle
             ! Without inertia it is the peak force.
             if (summary_names(i) == 'peak_base_shear' .and. .not. case%analysis%dynamic()) cycle
             name = summary_names(i)

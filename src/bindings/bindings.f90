@@ -224,8 +224,9 @@ subroutine rbs_quantities(opens, with_base, rows, figures)
    figures = figure_names()
 end subroutine rbs_quantities
 
-subroutine rbs_cyclic(statement, nn, number, by_force, m, values, width, height, rows, kept, nf, figures, &
-                      method, status, message)
+subroutine rbs_cyclic(statement, nn, number, by_force, m, values, ma, axial_load, width, height, rows, kept, &
+                      nf, figures, method, status, message)
+   ! `axial_load` is empty where the axial load is constant.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_bindings_runs, only: into_rows_static, tell_run
@@ -235,8 +236,8 @@ subroutine rbs_cyclic(statement, nn, number, by_force, m, values, width, height,
    use rbs_output_summary, only: summary_type
    implicit none
    character(len=*), intent(in) :: statement
-   integer(c_int), intent(in) :: nn, by_force, m, width, height, nf
-   real(c_double), intent(in) :: number(nn), values(m)
+   integer(c_int), intent(in) :: nn, by_force, m, ma, width, height, nf
+   real(c_double), intent(in) :: number(nn), values(m), axial_load(ma)
    real(c_double), intent(inout) :: rows(width, height)
    real(c_double), intent(out) :: figures(nf)
    integer(c_int), intent(out) :: kept, status
@@ -251,7 +252,7 @@ subroutine rbs_cyclic(statement, nn, number, by_force, m, values, width, height,
    kept = 0
    call column_from_statements(statement, number, column, case, error)
    if (.not. allocated(error)) then
-      call into_rows_static(column, case, by_force /= 0, values, rows, kept, summary, error)
+      call into_rows_static(column, case, by_force /= 0, values, axial_load, rows, kept, summary, error)
    end if
    call tell_run(column, summary, error, figures, method, status, message)
 end subroutine rbs_cyclic

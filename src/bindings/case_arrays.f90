@@ -52,9 +52,13 @@ contains
             call sample(loads%axial, arrays%time, arrays%values(:, 5))
          end associate
       else
-         place = merge(2, 1, case%loading(1)%drive == 'force')
+         place = merge(2, 1, any(case%loading(:case%loadings)%drive == 'force'))
          arrays%acting(place) = 1
          arrays%values(:, place) = history%target
+         if (size(history%axial_load) > 0) then
+            arrays%acting(5) = 1
+            arrays%values(:, 5) = history%axial_load
+         end if
       end if
       case%loadings = 0
       call write_case(case, arrays%statements)

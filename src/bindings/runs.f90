@@ -29,12 +29,15 @@ module rbs_bindings_runs
 contains
 
    !> Write the rows of a static path into an array.
-   subroutine into_rows_static(column, case, by_force, target_values, rows, count, summary, error)
+   subroutine into_rows_static(column, case, by_force, target_values, axial_load, rows, count, summary, &
+                               error)
       type(column_type), intent(in) :: column
       !> Settings of analysis and output
       type(case_record), intent(inout) :: case
       logical, intent(in) :: by_force
       real(c_double), intent(in) :: target_values(:)
+      !> Axial load at each of them; empty: constant
+      real(c_double), intent(in) :: axial_load(:)
       real(c_double), intent(inout), target, contiguous :: rows(:, :)
       integer, intent(out) :: count
       type(summary_type), intent(out) :: summary
@@ -47,7 +50,7 @@ contains
       if (allocated(error)) return
       recorder%rows => rows
       call run_static(column, by_force, target_values, case%output%every, case%analysis%collapse_drift, &
-                      recorder, summary, error)
+                      recorder, summary, error, axial_load=axial_load)
       count = recorder%count
    end subroutine into_rows_static
 

@@ -158,11 +158,18 @@ contains
       type(message_list), intent(inout) :: messages
       integer :: i
 
-      if (self%loadings < 2) return
+      if (self%loadings == 0) return
       if (.not. self%analysis%dynamic()) then
-         call messages%add('loading: several loadings need a dynamic analysis; with method = '// &
-                           "'static' give one")
-         return
+         if (all(self%loading(:self%loadings)%drive == 'axial_load')) then
+            call messages%add("loading: drive = 'axial_load' alone does not drive a static path; give a "// &
+                              "displacement or a force too, or set method = 'auto' in the group analysis")
+            return
+         end if
+         if (count(self%loading(:self%loadings)%drive /= 'axial_load') > 1) then
+            call messages%add('loading: several loadings need a dynamic analysis; with method = '// &
+                              "'static' give one displacement or force, and the axial load if it varies")
+            return
+         end if
       end if
       do i = 2, self%loadings
          if (all(self%loading(:i - 1)%drive /= self%loading(i)%drive)) cycle

@@ -44,6 +44,8 @@ module rbs_column_column
       !> Axial load at the top, compression positive [N], and acceleration of gravity that gives the bodies
       !> their weight, 0 without self-weight [m/s2]
       real(wp) :: axial_load = 0.0_wp, gravity = 0.0_wp
+      !> Change of the axial load per lateral force on a static path
+      real(wp) :: axial_force_ratio = 0.0_wp
       !> Height at which the axial load acts over the height of the column
       real(wp) :: axial_lever = 1.0_wp
       !> Weight of the bodies (n) [N]
@@ -148,6 +150,7 @@ contains
 
       n = column%n
       column%axial_load = spec%axial_load
+      column%axial_force_ratio = spec%axial_force_ratio
       if (spec%axial_height > unset) column%axial_lever = spec%axial_height/spec%height
       dead = merge(0.0_wp, column%axial_load*column%axial_lever, column%axial_follows)
       if (spec%self_weight) column%gravity = spec%gravity

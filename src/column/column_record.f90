@@ -54,6 +54,8 @@ module rbs_column_column_record
       character(len=16) :: kinematics = 'small'
       !> At the top, compression positive [N]
       real(wp) :: axial_load = 0.0_wp
+      !> How it follows the lateral force on a static path: N = axial_load + axial_force_ratio F
+      real(wp) :: axial_force_ratio = 0.0_wp
       !> Height at which it acts [m]; `unset`: at the top
       real(wp) :: axial_height = unset
       logical :: self_weight = .false.
@@ -96,6 +98,10 @@ contains
                   kinematics_names)
       call v%key('axial_load', self%axial_load, 'N', any_number, &
                  'axial load at the top, compression positive')
+      call v%key('axial_force_ratio', self%axial_force_ratio, '', any_number, &
+                 'change of the axial load per lateral force on a static path, &
+                     as in the exterior column of '// &
+                 'a frame')
       call v%key('axial_height', self%axial_height, 'm', above_zero, &
                  'height at which the axial load acts and leans with the column (pdelta); by default '// &
                  'the top', optional=.true.)

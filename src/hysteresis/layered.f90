@@ -1,57 +1,40 @@
 !> A joint as layers: normal springs across it, at distances from the middle of the section, that together
-!> carry a constant axial load (the multi-spring form of the rigid body-spring method, Kawai 1978).
+!> carry an axial load (the multi-spring form of the rigid body-spring method, Kawai 1978).
 !>
-!> Layer i opens by  w + y_i theta,  with the opening w of the joint at the middle and its rotation theta.
-!> While every layer stays on its line, equilibrium of the axial load determines w from theta, and the
-!> moment is a straight line in theta: with the sums  a = sum k,  s = sum k y,  i = sum k y^2,
+!> While every layer stays on its line, the moment is a plane in the rotation and the axial load: with the
+!> sums a = sum k,  s = sum k y  and the centre of stiffness  e = s/a
 !>
-!>     dw/dtheta = -s/a          dM/dtheta = i - s^2/a
+!>     dw = -e dphi - dN/a          dM = k_m dphi - e dN,    k_m = sum k (y - e)^2
 !>
-!> So the joint, like any spring, is on a line with two ends: it ends where the first layer reaches an end.
+!> At a constant axial load the joint is, like any spring, on a line with two ends: it ends where the first
+!> layer reaches an end (`next`). Where the axial load varies, the joint follows a straight path in both from
+!> event to event (`go`).
 module rbs_hysteresis_layered
+   use rbs_base_constants, only: unbounded
    use rbs_base_keys, only: key_type
    use rbs_base_kinds, only: wp
-   use rbs_base_constants, only: unbounded
+   use rbs_hysteresis_layers, only: layer_bank, path_ends
    use rbs_hysteresis_rule, only: rule_type, places_length, in_flexure
    use rbs_hysteresis_segment, only: segment
    implicit none
    private
 
-   public :: layered_rule, layer_slot
+   public :: layered_rule
 
-   !> A layer that changes its line more often than this at one rotation alternates between two lines, each
-   !> of which leads back to the other; it then stays on its present line.
-   integer, parameter :: most_changes = 4
-   !> Below this share of the initial axial stiffness, softening layers cannot be followed.
-   real(wp), parameter :: least_share = 1.0e-5_wp
-   !> Most events while the axial load is applied
+   !> Most events on the way to the rotation without moment
    integer, parameter :: most_events = 10000
 
-   !> The rule of one layer.
-   type :: layer_slot
-      class(rule_type), allocatable :: rule
-   end type layer_slot
-
    type, extends(rule_type) :: layered_rule
-      !> Axial load, compression positive [N]
+      !> Axial load at the start, compression positive [N]
       real(wp) :: axial_load = 0.0_wp
-      !> Distances of the layers from the middle of the section, positive where a positive rotation opens
-      !> the joint (count) [m]
-      real(wp), allocatable :: y(:)
-      !> Rules of the layers; their force is normal to the joint, tension positive (count)
-      type(layer_slot), allocatable :: slot(:)
-      !> Whether the layers can carry the axial load
+      !> The layers; whoever makes the rule gives their distances and rules
+      type(layer_bank) :: layers
+      !> Whether the layers can carry the axial load at the start
       logical :: carries = .true.
-      !> Present lines of the layers (count)
-      type(segment), allocatable, private :: line(:)
-      !> Present openings of the layers (count) [m]
-      real(wp), allocatable, private :: d(:)
-      !> State at the anchor of the present line: rotation, opening, and slope of the opening
-      real(wp), private :: rotation = 0.0_wp, opening = 0.0_wp, slope = 0.0_wp
-      !> Initial axial stiffness [N/m], distance of the outermost layer [m]
-      real(wp), private :: stiffness = 0.0_wp, reach = 0.0_wp
-      !> Rotation under the axial load alone, from which the rotation of the joint is counted
+      !> Rotation under the first axial load alone, from which the rotation of the joint is counted
       real(wp), private :: rest = 0.0_wp
+      !> Layers at the ends of the present line
+      type(path_ends), private :: ends, kept_ends
    contains
       procedure, nopass :: keys
       procedure, nopass :: places
@@ -59,7 +42,18 @@ module rbs_hysteresis_layered
       procedure :: initial_stiffness
       procedure :: start
       procedure :: next
+      procedure :: go
+      procedure :: choose
+      procedure :: plane
+      procedure :: way_to_event
+      procedure :: pass_event
+      procedure :: turns
       procedure :: opening_at
+      procedure :: present_load
+      procedure :: failed
+      procedure :: mark
+      procedure :: restore
+      procedure :: forget
    end type layered_rule
 
 contains
@@ -87,35 +81,27 @@ contains
    !> Rotational stiffness with all layers uncracked [N m/rad].
    pure real(wp) function initial_stiffness(self)
       class(layered_rule), intent(in) :: self
-      real(wp) :: k(size(self%y))
+      real(wp) :: k(size(self%layers%y))
       integer :: i
 
       do i = 1, size(k)
-         k(i) = self%slot(i)%rule%initial_stiffness()
+         k(i) = self%layers%slot(i)%rule%initial_stiffness()
       end do
-      initial_stiffness = sum(k*self%y**2) - sum(k*self%y)**2/sum(k)
+      associate (y => self%layers%y)
+         initial_stiffness = sum(k*(y - sum(k*y)/sum(k))**2)
+      end associate
    end function initial_stiffness
 
    !> Apply the axial load to the virgin layers; an unsymmetric section rotates until there is no moment.
    subroutine start(self, line)
       class(layered_rule), intent(inout) :: self
       type(segment), intent(out) :: line
-      integer :: i, n
 
-      n = size(self%y)
-      if (.not. allocated(self%line)) allocate (self%line(n), self%d(n))
-      do i = 1, n
-         call self%slot(i)%rule%start(self%line(i))
-      end do
-      self%d = 0.0_wp
-      self%rotation = 0.0_wp
-      self%opening = 0.0_wp
-      self%slope = 0.0_wp
       self%rest = 0.0_wp
-      self%stiffness = sum(self%line%k)
-      self%reach = maxval(abs(self%y))
-      call put_axial_load(self)
-      call settle(self, 1, line)
+      call self%layers%start()
+      call self%layers%go(0.0_wp, self%axial_load)
+      self%carries = .not. self%layers%failed
+      call make_line(self, 1, line)
       if (self%carries) call find_rest(self, line)
    end subroutine start
 
@@ -123,49 +109,52 @@ contains
       class(layered_rule), intent(inout) :: self
       type(segment), intent(inout) :: line
       integer, intent(in) :: direction
-      real(wp) :: rotation
+      real(wp) :: rotation, way
+      integer :: first
 
-      rotation = line%end_toward(direction) + self%rest
-      self%opening = self%opening_at(rotation)
-      self%rotation = rotation
-      self%d = self%opening + self%y*rotation
-      call settle(self, direction, line)
+      associate (layers => self%layers)
+         rotation = line%end_toward(direction) + self%rest
+         if (layers%failed .and. abs(rotation - layers%rotation) > 0.0_wp) then
+            ! What lies behind a failure has no meaning; the moment stays as it was.
+            line = segment(d0=line%d0, f0=line%f0)
+            return
+         end if
+         way = layers%turn*(rotation - layers%rotation)
+         first = merge(self%ends%first_ahead, self%ends%first_behind, direction*layers%turn > 0.0_wp)
+         ! Turned back on a one-way line, somewhere between its ends.
+         if (line%one_way == -direction) first = 0
+         call layers%place(rotation, layers%axial_load, way, first)
+      end associate
+      call make_line(self, direction, line)
    end subroutine next
 
-   !> Opening of the joint at the middle at a rotation on the present line [m].
-   elemental real(wp) function opening_at(self, rotation)
-      class(layered_rule), intent(in) :: self
-      !> Rotation counted from the layers without load [rad]
-      real(wp), intent(in) :: rotation
-
-      opening_at = self%opening + self%slope*(rotation - self%rotation)
-   end function opening_at
-
-   !> Compress (or pull) the joint until the layers carry the axial load.
-   subroutine put_axial_load(self)
+   !> The line of the joint at its present axial load when it rotates further in a direction; it ends on each
+   !> side where the first of its layers ends.
+   subroutine make_line(self, direction, line)
       class(layered_rule), intent(inout) :: self
-      real(wp) :: missing, step, room
-      integer :: event, i, s
+      integer, intent(in) :: direction
+      type(segment), intent(out) :: line
+      real(wp) :: near, far
 
-      self%carries = .true.
-      s = merge(-1, 1, self%axial_load > 0.0_wp)
-      do event = 1, most_events
-         missing = -self%axial_load - total_force(self)
-         if (s*missing <= 0.0_wp) return
-         step = unbounded
-         if (sum(self%line%k) > least_share*self%stiffness) step = abs(missing)/sum(self%line%k)
-         room = minval(abs(merge(self%line%hi, self%line%lo, s > 0) - self%d))
-         if (step >= unbounded .and. room >= unbounded) exit
-         self%d = self%d + s*min(step, room)
-         self%opening = self%opening + s*min(step, room)
-         call carry_rear_ends(self)
-         if (step <= room) return
-         do i = 1, size(self%y)
-            if (at_end(self, i, s)) call self%slot(i)%rule%next(self%line(i), s)
-         end do
-      end do
-      self%carries = .false.
-   end subroutine put_axial_load
+      associate (layers => self%layers)
+         call layers%choose(real(direction, wp), 0.0_wp)
+         line%d0 = layers%rotation - self%rest
+         line%f0 = layers%moment
+         if (layers%failed) then
+            ! The joint keeps its moment for the rest of the motion; whoever moves it asks `failed`.
+            line = line%outward(direction, near=line%d0, far=direction*unbounded, near_closed=.true., &
+                                one_way=.true.)
+            return
+         end if
+         call layers%find_ends(self%ends)
+         line%k = self%ends%stiffness
+         far = direction*unbounded
+         near = -direction*unbounded
+         if (self%ends%ahead < unbounded) far = line%d0 + direction*self%ends%ahead
+         if (self%ends%behind < unbounded) near = line%d0 - direction*self%ends%behind
+         line = line%outward(direction, near=near, far=far, near_closed=.false., one_way=self%ends%one_way)
+      end associate
+   end subroutine make_line
 
    !> Rotate until there is no moment, and measure rotations from there.
    subroutine find_rest(self, line)
@@ -174,148 +163,131 @@ contains
       real(wp) :: moment, way
       integer :: event, s
 
-      do event = 1, most_events
-         moment = line%force(self%rotation)
-         if (.not. abs(moment) > 0.0_wp) exit
-         s = merge(-1, 1, moment > 0.0_wp)
-         if (event == 1) call settle(self, s, line)
-         if (.not. line%k > 0.0_wp) exit
-         way = -line%force(self%rotation)/line%k
-         if (abs(way) <= abs(line%end_toward(s) - self%rotation)) then
-            self%opening = self%opening_at(self%rotation + way)
-            self%rotation = self%rotation + way
-            self%d = self%opening + self%y*self%rotation
-            call carry_rear_ends(self)
-            exit
-         end if
-         call self%next(line, s)
-      end do
-      self%rest = self%rotation
-      call settle(self, 1, line)
+      associate (layers => self%layers)
+         do event = 1, most_events
+            moment = layers%moment
+            if (.not. abs(moment) > 0.0_wp) exit
+            s = merge(-1, 1, moment > 0.0_wp)
+            if (event == 1) call make_line(self, s, line)
+            if (layers%failed .or. .not. line%k > 0.0_wp) exit
+            way = -line%force(layers%rotation)/line%k
+            if (abs(way) <= abs(line%end_toward(s) - layers%rotation)) then
+               call layers%place(layers%rotation + way, layers%axial_load, abs(way), 0)
+               exit
+            end if
+            call self%next(line, s)
+         end do
+         self%rest = layers%rotation
+      end associate
+      call make_line(self, 1, line)
       line%f0 = 0.0_wp
    end subroutine find_rest
 
-   !> Find the lines of the layers when the joint rotates further in a direction, and the line of the joint.
-   subroutine settle(self, direction, line)
+   !> Go straight to a rotation and an axial load, from event to event.
+   subroutine go(self, rotation, axial_load, work)
       class(layered_rule), intent(inout) :: self
-      !> +1 or -1
-      integer, intent(in) :: direction
-      type(segment), intent(out) :: line
-      integer :: changes(size(self%y)), i, s
-      real(wp) :: rate
-      logical :: changed
+      real(wp), intent(in) :: rotation, axial_load
+      !> Work of the moment, to be added to [J]
+      real(wp), intent(inout) :: work
 
-      changes = 0
-      call carry_rear_ends(self)
-      do
-         call find_slope(self)
-         changed = .false.
-         do i = 1, size(self%y)
-            if (changes(i) >= most_changes) cycle
-            rate = direction*(self%y(i) + self%slope)
-            if (.not. abs(rate) > 0.0_wp) cycle
-            s = merge(1, -1, rate > 0.0_wp)
-            if (.not. (at_end(self, i, s) .or. self%line(i)%one_way == -s)) cycle
-            call self%slot(i)%rule%next(self%line(i), s)
-            changes(i) = changes(i) + 1
-            changed = .true.
-         end do
-         if (.not. changed) exit
-      end do
-      call make_line(self, direction, changes < most_changes, line)
-   end subroutine settle
+      call self%layers%go(rotation + self%rest, axial_load, work)
+   end subroutine go
 
-   !> The line of the joint from the lines of its layers; it ends on each side where the first of them ends.
-   subroutine make_line(self, direction, settled, line)
+   !> Put the layers on the lines on which they go on along a straight path.
+   subroutine choose(self, turn, press)
+      class(layered_rule), intent(inout) :: self
+      !> Rates of the rotation [rad] and of the axial load [N]
+      real(wp), intent(in) :: turn, press
+
+      call self%layers%choose(turn, press)
+   end subroutine choose
+
+   !> The plane that the joint is on: M = moment + stiffness (phi - rotation) - centre (N - axial load).
+   pure subroutine plane(self, rotation, axial_load, moment, stiffness, centre)
       class(layered_rule), intent(in) :: self
-      integer, intent(in) :: direction
-      !> Layers that have found their line (count)
-      logical, intent(in) :: settled(:)
-      type(segment), intent(out) :: line
-      real(wp) :: rate, ahead, behind
-      integer :: i, s
+      real(wp), intent(out) :: rotation, axial_load, moment, stiffness, centre
 
-      line%d0 = self%rotation - self%rest
-      line%f0 = dot_product(self%y, self%line%f0 + self%line%k*(self%d - self%line%d0))
-      line%k = dot_product(self%line%k, self%y*(self%y + self%slope))
-      ahead = unbounded
-      behind = unbounded
-      do i = 1, size(self%y)
-         rate = direction*(self%y(i) + self%slope)
-         if (.not. (settled(i) .and. abs(rate) > 0.0_wp)) cycle
-         s = merge(1, -1, rate > 0.0_wp)
-         ahead = min(ahead, turn_to(self, i, s, abs(rate)))
-         if (self%line(i)%one_way /= 0) then
-            line%one_way = direction
-         else
-            behind = min(behind, turn_to(self, i, -s, abs(rate)))
-         end if
-      end do
-      if (line%one_way /= 0) behind = 0.0_wp
-      if (ahead < unbounded) ahead = line%d0 + direction*ahead
-      if (behind < unbounded) behind = line%d0 - direction*behind
-      if (ahead >= unbounded) ahead = direction*unbounded
-      if (behind >= unbounded) behind = -direction*unbounded
-      line = line%outward(direction, near=behind, far=ahead, near_closed=.false., &
-                          one_way=line%one_way /= 0)
-   end subroutine make_line
+      associate (layers => self%layers)
+         rotation = layers%rotation - self%rest
+         axial_load = layers%axial_load
+         moment = layers%moment
+         call layers%find_plane(stiffness, centre)
+      end associate
+   end subroutine plane
 
-   !> Rotation by which the joint can turn until a layer reaches the end of its line in a direction [rad].
-   pure real(wp) function turn_to(self, i, s, rate)
+   !> How far a path goes from a point of the plane until a layer reaches an end, in units of its rates.
+   pure subroutine way_to_event(self, rotation, axial_load, turn, press, way, first)
       class(layered_rule), intent(in) :: self
-      integer, intent(in) :: i, s
-      !> Opening or closing of the layer per rotation [m/rad]
-      real(wp), intent(in) :: rate
-      real(wp) :: way
+      real(wp), intent(in) :: rotation, axial_load, turn, press
+      !> `unbounded` if there is none
+      real(wp), intent(out) :: way
+      !> The layer, 0 for none
+      integer, intent(out) :: first
 
-      way = max(s*(self%line(i)%end_toward(s) - self%d(i)), 0.0_wp)
-      turn_to = unbounded
-      ! The quotient would overflow for a line without an end, or with an extremely distant one.
-      if (way < 1.0e100_wp*rate) turn_to = way/rate
-   end function turn_to
+      call self%layers%way_from(rotation + self%rest, axial_load, turn, press, way, first)
+   end subroutine way_to_event
 
-   !> Whether a layer is at the end of its line in a direction, within the round-off of the rotation.
-   pure logical function at_end(self, i, s)
+   !> Whether a layer goes back on a one-way line.
+   pure logical function turns(self, turn, press)
       class(layered_rule), intent(in) :: self
-      integer, intent(in) :: i, s
-      real(wp) :: far
+      !> Rates of the rotation and of the axial load
+      real(wp), intent(in) :: turn, press
 
-      far = self%line(i)%end_toward(s)
-      at_end = s*(far - self%d(i)) <= 1.0e-13_wp*(abs(far) + abs(self%opening) + &
-                                                  self%reach*(abs(self%rotation) + abs(self%rest)))
-   end function at_end
+      turns = self%layers%turns_back(turn, press)
+   end function turns
 
-   !> Move the rear ends of one-way lines with the layers.
-   pure subroutine carry_rear_ends(self)
+   !> Move the joint on its plane to a point, where a layer (0: none) comes exactly to the end of its line.
+   subroutine pass_event(self, rotation, axial_load, turn, press, first)
+      class(layered_rule), intent(inout) :: self
+      real(wp), intent(in) :: rotation, axial_load, turn, press
+      integer, intent(in) :: first
+
+      call self%layers%put(rotation + self%rest, axial_load, turn, press, first)
+   end subroutine pass_event
+
+   !> Opening of the joint at the middle at a rotation and an axial load on the present plane [m].
+   pure real(wp) function opening_at(self, rotation, axial_load)
+      class(layered_rule), intent(in) :: self
+      real(wp), intent(in) :: rotation, axial_load
+
+      opening_at = self%layers%opening_at(rotation + self%rest, axial_load)
+   end function opening_at
+
+   !> Axial load at the last event [N].
+   pure real(wp) function present_load(self)
+      class(layered_rule), intent(in) :: self
+
+      present_load = self%layers%axial_load
+   end function present_load
+
+   !> Whether the layers can no longer carry the axial load.
+   pure logical function failed(self)
+      class(layered_rule), intent(in) :: self
+
+      failed = self%layers%failed
+   end function failed
+
+   !> Mark the present state, to which `restore` returns.
+   subroutine mark(self)
       class(layered_rule), intent(inout) :: self
 
-      where (self%line%one_way > 0) self%line%lo = self%d
-      where (self%line%one_way < 0) self%line%hi = self%d
-   end subroutine carry_rear_ends
+      self%kept_ends = self%ends
+      call self%layers%mark()
+   end subroutine mark
 
-   !> Find the slope of the opening at the middle with the rotation, from the equilibrium of the axial load.
-   subroutine find_slope(self)
+   !> Return to the mark, to the last bit. The mark stays.
+   subroutine restore(self)
       class(layered_rule), intent(inout) :: self
-      real(wp) :: a
 
-      a = sum(self%line%k)
-      if (a < least_share*self%stiffness) then
-         ! With its softening layers the joint could not carry the axial load: these layers keep their force.
-         where (self%line%k < 0.0_wp)
-            self%line%f0 = self%line%f0 + self%line%k*(self%d - self%line%d0)
-            self%line%d0 = self%d
-            self%line%k = 0.0_wp
-         end where
-         a = max(sum(self%line%k), least_share*self%stiffness)
-      end if
-      self%slope = -dot_product(self%line%k, self%y)/a
-   end subroutine find_slope
+      self%ends = self%kept_ends
+      call self%layers%restore()
+   end subroutine restore
 
-   !> Sum of the forces of the layers, tension positive [N].
-   pure real(wp) function total_force(self)
-      class(layered_rule), intent(in) :: self
+   !> Drop the mark.
+   subroutine forget(self)
+      class(layered_rule), intent(inout) :: self
 
-      total_force = sum(self%line%f0 + self%line%k*(self%d - self%line%d0))
-   end function total_force
+      call self%layers%forget()
+   end subroutine forget
 
 end module rbs_hysteresis_layered

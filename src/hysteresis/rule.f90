@@ -30,6 +30,7 @@ module rbs_hysteresis_rule
       procedure :: check
       procedure(start_interface), deferred :: start
       procedure(next_interface), deferred :: next
+      procedure :: copy_memory
    end type rule_type
 
    abstract interface
@@ -84,6 +85,16 @@ module rbs_hysteresis_rule
    end interface
 
 contains
+
+   !> Copy the memory of another rule of the same type and parameters. A rule that is copied often, as that of
+   !> a layer, does so without a new allocation; for all others `done` is false and the whole rule is copied.
+   pure subroutine copy_memory(self, other, done)
+      class(rule_type), intent(inout) :: self
+      class(rule_type), intent(in) :: other
+      logical, intent(out) :: done
+
+      done = .false. .and. same_type_as(self, other)
+   end subroutine copy_memory
 
    !> Add messages on relations between parameters that are each within their bounds. A rule without such
    !> relations inherits this procedure.

@@ -238,11 +238,11 @@ contains
       select type (rule)
       type is (layered_rule)
          rule%axial_load = self%axial_load
-         rule%y = self%y
-         allocate (rule%slot(size(self%y)))
+         rule%layers%y = self%y
+         allocate (rule%layers%slot(size(self%y)))
          do i = 1, size(self%y)
             layer = self%layer(i)
-            call layer%make(rule%slot(i)%rule)
+            call layer%make(rule%layers%slot(i)%rule)
          end do
       end select
    end subroutine make

@@ -5,6 +5,7 @@ module rbs_hysteresis_springs
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_journal, only: journal_type, rule_slot
+   use rbs_hysteresis_layered, only: layered_rule
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_spring_record, only: spring_record
    implicit none
@@ -40,6 +41,12 @@ module rbs_hysteresis_springs
       integer :: version = 0
       !> Whether a rule has exceeded `most_lines`; the state must not be used then
       logical :: stuck = .false.
+      !> Layered joints among the springs, and whether their axial loads vary along the path
+      integer, allocatable :: layered(:)
+      logical :: pressed = .false.
+      !> Where they vary (count): axial load that the joint is to reach, axial load of the present plane
+      !> [N], and its centre of stiffness e = -dM/dN [m]
+      real(wp), allocatable :: press_to(:), press_at(:), centre(:)
       type(rule_slot), allocatable, private :: slot(:)
       type(journal_type), private :: journal
    contains
@@ -57,6 +64,13 @@ module rbs_hysteresis_springs
       procedure :: mark
       procedure :: restore
       procedure :: forget_mark
+      procedure :: vary_axial_loads
+      procedure :: lost_joint
+      procedure :: opening
+      procedure :: choose_lines
+      procedure :: way_on_plane
+      procedure :: put_on_plane
+      procedure :: turns_on_plane
    end type spring_array
 
 contains
@@ -79,7 +93,155 @@ contains
          call self%slot(i)%rule%start(line)
          call put_line(self, i, line)
       end do
+      self%layered = pack([(i, i=1, n)], specs%rule == 'layered')
    end subroutine create
+
+   !> The axial loads of the layered joints vary from now on: these joints follow straight paths in rotation
+   !> and axial load, towards `press_to`, and have no line of their own that the rotation alone could leave.
+   subroutine vary_axial_loads(self)
+      class(spring_array), intent(inout) :: self
+      integer :: j
+
+      self%pressed = size(self%layered) > 0
+      if (.not. self%pressed) return
+      allocate (self%press_to(self%count), self%press_at(self%count), self%centre(self%count), &
+                source=0.0_wp)
+      do j = 1, size(self%layered)
+         call read_plane(self, self%layered(j))
+      end do
+      self%press_to(:) = self%press_at
+   end subroutine vary_axial_loads
+
+   !> The plane that a layered joint is on.
+   subroutine read_plane(self, i)
+      type(spring_array), intent(inout) :: self
+      integer, intent(in) :: i
+
+      select type (rule => self%slot(i)%rule)
+      class is (layered_rule)
+         call rule%plane(self%d0(i), self%press_at(i), self%f0(i), self%k(i), self%centre(i))
+      end select
+      self%first(i) = -unbounded
+      self%last(i) = unbounded
+      self%one_way(i) = 0
+      self%version = modulo(self%version + 1, huge(1))
+   end subroutine read_plane
+
+   !> Layered joints whose axial loads vary go straight to new rotations and to `press_to`.
+   subroutine press_joints(self, d)
+      type(spring_array), intent(inout) :: self
+      !> New deformations (count) [m or rad]
+      real(wp), intent(in), contiguous :: d(:)
+      integer :: i, j
+
+      do j = 1, size(self%layered)
+         i = self%layered(j)
+         if (.not. abs(d(i) - self%d(i)) + abs(self%press_to(i) - self%press_at(i)) > 0.0_wp) cycle
+         if (self%journal%open) call self%journal%keep(i, line_of(self, i), self%slot(i))
+         select type (rule => self%slot(i)%rule)
+         class is (layered_rule)
+            call rule%go(d(i), self%press_to(i), self%work(i))
+         end select
+         self%events = self%events + 1
+         call read_plane(self, i)
+         self%d(i) = d(i)
+      end do
+   end subroutine press_joints
+
+   !> The first layered joint that can no longer carry its axial load, 0 if all can.
+   pure integer function lost_joint(self) result(lost)
+      class(spring_array), intent(in) :: self
+      integer :: j
+
+      do j = 1, size(self%layered)
+         lost = self%layered(j)
+         select type (rule => self%slot(lost)%rule)
+         class is (layered_rule)
+            if (rule%failed()) return
+         end select
+      end do
+      lost = 0
+   end function lost_joint
+
+   !> Opening of a layered joint at the middle of its section [m]; zero for any other spring.
+   pure real(wp) function opening(self, i)
+      class(spring_array), intent(in) :: self
+      integer, intent(in) :: i
+
+      opening = 0.0_wp
+      select type (rule => self%slot(i)%rule)
+      class is (layered_rule)
+         if (self%pressed) then
+            opening = rule%opening_at(self%d(i), self%press_at(i))
+         else
+            opening = rule%opening_at(self%d(i), rule%present_load())
+         end if
+      end select
+   end function opening
+
+   !> Put the layers of a joint on the lines on which they go on along a straight path.
+   subroutine choose_lines(self, i, turn, press)
+      class(spring_array), intent(inout) :: self
+      integer, intent(in) :: i
+      !> Rates of the rotation [rad] and of the axial load [N]
+      real(wp), intent(in) :: turn, press
+
+      select type (rule => self%slot(i)%rule)
+      class is (layered_rule)
+         call rule%choose(turn, press)
+      end select
+      call read_plane(self, i)
+   end subroutine choose_lines
+
+   !> How far a layered joint can go from a point of its plane along a straight path until a layer reaches the
+   !> end of its line.
+   pure subroutine way_on_plane(self, i, rotation, axial_load, turn, press, way, first)
+      class(spring_array), intent(in) :: self
+      integer, intent(in) :: i
+      real(wp), intent(in) :: rotation, axial_load, turn, press
+      !> In units of the rates; `unbounded` if there is no end
+      real(wp), intent(out) :: way
+      !> The layer, 0 for none
+      integer, intent(out) :: first
+
+      way = unbounded
+      first = 0
+      select type (rule => self%slot(i)%rule)
+      class is (layered_rule)
+         call rule%way_to_event(rotation, axial_load, turn, press, way, first)
+      end select
+   end subroutine way_on_plane
+
+   !> Whether a layer of a joint goes back on a one-way line.
+   pure logical function turns_on_plane(self, i, turn, press)
+      class(spring_array), intent(in) :: self
+      integer, intent(in) :: i
+      !> Rates of the rotation and of the axial load
+      real(wp), intent(in) :: turn, press
+
+      turns_on_plane = .false.
+      select type (rule => self%slot(i)%rule)
+      class is (layered_rule)
+         turns_on_plane = rule%turns(turn, press)
+      end select
+   end function turns_on_plane
+
+   !> Move a layered joint on its plane to a point, where a layer (0: none) comes to the end of its line.
+   !> Its work is left to the caller, who knows the path.
+   subroutine put_on_plane(self, i, rotation, axial_load, turn, press, first)
+      class(spring_array), intent(inout) :: self
+      integer, intent(in) :: i
+      real(wp), intent(in) :: rotation, axial_load, turn, press
+      integer, intent(in) :: first
+
+      select type (rule => self%slot(i)%rule)
+      class is (layered_rule)
+         call rule%pass_event(rotation, axial_load, turn, press, first)
+      end select
+      call read_plane(self, i)
+      self%d(i) = rotation
+      if (first > 0) self%events = self%events + 1
+   end subroutine put_on_plane
 
    !> Force of one spring at its present deformation [N or N m].
    pure real(wp) function force(self, i)
@@ -129,6 +291,7 @@ contains
       real(wp), intent(in), contiguous :: d(:)
       integer :: i
 
+      if (self%pressed) call press_joints(self, d)
       if (self%count == 2) then
          ! One body: while both springs stay on their lines, neither a loop nor a call is needed.
          if (d(1) <= self%last(1) .and. d(1) >= self%first(1) .and. &
@@ -138,7 +301,7 @@ contains
             return
          end if
       end if
-      if (.not. self%stay_on_lines(d)) then
+      if (.not. are_within(self%count, d, self%first, self%last)) then
          do i = 1, self%count
             if (d(i) > self%last(i) .or. d(i) < self%first(i)) call move(self, i, d(i))
          end do
@@ -155,7 +318,7 @@ contains
       !> New deformations (count) [m or rad]
       real(wp), intent(in), contiguous :: d(:)
 
-      stay_on_lines = are_within(self%count, d, self%first, self%last)
+      stay_on_lines = are_within(self%count, d, self%first, self%last) .and. .not. self%pressed
    end function stay_on_lines
 
    pure logical function are_within(n, d, first, last)
@@ -206,6 +369,7 @@ contains
       !> New deformations (count) [m or rad]
       real(wp), intent(in), contiguous :: d(:)
 
+      if (self%pressed) call press_joints(self, d)
       call walk_all(self%count, d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, &
                     self%last)
    end subroutine carry_to
@@ -271,10 +435,14 @@ contains
          if (journal%changed > 0) self%version = modulo(self%version + 1, huge(1))
          do j = 1, journal%changed
             i = journal%spring(j)
-            self%slot(i) = journal%slot(j)
-            journal%is_kept(i) = .false.
+            call journal%give_back(i, self%slot(i))
             call put_line(self, i, journal%line(j))
          end do
+         if (self%pressed) then
+            do j = 1, size(self%layered)
+               call read_plane(self, self%layered(j))
+            end do
+         end if
          journal%changed = 0
          where (self%one_way > 0) self%first = self%d
          where (self%one_way < 0) self%last = self%d
@@ -416,7 +584,7 @@ contains
       type(spring_record), intent(in) :: spec
       !> Deformations, one after the other (m) [m or rad]
       real(wp), intent(in) :: d(:)
-      !> Forces there (m) [N or N m]
+      !> Forces there (m) [N or N m]; not a number where a layered joint has lost its axial load
       real(wp), intent(out) :: f(:)
       type(spring_array) :: spring
       integer :: j
@@ -425,7 +593,7 @@ contains
       do j = 1, size(d)
          call spring%move(1, d(j))
          f(j) = spring%force(1)
-         if (spring%stuck) f(j) = ieee_value(f(j), ieee_quiet_nan)
+         if (spring%stuck .or. spring%lost_joint() > 0) f(j) = ieee_value(f(j), ieee_quiet_nan)
       end do
    end subroutine follow_path
 

@@ -25,6 +25,8 @@ module rbs_io_case_file
       real(wp), allocatable :: time(:)
       !> The prescribed displacement or force of a static path (m) [m or N]
       real(wp), allocatable :: target(:)
+      !> The axial load at its points where it varies (m); empty: constant [N]
+      real(wp), allocatable :: axial_load(:)
       !> The actions in time
       type(loads_type) :: loads
    end type case_history
@@ -58,6 +60,7 @@ contains
       real(wp), allocatable :: time(:), value(:)
       integer :: i
 
+      allocate (history%axial_load(0))
       do i = 1, case%loadings
          associate (spec => case%loading(i))
             own = message_list()
@@ -93,7 +96,11 @@ contains
                history%loads%axial = signal
             case default                            ! a displacement is not an action in time
             end select
-            call move_alloc(value, history%target)
+            if (spec%drive == 'axial_load') then
+               history%axial_load = value
+            else
+               call move_alloc(value, history%target)
+            end if
             call join_times(history%time, time)
          end associate
       end do

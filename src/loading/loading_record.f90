@@ -23,8 +23,8 @@ module rbs_loading_loading_record
    !> One loading of a case.
    type :: loading_record
       !> The prescribed quantity, one of `drive_names`: displacement of the top [m], lateral force at the top
-      !> [N], acceleration of the ground, horizontal or vertical (upward positive) [m/s2], or axial load
-      !> added to the constant one, compression positive [N]
+      !> [N], acceleration of the ground, horizontal or vertical (upward positive) [m/s2], or axial load at
+      !> the top in place of the constant one, compression positive [N]
       character(len=24) :: drive = ''
       !> One of `source_names`
       character(len=16) :: source = ''
@@ -130,7 +130,7 @@ contains
       if (self%drive == '') call check_name(self%drive, drive_names, 'loading: drive', messages, drive)
       if (self%source == '') call check_name(self%source, source_names, 'loading: source', messages, source)
       drive = findloc(drive_names == self%drive, .true., dim=1)
-      if (.not. dynamic .and. drive > 2) then
+      if (.not. dynamic .and. drive > 2 .and. self%drive /= 'axial_load') then
          call messages%add("loading: drive = '"//trim(self%drive)//"' needs a dynamic analysis; set "// &
                            "method = 'auto' in the group analysis")
       end if

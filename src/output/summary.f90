@@ -7,15 +7,16 @@ module rbs_output_summary
 
    public :: summary_type, summary_size, summary_names, summary_units, figure_names
 
-   integer, parameter :: summary_size = 17
+   integer, parameter :: summary_size = 18
 
    !> Names of the figures of `as_array`, and their SI units.
    character(len=26), parameter :: summary_names(summary_size) = [character(len=26) :: &
       'steps', 'rows', 'events', 'time_step', 'stable_step', 'peak_displacement', 'peak_force', &
       'displacement_at_peak_force', 'peak_base_shear', 'input_energy', 'spring_energy', 'damping_energy', &
-      'energy_residual', 'relative_energy_residual', 'peak_rotation', 'cut_steps', 'collapsed']
+      'energy_residual', 'relative_energy_residual', 'peak_rotation', 'cut_steps', 'collapsed', &
+      'lost_joint']
    character(len=4), parameter :: summary_units(summary_size) = [character(len=4) :: &
-      '', '', '', 's', 's', 'm', 'N', 'm', 'N', 'J', 'J', 'J', 'J', '', 'rad', '', '']
+      '', '', '', 's', 's', 'm', 'N', 'm', 'N', 'J', 'J', 'J', 'J', '', 'rad', '', '', '']
 
    type :: summary_type
       !> Steps or increments taken, rows offered to the recorder, lines that springs have left
@@ -35,6 +36,8 @@ module rbs_output_summary
       integer :: cut_steps = 0
       !> Whether the analysis ended where the user's criterion of collapse was met
       logical :: collapsed = .false.
+      !> Joint whose layers could not carry the axial load any more, where the analysis ended; 0: none
+      integer :: lost_joint = 0
       !> Method that was used and, if the program chose it, why
       character(len=20) :: method = ''
       character(len=200) :: reason = ''
@@ -94,7 +97,8 @@ contains
                 self%stable_step, self%peak_displacement, self%peak_force, self%displacement_at_peak, &
                 self%peak_base_shear, self%input, self%spring, self%damping, self%residual, &
                 self%residual/max(self%largest, tiny(1.0_wp)), self%peak_rotation, &
-                real(self%cut_steps, wp), merge(1.0_wp, 0.0_wp, self%collapsed)]
+                real(self%cut_steps, wp), merge(1.0_wp, 0.0_wp, self%collapsed), &
+                real(self%lost_joint, wp)]
    end function as_array
 
    !> Names of the figures in their order, separated by blanks.

@@ -11,6 +11,7 @@ program unit_tests
    use test_finite, only: collect_finite
    use test_history, only: collect_history
    use test_implicit, only: collect_implicit
+   use test_interaction, only: collect_interaction
    use test_layered, only: collect_layered
    use test_linalg, only: collect_linalg
    use test_modal, only: collect_modal
@@ -48,7 +49,7 @@ program unit_tests
       procedure(collect_interface), pointer, nopass :: collect => null()
    end type suite_type
 
-   type(suite_type) :: suites(30)
+   type(suite_type) :: suites(31)
    character(len=80) :: wanted, pattern
    integer :: i, run, failed, found
 
@@ -61,6 +62,7 @@ program unit_tests
              suite_type('concrete', collect_concrete), &
              suite_type('steel', collect_steel), &
              suite_type('layered', collect_layered), suite_type('rules', collect_rules), &
+             suite_type('interaction', collect_interaction), &
              suite_type('springs', collect_springs), suite_type('column', collect_column), &
              suite_type('chain', collect_chain), &
              suite_type('band', collect_band), &

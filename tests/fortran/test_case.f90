@@ -478,7 +478,7 @@ contains
       call expect_loading(error, spec, .false., "drive = 'vertical_acceleration' needs a dynamic analysis")
       call expect_loading(error, spec, .true., '')
       spec%drive = 'axial_load'
-      call expect_loading(error, spec, .false., "drive = 'axial_load' needs a dynamic analysis")
+      call expect_loading(error, spec, .false., '')
       call expect_loading(error, spec, .true., '')
    end subroutine loading_drive
 

@@ -474,7 +474,7 @@ STATIC_FAULTS = [
     ({"loading": "drive = 'vertical_acceleration', amplitudes = 1", "analysis": STATIC},
      ["'vertical_acceleration' needs a dynamic", "method = 'auto'"]),
     ({"loading": "drive = 'axial_load', amplitudes = 1", "analysis": STATIC},
-     ["'axial_load' needs a dynamic", "method = 'auto'"]),
+     ["'axial_load' alone does not drive", "method = 'auto'"]),
     # lumped mass, rotary inertia, damping
     ({"column": H + "top_mass = '1'"}, ["line 2", "top_mass = '1' must be a number"]),
     ({"column": H + "top_mass = -1"}, ["top_mass = -1 kg", "negative"]),

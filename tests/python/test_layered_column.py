@@ -296,6 +296,7 @@ KEPT = {
     "rotary_inertia": {"rotary_inertia": 3.0},
     "damping": {"damping": 0.05},
     "axial_height": {"axial_height": 2.0},
+    "axial_force_ratio": {"axial_force_ratio": 1.5},
     "model": {"model": "mine"},
     "axial_follows": {"kinematics": "finite", "axial_follows": True},
     "force_follows": {"kinematics": "finite", "force_follows": True},

@@ -480,7 +480,7 @@ def run_rk45_finite() -> rbsdem.Result:
         np.arange(13) * (1.2 / 12),
         force=9e3 * wave,
         vertical_acceleration=4.0 * wave,
-        axial_load=2e3 * wave,
+        axial_load=4e3 + 2e3 * wave,
         method="rk45",
         tolerance=1e-11,
     )

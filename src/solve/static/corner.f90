@@ -11,7 +11,7 @@ module rbs_solve_static_corner
    implicit none
    private
 
-   public :: turn_corner
+   public :: turn_corner, report_no_line
 
    !> Most springs whose two ways out of a corner are tried in all combinations, and most trials times
    !> springs.

@@ -5,7 +5,7 @@ module rbs_solve_static_path
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type, joint_name
+   use rbs_column_column, only: column_type, joint_name, small
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_observer, only: observer_type
    use rbs_output_recorder, only: recorder_type
@@ -15,7 +15,7 @@ module rbs_solve_static_path
    implicit none
    private
 
-   public :: static_path, kept_rows, is_on_end, describe_state, name_spring, on_the_end
+   public :: static_path, kept_rows, is_on_end, top_height, describe_state, name_spring, on_the_end
 
    !> A spring this close to an end of its line, relative to the end, is on it. Not a tolerance of the
    !> solution: where a cycle returns to its peak, round-off would otherwise decide between outer and inner
@@ -171,11 +171,14 @@ contains
       allocate (row(row_size(self%column%unknowns)))
       do i = 1, size(target)
          call self%advance(target(i), failure)
+         summary%lost_joint = max(self%springs%lost_joint() - self%column%n, 0)
+         ! Where a joint has lost its axial load, that is what ends the path.
+         if (summary%lost_joint > 0 .and. allocated(failure)) deallocate (failure)
          if (allocated(failure)) failure%message = 'row '//to_text(i)//': '//failure%message
          call summary%see_peak(self%displacement, self%force)
          if (may_collapse) summary%collapsed = abs(self%displacement)/height >= collapse_drift
          if (mod(i - 1, n) == 0 .or. i == size(target) .or. allocated(failure) .or. &
-             summary%collapsed) then
+             summary%collapsed .or. summary%lost_joint > 0) then
             call fill_row(self, row, i - 1, summary%peak_rotation)
             call summary%see(row)
             call recorder%record(row, error)
@@ -189,7 +192,7 @@ contains
             call move_alloc(failure, error)
             return
          end if
-         if (summary%collapsed) return
+         if (summary%collapsed .or. summary%lost_joint > 0) return
       end do
    end subroutine follow
 
@@ -240,6 +243,28 @@ contains
          row(row_joints + m:) = springs%f0 + springs%k*(springs%d - springs%d0)
       end associate
    end subroutine fill_row
+
+   !> Height of the top with small rotations, with `pdelta` to second order as the axial load sees it [m], and
+   !> the largest absolute rotation of a body [rad].
+   pure subroutine top_height(path, height, rotation)
+      class(static_path), intent(in) :: path
+      real(wp), intent(out) :: height, rotation
+      real(wp) :: turned, lost
+      integer :: i, n
+
+      n = path%column%n
+      rotation = 0.0_wp
+      turned = 0.0_wp
+      lost = 0.0_wp
+      do i = 1, n
+         lost = lost + path%springs%d(i)*turned
+         turned = turned + path%springs%d(n + i)
+         lost = lost + 0.5_wp*path%column%length(i)*turned**2
+         rotation = max(rotation, abs(turned))
+      end do
+      height = path%column%joint_height(n + 1)
+      if (path%column%kinematics /= small) height = height - lost
+   end subroutine top_height
 
    !> Where the path is, for a message.
    subroutine describe_state(path, text)

@@ -1,14 +1,16 @@
 !> The entry of the static analyses.
 module rbs_solve_static_run_static
-   use rbs_base_error, only: error_type
+   use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type, finite
+   use rbs_base_text, only: to_text
+   use rbs_column_column, only: column_type, small, finite
    use rbs_output_observer, only: observer_type
    use rbs_output_recorder, only: recorder_type
    use rbs_output_summary, only: summary_type
    use rbs_solve_check_values, only: check_values
    use rbs_solve_static_trace, only: trace
    use rbs_solve_static_trace_finite, only: trace_finite
+   use rbs_solve_static_trace_interaction, only: trace_interaction
    implicit none
    private
 
@@ -17,7 +19,9 @@ module rbs_solve_static_run_static
 contains
 
    !> Static path through displacements of the top or lateral forces.
-   subroutine run_static(column, by_force, target, every, collapse_drift, recorder, summary, error, progress)
+   subroutine run_static(column, by_force, target, every, collapse_drift, recorder, summary, error, &
+                         progress, &
+                         axial_load)
       type(column_type), intent(in) :: column
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
@@ -31,14 +35,36 @@ contains
       type(summary_type), intent(out) :: summary
       type(error_type), allocatable, intent(out) :: error
       class(observer_type), intent(inout), optional :: progress
+      !> Axial load at the top at each target (m), instead of the constant one; empty: constant [N]
+      real(wp), intent(in), optional :: axial_load(:)
+      real(wp) :: load(size(target))
+      logical :: varies
 
+      load = column%axial_load
+      varies = abs(column%axial_force_ratio) > 0.0_wp
+      if (present(axial_load)) then
+         if (size(axial_load) > 0) then
+            varies = .true.
+            call check_axial_load(column, axial_load, size(target), error)
+            if (allocated(error)) return
+            load = axial_load
+         end if
+      end if
+      if (varies) then
+         call check_interaction(column, error)
+         if (allocated(error)) return
+      end if
       if (by_force) then
          call check_values(target, 'force', error)
       else
          call check_values(target, 'displacement', error)
       end if
       if (allocated(error)) return
-      if (column%kinematics == finite) then
+      if (varies) then
+         call trace_interaction(column, by_force, target, load, every, collapse_drift, recorder, summary, &
+                                error, &
+                                progress)
+      else if (column%kinematics == finite) then
          call trace_finite(column, by_force, target, every, collapse_drift, recorder, summary, error, &
                            progress)
       else
@@ -48,5 +74,38 @@ contains
       summary%peak_base_shear = summary%peak_force
       summary%method = 'static'
    end subroutine run_static
+
+   !> One axial load for each target.
+   subroutine check_axial_load(column, axial_load, targets, error)
+      type(column_type), intent(in) :: column
+      real(wp), intent(in) :: axial_load(:)
+      integer, intent(in) :: targets
+      type(error_type), allocatable, intent(out) :: error
+
+      if (size(axial_load) /= targets) then
+         call fatal_error(error, bad_input, 'axial_load: '//to_text(size(axial_load))//' values for '// &
+                          to_text(targets)//' points of the path; give one for each')
+         return
+      end if
+      call check_values(axial_load, 'axial_load', error)
+      if (allocated(error) .or. column%kinematics /= small .or. any(column%spring%rule == 'layered')) return
+      call fatal_error(error, bad_input, "axial_load: with kinematics = 'small' and no layered joint a "// &
+                       "history of it does nothing; use 'pdelta', or layered joints")
+   end subroutine check_axial_load
+
+   !> Whether the column can be followed under an axial load that varies.
+   subroutine check_interaction(column, error)
+      type(column_type), intent(in) :: column
+      type(error_type), allocatable, intent(out) :: error
+
+      if (column%kinematics == finite) then
+         call fatal_error(error, bad_input, 'axial_load: a static path under an axial load that varies '// &
+                          "needs kinematics = 'small' or 'pdelta'")
+      else if (column%opens) then
+         call fatal_error(error, bad_input, 'axial_load: a static path under an axial load that varies '// &
+                          'takes no axial springs; layered joints open by themselves, so remove '// &
+                          'axial_spring, or use a dynamic analysis')
+      end if
+   end subroutine check_interaction
 
 end module rbs_solve_static_run_static

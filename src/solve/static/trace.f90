@@ -6,13 +6,14 @@ module rbs_solve_static_trace
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_axial, only: axial_energy
-   use rbs_column_column, only: column_type, small
+   use rbs_column_column, only: column_type
    use rbs_output_observer, only: observer_type
    use rbs_output_recorder, only: recorder_type
    use rbs_output_summary, only: summary_type
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_equilibrium, only: equilibrium_type
-   use rbs_solve_static_path, only: static_path, describe_state, kept_rows, is_on_end, on_the_end
+   use rbs_solve_static_path, only: static_path, describe_state, kept_rows, is_on_end, on_the_end, &
+                                    top_height
    implicit none
    private
 
@@ -81,7 +82,7 @@ contains
          direction = merge(1, -1, target > self%control)
          if (self%direction /= direction) then
             call turn_corner(self, direction, target, error)
-            if (allocated(error)) return
+            if (allocated(error) .or. self%springs%lost_joint() > 0) return
             call begin_line(self, direction)
          end if
          if (direction*(self%finish - target) > on_the_end*abs(target)) then
@@ -212,21 +213,10 @@ contains
    pure subroutine measure(self, axial_work, height, rotation)
       class(straight_path), intent(in) :: self
       real(wp), intent(out) :: axial_work, height, rotation
-      real(wp) :: turned, lost
-      integer :: i, n
+      integer :: n
 
       n = self%column%n
-      rotation = 0.0_wp
-      turned = 0.0_wp
-      lost = 0.0_wp
-      do i = 1, n
-         lost = lost + self%springs%d(i)*turned
-         turned = turned + self%springs%d(n + i)
-         lost = lost + 0.5_wp*self%column%length(i)*turned**2
-         rotation = max(rotation, abs(turned))
-      end do
-      height = self%column%joint_height(n + 1)
-      if (self%column%kinematics /= small) height = height - lost
+      call top_height(self, height, rotation)
       axial_work = 0.0_wp
       if (self%equilibrium%coupled) axial_work = axial_energy(self%column, self%springs%d)
       if (.not. self%column%opens) return

@@ -7,12 +7,13 @@ module rbs_solve_time_march
    use rbs_column_column, only: column_type, joint_name
    use rbs_column_energy, only: kinetic_energy, potential_energy
    use rbs_column_top, only: top_position, top_displacement
+   use rbs_hysteresis_spring_record, only: spring_record
    use rbs_output_observer, only: observer_type
    use rbs_output_recorder, only: recorder_type
    use rbs_output_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
                               row_spring, row_damping, row_axial, row_residual, row_top, row_joints
    use rbs_output_summary, only: summary_type
-   use rbs_solve_time_loads, only: loads_type, lateral, axial
+   use rbs_solve_time_loads, only: loads_type, lateral, vertical, axial
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_state, only: state_type, stepper_type, out_of_bounds
    use rbs_base_check, only: is_given
@@ -57,6 +58,7 @@ contains
       real(wp), allocatable :: row(:)
       real(wp) :: begin, finish, displacement, furthest, h
       integer :: interval, part, parts, step, next_row
+      logical :: ends
 
       call start_state(state, column, loads, initial, plan%begin, error)
       if (allocated(error)) return
@@ -95,14 +97,16 @@ contains
             state%time = state%clock - plan%begin
             displacement = top_displacement(state%motion%column, state%q)
             call summary%see_peak(displacement, state%load(lateral))
+            summary%lost_joint = max(state%springs%lost_joint() - column%n, 0)
             summary%collapsed = abs(displacement) >= furthest
-            if (summary%collapsed .or. step == next_row .or. &
+            ends = summary%collapsed .or. summary%lost_joint > 0
+            if (ends .or. step == next_row .or. &
                 (every == unset_integer .and. part == parts)) then
                summary%steps = stepper%steps
                summary%cut_steps = stepper%cut_steps
                if (stepper%longest_step > 0.0_wp) summary%time_step = stepper%longest_step
                call keep(state, row, recorder, summary, error)
-               if (allocated(error) .or. summary%collapsed) return
+               if (allocated(error) .or. ends) return
                if (every /= unset_integer) next_row = min(step + every, plan%steps)
             end if
             if (iand(step, 8191) == 0 .and. present(progress)) then
@@ -145,10 +149,12 @@ contains
       call state%loads%set_begin(begin)
       call state%motion%create(column, state%loads%acts, error)
       if (allocated(error)) return
-      call state%springs%create(column%spring)
       state%begin = begin
       state%clock = begin
+      ! The history is that of the whole axial load; the motion takes what it adds to the constant one.
+      if (state%loads%acts(axial)) state%loads%axial%value = state%loads%axial%value - column%axial_load
       call state%loads%at_time(0.0_wp, state%load)
+      call create_springs(state, column)
       allocate (state%q(m), state%v(m), source=0.0_wp)
       if (allocated(initial%deformation)) state%q = initial%deformation
       if (allocated(initial%velocity)) state%v = initial%velocity
@@ -160,6 +166,29 @@ contains
       state%at_begin = kinetic_energy(state%motion%column, state%q, state%v) + sum(state%springs%work) &
                        + potential_energy(state%motion%column, state%q)
    end subroutine start_state
+
+   !> Virgin springs; layered joints begin under the axial forces of the first moment.
+   subroutine create_springs(state, column)
+      type(state_type), intent(inout) :: state
+      type(column_type), intent(in) :: column
+      type(spring_record), allocatable :: spring(:)
+      integer :: i
+
+      if (.not. any(state%loads%acts([vertical, axial]))) then
+         call state%springs%create(column%spring)
+         return
+      end if
+      spring = column%spring
+      do i = 1, column%n
+         associate (joint => spring(column%n + i))
+            joint%axial_load = joint%axial_load + state%load(axial) &
+                               + state%load(vertical)*column%lifted_joint(i)
+         end associate
+      end do
+      call state%springs%create(spring)
+      call state%springs%vary_axial_loads()
+      call state%motion%press(state%springs, state%load)
+   end subroutine create_springs
 
    !> Openings in equilibrium with axial load and weight.
    subroutine close_joints(state, error)

@@ -70,6 +70,7 @@ module rbs_solve_time_motion
       procedure :: create
       procedure :: acceleration
       procedure :: forces_on_bodies
+      procedure :: press
       procedure :: load_power
       procedure :: lifting_power
       procedure :: damping_power
@@ -131,7 +132,7 @@ contains
 
       n = self%column%n
       if (self%column%kinematics == finite) then
-         call joint_forces(self, springs, q, v, result%f)
+         call joint_forces(self, springs, q, v, load, result%f)
          if (self%equation_4) then
             call accelerate_equation_4(self, q, v, load, result%f, result%a, result%cosine)
          else
@@ -168,7 +169,7 @@ contains
       integer :: n
 
       n = self%column%n
-      call joint_forces(self, springs, q, v, result%f)
+      call joint_forces(self, springs, q, v, load, result%f)
       associate (column => self%column)
          if (self%second_order) then
             if (self%acts(vertical) .or. self%acts(axial)) then
@@ -191,14 +192,23 @@ contains
    end subroutine forces_on_bodies
 
    !> Forces of the joints: springs on their present lines, and damping.
-   subroutine joint_forces(self, springs, q, v, f)
+   subroutine joint_forces(self, springs, q, v, load, f)
       class(motion_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in), contiguous :: q(:), v(:)
+      !> Loads at the time
+      real(wp), intent(in) :: load(4)
       !> Forces (unknowns) [N, N m]
       real(wp), intent(out), contiguous :: f(:)
+      integer :: i, j
 
       call on_lines(self%column%unknowns, springs%d0, springs%f0, springs%k, q, f)
+      if (springs%pressed) then
+         do j = 1, size(springs%layered)
+            i = springs%layered(j)
+            f(i) = f(i) - springs%centre(i)*(axial_force(self, i - self%column%n, load) - springs%press_at(i))
+         end do
+      end if
       if (.not. self%damped) return
       if (self%column%tangent_damping) then
          f = f + self%column%stiffness_damping*max(springs%k, 0.0_wp)*v
@@ -207,6 +217,31 @@ contains
       end if
       if (allocated(self%modal)) f = f + matmul(self%modal, v)
    end subroutine joint_forces
+
+   !> Axial force in a joint from axial load, weight and vertical motion, compression positive [N].
+   pure real(wp) function axial_force(self, joint, load)
+      type(motion_type), intent(in) :: self
+      integer, intent(in) :: joint
+      real(wp), intent(in) :: load(4)
+
+      axial_force = self%column%compression(joint) + load(axial) &
+                    + load(vertical)*self%column%lifted_joint(joint)
+   end function axial_force
+
+   !> Tell layered joints the axial forces that their next move leads to.
+   subroutine press(self, springs, load)
+      class(motion_type), intent(in) :: self
+      type(spring_array), intent(inout) :: springs
+      !> Loads at the end of the move
+      real(wp), intent(in) :: load(4)
+      integer :: i, j
+
+      if (.not. springs%pressed) return
+      do j = 1, size(springs%layered)
+         i = springs%layered(j)
+         springs%press_to(i) = axial_force(self, i - self%column%n, load)
+      end do
+   end subroutine press
 
    pure subroutine on_lines(m, d0, f0, k, q, f)
       integer, intent(in) :: m

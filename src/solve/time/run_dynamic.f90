@@ -101,14 +101,22 @@ contains
       end if
       call new_plan(plan, time, analysis%dt, longest, bound, error)
       if (allocated(error)) return
-      if (loads%vertical%acts() .and. column%kinematics == small .and. .not. column%opens) then
+      if (abs(column%axial_force_ratio) > 0.0_wp) then
+         call fatal_error(error, bad_input, &
+                          'column: axial_force_ratio = '//to_text(column%axial_force_ratio)// &
+                          ' belongs to a static path, which has one lateral force; in a dynamic analysis '// &
+                          'give the axial load as a history, axial_load')
+         return
+      end if
+      if (column%kinematics /= small .or. column%opens .or. any(column%spring%rule == 'layered')) return
+      if (loads%vertical%acts()) then
          call fatal_error(error, bad_input, "vertical_acceleration: with kinematics = 'small' and joints "// &
                           "that do not open it does nothing; use 'pdelta' or 'finite', or give axial "// &
-                          'springs')
-      else if (loads%axial%acts() .and. column%kinematics == small .and. .not. column%opens) then
+                          'springs or layered joints')
+      else if (loads%axial%acts()) then
          call fatal_error(error, bad_input, "axial_load: with kinematics = 'small' and joints that do "// &
                           "not open a history of it does nothing; use 'pdelta' or 'finite', or give "// &
-                          'axial springs')
+                          'axial springs or layered joints')
       end if
    end subroutine plan_steps
 

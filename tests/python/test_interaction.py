@@ -1,0 +1,291 @@
+"""Columns of layered joints under an axial load that varies (docs/interaction.md).
+
+The expected points come from an independent return mapping with Newton's method (100 and 1000
+increments, equal to 12 digits); energies, increments and symmetry need no reference.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import rbsdem
+from rbsdem import Bilinear, Elastic, Layered
+
+DRIVEN = (0.012, -0.012, 0.03, -0.03, 0.045, 0.0)
+
+
+def joint(share: float = 1.0) -> Layered:
+    """Return a joint of three pairs of bilinear layers."""
+    pairs = ((0.18, 1e-3), (0.11, 1.3e-3), (0.04, 0.9e-3))
+    return Layered(
+        [
+            (side * y, Bilinear(k=2.5e8 * share, d_y=d_y, k_post=5e6 * share))
+            for y, d_y in pairs
+            for side in (1, -1)
+        ]
+    )
+
+
+def one_body(**fields: object) -> rbsdem.Column:
+    """Return a cantilever of one body with that joint."""
+    given = {"kinematics": "pdelta", "axial_load": 3e5} | fields
+    return rbsdem.Column(1.5, 2e4, Elastic(4e7), joint(), **given)
+
+
+def two_bodies(kinematics: str, **fields: object) -> rbsdem.Column:
+    """Return a cantilever of two bodies."""
+    return rbsdem.Column(
+        1.5,
+        2e4,
+        [Elastic(4e7), Elastic(3e7)],
+        [joint(), joint(0.8)],
+        n=2,
+        lengths=[0.8, 0.7],
+        kinematics=kinematics,
+        axial_load=3e5,
+        **fields,
+    )
+
+
+def test_one_body_whose_axial_load_follows_the_force() -> None:
+    """On a line of all layers the force is a hyperbola in the rotation."""
+    result = rbsdem.cyclic(one_body(axial_force_ratio=1.5), displacement=DRIVEN)
+    np.testing.assert_allclose(
+        result.force[[0, 2, 5]], [8.2336451340e4, 9.8998673723e4, -1.1297168395e5], rtol=1e-9
+    )
+    np.testing.assert_allclose(
+        result.rotation[[0, 2, 5], 0],
+        [6.6277258110e-3, 1.8350022105e-2, 1.8828613991e-3],
+        rtol=1e-9,
+    )
+    assert result.summary["energy_residual"] < 1e-12 * result.summary["input_energy"]
+
+
+@pytest.mark.parametrize(
+    ("kinematics", "rows", "points"),
+    [
+        (
+            "small",
+            [2, 5],
+            [
+                (1.0337512514e5, 2.5843781284e-3, 1.3993343783e-2, 4.2568124173e-3),
+                (-8.9848133718e4, -2.2462033430e-3, 4.7833260660e-3, -2.7626399505e-3),
+            ],
+        ),
+        (
+            "pdelta",
+            [0, 2, 5],
+            [
+                (6.2656912817e4, 1.5664228204e-3, 4.3673335483e-3, 2.4809393988e-3),
+                (9.5861402701e4, 2.3965350675e-3, 1.4143384460e-2, 4.2625486765e-3),
+                (-9.0884720038e4, -2.2721180009e-3, 4.8390004047e-3, -2.8332748320e-3),
+            ],
+        ),
+    ],
+)
+def test_two_bodies_whose_axial_load_follows_the_force(
+    kinematics: str, rows: list[int], points: list[tuple[float, ...]]
+) -> None:
+    """Two layered joints and two slips, small rotations and P-Delta."""
+    result = rbsdem.cyclic(two_bodies(kinematics, axial_force_ratio=1.5), displacement=DRIVEN)
+    found = np.column_stack([result.force, result.slip[:, 0], result.rotation])[rows]
+    np.testing.assert_allclose(found, points, rtol=1e-9)
+    assert result.summary["energy_residual"] < 1e-13 * result.summary["input_energy"]
+
+
+@pytest.mark.parametrize("kinematics", ["small", "pdelta"])
+def test_increments_do_not_matter(kinematics: str) -> None:
+    """A history of displacement and axial load cut into 13 parts leads to the same points."""
+    points = np.array(DRIVEN)
+    load = np.array([3e5, 6e5, -1e5, 5e5, 8e5, 2e5])
+    column = two_bodies(kinematics)
+    whole = rbsdem.cyclic(column, displacement=points, axial_load=load)
+    at = np.arange(6)
+    fine = np.linspace(0, 5, 5 * 13 + 1)
+    parts = rbsdem.cyclic(
+        column,
+        displacement=np.r_[points[0], np.interp(fine, at, points)],
+        axial_load=np.r_[load[0], np.interp(fine, at, load)],
+    )
+    np.testing.assert_allclose(parts.force[1::13], whole.force, rtol=1e-10, atol=1e-6)
+    np.testing.assert_allclose(parts.rotation[1::13], whole.rotation, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("kinematics", ["small", "pdelta"])
+def test_a_history_that_is_constant_is_the_constant_load(kinematics: str) -> None:
+    """The solver for a varying axial load and that for a constant one give the same path."""
+    path = 1.5 * rbsdem.protocol([0.005, 0.01, 0.02], cycles=2, points=5)
+    column = two_bodies(kinematics)
+    constant = rbsdem.cyclic(column, displacement=path)
+    varying = rbsdem.cyclic(column, displacement=path, axial_load=np.full(path.size, 3e5))
+    np.testing.assert_allclose(varying.force, constant.force, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(varying.rotation, constant.rotation, rtol=0, atol=1e-12)
+
+
+def test_driven_by_force_is_driven_by_displacement() -> None:
+    """Displacement and force are inverse to each other under an axial load that follows."""
+    column = two_bodies("pdelta", axial_force_ratio=1.5)
+    by_displacement = rbsdem.cyclic(column, displacement=[0.012, -0.012, 0.03])
+    by_force = rbsdem.cyclic(column, force=by_displacement.force)
+    np.testing.assert_allclose(by_force.displacement, by_displacement.displacement, rtol=1e-9)
+
+
+def test_response_in_time() -> None:
+    """Ground motion and a history of the axial load together, by average acceleration."""
+    time = np.linspace(0, 1, 101)
+    load = 3e5 + 2e5 * np.sin(6.2 * np.pi * time)
+    ground = 14 * np.sin(4 * np.pi * time) * np.minimum(time / 0.3, 1)
+    column = one_body()
+    keywords = {"ground_acceleration": ground, "axial_load": load}
+    with pytest.warns(rbsdem.AccuracyWarning, match=r"0\.1"):
+        result = rbsdem.time_history(column, time, method="newmark", dt=0.005, **keywords)
+    rows = [25, 50, 100]
+    np.testing.assert_allclose(
+        result.slip[rows, 0], [-1.6421049083e-3, 4.2036475281e-3, 4.7127207049e-3], rtol=1e-8
+    )
+    np.testing.assert_allclose(
+        result.rotation[rows, 0], [-4.6414136183e-3, 1.0375057296e-1, 6.8941562590e-2], rtol=1e-8
+    )
+
+
+@pytest.mark.filterwarnings("ignore::rbsdem.AccuracyWarning")
+@pytest.mark.parametrize("method", ["newmark", "generalised_alpha"])
+def test_order_two_in_time(method: str) -> None:
+    """The error falls with the square of the step; rk4 with tiny steps is the reference."""
+    time = np.linspace(0, 0.3, 31)
+    load = 3e5 + 2e5 * np.sin(6.2 * np.pi * time)
+    ground = 14 * np.sin(4 * np.pi * time) * np.minimum(time / 0.3, 1)
+    column = one_body()
+    keywords = {"ground_acceleration": ground, "axial_load": load}
+    exact = rbsdem.time_history(column, time, method="rk4", dt=1e-5, **keywords).rotation[:, 0]
+    errors = [
+        np.abs(
+            rbsdem.time_history(column, time, method=method, dt=dt, **keywords).rotation[:, 0]
+            - exact
+        ).max()
+        for dt in (1e-3, 5e-4)
+    ]
+    assert np.log2(errors[0] / errors[1]) > 1.7
+
+
+def test_vertical_motion_reaches_the_joints() -> None:
+    """Vertical motion of the ground acts like the axial load that it makes of the mass."""
+    time = np.linspace(0, 1, 201)
+    up = 3 * np.sin(25 * time)
+    ground = 7 * np.sin(8 * time)
+    column = one_body(kinematics="small")
+    vertical = rbsdem.time_history(
+        column, time, method="newmark", ground_acceleration=ground, vertical_acceleration=up
+    )
+    pushed = rbsdem.time_history(
+        column, time, method="newmark", ground_acceleration=ground, axial_load=3e5 + 2e4 * up
+    )
+    plain = rbsdem.time_history(column, time, method="newmark", ground_acceleration=ground)
+    np.testing.assert_allclose(vertical.rotation, pushed.rotation, rtol=0, atol=1e-12)
+    assert np.abs(vertical.rotation - plain.rotation).max() > 1e-5
+
+
+def plastic(axial_load: float) -> rbsdem.Column:
+    """Return a column of four plastic layers that carry 4 MN in all."""
+    layers = [(y, Bilinear(k=1e9, d_y=1e-3, k_post=0.0)) for y in (-0.15, -0.05, 0.05, 0.15)]
+    return rbsdem.Column(1.5, 1e3, Elastic(1e9), Layered(layers), axial_load=axial_load)
+
+
+def test_plastic_capacity_under_every_axial_load() -> None:
+    """The moment of rigid-plastic blocks, by hand, on paths along which the load rises."""
+    for load in (-3.5e6, -1e6, 0.0, 1.7e6, 3.9e6):
+        result = rbsdem.cyclic(
+            plastic(0.0), displacement=[0.0, 0.07, 0.14], axial_load=[0.0, 0.5 * load, load]
+        )
+        # Bars yield from the outside in; that at the neutral axis carries the rest.
+        forces = np.full(4, -1e6)
+        rest = 4e6 - load
+        for i in (3, 2, 1, 0):
+            share = min(rest, 2e6)
+            forces[i] += share
+            rest -= share
+        moment = float(np.dot([-0.15, -0.05, 0.05, 0.15], forces))
+        assert result.force[-1] * 1.5 == pytest.approx(moment, rel=1e-9)
+
+
+def test_loss_of_the_axial_load_ends_a_static_path() -> None:
+    """The path ends where all layers have yielded: 4 MN, and the status says so."""
+    result = rbsdem.cyclic(
+        plastic(2e6), displacement=[0.01, 0.02, 0.03], axial_load=[2e6, 3e6, 5e6]
+    )
+    assert result.summary["status"] == "axial_failure"
+    assert result.summary["lost_joint"] == 1
+    assert len(result.displacement) == 3
+    # Half of the way from 3 to 5 MN.
+    assert result.displacement[-1] == pytest.approx(0.025, rel=1e-9)
+
+
+def test_loss_of_the_axial_load_ends_a_response_in_time() -> None:
+    """The analysis ends at the time at which the history passes the capacity."""
+    time = np.linspace(0, 1, 101)
+    result = rbsdem.time_history(
+        plastic(2e6),
+        time,
+        method="newmark",
+        ground_acceleration=np.sin(9 * time),
+        axial_load=2e6 + 3e6 * time,
+    )
+    assert result.summary["status"] == "axial_failure"
+    assert result.time[-1] == pytest.approx(2 / 3, abs=0.011)
+
+
+@pytest.mark.parametrize(
+    ("fields", "call", "part"),
+    [
+        ({}, {"axial_load": [1e5, 2e5]}, "2 values for 3 points"),
+        ({"kinematics": "finite"}, {"axial_load": [1e5, 2e5, 3e5]}, "'small' or 'pdelta'"),
+        (
+            {"kinematics": "finite", "axial_force_ratio": 1.0},
+            {},
+            "'small' or 'pdelta'",
+        ),
+        ({}, {"axial_load": [1e5, float("nan"), 3e5]}, "axial_load"),
+    ],
+)
+def test_what_a_static_path_refuses(
+    fields: dict[str, object], call: dict[str, object], part: str
+) -> None:
+    """Wrong sizes, kinematics and numbers."""
+    with pytest.raises(rbsdem.InputError, match=part):
+        rbsdem.cyclic(one_body(**fields), displacement=[0.01, 0.02, 0.03], **call)
+
+
+def test_a_history_without_effect_is_refused() -> None:
+    """Small rotations without layered joints do not see the axial load."""
+    column = rbsdem.Column(1.5, 1e3, Elastic(1e9), Elastic(1e8))
+    with pytest.raises(rbsdem.InputError, match="does nothing"):
+        rbsdem.cyclic(column, displacement=[0.01], axial_load=[1e5])
+
+
+def test_a_ratio_belongs_to_a_static_path() -> None:
+    """A dynamic analysis has no one lateral force."""
+    with pytest.raises(rbsdem.InputError, match="axial_force_ratio"):
+        rbsdem.time_history(
+            one_body(axial_force_ratio=1.0), [0.0, 1.0], ground_acceleration=[0.0, 1.0]
+        )
+
+
+def test_the_case_file_says_the_same(tmp_path) -> None:
+    """A static case with a history of the axial load, written and read back."""
+    load = [3e5, 6e5, -1e5, 5e5, 8e5, 2e5]
+    column = two_bodies("pdelta", axial_force_ratio=0.5)
+    here = rbsdem.cyclic(column, displacement=DRIVEN, axial_load=load)
+    path = tmp_path / "exterior.nml"
+    values = {"displacement": DRIVEN, "axial_load": load}
+    groups = "\n".join(
+        f"&loading drive = '{name}', values = {', '.join(map(repr, map(float, numbers)))} /"
+        for name, numbers in values.items()
+    )
+    path.write_text(f"{column.to_namelist()}\n{groups}\n&analysis method = 'static' /\n")
+    case = rbsdem.read_case(path)
+    assert case.column == column
+    again = case.run()
+    np.testing.assert_array_equal(again.force, here.force)
+    path.write_text(case.to_namelist())
+    assert rbsdem.read_case(path) == case
