@@ -39,6 +39,7 @@ module rbs_hysteresis_bilinear
       procedure :: check
       procedure :: start
       procedure :: next
+      procedure :: copy_memory
    end type bilinear_rule
 
 contains
@@ -109,5 +110,15 @@ contains
                              near_closed=.false., one_way=.false.)
       end if
    end subroutine next
+
+   !> Copy the memory of another spring of this rule and its parameters.
+   pure subroutine copy_memory(self, other, done)
+      class(bilinear_rule), intent(inout) :: self
+      class(rule_type), intent(in) :: other
+      logical, intent(out) :: done
+
+      ! There is none: the line says all.
+      done = same_type_as(self, other)
+   end subroutine copy_memory
 
 end module rbs_hysteresis_bilinear

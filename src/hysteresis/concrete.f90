@@ -82,6 +82,7 @@ module rbs_hysteresis_concrete
       procedure :: check
       procedure :: start
       procedure :: next
+      procedure :: copy_memory
    end type concrete_rule
 
 contains
@@ -364,5 +365,27 @@ contains
       line%hi_closed = .true.
       line%one_way = -1
    end subroutine set_one_way
+
+   !> Copy the memory of another spring of this rule and its parameters.
+   pure subroutine copy_memory(self, other, done)
+      class(concrete_rule), intent(inout) :: self
+      class(rule_type), intent(in) :: other
+      logical, intent(out) :: done
+
+      done = .false.
+      select type (other)
+      type is (concrete_rule)
+         self%stage = other%stage
+         self%c_u = other%c_u
+         self%f_u = other%f_u
+         self%c_p = other%c_p
+         self%f_largest = other%f_largest
+         self%gap = other%gap
+         self%widest = other%widest
+         self%c_opened = other%c_opened
+         self%strength = other%strength
+         done = .true.
+      end select
+   end subroutine copy_memory
 
 end module rbs_hysteresis_concrete

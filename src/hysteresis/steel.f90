@@ -102,6 +102,7 @@ module rbs_hysteresis_steel
       procedure :: check
       procedure :: start
       procedure :: next
+      procedure :: copy_memory
    end type steel_rule
 
 contains
@@ -424,5 +425,25 @@ contains
          end if
       end do
    end subroutine limit_row
+
+   !> Copy the memory of another spring of this rule and its parameters.
+   pure subroutine copy_memory(self, other, done)
+      class(steel_rule), intent(inout) :: self
+      class(rule_type), intent(in) :: other
+      logical, intent(out) :: done
+
+      done = .false.
+      select type (other)
+      type is (steel_rule)
+         self%s = other%s
+         self%rate = other%rate
+         self%d = other%d
+         self%highest = other%highest
+         self%lowest = other%lowest
+         self%worn = other%worn
+         self%wear_rate = other%wear_rate
+         done = .true.
+      end select
+   end subroutine copy_memory
 
 end module rbs_hysteresis_steel
