@@ -14,7 +14,7 @@ from rbsdem.case import Case, read_case
 from rbsdem.column import Column
 from rbsdem.comparison import Comparison, compare
 from rbsdem.damping import Damping
-from rbsdem.errors import AccuracyWarning, InputError, RbsdemError, SolveError
+from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, RbsdemError, SolveError
 from rbsdem.paper import paper_columns, paper_sections
 from rbsdem.peer import PeerTest, read_peer, read_test
 from rbsdem.protocol import protocol
@@ -59,6 +59,7 @@ __all__ = [
     "InputError",
     "Layered",
     "Layout",
+    "LongRunWarning",
     "Modes",
     "Parameter",
     "PeakOriented",

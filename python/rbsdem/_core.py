@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from itertools import islice
 from typing import Any, NamedTuple
@@ -29,6 +29,7 @@ BEYOND_MEANING = 1e50
 
 _ANALYSIS_FAILED = 1
 _LITTLE_ROOM = 3
+_LONG_RUN = 4
 
 #: Summary values that are whole numbers.
 _COUNTS = ("steps", "rows", "events", "cut_steps")
@@ -301,12 +302,14 @@ def time_history(
     initial: Array,
     opening_given: bool,
     every: int | None,
+    tell: Callable[[str], None],
 ) -> Run:
     """March through time.
 
     Only the Fortran part knows the number of rows, after it has planned the steps. Without `every`
     there is one row for each of `time`, unless the step does not divide the intervals. Where there
     is not enough room, the first call returns the number of rows and a second one computes them.
+    `tell` is called with a note before a long run starts.
     """
     for name, values in loads.items():
         if values.size != time.size:
@@ -318,6 +321,7 @@ def time_history(
         load[:, place] = values
     figures = len(quantities(False)[1])
     wanted = time.size if every is None else 0
+    told = False
     while True:
         rows = _empty_rows(shape, wanted)
         wanted, *rest = _rbsdem.rbs_time_history(
@@ -327,10 +331,15 @@ def time_history(
             load,
             initial,
             int(opening_given),
+            int(told),
             rows,
             figures,
         )
-        if rest[2] != _LITTLE_ROOM:
+        status, message = rest[2:]
+        if status == _LONG_RUN:
+            tell(_text(message))
+            told, wanted = True, rows.shape[1]
+        elif status != _LITTLE_ROOM:
             return _finish(rows, wanted, *rest)
 
 

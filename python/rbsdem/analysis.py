@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from rbsdem import _core
 from rbsdem._core import Array
 from rbsdem.column import Column
-from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning
 from rbsdem.methods import IN_TIME
 from rbsdem.result import Result, result_from_rows
 
@@ -157,7 +157,8 @@ def cyclic(
         _NONE if axial_load is None else _core.vector(axial_load, "axial_load"),
         every,
     )
-    return _return(column, run, {"analysis": "static", "driven": name})
+    call = {name: values, "every": every, "collapse_drift": collapse_drift}
+    return _return(column, run, {"analysis": "static", "driven": name}, call)
 
 
 def time_history(
@@ -246,6 +247,8 @@ def time_history(
     AccuracyWarning
         If a body turns by more than 0.1 rad with `kinematics` "small" or "pdelta", and if vertical
         loads have no effect on the column.
+    LongRunWarning
+        Before a run starts that is expected to take more than 5 s; it names the faster method.
     """
     given = {
         "force": force,
@@ -258,25 +261,28 @@ def time_history(
         raise InputError(
             "time_history: nothing acts; give a load (" + ", ".join(given) + ") or an initial state"
         )
-    settings = _settings(
-        every,
-        method=method,
-        dt=dt,
-        events=events,
-        tolerance=tolerance,
-        rho_infinity=rho_infinity,
-        collapse_drift=collapse_drift,
-        allow_unstable=int(_core.switch(allow_unstable, "allow_unstable")) or None,
-    )
+    chosen = {
+        "method": method,
+        "dt": dt,
+        "events": events,
+        "tolerance": tolerance,
+        "rho_infinity": rho_infinity,
+        "collapse_drift": collapse_drift,
+        "allow_unstable": int(_core.switch(allow_unstable, "allow_unstable")) or None,
+    }
+    settings = _settings(every, **chosen)
+    times = _core.vector(time, "time")
     run = _core.time_history(
         _checked(column)._statement + settings,
         (column.n, column.opens, column.damped),
-        _core.vector(time, "time"),
+        times,
         loads,
         *_initial_state(initial, column),
         every,
+        lambda note: warnings.warn(note, LongRunWarning, stacklevel=4),
     )
-    return _return(column, run, {"analysis": "dynamic"})
+    call = {"time": times, **loads, "initial": initial, **chosen, "every": every}
+    return _return(column, run, {"analysis": "dynamic"}, call)
 
 
 def _checked(column: Column) -> Column:
@@ -331,11 +337,12 @@ def _initial_state(initial: Mapping[str, ArrayLike] | None, column: Column) -> t
     return np.concatenate([*parts.values()]), "opening" in initial
 
 
-def _return(column: Column, run: _core.Run, about: dict[str, str]) -> Result:
+def _return(column: Column, run: _core.Run, about: dict[str, str], call: dict[str, Any]) -> Result:
     rows, summary, error, note = run
     summary |= about
     summary["kinematics"] = column.kinematics
-    result = result_from_rows(rows, column, summary)
+    given = {name: value for name, value in call.items() if value is not None}
+    result = result_from_rows(rows, column, summary, given)
     if error is not None:
         error.result = result
         raise error

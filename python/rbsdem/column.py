@@ -171,7 +171,7 @@ class Column:
         put("_statement", self._state())
         notes = _core.check_column(self._statement)
         for note in notes if _TELLING.get() else ():
-            warnings.warn(note, AccuracyWarning, stacklevel=3)
+            warnings.warn(note, AccuracyWarning, stacklevel=4)
 
     def __repr__(self) -> str:
         kinds = [type(spring).__name__ for spring in dict.fromkeys(self.joints("flexure"))]

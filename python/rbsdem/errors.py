@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rbsdem.analysis import Result
 
-__all__ = ["AccuracyWarning", "InputError", "RbsdemError", "SolveError"]
+__all__ = ["AccuracyWarning", "InputError", "LongRunWarning", "RbsdemError", "SolveError"]
 
 
 class RbsdemError(Exception):
@@ -41,6 +41,10 @@ class SolveError(RbsdemError, RuntimeError):
     def __reduce__(self) -> tuple[type[SolveError], tuple[str, Result | None]]:
         """Keep `result` when the error is sent to another process (pickle)."""
         return type(self), (str(self), self.result)
+
+
+class LongRunWarning(UserWarning):
+    """An analysis that starts now will take long: the message says how long, and what is faster."""
 
 
 class AccuracyWarning(UserWarning):

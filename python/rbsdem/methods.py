@@ -28,6 +28,10 @@ class Method:
     limit_share, period_share : float
         The step that the method chooses, as a share of the stability limit of "rk4" and of the
         longest natural period; 0 if it does not depend on that. For "rk45" it is the longest step.
+    usual_error, largest_error : float
+        Errors at this step, or at the tolerance by default: median and largest of the responses of
+        ``studies/error_classes.py``. 0 for "static" (round-off), and for "auto", which has those of
+        the method that it chooses.
     """
 
     name: str
@@ -38,6 +42,8 @@ class Method:
     finite: bool
     limit_share: float
     period_share: float
+    usual_error: float
+    largest_error: float
 
 
 _SETTINGS = ("dt", "events", "tolerance", "rho_infinity", "allow_unstable")
@@ -53,6 +59,8 @@ METHODS = {
         finite=row["finite"] == "yes",
         limit_share=float(row["limit_share"]),
         period_share=float(row["period_share"]),
+        usual_error=float(row["usual_error"]),
+        largest_error=float(row["largest_error"]),
     )
     for row in _core.methods()
 }

@@ -8,15 +8,53 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rbsdem import _core
+from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem.column import Column
+from rbsdem.methods import METHODS
 
 if TYPE_CHECKING:
+    from rbsdem.accuracy.answer import Errors
     from rbsdem.case import Case
 
 #: Names of the energies.
 ENERGIES = ("input", "kinetic", "spring", "damping", "axial", "residual")
+
+
+@dataclass(frozen=True)
+class ErrorEstimate:
+    """What is known of the error of one result without another run.
+
+    Attributes
+    ----------
+    method : str
+        The method that was used.
+    usual, largest : float
+        Error of the method at its own step or tolerance, relative to the peaks: median and largest
+        of the responses of ``studies/error_classes.py``. 0 for a static path, which is exact but
+        for round-off with small rotations.
+    own_setting : bool
+        Whether the result has this step or tolerance; else a setting of the user.
+    energy : float
+        What is missing in the energy balance of this result, over its largest energy. It shows the
+        error in the energy alone: a response may err by more.
+    """
+
+    method: str
+    usual: float
+    largest: float
+    own_setting: bool
+    energy: float
+
+    def __str__(self) -> str:
+        balance = f"energy balance to {self.energy:.1e}"
+        if not self.usual > 0:
+            return f"{self.method}: {balance}"
+        at = "" if self.own_setting else " at its own setting, which this is not"
+        return (
+            f"{self.method}: errors usually about {self.usual:g}, up to {self.largest:g}{at}; "
+            f"{balance}"
+        )
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -62,6 +100,8 @@ class Result:
         Position (x, y) of the top relative to the ground [m].
     column : Column
         The column.
+    call : dict
+        The loading and the settings that were given, as keywords of `cyclic` or `time_history`.
     case : Case or None
         The case that was run; None if the analysis was called for the column.
     """
@@ -81,12 +121,46 @@ class Result:
     axial_force: Array | None
     top: Array
     column: Column
+    call: dict[str, Any]
     case: Case | None = None
 
     @property
     def dynamic(self) -> bool:
         """Whether it is a response in time."""
         return bool(self.summary["analysis"] == "dynamic")
+
+    @property
+    def error_estimate(self) -> ErrorEstimate:
+        """What is known of the error: the class of the method, and the balance of energy."""
+        about = self.summary
+        method = METHODS[about["method"]]
+        return ErrorEstimate(
+            method.name,
+            method.usual_error,
+            method.largest_error,
+            not {"dt", "tolerance", "rho_infinity"} & set(self.call),
+            about["relative_energy_residual"],
+        )
+
+    def refined_error(self) -> Errors:
+        """Solve once more by the next finer setting and return the distance to it.
+
+        That is half the step, or a hundredth of the tolerance, or half of the increments of a
+        static path, by the same method. Where the error falls with the setting, as it does unless
+        the response is chaotic, it is about as large as this distance.
+
+        Returns
+        -------
+        rbsdem.accuracy.answer.Errors
+            Relative differences of the response (rms and largest), of the base moment, the energy
+            and the peak; `largest` is the largest of them.
+
+        Raises
+        ------
+        SolveError
+            If the finer setting does not solve the case.
+        """
+        return _views.view(self, "refined_error")
 
     def __repr__(self) -> str:
         about = self.summary
@@ -118,7 +192,9 @@ def _same(one: Any, other: Any) -> bool:
     return bool(one == other)
 
 
-def result_from_rows(rows: Array, column: Column, summary: dict[str, Any]) -> Result:
+def result_from_rows(
+    rows: Array, column: Column, summary: dict[str, Any], call: dict[str, Any]
+) -> Result:
     """Return the result whose arrays are views of rows of the Fortran part."""
     values: dict[str, Array] = {}
     at = 0
@@ -146,4 +222,5 @@ def result_from_rows(rows: Array, column: Column, summary: dict[str, Any]) -> Re
         axial_force=values.get("axial_force"),
         top=np.column_stack((values["displacement"], values["top_height"])),
         column=column,
+        call=call,
     )

@@ -1,5 +1,6 @@
 !> The commands: from a case file to a csv and a summary.
 module rbs_app_commands
+   use, intrinsic :: iso_fortran_env, only: error_unit
    use rbs_app_progress, only: terminal_progress
    use rbs_app_say, only: say
    use rbs_app_signals, only: keep_if_stopped, remove_if_stopped
@@ -21,6 +22,7 @@ module rbs_app_commands
    use rbs_solve_make_column, only: make_column
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_solve_static_run_static, only: run_static
+   use rbs_solve_time_effort, only: long_run_note
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: plan_dynamic, run_dynamic
@@ -124,6 +126,7 @@ contains
       type(case_history) :: history
       type(column_type) :: column
       type(time_plan) :: plan
+      character(len=:), allocatable :: text
 
       call prepare(path, case, column, history, error)
       if (allocated(error)) return
@@ -135,6 +138,9 @@ contains
       call say(path//': no errors', error)
       if (plan%reason /= '') call say('method: '//method_text(plan%method, plan%reason), error)
       call print_notes(case, error)
+      if (.not. case%analysis%dynamic()) return
+      call long_run_note(column, plan, text)
+      if (text /= '') call say('note: '//text, error)
    end subroutine check_case
 
    !> rbsdem modes: frequencies, mode shapes if the joints are few, stable step.
@@ -216,6 +222,7 @@ contains
       if (case%analysis%dynamic()) then
          call plan_dynamic(column, case%analysis, history%time, history%loads, plan, error)
          if (allocated(error)) return
+         if (.not. quiet) call warn_of_long_run(column, plan)
       end if
       recorder%units = case%units%system()
       call row_labels(column%n, column%opens, case%analysis%dynamic(), &
@@ -237,6 +244,18 @@ contains
       end if
       call progress%finish()
    end subroutine solve
+
+   !> Say before a long run how long it will take.
+   subroutine warn_of_long_run(column, plan)
+      type(column_type), intent(in) :: column
+      type(time_plan), intent(in) :: plan
+      character(len=:), allocatable :: text
+
+      call long_run_note(column, plan, text)
+      if (text == '') return
+      write (error_unit, '(a)') 'rbsdem: note: '//text
+      flush (error_unit)
+   end subroutine warn_of_long_run
 
    !> Comment lines of the csv.
    function header(case, method) result(lines)

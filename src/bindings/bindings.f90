@@ -258,11 +258,12 @@ subroutine rbs_cyclic(statement, nn, number, by_force, m, values, ma, axial_load
 end subroutine rbs_cyclic
 
 subroutine rbs_time_history(statement, nn, number, m, time, drives, nd, load, mi, initial, opening_given, &
-                            width, height, rows, kept, nf, figures, used, status, message)
+                            told, width, height, rows, kept, nf, figures, used, status, message)
    ! status 3: the array is too small for the rows; `kept` rows are needed, and nothing was solved.
+   ! status 4: the run is long, as the message says, and nothing was solved; with `told` it starts.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
-   use rbs_bindings_runs, only: choose_method, into_rows_dynamic, little_room, make_loads, tell_run
+   use rbs_bindings_runs, only: choose_method, into_rows_dynamic, little_room, long_run, make_loads, tell_run
    use rbs_bindings_statements, only: column_from_statements
    use rbs_case_case_record, only: case_record
    use rbs_column_column, only: column_type
@@ -270,7 +271,7 @@ subroutine rbs_time_history(statement, nn, number, m, time, drives, nd, load, mi
    use rbs_solve_time_loads, only: loads_type
    implicit none
    character(len=*), intent(in) :: statement, drives
-   integer(c_int), intent(in) :: nn, m, nd, mi, opening_given, width, height, nf
+   integer(c_int), intent(in) :: nn, m, nd, mi, opening_given, told, width, height, nf
    real(c_double), intent(in) :: number(nn), time(m), load(m, nd), initial(mi)
    real(c_double), intent(inout) :: rows(width, height)
    real(c_double), intent(out) :: figures(nf)
@@ -283,6 +284,7 @@ subroutine rbs_time_history(statement, nn, number, m, time, drives, nd, load, mi
    type(loads_type) :: loads
    type(summary_type) :: summary
    type(error_type), allocatable :: error
+   character(len=:), allocatable :: note
    logical :: enough
 
    kept = 0
@@ -292,10 +294,13 @@ subroutine rbs_time_history(statement, nn, number, m, time, drives, nd, load, mi
    if (.not. allocated(error)) call choose_method(case, loads, error)
    if (.not. allocated(error)) then
       call into_rows_dynamic(column, case, time, loads, initial, opening_given /= 0, rows, kept, summary, &
-                             enough, error)
+                             enough, told /= 0, note, error)
    end if
    call tell_run(column, summary, error, figures, used, status, message)
    if (.not. enough) status = little_room
+   if (.not. allocated(note)) return
+   status = long_run
+   message = note
 end subroutine rbs_time_history
 
 subroutine rbs_read_case(path, nt, nn, m, statement, number, time, values, acting, sizes, status, message)

@@ -13,6 +13,7 @@ module rbs_bindings_runs
    use rbs_output_recorder, only: array_recorder
    use rbs_output_summary, only: summary_type
    use rbs_solve_static_run_static, only: run_static
+   use rbs_solve_time_effort, only: expected_seconds, long_run_note, patience
    use rbs_solve_time_loads, only: loads_type
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
@@ -25,6 +26,9 @@ module rbs_bindings_runs
 
    !> Status of a run that needs more rows than the array has; 0 to 2 are those of an error.
    integer(c_int), parameter, public :: little_room = 3
+
+   !> Status of a long run of which the user has not been told yet.
+   integer(c_int), parameter, public :: long_run = 4
 
 contains
 
@@ -87,7 +91,7 @@ contains
 
    !> Write the rows of a response in time into an array.
    subroutine into_rows_dynamic(column, case, time, loads, initial_values, opening_given, rows, count, &
-                                summary, enough, error)
+                                summary, enough, told, note, error)
       type(column_type), intent(in) :: column
       !> Settings of analysis and output
       type(case_record), intent(in) :: case
@@ -101,6 +105,10 @@ contains
       integer, intent(out) :: count
       type(summary_type), intent(out) :: summary
       logical, intent(out) :: enough
+      !> Whether the user has been told how long the run takes; if not, the note is allocated for a long
+      !> run, and nothing is solved
+      logical, intent(in) :: told
+      character(len=:), allocatable, intent(out) :: note
       type(error_type), allocatable, intent(out) :: error
       type(array_recorder) :: recorder
       type(initial_state) :: initial
@@ -110,6 +118,10 @@ contains
       enough = .true.
       call plan_dynamic(column, case%analysis, time, loads, plan, error)
       if (allocated(error)) return
+      if (.not. told .and. expected_seconds(column, plan) >= patience) then
+         call long_run_note(column, plan, note)
+         return
+      end if
       enough = size(rows, 2) >= plan%rows(case%output%every)
       if (.not. enough) then
          count = plan%rows(case%output%every)

@@ -34,6 +34,11 @@ module rbs_case_methods
       real(wp) :: limit_share = 0.0_wp, period_share = 0.0_wp
       !> Least spectral radius at infinite frequency
       real(wp) :: least_rho_infinity = 0.0_wp
+      !> Errors at its own step or tolerance, relative to the peaks: the median and the largest of the
+      !> responses of studies/error_classes.py. 0: round-off, or those of the method that is chosen
+      real(wp) :: usual_error = 0.0_wp, largest_error = 0.0_wp
+      !> Time of a step for each body and one more, by the same study [s]
+      real(wp) :: body_step = 0.0_wp
    end type method_type
 
    !> The pair 5(4) of rk45 is stable for undamped motion up to h omega = 0.9968, rk4 up to 2 sqrt(2): 0.3524
@@ -43,18 +48,23 @@ module rbs_case_methods
       method_type('static', in_time=.false., dt=.false.), &
       method_type('auto', tolerance=.true.), &
       method_type('rk4', order=4, explicit=.true., events=.true., allow_unstable=.true., &
-                  limit_share=0.2_wp), &
+                  limit_share=0.2_wp, usual_error=1.0e-4_wp, largest_error=2.0e-3_wp, &
+                  body_step=1.0e-7_wp), &
       method_type('rk45', order=5, explicit=.true., adaptive=.true., tolerance=.true., &
-                  limit_share=0.35_wp), &
-      method_type('newmark', order=2, implicit=.true., finite=.false., period_share=0.02_wp), &
+                  limit_share=0.35_wp, usual_error=2.0e-5_wp, largest_error=4.0e-4_wp, &
+                  body_step=4.0e-7_wp), &
+      method_type('newmark', order=2, implicit=.true., finite=.false., period_share=0.02_wp, &
+                  usual_error=8.0e-3_wp, largest_error=0.3_wp, body_step=5.0e-7_wp), &
       method_type('hht', order=2, implicit=.true., rho_infinity=.true., finite=.false., &
-                  period_share=0.02_wp, least_rho_infinity=0.5_wp), &
+                  period_share=0.02_wp, least_rho_infinity=0.5_wp, usual_error=5.0e-3_wp, &
+                  largest_error=0.3_wp, body_step=5.0e-7_wp), &
       method_type('generalised_alpha', order=2, implicit=.true., rho_infinity=.true., finite=.false., &
-                  period_share=0.02_wp)]
+                  period_share=0.02_wp, usual_error=6.0e-3_wp, largest_error=0.1_wp, body_step=5.0e-7_wp)]
 
    !> Names of the columns of `method_rows`.
    character(len=*), parameter :: methods_columns = 'method order kind adaptive dt events tolerance '// &
-                                  'rho_infinity allow_unstable finite limit_share period_share'
+                                  'rho_infinity allow_unstable finite limit_share period_share '// &
+                                  'usual_error largest_error'
 
 contains
 
@@ -136,7 +146,8 @@ contains
                 yes_or_no(method%adaptive)//yes_or_no(method%dt)//yes_or_no(method%events)// &
                 yes_or_no(method%tolerance)//yes_or_no(method%rho_infinity)// &
                 yes_or_no(method%allow_unstable)//yes_or_no(method%finite)//' '// &
-                to_text(method%limit_share)//' '//to_text(method%period_share)
+                to_text(method%limit_share)//' '//to_text(method%period_share)//' '// &
+                to_text(method%usual_error)//' '//to_text(method%largest_error)
       end do
    end subroutine method_rows
 

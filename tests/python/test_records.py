@@ -29,7 +29,7 @@ OPEN = rbsdem.Column(
     2.0, 500.0, SHEAR, FLEXURE, n=2, kinematics="finite", axial_load=1e5,
     axial_spring=[rbsdem.Compression(1e9), rbsdem.Elastic(1e9)], damping=rbsdem.Damping(0.1, 1e-5),
 )  # fmt: skip
-BIG = rbsdem.Column(1e3, 1e6, rbsdem.Elastic(1e9), rbsdem.Elastic(1e9), n=10_000)
+BIG = rbsdem.Column(1e2, 1e6, rbsdem.Elastic(1e9), rbsdem.Elastic(1e9), n=10_000)
 PATH = 3.0 * rbsdem.protocol([0.005, 0.01], points=3)
 TIME = np.linspace(0.0, 0.05, 11)
 MOTION = np.sin(200 * TIME)

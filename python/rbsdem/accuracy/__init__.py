@@ -5,6 +5,7 @@
 
 from rbsdem.accuracy import figure as figure
 from rbsdem.accuracy import files as files
+from rbsdem.accuracy import refine as refine
 from rbsdem.accuracy import table as table
 from rbsdem.accuracy.answer import Setting
 from rbsdem.accuracy.measure import trade

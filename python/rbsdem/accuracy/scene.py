@@ -18,7 +18,7 @@ from rbsdem.accuracy.answer import Answer, Run, Setting
 from rbsdem.accuracy.path import along, at_times, reversals
 from rbsdem.analysis import cyclic, time_history
 from rbsdem.column import Column, without_notes
-from rbsdem.errors import AccuracyWarning, InputError, SolveError
+from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError
 from rbsdem.result import Result
 
 #: Least number of times at which histories are compared; a loading with fewer is interpolated.
@@ -73,6 +73,7 @@ class Scene:
                 column = dataclasses.replace(column, kinematics=setting.kinematics)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", AccuracyWarning)
+            warnings.simplefilter("ignore", LongRunWarning)
             if self.static:
                 return self._solve_static(setting, column)
             result = time_history(column, self.time, **self.keywords(setting, column))

@@ -136,7 +136,7 @@ contains
       real(wp), intent(in) :: time(:)
       type(time_plan), intent(inout) :: plan
       type(error_type), allocatable, intent(out) :: error
-      type(method_type) :: explicit_choice, implicit_choice
+      type(method_type) :: explicit_choice, implicit_choice, chosen
       real(wp) :: lowest, highest, explicit_steps, implicit_steps, longest
       logical :: affordable
 
@@ -171,6 +171,9 @@ contains
          plan%reason = to_text(anint(explicit_steps))//' steps take little time'
          if (plan%located) plan%reason = trim(plan%reason)//'; events located'
       end if
+      chosen = method_named(plan%method)
+      plan%reason = trim(plan%reason)//'; errors are usually about '//to_text(chosen%usual_error)// &
+                    ', up to '//to_text(chosen%largest_error)
    end subroutine choose_method
 
    !> Response in time under lateral force, ground motion, axial load, or all of them.

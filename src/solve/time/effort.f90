@@ -1,0 +1,95 @@
+!> How long a run in time will take, told before it starts, and which method is faster.
+module rbs_solve_time_effort
+   use rbs_base_constants, only: pi
+   use rbs_base_error, only: error_type
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_case_methods, only: method_type, method_named
+   use rbs_column_column, only: column_type, finite
+   use rbs_solve_modal_modes, only: frequency_bounds
+   use rbs_solve_time_plan, only: time_plan
+   implicit none
+   private
+
+   public :: patience, expected_seconds, long_run_note
+
+   !> Runs that are expected to be shorter start without a word [s].
+   real(wp), parameter :: patience = 5.0_wp
+
+   !> Exact rotations cost an explicit step this much more.
+   real(wp), parameter :: cost_of_finite = 6.0_wp
+
+   !> Another method is named if it is this many times faster.
+   real(wp), parameter :: much_faster = 3.0_wp
+
+   !> The method that is named.
+   character(len=*), parameter :: faster = 'generalised_alpha'
+
+contains
+
+   !> Time that a run will take, within a factor of about three; it depends on the machine [s].
+   pure real(wp) function expected_seconds(column, plan) result(seconds)
+      type(column_type), intent(in) :: column
+      type(time_plan), intent(in) :: plan
+      type(method_type) :: method
+
+      method = method_named(plan%method)
+      seconds = steps_of(plan, method)*(column%n + 1)*method%body_step
+      if (column%kinematics == finite .and. method%explicit) seconds = cost_of_finite*seconds
+   end function expected_seconds
+
+   !> Number of steps, of an adaptive method at least.
+   pure real(wp) function steps_of(plan, method) result(steps)
+      type(time_plan), intent(in) :: plan
+      type(method_type), intent(in) :: method
+
+      steps = real(plan%steps, wp)
+      if (method%adaptive) steps = max(steps, (plan%finish - plan%begin)/(method%limit_share*plan%limit))
+   end function steps_of
+
+   !> What to say before a long run; empty for a short one.
+   subroutine long_run_note(column, plan, text)
+      type(column_type), intent(in) :: column
+      type(time_plan), intent(in) :: plan
+      character(len=:), allocatable, intent(out) :: text
+      type(method_type) :: method, other
+      type(error_type), allocatable :: error
+      type(time_plan) :: short
+      real(wp) :: seconds, lowest, highest
+
+      text = ''
+      seconds = expected_seconds(column, plan)
+      if (seconds < patience) return
+      method = method_named(plan%method)
+      text = 'analysis: about '//to_text(anint(steps_of(plan, method)))//" steps with method = '"// &
+             trim(plan%method)//"' will take some "//to_text(one_digit(seconds))//' s'
+      if (.not. method%explicit) return
+      text = text//'; the highest frequency of the column limits the stable step to '// &
+             to_text(plan%limit)//' s'
+      if (column%kinematics == finite) then
+         text = text//'. Methods without this limit need kinematics = '//"'pdelta'"
+         return
+      end if
+      other = method_named(faster)
+      call frequency_bounds(column, lowest, highest, error)
+      if (allocated(error)) return
+      short = plan
+      short%method = faster
+      short%steps = int(min(real(plan%intervals, wp) + (plan%finish - plan%begin)/ &
+                            other%period_share*lowest/(2.0_wp*pi), 2.0e9_wp))
+      if (much_faster*expected_seconds(column, short) > seconds) return
+      text = text//". Faster: method = '"//faster//"', some "// &
+             to_text(one_digit(expected_seconds(column, short)))//' s, with errors of about '// &
+             to_text(other%usual_error)//' in place of '//to_text(method%usual_error)
+   end subroutine long_run_note
+
+   !> One digit is all that is known.
+   elemental real(wp) function one_digit(seconds)
+      real(wp), intent(in) :: seconds
+      real(wp) :: unit
+
+      unit = 10.0_wp**floor(log10(max(seconds, 1.0e-3_wp)))
+      one_digit = anint(seconds/unit)*unit
+   end function one_digit
+
+end module rbs_solve_time_effort
