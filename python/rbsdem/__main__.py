@@ -29,14 +29,17 @@ def executable() -> str:
 
 def main() -> int:
     """Run the executable with the arguments of the command line, or `trade` or `peer`."""
-    if sys.argv[1:2] == ["trade"]:
+    words = sys.argv[1:]
+    if words[:1] in (["--help"], ["-h"]) and words[1:2] in (["trade"], ["peer"]):
+        words = [words[1], "--help"]
+    if words[:1] == ["trade"]:
         from rbsdem.accuracy.command import main as trade  # noqa: PLC0415
 
-        return trade(sys.argv[2:])
-    if sys.argv[1:2] == ["peer"]:
+        return trade(words[1:])
+    if words[:1] == ["peer"]:
         from rbsdem.peer.command import main as peer  # noqa: PLC0415
 
-        return peer(sys.argv[2:])
+        return peer(words[1:])
     try:
         program = executable()
     except FileNotFoundError as error:

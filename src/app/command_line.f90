@@ -14,6 +14,8 @@ module rbs_app_command_line
    type :: command_type
       !> run, check, modes, keys, help or version
       character(len=:), allocatable :: name
+      !> The command that help is asked for; empty: all of them
+      character(len=:), allocatable :: topic
       !> Path of the case
       character(len=:), allocatable :: case
       !> Path of the output; not allocated: the path that the case gives
@@ -61,6 +63,7 @@ contains
       mark = index(word//'=', '=')
       select case (word(:mark - 1))
       case ('-h', '--help')
+         if (allocated(command%name)) command%topic = command%name
          command%name = 'help'
       case ('--version')
          command%name = 'version'
@@ -91,13 +94,17 @@ contains
       character(len=*), intent(in) :: word
       type(error_type), allocatable, intent(out) :: error
 
-      if (.not. allocated(command%name)) then
+      if (.not. allocated(command%name) .or. help_for(command)) then
          if (all(commands /= word)) then
             call complain("the command '"//word//"' is not known; did you mean '"// &
                           nearest_name(word, commands)//"'?", error)
             return
          end if
-         command%name = word
+         if (help_for(command)) then
+            command%topic = word
+         else
+            command%name = word
+         end if
       else if (.not. allocated(command%case)) then
          if (word == '') then
             call complain('the path of the case is empty', error)
@@ -109,10 +116,19 @@ contains
       end if
    end subroutine take_word
 
-   subroutine check_whole(command, error)
+   !> Whether help was asked for, and not yet for which command.
+   pure logical function help_for(command)
       type(command_type), intent(in) :: command
+
+      help_for = .false.
+      if (allocated(command%name)) help_for = command%name == 'help' .and. .not. allocated(command%topic)
+   end function help_for
+
+   subroutine check_whole(command, error)
+      type(command_type), intent(inout) :: command
       type(error_type), allocatable, intent(out) :: error
 
+      if (.not. allocated(command%topic)) command%topic = ''
       if (.not. allocated(command%name)) then
          call complain('no command', error)
       else if (command%name == 'help' .or. command%name == 'version') then

@@ -38,7 +38,7 @@ program rbsdem
       case ('version')
          call say('rbsdem '//version, error)
       case default
-         call print_help(error)
+         call print_help(command%topic, error)
       end select
    end if
    status = 0_c_int
@@ -67,7 +67,10 @@ contains
       write (error_unit, '(a)') 'rbsdem: '//message(first:)
    end subroutine print_error
 
-   subroutine print_help(error)
+   !> The help of a command, or of all.
+   subroutine print_help(topic, error)
+      !> The command; empty for all of them
+      character(len=*), intent(in) :: topic
       type(error_type), allocatable, intent(inout) :: error
       character(len=*), parameter :: text(29) = [character(len=84) :: &
          'rbsdem '//version//': reinforced-concrete columns as rigid bodies and springs', &
@@ -101,9 +104,58 @@ contains
          '']
       integer :: i
 
+      if (topic /= '') then
+         call print_topic(topic, error)
+         return
+      end if
       do i = 1, size(text) - 1
          call say(trim(text(i)), error)
       end do
    end subroutine print_help
+
+   !> The help of one command.
+   subroutine print_topic(topic, error)
+      character(len=*), intent(in) :: topic
+      type(error_type), allocatable, intent(inout) :: error
+
+      select case (topic)
+      case ('run')
+         call say('usage: rbsdem run CASE.nml [--output FILE] [--quiet]', error)
+         call say('', error)
+         call say('Solves a case, writes a row for each point or step kept, and prints a summary.', error)
+         call say('CASE.nml may be -, which is standard input.', error)
+         call say('', error)
+         call say('  -o, --output FILE   file for the rows (default: the file of &output, or the', error)
+         call say('                      name of the case with .csv); - is standard output', error)
+         call say('  -q, --quiet         no summary, no notes and no progress', error)
+         call say('', error)
+         call say('Exit code: 0 all went well, 1 the analysis failed (the rows before are in', error)
+         call say('FILE.partial), 2 the input is wrong, 3 collapse_drift was reached.', error)
+      case ('check')
+         call say('usage: rbsdem check CASE.nml [--quiet]', error)
+         call say('', error)
+         call say('Reports all errors of a case with their lines, and what may be a mistake;', error)
+         call say('solves nothing. For a run in time it says which method is chosen and why, and how', error)
+         call say('long it will take if that is long.', error)
+         call say('', error)
+         call say('  -q, --quiet         print errors only', error)
+         call say('', error)
+         call say('Exit code: 0 no errors, 2 the input is wrong.', error)
+      case ('modes')
+         call say('usage: rbsdem modes CASE.nml', error)
+         call say('', error)
+         call say('Prints frequency, period and circular frequency of the modes of the uncracked', error)
+         call say('column as csv, then the longest step for which rk4 is stable. Up to 500 bodies.', error)
+         call say('', error)
+         call say('Exit code: 0 all went well, 1 there are no modes, 2 the input is wrong.', error)
+      case default
+         call say('usage: rbsdem keys [--json]', error)
+         call say('', error)
+         call say('Prints all groups of a case and all rules of springs with their keys: kind, unit,', error)
+         call say('bounds, default, meaning.', error)
+         call say('', error)
+         call say('  --json              as JSON, for programs', error)
+      end select
+   end subroutine print_topic
 
 end program rbsdem

@@ -72,7 +72,22 @@ contains
       self%count = self%count + 1
       self%entry(self%count)%group = group
       self%entry(self%count)%where = where
+      self%entry(self%count)%spring%line = line_of(where)
    end subroutine add
+
+   !> The number at the end of a place such as 'case.nml line 4:'; 0 without one.
+   pure integer function line_of(where) result(line)
+      character(len=*), intent(in) :: where
+      integer :: first, last, stat
+
+      line = 0
+      last = verify(where, ' :', back=.true.)
+      if (last == 0) return
+      first = verify(where(:last), '0123456789', back=.true.) + 1
+      if (first > last) return
+      read (where(first:last), *, iostat=stat) line
+      if (stat /= 0) line = 0
+   end function line_of
 
    pure logical function is_spring_group(group)
       character(len=*), intent(in) :: group

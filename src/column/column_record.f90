@@ -280,10 +280,12 @@ contains
       type(spring_record), intent(in) :: spring
       character(len=*), intent(in) :: full_name, name, place
       type(message_list), intent(inout) :: messages
+      character(len=:), allocatable :: from
 
-      call spring%validate(full_name, messages)
+      call spring%place(from)
+      call spring%validate(from//full_name, messages)
       if (suits(spring%rule, place) .or. .not. any(rule_names == spring%rule)) return
-      call messages%add('column: the '//name//" spring cannot be of the rule '"//trim(spring%rule)// &
+      call messages%add(from//'column: the '//name//" spring cannot be of the rule '"//trim(spring%rule)// &
                         "'; it is one of "//list_of(pack(rule_names, suits(rule_names, place))))
    end subroutine check_spring
 

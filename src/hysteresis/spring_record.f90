@@ -25,6 +25,8 @@ module rbs_hysteresis_spring_record
    type :: spring_record
       !> One of `rule_names`
       character(len=rule_length) :: rule = ''
+      !> Line of the input that its group begins in, for messages; 0: not from a file
+      integer :: line = 0
       !> Parameters in the order of the keys of the rule; a word is stored as its place among the choices;
       !> `unset`: not given
       real(wp) :: value(most_parameters) = unset
@@ -45,9 +47,19 @@ module rbs_hysteresis_spring_record
       procedure :: make
       procedure :: initial_stiffness
       procedure :: same_as
+      procedure :: place => place_of_spring
    end type spring_record
 
 contains
+
+   !> What a message on the spring begins with: 'line 4: ', or nothing where it is not from a file.
+   subroutine place_of_spring(self, text)
+      class(spring_record), intent(in) :: self
+      character(len=:), allocatable, intent(out) :: text
+
+      text = ''
+      if (self%line > 0) text = 'line '//to_text(self%line)//': '
+   end subroutine place_of_spring
 
    !> Set a parameter by name. A name that the rule does not have leaves the record as it is.
    subroutine set(self, name, value)

@@ -12,6 +12,7 @@ import select
 import signal
 import stat
 import subprocess
+import sys
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -54,7 +55,33 @@ def faults(result: subprocess.CompletedProcess[str], code: int = 2) -> str:
 # ---- arguments -----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["-h"], ["run", "--help"], ["--help", "run"]])
+@pytest.mark.parametrize("command", ["run", "check", "modes", "keys"])
+def test_help_of_a_command_is_its_own(run_cli, command):
+    shown = run_cli([command, "--help"])
+    assert (shown.returncode, shown.stderr) == (0, "")
+    assert shown.stdout.startswith(f"usage: rbsdem {command} ")
+    others = {"run", "check", "modes", "keys", "trade", "peer"} - {command}
+    assert not any(f"rbsdem {other}" in shown.stdout for other in others)
+    assert max(len(line) for line in shown.stdout.splitlines()) <= 84
+    options = {"run": "--output", "check": "--quiet", "modes": "rk4", "keys": "--json"}
+    assert options[command] in shown.stdout
+    for again in (["--help", command], [command, "-h"]):
+        assert run_cli(again).stdout == shown.stdout
+
+
+@pytest.mark.parametrize("command", ["trade", "peer"])
+def test_help_of_a_command_of_the_package(command):
+    shown = [
+        subprocess.run(
+            [sys.executable, "-m", "rbsdem", *arguments], capture_output=True, text=True, check=True
+        ).stdout
+        for arguments in ([command, "--help"], ["--help", command])
+    ]
+    assert shown[0].startswith(f"usage: rbsdem {command} ")
+    assert shown[1] == shown[0]
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["-h"]])
 def test_help_names_commands_options_and_exit_codes(run_cli, arguments):
     result = run_cli(arguments)
     assert result.returncode == 0

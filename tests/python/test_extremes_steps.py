@@ -16,6 +16,9 @@ from scipy.linalg import eig
 
 import rbsdem
 
+# Chains of many bodies are as high as they come, and planned for long runs that end early.
+pytestmark = pytest.mark.filterwarnings("ignore:(column. height|analysis. about) ")
+
 BODIES = [1, 10, 100]
 IMPLICIT = ("newmark", "hht", "generalised_alpha")
 

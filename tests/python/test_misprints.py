@@ -225,6 +225,7 @@ def square_frequencies(mass, length, k_v, k_m, power) -> np.ndarray:
     return eigh(np.diag([k_v, k_m]), matrix, eigvals_only=True)
 
 
+@pytest.mark.filterwarnings("ignore:column. height ")
 def test_e4_rotary_inertia_has_length_squared():
     """A frequency does not depend on the units: kg, m, N against t, mm, N."""
     si = (MASS, HEIGHT, K_V, K_M)
