@@ -423,5 +423,5 @@ def test_without_matplotlib_the_message_says_what_to_install(monkeypatch):
     from rbsdem import plot  # noqa: PLC0415
 
     monkeypatch.setitem(__import__("sys").modules, "matplotlib", None)
-    with pytest.raises(ImportError, match=r"pip install rbsdem\[plot\]"):
+    with pytest.raises(ImportError, match=r"pip install .rbsdem\[plot\]"):
         plot.loop([0.0, 1.0], [0.0, 1.0])
