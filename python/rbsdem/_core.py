@@ -211,12 +211,15 @@ def keys() -> dict[str, Any]:
 
 
 @cache
-def quantities(opens: bool, with_base: bool = False) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def quantities(
+    opens: bool, with_base: bool = False, with_openings: bool = False
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return the names of the values of a row (joints: with an asterisk) and of a summary.
 
-    `with_base`: whether the row ends with the forces at the base, as in time with damping.
+    `with_base`: whether the row has the forces at the base, as in time with damping;
+    `with_openings`: whether it has the openings of layered joints.
     """
-    rows, figures = _rbsdem.rbs_quantities(int(opens), int(with_base))
+    rows, figures = _rbsdem.rbs_quantities(int(opens), int(with_base), int(with_openings))
     return tuple(_text(rows).split()), tuple(_text(figures).split())
 
 
@@ -236,6 +239,10 @@ def spring_response(statement: Statement, axial_load: float, deformation: Array)
 
 #: Rows, summary values, the error that ended a run early, and a note on its accuracy.
 Run = tuple[Array, dict[str, Any], SolveError | None, str]
+
+#: Number of bodies, and what the rows hold: openings of axial springs, forces at the base, openings
+#: of layered joints.
+Shape = tuple[int, bool, bool, bool]
 
 
 def check_column(column: Statement) -> list[str]:
@@ -272,7 +279,7 @@ def mass_matrix(column: Statement, unknowns: int, paper: bool) -> Array:
 
 def cyclic(
     column: Statement,
-    shape: tuple[int, bool, bool],
+    shape: Shape,
     by_force: bool,
     values: Array,
     axial_load: Array,
@@ -281,8 +288,8 @@ def cyclic(
     """Follow a static path.
 
     `column` holds the settings of the analysis too; an empty `axial_load` is a constant one;
-    `shape` is the number of bodies, whether joints open, and whether the rows end with the forces
-    at the base.
+    `shape` is the number of bodies, whether joints open, and whether the rows have the forces at
+    the base and the openings of layered joints.
     """
     rows = _empty_rows(
         shape, _rbsdem.rbs_kept_rows(values.size, UNSET_INTEGER if every is None else every)
@@ -296,7 +303,7 @@ def cyclic(
 
 def time_history(
     column: Statement,
-    shape: tuple[int, bool, bool],
+    shape: Shape,
     time: Array,
     loads: Mapping[str, Array],
     initial: Array,
@@ -534,10 +541,10 @@ def _path(path: str) -> str:
     return path
 
 
-def _empty_rows(shape: tuple[int, bool, bool], rows: int) -> Array:
+def _empty_rows(shape: Shape, rows: int) -> Array:
     """Return the array that Fortran fills; each column is a row of the result."""
-    bodies, opens, with_base = shape
-    names = quantities(opens, with_base)[0]
+    bodies, *has = shape
+    names = quantities(*has)[0]
     joints = sum(name.endswith("*") for name in names)
     return np.empty((len(names) + (bodies - 1) * joints, rows), order="F")
 

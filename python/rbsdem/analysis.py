@@ -97,6 +97,7 @@ def cyclic(
     axial_load: ArrayLike | None = None,
     every: int | None = None,
     collapse_drift: float | None = None,
+    openings: bool = False,
 ) -> Result:
     """Follow the static path of a column through displacements of the top, or lateral forces.
 
@@ -120,6 +121,9 @@ def cyclic(
     collapse_drift : float, optional
         Displacement of the top over the height at which the column counts as collapsed: the path
         ends there, and `summary["status"]` is "collapsed".
+    openings : bool, optional
+        Whether to keep the openings of layered joints, for `Result.elongation` and
+        `Result.layer_deformation`.
 
     Returns
     -------
@@ -148,16 +152,18 @@ def cyclic(
     values = _core.vector(force if by_force else displacement, name)
     if values.size == 0:
         raise InputError(f"{name} is empty; give at least one point")
-    settings = _settings(every, collapse_drift=collapse_drift)
+    load = None if axial_load is None else _core.vector(axial_load, "axial_load")
+    kept = not _checked(column).opens and _core.switch(openings, "openings")
+    settings = _settings(every, kept, collapse_drift=collapse_drift)
     run = _core.cyclic(
-        _checked(column)._statement + settings,
-        (column.n, column.opens, False),
+        column._statement + settings,
+        (column.n, column.opens, False, kept),
         by_force,
         values,
-        _NONE if axial_load is None else _core.vector(axial_load, "axial_load"),
+        _NONE if load is None else load,
         every,
     )
-    call = {name: values, "every": every, "collapse_drift": collapse_drift}
+    call = {name: values, "axial_load": load, "every": every, "collapse_drift": collapse_drift}
     return _return(column, run, {"analysis": "static", "driven": name}, call)
 
 
@@ -178,6 +184,7 @@ def time_history(
     collapse_drift: float | None = None,
     allow_unstable: bool = False,
     every: int | None = None,
+    openings: bool = False,
 ) -> Result:
     """Compute the response in time to forces at the top and motions of the ground.
 
@@ -227,6 +234,9 @@ def time_history(
         For "rk4": accept a `dt` beyond the stability limit.
     every : int, optional
         Keep every n-th step and the last one. By default rows are kept as described for `dt`.
+    openings : bool, optional
+        Whether to keep the openings of layered joints, for `Result.elongation` and
+        `Result.layer_deformation`.
 
     Returns
     -------
@@ -270,11 +280,12 @@ def time_history(
         "collapse_drift": collapse_drift,
         "allow_unstable": int(_core.switch(allow_unstable, "allow_unstable")) or None,
     }
-    settings = _settings(every, **chosen)
+    kept = not _checked(column).opens and _core.switch(openings, "openings")
+    settings = _settings(every, kept, **chosen)
     times = _core.vector(time, "time")
     run = _core.time_history(
-        _checked(column)._statement + settings,
-        (column.n, column.opens, column.damped),
+        column._statement + settings,
+        (column.n, column.opens, column.damped, kept),
         times,
         loads,
         *_initial_state(initial, column),
@@ -291,7 +302,7 @@ def _checked(column: Column) -> Column:
     return column
 
 
-def _settings(every: int | None, **given: Any) -> _core.Statement:
+def _settings(every: int | None, openings: bool, **given: Any) -> _core.Statement:
     """Return the groups analysis and output with the settings that are given."""
     settings = {
         name: str(value) if name in ("method", "events") else _core.number(value, name)
@@ -299,11 +310,11 @@ def _settings(every: int | None, **given: Any) -> _core.Statement:
         if value is not None
     }
     statement = _core.group("analysis", settings)
-    if every is None:
+    if every is None and not openings:
         return statement
-    if _core.whole(every, "every") < 1:
+    if every is not None and _core.whole(every, "every") < 1:
         raise InputError(f"every = {every} must be 1 or more")
-    return statement + _core.group("output", {"every": every})
+    return statement + _core.group("output", {"every": every, "openings": int(openings) or None})
 
 
 def _loading(values: ArrayLike, name: str) -> Array:

@@ -42,7 +42,7 @@ class Case:
         Axial load at the top in place of that of the column [N].
     settings : dict
         The settings of the analysis that were given, as keywords of `cyclic` or `time_history`: dt,
-        events, tolerance, rho_infinity, collapse_drift, allow_unstable, every.
+        events, tolerance, rho_infinity, collapse_drift, allow_unstable, every, openings.
     """
 
     title: str
@@ -99,9 +99,9 @@ class Case:
             time = None if self.method == "static" else self.time
             parts.append(_core.group("loading", {"drive": name, "time": time, "values": values}))
         settings = dict(self.settings)
-        every = settings.pop("every", None)
+        output = {name: settings.pop(name, None) for name in ("every", "openings")}
         parts.append(_core.group("analysis", {"method": self.method} | settings))
-        parts.append(_core.group("output", {"every": every}))
+        parts.append(_core.group("output", output))
         numbers = [float(number) for part in parts for number in part.numbers]
         return _core.to_namelist(_core.Statement("\n".join(part.text for part in parts), numbers))
 

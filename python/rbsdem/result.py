@@ -11,7 +11,9 @@ import numpy as np
 from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem.column import Column
+from rbsdem.errors import InputError
 from rbsdem.methods import METHODS
+from rbsdem.springs import Layered
 
 if TYPE_CHECKING:
     from rbsdem.accuracy.answer import Errors
@@ -93,7 +95,8 @@ class Result:
         peak_rotation (largest absolute rotation of a body in the kept rows [rad]), cut_steps
         (steps cut at an event, for accuracy, or because they did not converge).
     opening : ndarray, shape (steps, n)
-        Opening of the joints [m]; zero if they do not open.
+        Opening of the joints at the middle of the section [m]: of axial springs, and, if the
+        analysis was called with ``openings=True``, of layered joints. Zero for other joints.
     axial_force : ndarray, shape (steps, n), or None
         Forces of the axial springs, tension positive [N]; None if joints do not open.
     top : ndarray, shape (steps, 2)
@@ -104,6 +107,9 @@ class Result:
         The loading and the settings that were given, as keywords of `cyclic` or `time_history`.
     case : Case or None
         The case that was run; None if the analysis was called for the column.
+    rest : ndarray, shape (steps, n), or None
+        Rotations of layered joints under their first axial load, from which `rotation` counts
+        [rad]; zero but for unsymmetric sections. None if the openings were not kept.
     """
 
     time: Array
@@ -123,6 +129,56 @@ class Result:
     column: Column
     call: dict[str, Any]
     case: Case | None = None
+    rest: Array | None = None
+
+    @property
+    def elongation(self) -> Array:
+        """Growth of the column's axis from the openings of its joints [m], shape (steps,).
+
+        Negative values are a shortening. It does not hold what the turning of the bodies takes from
+        the height of the top, which is in `top`.
+
+        Raises
+        ------
+        InputError
+            If the openings of layered joints were not kept.
+        """
+        self._check_openings()
+        return np.asarray(self.opening.sum(axis=1))
+
+    def layer_deformation(self, joint: int = 1) -> Array:
+        """Return the deformations of the layers of a joint [m], shape (steps, layers).
+
+        Opening is positive. Over the length that a layer stands for it is the strain.
+
+        Parameters
+        ----------
+        joint : int, optional
+            The joint, from 1 at the ground to n; its spring is `Layered`, whose `layers` give the
+            order.
+
+        Raises
+        ------
+        InputError
+            If the joint has no layers, or the openings were not kept.
+        """
+        if not 1 <= joint <= self.column.n:
+            raise InputError(f"joint = {joint} must be from 1 to n = {self.column.n}")
+        spring = self.column.joints("flexure")[joint - 1]
+        if not isinstance(spring, Layered):
+            raise InputError(f"joint {joint} has no layers; its spring is {type(spring).__name__}")
+        self._check_openings()
+        assert self.rest is not None
+        turned = self.rotation[:, joint - 1] + self.rest[:, joint - 1]
+        places = np.array([y for y, _ in spring.layers])
+        return np.asarray(self.opening[:, joint - 1, None] + turned[:, None] * places)
+
+    def _check_openings(self) -> None:
+        layered = any(isinstance(spring, Layered) for spring in self.column.joints("flexure"))
+        if self.rest is None and layered:
+            raise InputError(
+                "the openings of layered joints were not kept; run the analysis with openings=True"
+            )
 
     @property
     def dynamic(self) -> bool:
@@ -192,6 +248,12 @@ def _same(one: Any, other: Any) -> bool:
     return bool(one == other)
 
 
+def _width(column: Column, with_base: bool) -> int:
+    """Return the number of values in a row without the openings of layered joints."""
+    names = _core.quantities(column.opens, with_base)[0]
+    return sum(column.n if name.endswith("*") else 1 for name in names)
+
+
 def result_from_rows(
     rows: Array, column: Column, summary: dict[str, Any], call: dict[str, Any]
 ) -> Result:
@@ -199,7 +261,8 @@ def result_from_rows(
     values: dict[str, Array] = {}
     at = 0
     with_base = column.damped and summary["analysis"] == "dynamic"
-    for name in _core.quantities(column.opens, with_base)[0]:
+    with_openings = rows.shape[1] > _width(column, with_base)
+    for name in _core.quantities(column.opens, with_base, with_openings)[0]:
         if name.endswith("*"):
             values[name[:-1]] = rows[:, at : at + column.n]
             at += column.n
@@ -220,6 +283,7 @@ def result_from_rows(
         summary=summary,
         opening=values.get("opening", np.zeros(values["slip"].shape)),
         axial_force=values.get("axial_force"),
+        rest=values.get("rest"),
         top=np.column_stack((values["displacement"], values["top_height"])),
         column=column,
         call=call,

@@ -225,8 +225,11 @@ contains
          if (.not. quiet) call warn_of_long_run(column, plan)
       end if
       recorder%units = case%units%system()
+      recorder%openings = case%output%openings .and. .not. column%opens
       call row_labels(column%n, column%opens, case%analysis%dynamic(), &
-                      case%analysis%dynamic() .and. column%damped, recorder%units, labels, recorder%si)
+                      case%analysis%dynamic() .and. column%damped, recorder%openings, recorder%units, &
+                          labels, &
+                      recorder%si)
       call recorder%open(path, error)
       if (allocated(error)) return
       call remove_if_stopped(recorder%file%own)

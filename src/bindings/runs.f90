@@ -53,6 +53,7 @@ contains
       call check_settings(case, error)
       if (allocated(error)) return
       recorder%rows => rows
+      recorder%openings = case%output%openings .and. .not. column%opens
       call run_static(column, by_force, target_values, case%output%every, case%analysis%collapse_drift, &
                       recorder, summary, error, axial_load=axial_load)
       count = recorder%count
@@ -133,6 +134,7 @@ contains
          initial%opening_given = opening_given
       end if
       recorder%rows => rows
+      recorder%openings = case%output%openings .and. .not. column%opens
       call run_dynamic(column, case%analysis, plan, time, loads, initial, case%output%every, recorder, &
                        summary, error)
       count = recorder%count

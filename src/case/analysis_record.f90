@@ -46,6 +46,8 @@ module rbs_case_analysis_record
       !> Path of the csv; not allocated: the case file's name with .csv
       character(len=:), allocatable :: file
       integer :: every = unset_integer
+      !> Whether the rows hold the openings of layered joints
+      logical :: openings = .false.
    contains
       procedure :: visit => visit_output
       procedure :: validate => validate_output
@@ -90,6 +92,8 @@ contains
       call v%key('every', self%every, '', one_or_more, &
                  'every n-th point or step is kept, and the last; without it every point of the loading', &
                  optional=.true.)
+      call v%key('openings', self%openings, &
+                 'whether the rows hold the openings of layered joints, from which their layers follow')
    end subroutine visit_output
 
    !> Whether the analysis runs in time.

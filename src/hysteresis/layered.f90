@@ -50,6 +50,7 @@ module rbs_hysteresis_layered
       procedure :: turns
       procedure :: opening_at
       procedure :: present_load
+      procedure :: rotation_at_rest
       procedure :: failed
       procedure :: mark
       procedure :: restore
@@ -259,6 +260,13 @@ contains
 
       present_load = self%layers%axial_load
    end function present_load
+
+   !> Rotation of the layers from which that of the joint is counted [rad].
+   pure real(wp) function rotation_at_rest(self)
+      class(layered_rule), intent(in) :: self
+
+      rotation_at_rest = self%rest
+   end function rotation_at_rest
 
    !> Whether the layers can no longer carry the axial load.
    pure logical function failed(self)

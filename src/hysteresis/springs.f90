@@ -66,7 +66,7 @@ module rbs_hysteresis_springs
       procedure :: forget_mark
       procedure :: vary_axial_loads
       procedure :: lost_joint
-      procedure :: opening
+      procedure :: fill_openings
       procedure :: choose_lines
       procedure :: way_on_plane
       procedure :: put_on_plane
@@ -163,21 +163,31 @@ contains
       lost = 0
    end function lost_joint
 
-   !> Opening of a layered joint at the middle of its section [m]; zero for any other spring.
-   pure real(wp) function opening(self, i)
+   !> Openings of n joints at the middle of their sections [m], then the rotations from which they count
+   !> theirs [rad]; zero for a joint that is not layered. Without room nothing is filled.
+   pure subroutine fill_openings(self, n, values)
       class(spring_array), intent(in) :: self
-      integer, intent(in) :: i
+      !> Number of joints; their flexural springs are n + 1 to 2 n
+      integer, intent(in) :: n
+      !> (2 n), or empty
+      real(wp), intent(inout) :: values(:)
+      integer :: i, j
 
-      opening = 0.0_wp
-      select type (rule => self%slot(i)%rule)
-      class is (layered_rule)
-         if (self%pressed) then
-            opening = rule%opening_at(self%d(i), self%press_at(i))
-         else
-            opening = rule%opening_at(self%d(i), rule%present_load())
-         end if
-      end select
-   end function opening
+      if (size(values) == 0) return
+      values = 0.0_wp
+      do j = 1, size(self%layered)
+         i = self%layered(j)
+         select type (rule => self%slot(i)%rule)
+         class is (layered_rule)
+            if (self%pressed) then
+               values(i - n) = rule%opening_at(self%d(i), self%press_at(i))
+            else
+               values(i - n) = rule%opening_at(self%d(i), rule%present_load())
+            end if
+            values(i) = rule%rotation_at_rest()
+         end select
+      end do
+   end subroutine fill_openings
 
    !> Put the layers of a joint on the lines on which they go on along a straight path.
    subroutine choose_lines(self, i, turn, press)

@@ -8,6 +8,8 @@ module rbs_output_recorder
    public :: recorder_type, array_recorder
 
    type, abstract :: recorder_type
+      !> Whether the rows hold the openings of layered joints
+      logical :: openings = .false.
    contains
       procedure(record_interface), deferred :: record
    end type recorder_type

@@ -25,6 +25,9 @@ module rbs_output_row
    !> Where the column is damped in an analysis in time, the row ends with shear and moment at the base
    !> [N, N m]. Else those are the forces of the lowest joint.
 
+   !> On demand the row then has n openings of layered joints at the middle of their sections [m], and the n
+   !> rotations at which they rest under their first axial load [rad].
+
    !> One value of a row, or one for each joint, with its SI unit.
    type :: quantity_type
       character(len=12) :: name
@@ -45,24 +48,30 @@ module rbs_output_row
    type(quantity_type), parameter :: of_base(2) = [ &
       quantity_type('base_shear', 'N'), quantity_type('base_moment', 'N m')]
 
+   type(quantity_type), parameter :: of_layers(2) = [ &
+      quantity_type('opening', 'm'), quantity_type('rest', 'rad')]
+
 contains
 
    !> Number of values in a row of a column.
-   pure integer function row_size(unknowns, with_base)
+   pure integer function row_size(unknowns, with_base, layered)
       !> Number of its joint deformations
       integer, intent(in) :: unknowns
       !> Whether the row ends with the forces at the base; without it, it does not
       logical, intent(in), optional :: with_base
+      !> Number of joints whose openings are kept too; without it none
+      integer, intent(in), optional :: layered
 
       row_size = row_joints - 1 + 2*unknowns
-      if (.not. present(with_base)) return
-      if (with_base) row_size = row_size + size(of_base)
+      if (present(with_base)) row_size = row_size + merge(size(of_base), 0, with_base)
+      if (present(layered)) row_size = row_size + size(of_layers)*layered
    end function row_size
 
    !> Names of the quantities in their order, separated by blanks; an asterisk marks one value a joint.
-   pure function row_quantities(opens, with_base) result(names)
-      !> Whether the joints open, and whether the row ends with the forces at the base
-      logical, intent(in) :: opens, with_base
+   pure function row_quantities(opens, with_base, with_openings) result(names)
+      !> Whether the joints open, whether the row has the forces at the base, and whether it has the openings
+      !> of layered joints
+      logical, intent(in) :: opens, with_base, with_openings
       character(len=512) :: names
       integer :: i
 
@@ -74,18 +83,20 @@ contains
          if (.not. opens .and. mod(i, 3) == 0) cycle
          names = trim(names)//' '//trim(of_joints(i)%name)//'*'
       end do
-      if (.not. with_base) return
-      do i = 1, size(of_base)
+      do i = 1, merge(size(of_base), 0, with_base)
          names = trim(names)//' '//of_base(i)%name
+      end do
+      do i = 1, merge(size(of_layers), 0, with_openings)
+         names = trim(names)//' '//trim(of_layers(i)%name)//'*'
       end do
    end function row_quantities
 
    !> Names of the values with their units, and the SI units themselves.
-   subroutine row_labels(n, opens, dynamic, with_base, units, labels, si)
+   subroutine row_labels(n, opens, dynamic, with_base, with_openings, units, labels, si)
       integer, intent(in) :: n
-      !> Whether the joints open, whether the first value is a time, and whether the row ends with the forces
-      !> at the base
-      logical, intent(in) :: opens, dynamic, with_base
+      !> Whether the joints open, whether the first value is a time, and whether the row has the forces at the
+      !> base and the openings of layered joints
+      logical, intent(in) :: opens, dynamic, with_base, with_openings
       !> Units of the labels
       type(unit_system), intent(in) :: units
       !> (values of a row)
@@ -93,7 +104,7 @@ contains
       character(len=4), allocatable, intent(out) :: si(:)
       integer :: i, j, at
 
-      at = row_size(merge(3, 2, opens)*n, with_base)
+      at = row_size(merge(3, 2, opens)*n, with_base, merge(n, 0, with_openings))
       allocate (labels(at), si(at))
       do i = 1, size(fixed)
          labels(i) = trim(fixed(i)%name)//'_'//compact(units%name_of(fixed(i)%unit))
@@ -103,19 +114,30 @@ contains
       at = size(fixed)
       do j = 1, size(of_joints)
          if (.not. opens .and. mod(j, 3) == 0) cycle
-         do i = 1, n
-            at = at + 1
-            labels(at) = trim(of_joints(j)%name)//'_'//to_text(i)//'_'// &
-                   compact(units%name_of(of_joints(j)%unit))
-            si(at) = of_joints(j)%unit
-         end do
+         call label_joints(of_joints(j))
       end do
-      if (.not. with_base) return
-      do i = 1, size(of_base)
+      do i = 1, merge(size(of_base), 0, with_base)
          at = at + 1
          labels(at) = trim(of_base(i)%name)//'_'//compact(units%name_of(of_base(i)%unit))
          si(at) = of_base(i)%unit
       end do
+      do j = 1, merge(size(of_layers), 0, with_openings)
+         call label_joints(of_layers(j))
+      end do
+
+   contains
+
+      subroutine label_joints(quantity)
+         type(quantity_type), intent(in) :: quantity
+         integer :: joint
+
+         do joint = 1, n
+            at = at + 1
+            labels(at) = trim(quantity%name)//'_'//to_text(joint)//'_'//compact(units%name_of(quantity%unit))
+            si(at) = quantity%unit
+         end do
+      end subroutine label_joints
+
    end subroutine row_labels
 
    !> A unit without blanks, as it stands in a label: 'Nm'.

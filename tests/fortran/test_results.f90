@@ -50,7 +50,7 @@ contains
       character(len=4), allocatable :: si(:)
       type(unit_system) :: units
 
-      call row_labels(12, .false., .true., .false., units, label, si)
+      call row_labels(12, .false., .true., .false., .false., units, label, si)
       call check_equal(error, size(label), row_size(24), 'number of labels')
       call check_equal(error, trim(label(row_time)), 'time_s', 'dynamic')
       call check_equal(error, trim(label(row_residual)), 'residual_J', 'residual')
@@ -59,7 +59,7 @@ contains
       call check_equal(error, trim(label(row_joints + 12)), 'rotation_1_rad', 'first rotation')
       call check_equal(error, trim(label(row_joints + 35)), 'shear_12_N', 'last shear')
       call check_equal(error, trim(label(row_joints + 47)), 'moment_12_Nm', 'last moment')
-      call row_labels(1, .false., .false., .false., units, label, si)
+      call row_labels(1, .false., .false., .false., .false., units, label, si)
       call check_equal(error, trim(label(row_time)), 'step', 'static')
    end subroutine labels
 
@@ -70,7 +70,7 @@ contains
       type(unit_system) :: units
       integer :: i, j
 
-      call row_labels(12, .true., .true., .false., units, label, si)
+      call row_labels(12, .true., .true., .false., .false., units, label, si)
       call check_equal(error, size(label), row_size(36), 'number of labels')
       call check_equal(error, trim(label(row_joints + 23)), 'rotation_12_rad', 'last rotation')
       call check_equal(error, trim(label(row_joints + 24)), 'opening_1_m', 'first opening')

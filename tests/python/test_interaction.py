@@ -235,6 +235,42 @@ def test_loss_of_the_axial_load_ends_a_response_in_time() -> None:
     assert result.time[-1] == pytest.approx(2 / 3, abs=0.011)
 
 
+def test_layers_carry_moment_and_axial_load() -> None:
+    """The deformations of the layers, on elastic lines, give back N and M of the joint."""
+    places, stiffness = np.array([-0.2, -0.05, 0.1]), np.array([1e9, 2e9, 5e8])
+    layers = [(y, Elastic(k)) for y, k in zip(places, stiffness, strict=True)]
+    column = rbsdem.Column(1.5, 1e3, Elastic(4e7), Layered(layers), axial_load=3e5)
+    load = np.array([2e5, 4e5, -1e5])
+    result = rbsdem.cyclic(
+        column, displacement=[0.001, 0.002, -0.001], axial_load=load, openings=True
+    )
+    forces = stiffness * result.layer_deformation()
+    np.testing.assert_allclose(forces.sum(axis=1), -load, rtol=1e-9)
+    np.testing.assert_allclose(forces @ places, result.moment[:, 0], rtol=1e-9)
+    assert result.elongation[0] < 0
+    time = np.linspace(0, 0.2, 21)
+    moving = rbsdem.time_history(
+        column,
+        time,
+        ground_acceleration=np.sin(60 * time),
+        axial_load=1e5 * (1 + time),
+        openings=True,
+    )
+    forces = stiffness * moving.layer_deformation()
+    np.testing.assert_allclose(forces.sum(axis=1), -1e5 * (1 + time), rtol=1e-9)
+
+
+def test_openings_must_be_asked_for() -> None:
+    """Without them the layers are unknown, and the message says how to get them."""
+    result = rbsdem.cyclic(one_body(), displacement=[0.001])
+    with pytest.raises(rbsdem.InputError, match="openings=True"):
+        result.layer_deformation()
+    with pytest.raises(rbsdem.InputError, match="openings=True"):
+        _ = result.elongation
+    with pytest.raises(rbsdem.InputError, match="from 1 to n = 1"):
+        result.layer_deformation(2)
+
+
 @pytest.mark.parametrize(
     ("fields", "call", "part"),
     [

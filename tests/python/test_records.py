@@ -102,7 +102,7 @@ def test_every_field_of_a_result_counts_for_equality():
         elif field.name == "call":
             other = value | {"time": value["time"] + 1.0}
         else:
-            other = {"column": COLUMN, "case": CASE}[field.name]
+            other = {"column": COLUMN, "case": CASE, "rest": np.zeros((1, 1))}[field.name]
         assert (replace(one, **{field.name: other}) == one) is False, field.name
 
 

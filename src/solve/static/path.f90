@@ -168,7 +168,7 @@ contains
       if (every == unset_integer) n = 1
       may_collapse = collapse_drift > unset
       height = self%column%joint_height(self%column%n + 1)
-      allocate (row(row_size(self%column%unknowns)))
+      allocate (row(row_size(self%column%unknowns, layered=merge(self%column%n, 0, recorder%openings))))
       do i = 1, size(target)
          call self%advance(target(i), failure)
          summary%lost_joint = max(self%springs%lost_joint() - self%column%n, 0)
@@ -240,7 +240,8 @@ contains
          peak_rotation = max(peak_rotation, rotation)
          row(row_residual) = row(row_input) + self%at_begin - row(row_spring) - row(row_axial)
          row(row_joints:row_joints + m - 1) = springs%d
-         row(row_joints + m:) = springs%f0 + springs%k*(springs%d - springs%d0)
+         row(row_joints + m:row_joints + 2*m - 1) = springs%f0 + springs%k*(springs%d - springs%d0)
+         call springs%fill_openings(self%column%n, row(row_joints + 2*m:))
       end associate
    end subroutine fill_row
 

@@ -62,7 +62,7 @@ contains
 
       call start_state(state, column, loads, initial, plan%begin, error)
       if (allocated(error)) return
-      allocate (row(row_size(column%unknowns, column%damped)))
+      allocate (row(row_size(column%unknowns, column%damped, merge(column%n, 0, recorder%openings))))
       furthest = huge(1.0_wp)
       if (is_given(collapse_drift)) furthest = collapse_drift*column%joint_height(column%n + 1)
       summary%time_step = plan%dt
@@ -252,7 +252,7 @@ contains
       type(summary_type), intent(inout) :: summary
       type(error_type), allocatable, intent(inout) :: error
       real(wp) :: top(2), base
-      integer :: m
+      integer :: m, at
 
       m = state%springs%count
       top = top_position(state%motion%column, state%q)
@@ -272,9 +272,12 @@ contains
                                                  + state%springs%k*(state%q - state%springs%d0)
       base = row(row_joints + m)
       if (state%motion%damped) then
-         row(row_joints + 2*m:) = state%motion%base_reaction(state%springs, state%q, state%v)
+         row(row_joints + 2*m:row_joints + 2*m + 1) = state%motion%base_reaction(state%springs, state%q, &
+                                                                                 state%v)
          base = row(row_joints + 2*m)
       end if
+      at = row_joints + 2*m + merge(2, 0, state%motion%damped)
+      call state%springs%fill_openings(state%motion%column%n, row(at:))
       call summary%see_base(base)
       summary%events = state%springs%events
       summary%peak_rotation = max(summary%peak_rotation, largest_rotation(state))
