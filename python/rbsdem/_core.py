@@ -152,9 +152,17 @@ def group(name: str, values: Mapping[str, Any]) -> Statement:
                 words.append(f"{key}:{len(value)}")
                 numbers.extend(value)
         else:
+            if not isinstance(value, (int, float, np.generic)):
+                raise InputError(f"{name}: {key} = {_short(value)} is neither a number nor a word")
             words.append(key)
             numbers.append(value)
     return Statement("\t".join(words), numbers)
+
+
+def _short(value: object) -> str:
+    """Return a value for a message; of a record only its kind."""
+    text = repr(value)
+    return text if len(text) <= 60 else f"a {type(value).__name__}"
 
 
 def _one_line(text: str) -> str:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _core
 from rbsdem._core import Array
-from rbsdem.column import Column
+from rbsdem.column import Column, checked_column
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning
 from rbsdem.methods import IN_TIME
 from rbsdem.result import Result, result_from_rows
@@ -297,9 +297,7 @@ def time_history(
 
 
 def _checked(column: Column) -> Column:
-    if not isinstance(column, Column):
-        raise InputError(f"column = {column!r} must be a Column")
-    return column
+    return checked_column(column)
 
 
 def _settings(every: int | None, openings: bool, **given: Any) -> _core.Statement:
@@ -329,6 +327,8 @@ def _initial_state(initial: Mapping[str, ArrayLike] | None, column: Column) -> t
 
     An empty array means a column at rest.
     """
+    if initial is not None and not isinstance(initial, Mapping):
+        raise InputError(f"initial = {initial!r} must be a dict, as {{'slip': [0.001]}}")
     if not initial:
         return _NONE, False
     n = column.n

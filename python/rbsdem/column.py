@@ -300,3 +300,26 @@ def _springs(springs: Any, name: str, n: int) -> Spring | tuple[Spring, ...]:
     if all(spring == several[0] for spring in several[1:]):
         return several[0]
     return several
+
+
+def checked_column(column: object, who: str = "") -> Column:
+    """Return a column, or raise `InputError` with what makes one.
+
+    Parameters
+    ----------
+    column : object
+        What was given as a column.
+    who : str, optional
+        What the message starts with.
+    """
+    if isinstance(column, Column):
+        return column
+    given = repr(column)
+    if len(given) > 60:
+        given = f"a {type(column).__name__}"
+    remedy = ""
+    if hasattr(column, "column"):
+        remedy = "; its method column(height, axial_load=...) makes one"
+    elif hasattr(column, "flexure") and hasattr(column, "shear"):
+        remedy = "; Column(height, mass, springs.shear, springs.flexure) makes one of springs"
+    raise InputError(f"{who}column = {given} must be a Column{remedy}")

@@ -16,6 +16,9 @@ module rbs_io_history
    !> Largest file that is read [bytes].
    integer, parameter :: most_bytes = 2000000000
 
+   !> Lines above the numbers of an AT2 file.
+   integer, parameter :: at2_head = 4
+
    character(len=1), parameter :: tab = achar(9)
 
    type :: history_type
@@ -78,6 +81,14 @@ contains
       history%peer = format == 'peer'
       if (format == 'auto') history%peer = is_peer(file)
       call file%go_back()
+      if (.not. history%peer) then
+         if (is_at2(file)) then
+            call file%go_back()
+            call read_at2(file, path, history, error)
+            return
+         end if
+         call file%go_back()
+      end if
       if (history%peer) then
          call read_peer(file, path, history, error)
       else
@@ -115,6 +126,95 @@ contains
       call split(file%text(first:last), ' ', fields)
       is_peer = fields%count >= 2 .and. numbers /= fields%count
    end function is_peer
+
+   !> An AT2 file of a ground motion has four lines above its numbers, the last with their count, NPTS, and
+   !> the time step, DT.
+   logical function is_at2(file)
+      type(text_file), intent(inout) :: file
+      integer :: first, last, i
+      logical :: found
+
+      is_at2 = .false.
+      do i = 1, at2_head
+         call file%next_line(first, last, found)
+         if (.not. found) return
+      end do
+      is_at2 = index(file%text(first:last), 'NPTS') > 0
+      if (is_at2) is_at2 = index(file%text(first:last), 'DT') > 0
+   end function is_at2
+
+   !> Accelerations, a few in a line: rows of time [s] and acceleration [g].
+   subroutine read_at2(file, path, history, error)
+      type(text_file), intent(inout) :: file
+      character(len=*), intent(in) :: path
+      type(history_type), intent(inout) :: history
+      type(error_type), allocatable, intent(out) :: error
+      type(field_list) :: fields
+      character(len=:), allocatable :: head
+      real(wp) :: numbers(2), value
+      integer :: first, last, i, count, rows, status
+      logical :: found
+
+      history%name = path(index(path, '/', back=.true.) + 1:)
+      do i = 1, at2_head
+         call file%next_line(first, last, found)
+         if (i /= at2_head - 1) cycle
+         if (index(file%text(first:last), 'ACCEL') == 0 .or. index(file%text(first:last), ' G') == 0) then
+            call fatal_error(error, bad_input, path//" line 3: '"//snippet(file%text(first:last))// &
+                             "' of an AT2 file must say ACCELERATION ... IN UNITS OF G; convert other "// &
+                             'files to csv with the columns time_s, acceleration_g')
+            return
+         end if
+      end do
+      ! NPTS= 4000, DT= .01 SEC, or in older files: 4000 0.01 NPTS, DT
+      head = file%text(first:last)
+      do i = 1, len(head)
+         if (scan(head(i:i), '=,') == 1) head(i:i) = ' '
+      end do
+      call split(head, ' ', fields)
+      count = 0
+      do i = 1, fields%count
+         call read_real(head(fields%first(i):fields%last(i)), value, status)
+         if (status /= number_ok .or. count == 2) cycle
+         count = count + 1
+         numbers(count) = value
+      end do
+      if (count < 2) numbers = 0.0_wp
+      if (.not. (numbers(1) > 1.0_wp .and. numbers(1) < 1.0e8_wp .and. numbers(2) > 0.0_wp)) then
+         call fatal_error(error, bad_input, path//" line 4: '"//snippet(file%text(first:last))// &
+                          "' must give the number of values, NPTS, and the time step in s, DT")
+         return
+      end if
+      history%columns = 2
+      history%labels = [character(len=len(history%labels)) :: 'time_s', 'acceleration_g']
+      allocate (history%values(2, nint(numbers(1))))
+      rows = 0
+      do
+         call file%next_line(first, last, found)
+         if (.not. found) exit
+         call split(file%text(first:last), ' ', fields)
+         do i = 1, fields%count
+            associate (word => file%text(first + fields%first(i) - 1:first + fields%last(i) - 1))
+               call read_real(word, value, status)
+               if (status /= number_ok) then
+                  call report_number(path, file%line, i, word, status, error)
+                  return
+               end if
+            end associate
+            rows = rows + 1
+            if (rows > nint(numbers(1))) exit
+            history%values(1, rows) = (rows - 1)*numbers(2)
+            history%values(2, rows) = value
+         end do
+         if (rows > nint(numbers(1))) exit
+      end do
+      history%rows = nint(numbers(1))
+      if (rows /= history%rows) then
+         call fatal_error(error, bad_input, path//': line 4 declares '//to_text(history%rows)// &
+                          ' values, but there are '//merge('more     ', 'only     ', rows > history%rows)// &
+                          '; the file is cut or mixed up')
+      end if
+   end subroutine read_at2
 
    !> The count on the second line of a PEER file, alone or followed by one 0; -1 if the line is not a count.
    integer function count_of(line)

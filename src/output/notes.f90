@@ -65,21 +65,21 @@ contains
       !> Empty if there is no note
       character(len=:), allocatable, intent(out) :: text
       character(len=6) :: kinematics
-      real(wp) :: percent
 
       text = ''
+      ! A run to its collapse was asked for, and its rotations are known to be large.
+      if (summary%collapsed) return
       if (column%kinematics == finite .or. .not. summary%peak_rotation > largest_small) return
       kinematics = 'pdelta'
       if (column%kinematics == small) kinematics = 'small'
-      text = 'the rotation of a body reaches '//to_text(summary%peak_rotation)//' rad; with '// &
-             "kinematics = '"//trim(kinematics)//"' the displacement "
+      ! Without a number of its own, so that a session that makes many runs is told once.
       if (summary%peak_rotation < 1.0_wp) then
-         percent = 0.01_wp*anint(1.0e4_wp*summary%peak_rotation**2/6.0_wp)
-         text = text//'errs by about '//to_text(percent)//' % (th^2/6)'
+         text = "the rotation of a body goes beyond 0.1 rad; with kinematics = '"//trim(kinematics)// &
+                "' the displacement errs by about th^2/6 of it, where th is peak_rotation; use 'finite'"
       else
-         text = text//'has no meaning then (displacements are in m, forces in N)'
+         text = "the rotation of a body goes beyond 1 rad; with kinematics = '"//trim(kinematics)// &
+                "' the displacement has no meaning then (displacements are in m, forces in N); use 'finite'"
       end if
-      text = text//"; use 'finite'"
    end subroutine rotation_note
 
 end module rbs_output_notes

@@ -17,7 +17,7 @@ from rbsdem._core import Array
 from rbsdem.accuracy.answer import Answer, Run, Setting
 from rbsdem.accuracy.path import along, at_times, reversals
 from rbsdem.analysis import cyclic, time_history
-from rbsdem.column import Column, without_notes
+from rbsdem.column import Column, checked_column, without_notes
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError
 from rbsdem.result import Result
 
@@ -201,8 +201,7 @@ def make_scene(
     InputError
         If the loads do not go together.
     """
-    if not isinstance(column, Column):
-        raise InputError(f"trade: column = {column!r} must be a Column")
+    checked_column(column, "trade: ")
     given = {
         name: _core.finite_vector(values, name)
         for name, values in loads.items()

@@ -9,7 +9,7 @@ from typing import Any
 
 from rbsdem import _core
 from rbsdem.calibration import paths
-from rbsdem.column import Column
+from rbsdem.column import Column, checked_column
 from rbsdem.errors import InputError
 from rbsdem.parameter import Parameter, is_recipe
 
@@ -22,8 +22,8 @@ class Parameters:
 
     def __init__(self, column: Column) -> None:
         self.recipe = is_recipe(column)
-        if not self.recipe and not isinstance(column, Column):
-            raise InputError(f"calibrate: column = {column!r} must be a Column")
+        if not self.recipe:
+            checked_column(column, "calibrate: ")
         self.column = column
         self.ways = {} if self.recipe else paths.paths(column)
 

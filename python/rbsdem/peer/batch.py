@@ -24,6 +24,7 @@ from rbsdem.analysis import cyclic
 from rbsdem.column import Column
 from rbsdem.comparison import compare
 from rbsdem.errors import InputError, RbsdemError, SolveError
+from rbsdem.peer.columns import check_options, checked_specimen
 from rbsdem.peer.columns import column as column_of
 from rbsdem.peer.journal import Journal
 from rbsdem.peer.measured import MeasuredTest
@@ -93,7 +94,9 @@ def predict(
     name = _name(model, options)
     if jobs > 1:
         _check_sent(model, options)
-    tests = list(specimens)
+    tests = [checked_specimen(specimen) for specimen in specimens]
+    if not callable(model):
+        check_options(options)
     begin = time.perf_counter()
     kept = None
     if journal is not None:
@@ -152,6 +155,9 @@ def predict_one(specimen: Specimen, model: Model = DEFAULT, **options: Any) -> P
         Its status, its scores and its times.
     """
     name = _name(model, options)
+    checked_specimen(specimen)
+    if not callable(model):
+        check_options(options)
     try:
         test = specimen.test()
         # A test without a usable history is found before the work.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from difflib import get_close_matches
 from typing import Any, Literal, overload
 
 from rbsdem.column import Column
@@ -17,6 +19,8 @@ _OLD = {
     "hinge": "model_parameters=rbsdem.section.parameters().with_values(...)",
     "shear_numbers": "model_parameters=rbsdem.section.parameters().with_values(shear_...=...)",
 }
+
+_OPTIONS = ("n", "version", "model_parameters", "restrained", "round_core")
 
 
 @overload
@@ -48,9 +52,8 @@ def column(specimen: Specimen, model: Model = DEFAULT, **options: Any) -> Column
         If the model is not known, or if the section cannot be analysed.
     """
     check_model(model)
-    for name, new in _OLD.items():
-        if name in options:
-            raise InputError(f"{name}= is now {new}")
+    checked_specimen(specimen)
+    check_options(options)
     drawing = draw(specimen)
     if model == "layered":
         options = {
@@ -66,3 +69,29 @@ def column(specimen: Specimen, model: Model = DEFAULT, **options: Any) -> Column
         axial_height=specimen.axial_height,
         **options,
     )
+
+
+def checked_specimen(specimen: object) -> Specimen:
+    """Return a specimen, or raise `InputError` for anything else."""
+    if isinstance(specimen, Specimen):
+        return specimen
+    given = repr(specimen)
+    if len(given) > 60:
+        given = f"a {type(specimen).__name__}"
+    remedy = "rbsdem.peer.read_specimens reads them from a table"
+    if hasattr(specimen, "column"):
+        remedy = "a section makes its column itself: section.column(height, axial_load=...)"
+    raise InputError(f"specimen = {given} must be a Specimen; {remedy}")
+
+
+def check_options(options: Mapping[str, object]) -> None:
+    """Raise `InputError` for options that `rbsdem.section.Section.column` does not have."""
+    for name in options:
+        if name in _OLD:
+            raise InputError(f"{name}= is now {_OLD[name]}")
+        if name not in _OPTIONS:
+            near = get_close_matches(name, _OPTIONS, 1)
+            hint = f"; did you mean {near[0]}?" if near else ""
+            raise InputError(
+                f"the option {name} is not known; there are {', '.join(_OPTIONS)}{hint}"
+            )

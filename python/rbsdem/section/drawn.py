@@ -95,6 +95,8 @@ class DrawnSection(ABC):
 
     def _take_bars(self, cover: float, transverse: Ties | Spiral | None) -> None:
         """Set the bars, from list or layout, and the diameter of the outermost one in tension."""
+        if not isinstance(self.bars, Sequence):
+            raise InputError(f"section: bars = {self.bars!r} must be a list of (y, area, Steel)")
         if self.layout is not None:
             if len(self.bars) > 0:
                 raise InputError("section: give bars or layout, not both")

@@ -16,6 +16,7 @@ from rbsdem.section.diagram import Diagram, make_diagram
 from rbsdem.section.drawn import DrawnSection
 from rbsdem.section.materials import Tension
 from rbsdem.section.model import DEFAULT, LayeredColumn, Model, make_column
+from rbsdem.section.parameters import ModelParameters
 from rbsdem.section.shear_diagram import ShearDiagram, shear_diagram
 from rbsdem.section.spring_fit import SectionSprings, fit_springs
 from rbsdem.section.strength import shear_strength_mcft
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from rbsdem.column import Column
-    from rbsdem.section.parameters import ModelParameters
 
 __all__ = ["Section"]
 
@@ -303,6 +303,16 @@ class Section(DrawnSection):
         >>> column.n, column.version
         (2, '2026.2')
         """
+        if restrained is not None:
+            restrained = _core.whole(restrained, "restrained")
+        round_core = bool(_core.switch(round_core, "round_core"))
+        if version is not None and not isinstance(version, str):
+            raise InputError(f'version = {version!r} must be a text, as "2026.1"')
+        if model_parameters is not None and not isinstance(model_parameters, ModelParameters):
+            raise InputError(
+                f"model_parameters = {model_parameters!r} must be ModelParameters, as of "
+                "rbsdem.section.parameters()"
+            )
         return make_column(
             self,
             height,

@@ -164,8 +164,8 @@ contains
          call fatal_error(error, bad_input, 'analysis: dt = '//to_text(dt)//' s must be above zero')
       else if (dt > limit) then
          call fatal_error(error, bad_input, 'analysis: dt = '//to_text(dt)//' s is beyond the '// &
-                          'stability limit of rk4, '//to_text(limit)//' s; give a dt below it, or '// &
-                          'none to have it chosen')
+                          'stability limit of rk4, '//to_text(limit)//' s; give a dt below it, '// &
+                          "none to have it chosen, or method = 'auto'")
       end if
    end subroutine check_step
 
