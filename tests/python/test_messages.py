@@ -62,7 +62,7 @@ def test_what_is_no_specimen_is_named_with_what_makes_its_column(use):
 def test_unknown_option_ends_a_batch_before_its_work():
     for use in (peer.predict_one, lambda s, **o: peer.predict([s], **o), peer.column):
         specimen = peer.Specimen("x", "rectangular", 1.6, 0.4, 0.4, 46.5e6, 744e3, 12)
-        with pytest.raises(InputError, match="option verson is not known.*mean version"):
+        with pytest.raises(InputError, match=r"option verson is not known.*mean version"):
             use(specimen, verson="2026.1")
         with pytest.raises(InputError, match="hinge= is now model_parameters"):
             use(specimen, hinge=1)
