@@ -120,6 +120,9 @@ module rbs_base_linalg
       end subroutine dtrtrs
    end interface
 
+   !> Largest system for which elimination is written out.
+   integer, parameter :: small_size = 6
+
 contains
 
    !> Cholesky factor of a symmetric matrix, in place; it exists if the matrix is positive definite.
@@ -173,9 +176,62 @@ contains
       integer :: pivot(size(a, 1))
       integer :: info
 
+      if (size(a, 1) <= small_size) then
+         call eliminate(size(a, 1), size(b, 2), a, b, regular)
+         return
+      end if
       call dgesv(size(a, 1), size(b, 2), a, size(a, 1), pivot, b, size(b, 1), info)
       regular = info == 0
    end subroutine solve_general
+
+   !> Elimination with partial pivoting for a system so small that the calls of LAPACK cost more than its
+   !> arithmetic.
+   pure subroutine eliminate(n, m, a, b, regular)
+      integer, intent(in) :: n, m
+      real(wp), intent(inout) :: a(n, n), b(n, m)
+      logical, intent(out) :: regular
+      real(wp) :: factor, swap
+      integer :: i, j, k, p
+
+      regular = .false.
+      do k = 1, n
+         p = k
+         do i = k + 1, n
+            if (abs(a(i, k)) > abs(a(p, k))) p = i
+         end do
+         if (.not. abs(a(p, k)) > 0.0_wp) return
+         if (p /= k) then
+            do j = k, n
+               swap = a(k, j)
+               a(k, j) = a(p, j)
+               a(p, j) = swap
+            end do
+            do j = 1, m
+               swap = b(k, j)
+               b(k, j) = b(p, j)
+               b(p, j) = swap
+            end do
+         end if
+         do i = k + 1, n
+            factor = a(i, k)/a(k, k)
+            do j = k + 1, n
+               a(i, j) = a(i, j) - factor*a(k, j)
+            end do
+            do j = 1, m
+               b(i, j) = b(i, j) - factor*b(k, j)
+            end do
+         end do
+      end do
+      do j = 1, m
+         do i = n, 1, -1
+            do k = i + 1, n
+               b(i, j) = b(i, j) - a(i, k)*b(k, j)
+            end do
+            b(i, j) = b(i, j)/a(i, i)
+         end do
+      end do
+      regular = .true.
+   end subroutine eliminate
 
    !> Cholesky factor of a symmetric band matrix, in place, in time and memory proportional to n.
    subroutine factor_band(band, positive)

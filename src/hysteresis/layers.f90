@@ -182,26 +182,30 @@ contains
       class(layer_bank), intent(inout) :: self
       !> Rates of the rotation [rad] and of the axial load [N]
       real(wp), intent(in) :: turn, press
-      real(wp) :: v
+      real(wp) :: v, least_rate, least_room
       integer :: i, pass, way
       logical :: changed
 
       self%failed = .false.
       self%turn = turn
       self%press = press
+      least_room = room_in_digits(self)
       do pass = 1, most_passes
          call self%sum_up()
          if (.not. self%a > no_stiffness*self%stiffness) exit
          self%open = -(self%s*turn + press)/self%a
          changed = .false.
+         least_rate = no_rate*(abs(self%open) + self%reach*abs(turn))
          do i = 1, self%count
-            v = rate_of(self%y(i), turn, self%open, self%reach)
+            v = self%open + self%y(i)*turn
             way = 0
-            if (v > 0.0_wp) then
-               if (self%line(i)%one_way < 0 .or. has_no_room(self, i, 1)) way = 1
-            else if (v < 0.0_wp) then
-               if (self%line(i)%one_way > 0 .or. has_no_room(self, i, -1)) way = -1
-            end if
+            associate (line => self%line(i), d => self%d(i))
+               if (v > least_rate) then
+                  if (line%one_way < 0 .or. line%hi - d <= least_room + on_the_end*abs(line%hi)) way = 1
+               else if (v < -least_rate) then
+                  if (line%one_way > 0 .or. d - line%lo <= least_room + on_the_end*abs(line%lo)) way = -1
+               end if
+            end associate
             if (way == 0) cycle
             call self%leave(i, way)
             changed = .true.
@@ -218,10 +222,16 @@ contains
       real(wp) :: far
 
       far = merge(self%line(i)%hi, self%line(i)%lo, way > 0)
-      has_no_room = way*(far - self%d(i)) <= on_the_end*(abs(far) + abs(self%opening) + &
-                                                         self%reach*abs(self%rotation)) &
-                    + round_off*self%largest
+      has_no_room = way*(far - self%d(i)) <= room_in_digits(self) + on_the_end*abs(far)
    end function has_no_room
+
+   !> What the last digits of opening and rotation leave undecided of a deformation [m].
+   pure real(wp) function room_in_digits(self)
+      type(layer_bank), intent(in) :: self
+
+      room_in_digits = on_the_end*(abs(self%opening) + self%reach*abs(self%rotation)) &
+                       + round_off*self%largest
+   end function room_in_digits
 
    !> A layer goes on beyond the end of its line, or turns back on a one-way line.
    subroutine leave(self, i, way)
@@ -397,13 +407,14 @@ contains
    pure subroutine find_ends(self, ends)
       class(layer_bank), intent(in) :: self
       type(path_ends), intent(out) :: ends
-      real(wp) :: v, size_v, ahead, back, farthest
+      real(wp) :: v, size_v, ahead, back, farthest, least_rate
       integer :: i
 
+      least_rate = no_rate*(abs(self%open) + self%reach*abs(self%turn))
       do i = 1, self%count
-         v = rate_of(self%y(i), self%turn, self%open, self%reach)
-         if (.not. abs(v) > 0.0_wp) cycle
+         v = self%open + self%y(i)*self%turn
          size_v = abs(v)
+         if (size_v <= least_rate) cycle
          ! A distance beyond this has no quotient.
          farthest = 1.0e100_wp*size_v
          associate (line => self%line(i))
