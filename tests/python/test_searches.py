@@ -1,7 +1,9 @@
 """Short runs of the random searches of studies/, and the cases that they have found.
 
 `static_search`: finite static paths that ended where the column could go on. `dynamic_search`:
-motions whose answers by different methods are not one. The long runs are those of the studies.
+motions whose answers by different methods are not one. `interaction_search`: static paths under an
+axial load that varies which depend on increments or lose energy. The long runs are those of the
+studies.
 """
 
 from __future__ import annotations
@@ -15,12 +17,15 @@ import pytest
 STUDIES = Path(__file__).resolve().parents[2] / "studies"
 
 
+NAMES = ("static_search", "dynamic_search", "interaction_search")
+
+
 @pytest.fixture(scope="module")
 def studies():
     """The modules of the searches, which import each other from their own folder."""
     before = sys.path[:]
     sys.path.insert(0, str(STUDIES))
-    yield {name: importlib.import_module(name) for name in ("static_search", "dynamic_search")}
+    yield {name: importlib.import_module(name) for name in NAMES}
     sys.path[:] = before
 
 
@@ -44,3 +49,9 @@ def test_methods_in_time_agree(studies):
     kinds = [studies["dynamic_search"].judge((11, i))[0] for i in range(20)]
     assert {"one answer", "sensitive", "ends"} >= set(kinds), kinds
     assert kinds.count("one answer") > 15
+
+
+def test_paths_under_a_varying_axial_load_do_not_depend_on_increments(studies):
+    kinds = [studies["interaction_search"].judge((11, i))[0] for i in range(60)]
+    assert {"completed", "axial_failure"} >= set(kinds), kinds
+    assert kinds.count("completed") > 50
