@@ -20,7 +20,7 @@ import numpy as np
 from static_search import Generator, spring
 
 import rbsdem
-from rbsdem.methods import METHODS
+from rbsdem.methods import IMPLICIT
 
 #: Change of the loading by which a motion is found to be sensitive, and what it may amplify.
 CHANGE, AMPLIFIED = 1e-8, 1e3
@@ -94,9 +94,8 @@ def settings(column: rbsdem.Column, loading: dict[str, object]) -> dict[str, lis
         "rk45": [{"method": "rk45", "tolerance": size} for size in (1e-7, 1e-10)],
         "rk4": [{"method": "rk4", **step} for step in steps],
     }
-    for name in ("newmark", "hht", "generalised_alpha"):
-        if column.kinematics != "finite" or METHODS[name].finite:
-            found[name] = [{"method": name, **step} for step in steps]
+    for name in IMPLICIT:
+        found[name] = [{"method": name, **step} for step in steps]
     return found
 
 

@@ -23,8 +23,6 @@ class Method:
         Whether the length of its steps follows from a tolerance.
     settings : frozenset of str
         Which of dt, events, tolerance, rho_infinity and allow_unstable it takes.
-    finite : bool
-        Whether it takes `kinematics="finite"`.
     limit_share, period_share : float
         The step that the method chooses, as a share of the stability limit of "rk4" and of the
         longest natural period; 0 if it does not depend on that. For "rk45" it is the longest step.
@@ -39,7 +37,6 @@ class Method:
     kind: str
     adaptive: bool
     settings: frozenset[str]
-    finite: bool
     limit_share: float
     period_share: float
     usual_error: float
@@ -56,7 +53,6 @@ METHODS = {
         kind=row["kind"],
         adaptive=row["adaptive"] == "yes",
         settings=frozenset(name for name in _SETTINGS if row[name] == "yes"),
-        finite=row["finite"] == "yes",
         limit_share=float(row["limit_share"]),
         period_share=float(row["period_share"]),
         usual_error=float(row["usual_error"]),

@@ -27,8 +27,6 @@ module rbs_case_methods
       !> Settings of the analysis that it uses
       logical :: dt = .true., events = .false., tolerance = .false., rho_infinity = .false.
       logical :: allow_unstable = .false.
-      !> Whether it can be used with `kinematics = 'finite'`
-      logical :: finite = .true.
       !> Default of its step as a share of the stability limit of rk4, or of the longest natural period; for
       !> rk45 the longest step. 0: the step does not depend on the limit, or on the period
       real(wp) :: limit_share = 0.0_wp, period_share = 0.0_wp
@@ -53,17 +51,17 @@ module rbs_case_methods
       method_type('rk45', order=5, explicit=.true., adaptive=.true., tolerance=.true., &
                   limit_share=0.35_wp, usual_error=2.0e-5_wp, largest_error=4.0e-4_wp, &
                   body_step=4.0e-7_wp), &
-      method_type('newmark', order=2, implicit=.true., finite=.false., period_share=0.02_wp, &
+      method_type('newmark', order=2, implicit=.true., period_share=0.02_wp, &
                   usual_error=8.0e-3_wp, largest_error=0.3_wp, body_step=5.0e-7_wp), &
-      method_type('hht', order=2, implicit=.true., rho_infinity=.true., finite=.false., &
+      method_type('hht', order=2, implicit=.true., rho_infinity=.true., &
                   period_share=0.02_wp, least_rho_infinity=0.5_wp, usual_error=5.0e-3_wp, &
                   largest_error=0.3_wp, body_step=5.0e-7_wp), &
-      method_type('generalised_alpha', order=2, implicit=.true., rho_infinity=.true., finite=.false., &
+      method_type('generalised_alpha', order=2, implicit=.true., rho_infinity=.true., &
                   period_share=0.02_wp, usual_error=6.0e-3_wp, largest_error=0.1_wp, body_step=5.0e-7_wp)]
 
    !> Names of the columns of `method_rows`.
    character(len=*), parameter :: methods_columns = 'method order kind adaptive dt events tolerance '// &
-                                  'rho_infinity allow_unstable finite limit_share period_share '// &
+                                  'rho_infinity allow_unstable limit_share period_share '// &
                                   'usual_error largest_error'
 
 contains
@@ -145,7 +143,7 @@ contains
          text = text//new_line('a')//trim(method%name)//' '//to_text(method%order)//' '//trim(kind)// &
                 yes_or_no(method%adaptive)//yes_or_no(method%dt)//yes_or_no(method%events)// &
                 yes_or_no(method%tolerance)//yes_or_no(method%rho_infinity)// &
-                yes_or_no(method%allow_unstable)//yes_or_no(method%finite)//' '// &
+                yes_or_no(method%allow_unstable)//' '// &
                 to_text(method%limit_share)//' '//to_text(method%period_share)//' '// &
                 to_text(method%usual_error)//' '//to_text(method%largest_error)
       end do

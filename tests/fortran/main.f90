@@ -11,6 +11,7 @@ program unit_tests
    use test_finite, only: collect_finite
    use test_history, only: collect_history
    use test_implicit, only: collect_implicit
+   use test_implicit_finite, only: collect_implicit_finite
    use test_interaction, only: collect_interaction
    use test_layered, only: collect_layered
    use test_linalg, only: collect_linalg
@@ -49,7 +50,7 @@ program unit_tests
       procedure(collect_interface), pointer, nopass :: collect => null()
    end type suite_type
 
-   type(suite_type) :: suites(31)
+   type(suite_type) :: suites(32)
    character(len=80) :: wanted, pattern
    integer :: i, run, failed, found
 
@@ -75,7 +76,8 @@ program unit_tests
              suite_type('run', collect_run), &
              suite_type('steppers', collect_steppers), &
              suite_type('shear', collect_shear), &
-             suite_type('implicit', collect_implicit)]
+             suite_type('implicit', collect_implicit), &
+             suite_type('implicit_finite', collect_implicit_finite)]
 
    call get_command_argument(1, wanted)
    call get_command_argument(2, pattern)

@@ -137,7 +137,7 @@ contains
       type(state_type), intent(in) :: state
 
       energy = kinetic_energy(state%motion%column, state%q, state%v) + sum(state%springs%work) &
-               + potential_energy(state%motion%column, state%q)
+               + potential_energy(state%motion%column, state%q) + state%along_joints
    end function energy_of
 
    !> Residual of the balance of energy [J].

@@ -384,15 +384,6 @@ contains
       type(column_record) :: spec
       integer :: method
 
-      do method = 4, methods
-         data = run_data()
-         call ask(data, method)
-         data%time = [0.0_wp, 1.0_wp]
-         call run(data, made(chain(2, 'finite')))
-         call check_failed(error, data%outcome, bad_input, &
-                           "method = '"//trim(method_name(method))//"' is for")
-         call check_failed(error, data%outcome, bad_input, "use 'rk4' or 'rk45' with 'finite'")
-      end do
       do method = 1, methods
          data = run_data()
          call ask(data, method)

@@ -139,7 +139,7 @@ def test_a_long_run_says_so_before_it_starts_and_names_the_faster_method(tmp_pat
     assert f"errors of about {METHODS['generalised_alpha'].usual_error:g}" in str(caught.value)
     # With the faster method there is nothing to say.
     assert case.run(method="generalised_alpha").summary["status"] == "completed"
-    with pytest.raises(rbsdem.LongRunWarning, match="need kinematics = 'pdelta'"):
+    with pytest.raises(rbsdem.LongRunWarning, match="Faster: method = 'generalised_alpha'"):
         case.run(replace(case.column, kinematics="finite"))
 
 

@@ -210,8 +210,6 @@ def jobs():
         yield lambda c=column: rbsdem.cyclic(c, displacement=path[: 40 // c.n])
         yield lambda c=column: rbsdem.cyclic(c, force=3e5 * path)
         for method in METHODS:
-            if level == "finite" and method in IMPLICIT:
-                continue
             yield lambda c=column, m=method: rbsdem.time_history(
                 c, times, ground_acceleration=ground, method=m
             )

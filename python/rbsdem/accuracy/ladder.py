@@ -79,12 +79,14 @@ class Probe:
     def seconds(self, setting: Setting) -> float:
         """Return an estimate of the wall time of a setting [s]."""
         rows = self.duration / self.interval
-        if setting.method == "auto" and setting.kinematics != "finite":
-            return self.implicit * rows
         if setting.method in ("auto", "rk45"):
             tolerance = setting.tolerance or 1e-6
             shortest = PAIR_SHARE * self.limit * min((tolerance / PAIR_TOLERANCE) ** 0.2, 1.0)
-            return PAIR_COST * self.explicit * max(self.duration / shortest, rows)
+            pair = PAIR_COST * self.explicit * max(self.duration / shortest, rows)
+            if setting.method == "rk45":
+                return pair
+            implicit = self.implicit * rows
+            return min(pair, implicit) if setting.kinematics == "finite" else implicit
         step = self.explicit if setting.method == "rk4" else self.implicit
         return step * self.duration / setting.dt if setting.dt else 0.0
 
@@ -108,9 +110,6 @@ def probe(scene: Scene) -> Probe:
     explicit = _seconds(short, Setting("rk4", level, dt=0.5 * limit)) / max(steps, 1.0)
     rows = min(100, time.size - 1)
     short = _beginning(scene, float(time[rows] - time[0]))
-    if level == "finite":
-        # Implicit methods know no finite rotations; they are tried with the level below.
-        level = "pdelta"
     try:
         implicit = _seconds(short, Setting("newmark", level, dt=interval)) / rows
     except RbsdemError:

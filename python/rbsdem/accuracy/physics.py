@@ -15,7 +15,7 @@ from rbsdem.accuracy.scene import VERTICAL, Scene
 from rbsdem.column import Column, without_notes
 from rbsdem.damping import Damping
 from rbsdem.errors import InputError
-from rbsdem.methods import IMPLICIT, METHODS
+from rbsdem.methods import IMPLICIT
 from rbsdem.springs import Spring
 
 #: Share of the rotary inertia that stays when it is taken off: a body without any has no equation
@@ -282,8 +282,6 @@ def _effect(
     loads = {load: values for load, values in scene.loads.items() if load != variant.without}
     other = dataclasses.replace(scene, loads=loads)
     setting = dataclasses.replace(base.setting, kinematics=column.kinematics)
-    if column.kinematics == "finite" and not METHODS[setting.method].finite:
-        setting = Setting("rk45", "finite", tolerance=1e-6)
     cost = base.seconds if setting.method == base.setting.method else look.seconds(setting)
     if column.n > scene.column.n:
         cost *= TWICE_THE_BODIES

@@ -157,7 +157,7 @@ def _candidates(scene: Scene, look: Probe, runs: list[Run]) -> list[_Ladder]:
         Setting("rk45", level, tolerance=FIRST_TOLERANCE),
         Setting("rk4", level, dt=look.interval / parts, events="located"),
     ]
-    if level != "finite" and math.isfinite(look.implicit):
+    if math.isfinite(look.implicit):
         parts = max(math.ceil(look.interval / (look.duration / 4000)), 1)
         methods = ("generalised_alpha", "newmark")
         first += [Setting(method, level, dt=look.interval / parts) for method in methods]

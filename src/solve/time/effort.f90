@@ -16,7 +16,7 @@ module rbs_solve_time_effort
    !> Runs that are expected to be shorter start without a word [s].
    real(wp), parameter :: patience = 5.0_wp
 
-   !> Exact rotations cost an explicit step this much more.
+   !> Exact rotations make a step this much longer.
    real(wp), parameter :: cost_of_finite = 6.0_wp
 
    !> Another method is named if it is this many times faster.
@@ -35,7 +35,7 @@ contains
 
       method = method_named(plan%method)
       seconds = steps_of(plan, method)*(column%n + 1)*method%body_step
-      if (column%kinematics == finite .and. method%explicit) seconds = cost_of_finite*seconds
+      if (column%kinematics == finite) seconds = cost_of_finite*seconds
    end function expected_seconds
 
    !> Number of steps, of an adaptive method at least.
@@ -66,10 +66,6 @@ contains
       if (.not. method%explicit) return
       text = text//'; the highest frequency of the column limits the stable step to '// &
              to_text(plan%limit)//' s'
-      if (column%kinematics == finite) then
-         text = text//'. Methods without this limit need kinematics = '//"'pdelta'"
-         return
-      end if
       other = method_named(faster)
       call frequency_bounds(column, lowest, highest, error)
       if (allocated(error)) return

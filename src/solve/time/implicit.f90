@@ -5,40 +5,41 @@
 !> method goes back and forth between two branches, the solution goes from end to end instead. A step that
 !> does not converge is taken back to the stored state and cut in two.
 module rbs_solve_time_implicit
-   use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: to_text
    use rbs_column_band, only: to_joints
-   use rbs_column_column, only: joint_name
+   use rbs_solve_time_halving, only: halving_stepper
+   use rbs_solve_time_implicit_finite, only: finite_stepper
    use rbs_solve_time_implicit_balance, only: step_balance
    use rbs_solve_time_implicit_tangent, only: step_tangent
    use rbs_solve_time_loads, only: lateral, horizontal, vertical, axial
-   use rbs_solve_time_state, only: state_type, stepper_type, in_bounds, out_of_bounds
+   use rbs_solve_time_state, only: state_type, in_bounds, out_of_bounds
    implicit none
    private
 
-   public :: implicit_stepper, new_newmark, new_generalised_alpha, new_hht
+   public :: implicit_stepper, new_newmark, new_generalised_alpha, new_hht, with_finite_rotations
 
-   !> Most iterations of Newton's method, which mostly needs two or three, and most cuts of a step in halves.
-   integer, parameter :: most_iterations = 40, most_cuts = 24
+   !> Most iterations of Newton's method, which mostly needs two or three.
+   integer, parameter :: most_iterations = 40
 
    !> Number of trials in which Newton's method may overshoot.
    integer, parameter :: most_free = 8
 
-   type, extends(stepper_type) :: implicit_stepper
+   type, extends(halving_stepper) :: implicit_stepper
       !> Most changes of lines within a step; 0: a number that follows from that of the springs
       integer :: most_changes = 0
       !> The residual has vanished below this share of the forces; where round-off does not let it, below the
       !> second
       real(wp) :: wanted = 1.0e-12_wp, acceptable = 1.0e-7_wp
+      !> Whether it is average acceleration, which with finite rotations has the forces of the mean
+      logical, private :: average = .false.
       type(step_balance), private :: step
       type(step_tangent), private :: tangent
       !> Correction of the bodies and of the joints, and mean velocities of the joints (unknowns)
       real(wp), allocatable, private :: dx(:), dq(:), mean(:)
-      logical, private :: ready = .false.
    contains
-      procedure :: advance
+      procedure :: prepare
+      procedure :: take_step
    end type implicit_stepper
 
 contains
@@ -48,6 +49,7 @@ contains
       type(implicit_stepper) :: stepper
 
       stepper%step%beta = 0.25_wp
+      stepper%average = .true.
    end function new_newmark
 
    !> Generalised-alpha with the least damping of low frequencies for a spectral radius at infinite
@@ -74,57 +76,39 @@ contains
       stepper%step%beta = 0.25_wp*(1.0_wp + stepper%step%alpha_f)**2
    end function new_hht
 
-   subroutine advance(self, state, h, error)
+   !> The same method with finite rotations.
+   function with_finite_rotations(method) result(stepper)
+      type(implicit_stepper), intent(in) :: method
+      type(finite_stepper) :: stepper
+
+      stepper%step%average = method%average
+      stepper%step%alpha_m = method%step%alpha_m
+      stepper%step%alpha_f = method%step%alpha_f
+      stepper%step%beta = method%step%beta
+      stepper%step%gamma = method%step%gamma
+   end function with_finite_rotations
+
+   !> Once, before the first step.
+   subroutine prepare(self, state)
+      class(implicit_stepper), intent(inout) :: self
+      type(state_type), intent(in) :: state
+
+      call self%step%start(state)
+      call self%tangent%create(state%motion%column)
+      allocate (self%dx(size(state%q)), self%dq(size(state%q)), self%mean(size(state%q)), source=0.0_wp)
+   end subroutine prepare
+
+   !> Take a step of h, if it converges.
+   subroutine take_step(self, state, h, load, converged, busiest)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: finish
+      real(wp), intent(in) :: h, load(4)
+      logical, intent(out) :: converged
+      integer, intent(out) :: busiest
 
-      if (allocated(error)) return
-      if (.not. self%ready) then
-         call self%step%start(state)
-         call self%tangent%create(state%motion%column)
-         allocate (self%dx(size(state%q)), self%dq(size(state%q)), self%mean(size(state%q)), source=0.0_wp)
-         self%ready = .true.
-      end if
-      finish = state%time + h
-      call move_on(self, state, h, 0, error)
-      if (.not. allocated(error)) state%time = finish
-   end subroutine advance
-
-   !> Take a step, or its two halves if it does not converge.
-   recursive subroutine move_on(self, state, h, cuts, error)
-      type(implicit_stepper), intent(inout) :: self
-      type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h
-      !> How often the step has been cut already
-      integer, intent(in) :: cuts
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: load(4)
-      integer :: busiest
-      logical :: converged
-
-      call state%loads%at_time(state%time + h, load)
       call solve_step(self, state, h, load, converged, busiest)
-      if (converged) then
-         call commit(self, state, h, load)
-         return
-      end if
-      self%cut_steps = self%cut_steps + 1
-      if (cuts == most_cuts) then
-         call fatal_error(error, analysis_failed, 'the step of '//to_text(h)//' s at time '// &
-                          to_text(state%begin + state%time)//' s does not converge although it was cut '// &
-                          to_text(most_cuts)//' times; '// &
-                          trim(joint_name(state%motion%column, max(busiest, 1)))// &
-                          ' is the busiest. Rows up to there are kept, the last good state is that of '// &
-                          "this time. Try a shorter dt or method = 'rk45', and look at the springs "// &
-                          'that soften')
-         return
-      end if
-      call move_on(self, state, 0.5_wp*h, cuts + 1, error)
-      if (.not. allocated(error)) call move_on(self, state, 0.5_wp*h, cuts + 1, error)
-   end subroutine move_on
+      if (converged) call commit(self, state, h, load)
+   end subroutine take_step
 
    !> Find the end of a step of h. If it is not found, the springs are as before.
    subroutine solve_step(self, state, h, load, converged, busiest)
@@ -380,7 +364,6 @@ contains
       state%v(:) = self%step%w1
       state%time = state%time + h
       state%load = load
-      self%steps = self%steps + 1
       call self%step%go_on()
    end subroutine commit
 

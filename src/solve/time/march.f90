@@ -260,7 +260,7 @@ contains
       row(row_displacement) = top(1)
       row(row_force) = state%load(lateral)
       row(row_input) = state%of_loads
-      row(row_kinetic) = kinetic_energy(state%motion%column, state%q, state%v)
+      row(row_kinetic) = kinetic_energy(state%motion%column, state%q, state%v) + state%along_joints
       row(row_spring) = sum(state%springs%work)
       row(row_damping) = state%of_damping
       row(row_axial) = potential_energy(state%motion%column, state%q)

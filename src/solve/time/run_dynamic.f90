@@ -4,8 +4,7 @@ module rbs_solve_time_run_dynamic
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_case_methods, only: method_type, methods, method_named, quoted_names, usual_tolerance, &
-                               usual_rho_infinity
+   use rbs_case_methods, only: method_type, method_named, usual_tolerance, usual_rho_infinity
    use rbs_column_axial, only: check_stable
    use rbs_column_column, only: column_type, small, finite
    use rbs_loading_signal, only: signal_type
@@ -14,7 +13,8 @@ module rbs_solve_time_run_dynamic
    use rbs_output_summary, only: summary_type
    use rbs_solve_check_values, only: check_values
    use rbs_solve_modal_modes, only: frequency_bounds, stability_limit
-   use rbs_solve_time_implicit, only: new_newmark, new_hht, new_generalised_alpha
+   use rbs_solve_time_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha, &
+                                      with_finite_rotations
    use rbs_solve_time_loads, only: loads_type
    use rbs_solve_time_located, only: located_stepper
    use rbs_solve_time_march, only: initial_state, march
@@ -29,8 +29,9 @@ module rbs_solve_time_run_dynamic
 
    public :: plan_dynamic, run_dynamic
 
-   !> What `auto` assumes: an implicit step costs as much as this number of explicit ones.
-   real(wp), parameter :: implicit_step_cost = 5.0_wp
+   !> What `auto` assumes: an implicit step costs as much as this number of explicit ones, with small and with
+   !> finite rotations.
+   real(wp), parameter :: implicit_step_cost = 5.0_wp, finite_step_cost = 12.0_wp
 
    !> Numbers of explicit steps times bodies that take some hundredths of a second, and some minutes.
    real(wp), parameter :: negligible_work = 1.0e6_wp, bearable_work = 3.0e9_wp
@@ -47,8 +48,6 @@ contains
       type(loads_type), intent(in) :: loads
       type(time_plan), intent(out) :: plan
       type(error_type), allocatable, intent(out) :: error
-      type(method_type) :: method
-      character(len=:), allocatable :: others
 
       call check_times(time, error)
       if (allocated(error)) return
@@ -58,13 +57,6 @@ contains
       if (analysis%method == 'auto') then
          call choose_method(column, analysis, time, plan, error)
          if (allocated(error)) return
-      end if
-      method = method_named(plan%method)
-      if (column%kinematics == finite .and. .not. method%finite) then
-         call quoted_names(methods%finite .and. methods%explicit, others)
-         call fatal_error(error, bad_input, "analysis: method = '"//trim(plan%method)//"' is for "// &
-                          "kinematics = 'small' and 'pdelta'; use "//others//" with 'finite'")
-         return
       end if
       call plan_steps(column, analysis, time, loads, plan, error)
    end subroutine plan_dynamic
@@ -137,7 +129,7 @@ contains
       type(time_plan), intent(inout) :: plan
       type(error_type), allocatable, intent(out) :: error
       type(method_type) :: explicit_choice, implicit_choice, chosen
-      real(wp) :: lowest, highest, explicit_steps, implicit_steps, longest
+      real(wp) :: lowest, highest, explicit_steps, implicit_steps, longest, step_cost
       logical :: affordable
 
       explicit_choice = method_named('rk4')
@@ -147,13 +139,13 @@ contains
       call frequency_bounds(column, lowest, highest, error)
       if (allocated(error)) return
       longest = implicit_choice%period_share*longest_period(lowest)
+      step_cost = merge(finite_step_cost, implicit_step_cost, column%kinematics == finite)
       associate (duration => time(size(time)) - time(1))
          explicit_steps = real(size(time) - 1, wp) + duration/(explicit_choice%limit_share*plan%limit)
          implicit_steps = real(size(time) - 1, wp) + duration/longest
       end associate
       affordable = explicit_steps*column%n <= negligible_work .or. &
-                   explicit_steps <= implicit_step_cost*implicit_steps
-      if (column%kinematics == finite .and. .not. implicit_choice%finite) affordable = .true.
+                   explicit_steps <= step_cost*implicit_steps
       if (is_given(analysis%tolerance) .and. (affordable .or. explicit_steps*column%n <= bearable_work)) then
          plan%method = 'rk45'
          plan%reason = 'a tolerance of '//to_text(analysis%tolerance)//' asks for controlled errors'
@@ -231,11 +223,11 @@ contains
       if (is_given(analysis%rho_infinity)) rho = analysis%rho_infinity
       select case (plan%method)
       case ('newmark')
-         allocate (stepper, source=new_newmark())
+         call set_implicit(stepper, new_newmark(), column)
       case ('hht')
-         allocate (stepper, source=new_hht(rho))
+         call set_implicit(stepper, new_hht(rho), column)
       case ('generalised_alpha')
-         allocate (stepper, source=new_generalised_alpha(rho))
+         call set_implicit(stepper, new_generalised_alpha(rho), column)
       case ('rk45')
          allocate (located)
          allocate (pair45_scheme :: located%scheme)
@@ -261,6 +253,19 @@ contains
          end if
       end select
    end subroutine new_stepper
+
+   !> An implicit method for the kinematics of a column.
+   subroutine set_implicit(stepper, method, column)
+      class(stepper_type), allocatable, intent(out) :: stepper
+      type(implicit_stepper), intent(in) :: method
+      type(column_type), intent(in) :: column
+
+      if (column%kinematics == finite) then
+         allocate (stepper, source=with_finite_rotations(method))
+      else
+         allocate (stepper, source=method)
+      end if
+   end subroutine set_implicit
 
    !> Values of a signal that acts must be finite; the first fault counts.
    subroutine check_signal(signal, name, error)

@@ -25,6 +25,9 @@ module rbs_solve_time_state
       real(wp) :: begin = 0.0_wp, clock = 0.0_wp
       !> Works of loads and damping, and the energy at the start [J]
       real(wp) :: of_loads = 0.0_wp, of_damping = 0.0_wp, at_begin = 0.0_wp
+      !> Kinetic energy that the velocities of the joints do not show: implicit steps keep joints from
+      !> opening at their ends, not at every moment [J]
+      real(wp) :: along_joints = 0.0_wp
       !> Whether a deformation is out of bounds; the run cannot be continued from there
       logical :: lost = .false.
    end type state_type

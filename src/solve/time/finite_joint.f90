@@ -1,0 +1,216 @@
+!> One joint between two bodies with exact rotations: its deformations over a step, the forces that it gives
+!> the bodies, and their derivatives, in the coordinates of the centroids.
+!>
+!> A body has the axis e = (sin th, cos th) and the normal t = (cos th, -sin th). The joint reaches from the
+!> top of the body below to the bottom of the body above: D = c - s e - (c' + r e') = u t' + w e', the prime
+!> for the body below. With the means over a step that turns a body from m - A/2 to m + A/2,
+!>
+!>     tb = sg t(m),  eb = sg e(m),  sg = sin(A/2)/(A/2),
+!>     tm = (t_0 + t_1)/2,  em = (e_0 + e_1)/2,  Dm = (D_0 + D_1)/2,
+!>
+!> the changes of the deformations are exactly
+!>
+!>     du = tm'.dD - (eb'.Dm) dth',   dw = em'.dD + (tb'.Dm) dth',   dD = dc - s tb dth - dc' - r tb' dth'
+!>
+!> (mean-value derivatives: O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449-467). Forces with these arms do
+!> exactly the work of the springs. At one state all means are the values there.
+module rbs_solve_time_finite_joint
+   use rbs_base_kinds, only: wp
+   implicit none
+   private
+
+   public :: turned_body, turn_body, body_at, joint_type, joint_change, joint_at, joint_forces
+   public :: joint_tangent, joint_rates
+   public :: local
+
+   !> Coordinates that meet at a joint: x, y, th of the body below, axial force of the joint, x, y, th of the
+   !> body above.
+   integer, parameter :: local = 7
+
+   !> Directions of a body over a step.
+   type :: turned_body
+      !> Directions at the end of the step
+      real(wp) :: t1(2) = [1.0_wp, 0.0_wp], e1(2) = [0.0_wp, 1.0_wp]
+      !> Mean of both ends, and mean-value directions
+      real(wp) :: tm(2) = [1.0_wp, 0.0_wp], em(2) = [0.0_wp, 1.0_wp]
+      real(wp) :: tb(2) = [1.0_wp, 0.0_wp], eb(2) = [0.0_wp, 1.0_wp]
+      !> Derivatives of the latter by the rotation at the end
+      real(wp) :: tb_rate(2) = [0.0_wp, -0.5_wp], eb_rate(2) = [0.5_wp, 0.0_wp]
+   end type turned_body
+
+   !> A joint over a step.
+   type :: joint_type
+      !> Distances of the joint from the centroids of the bodies below and above [m]
+      real(wp) :: below = 0.0_wp, above = 0.0_wp
+      !> D in the mean and at the end [m]
+      real(wp) :: mean(2) = 0.0_wp, finish(2) = 0.0_wp
+   end type joint_type
+
+contains
+
+   !> A body that turns from one rotation by a change.
+   pure subroutine turn_body(from, change, body)
+      !> [rad]
+      real(wp), intent(in) :: from, change
+      type(turned_body), intent(out) :: body
+      real(wp) :: s, c, sg, sg_rate, half
+
+      half = 0.5_wp*change
+      s = sin(from)
+      c = cos(from)
+      body%t1 = [cos(from + change), -sin(from + change)]
+      body%e1 = [-body%t1(2), body%t1(1)]
+      body%tm = 0.5_wp*([c, -s] + body%t1)
+      body%em = 0.5_wp*([s, c] + body%e1)
+      if (abs(change) < 0.02_wp) then
+         sg = 1.0_wp - half**2*(1.0_wp - half**2/20.0_wp)/6.0_wp
+         sg_rate = -half*(1.0_wp - half**2/10.0_wp)/6.0_wp
+      else
+         sg = sin(half)/half
+         sg_rate = 0.5_wp*(cos(half) - sg)/half
+      end if
+      s = sin(from + half)
+      c = cos(from + half)
+      body%tb = sg*[c, -s]
+      body%eb = sg*[s, c]
+      body%tb_rate = sg_rate*[c, -s] - 0.5_wp*body%eb
+      body%eb_rate = sg_rate*[s, c] + 0.5_wp*body%tb
+   end subroutine turn_body
+
+   !> A body at one rotation.
+   pure subroutine body_at(rotation, body)
+      !> [rad]
+      real(wp), intent(in) :: rotation
+      type(turned_body), intent(out) :: body
+
+      body%t1 = [cos(rotation), -sin(rotation)]
+      body%e1 = [-body%t1(2), body%t1(1)]
+      body%tm = body%t1
+      body%em = body%e1
+      body%tb = body%t1
+      body%eb = body%e1
+      body%tb_rate = -body%e1
+      body%eb_rate = body%t1
+   end subroutine body_at
+
+   !> Changes of slip and opening over a step.
+   pure subroutine joint_change(below, above, moved_below, moved_above, joint, change)
+      !> The bodies over the step, and how their centroids have moved and turned (x, y, th)
+      type(turned_body), intent(in) :: below, above
+      real(wp), intent(in) :: moved_below(3), moved_above(3)
+      !> On entry with D at the start of the step in `mean`; on return complete
+      type(joint_type), intent(inout) :: joint
+      !> Slip and opening [m]
+      real(wp), intent(out) :: change(2)
+      real(wp) :: way(2)
+
+      way = (moved_above(:2) - moved_below(:2)) - joint%above*above%tb*moved_above(3) &
+            - joint%below*below%tb*moved_below(3)
+      joint%finish = joint%mean + way
+      joint%mean = joint%mean + 0.5_wp*way
+      change(1) = sum(below%tm*way) - sum(below%eb*joint%mean)*moved_below(3)
+      change(2) = sum(below%em*way) + sum(below%tb*joint%mean)*moved_below(3)
+   end subroutine joint_change
+
+   !> D of a joint at one state.
+   pure subroutine joint_at(below, slip, opening, joint)
+      type(turned_body), intent(in) :: below
+      real(wp), intent(in) :: slip, opening
+      type(joint_type), intent(inout) :: joint
+
+      joint%finish = slip*below%t1 + opening*below%e1
+      joint%mean = joint%finish
+   end subroutine joint_at
+
+   !> Velocities of slip and opening at one state.
+   pure subroutine joint_rates(below, above, rate_below, rate_above, joint, rates)
+      type(turned_body), intent(in) :: below, above
+      !> Velocities of the bodies (x, y, th)
+      real(wp), intent(in) :: rate_below(3), rate_above(3)
+      type(joint_type), intent(in) :: joint
+      real(wp), intent(out) :: rates(2)
+      real(wp) :: rate(2)
+
+      rate = (rate_above(:2) - rate_below(:2)) - (joint%above*rate_above(3))*above%t1 &
+             - (joint%below*rate_below(3))*below%t1
+      rates(1) = sum(below%t1*rate) - sum(below%e1*joint%finish)*rate_below(3)
+      rates(2) = sum(below%e1*rate) + sum(below%t1*joint%finish)*rate_below(3)
+   end subroutine joint_rates
+
+   !> Add what a joint takes from the bodies: its forces in their coordinates.
+   pure subroutine joint_forces(below, above, joint, f, on_below, on_above)
+      type(turned_body), intent(in) :: below, above
+      type(joint_type), intent(in) :: joint
+      !> Shear, moment and axial force (tension positive) [N, N m, N]
+      real(wp), intent(in) :: f(3)
+      !> x, y, th
+      real(wp), intent(inout) :: on_below(3), on_above(3)
+      real(wp) :: p(2)
+
+      p = f(1)*below%tm + f(3)*below%em
+      on_above(:2) = on_above(:2) + p
+      on_above(3) = on_above(3) + f(2) - joint%above*sum(above%tb*p)
+      on_below(:2) = on_below(:2) - p
+      on_below(3) = on_below(3) - f(2) - joint%below*sum(below%tb*p) - f(1)*sum(below%eb*joint%mean) &
+                    + f(3)*sum(below%tb*joint%mean)
+   end subroutine joint_forces
+
+   !> Derivatives of `joint_forces` by the state at the end of the step: rows of the bodies, and in the row of
+   !> the axial force the derivative of the opening.
+   pure subroutine joint_tangent(below, above, joint, half, f, k, closed, tangent)
+      type(turned_body), intent(in) :: below, above
+      type(joint_type), intent(in) :: joint
+      !> Share of the end of the step in the means: 1/2, or 1 at one state
+      real(wp), intent(in) :: half
+      !> Forces, and their derivatives by the deformations at the end of the step
+      real(wp), intent(in) :: f(3), k(3)
+      !> Whether the joint does not open: its axial force is an unknown
+      logical, intent(in) :: closed
+      real(wp), intent(out) :: tangent(local, local)
+      real(wp) :: way(2, local), force(2, local), shear(local), tension(local), moment(local), opening(local)
+      real(wp) :: p(2), arms(2)
+      integer :: i
+
+      way = 0.0_wp
+      way(1, 1) = -1.0_wp
+      way(2, 2) = -1.0_wp
+      way(1, 5) = 1.0_wp
+      way(2, 6) = 1.0_wp
+      way(:, 3) = -joint%below*below%t1
+      way(:, 7) = -joint%above*above%t1
+      do i = 1, local
+         shear(i) = k(1)*(below%t1(1)*way(1, i) + below%t1(2)*way(2, i))
+         opening(i) = below%e1(1)*way(1, i) + below%e1(2)*way(2, i)
+      end do
+      shear(3) = shear(3) - k(1)*sum(below%e1*joint%finish)
+      opening(3) = opening(3) + sum(below%t1*joint%finish)
+      moment = 0.0_wp
+      moment(3) = -k(2)
+      moment(7) = k(2)
+      if (closed) then
+         tension = 0.0_wp
+         tension(4) = 1.0_wp
+      else
+         tension = k(3)*opening
+      end if
+      p = f(1)*below%tm + f(3)*below%em
+      arms = [sum(below%eb*joint%mean), sum(below%tb*joint%mean)]
+      do i = 1, local
+         force(:, i) = shear(i)*below%tm + tension(i)*below%em
+      end do
+      force(:, 3) = force(:, 3) + half*(f(3)*below%t1 - f(1)*below%e1)
+      do i = 1, local
+         tangent(1:2, i) = -force(:, i)
+         tangent(3, i) = -joint%below*sum(below%tb*force(:, i)) - shear(i)*arms(1) &
+                         + tension(i)*arms(2) - moment(i) &
+                         + half*sum((f(3)*below%tb - f(1)*below%eb)*way(:, i))
+         tangent(4, i) = opening(i)
+         tangent(5:6, i) = force(:, i)
+         tangent(7, i) = moment(i) - joint%above*sum(above%tb*force(:, i))
+      end do
+      tangent(3, 3) = tangent(3, 3) - joint%below*sum(below%tb_rate*p) &
+                      + sum((f(3)*below%tb_rate - f(1)*below%eb_rate)*joint%mean)
+      tangent(7, 7) = tangent(7, 7) - joint%above*sum(above%tb_rate*p)
+   end subroutine joint_tangent
+
+end module rbs_solve_time_finite_joint

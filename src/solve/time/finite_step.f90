@@ -1,0 +1,512 @@
+!> The equation of an implicit step with exact rotations, in absolute coordinates of the centroids (x, y,
+!> th): the mass is constant and diagonal, joints meet their neighbours only, and the tangent is a band.
+!> Joints that do not open have their axial force as an unknown, and that they do not open as its equation.
+!>
+!> Average acceleration with mean-value derivatives balances the energy exactly for a step of any length,
+!>
+!>     M 2/h^2 (dx - h v_0) + sum B' f = Q,   v_1 = 2 dx/h - v_0,   f = (work of the spring)/(its change)
+!>
+!> and the generalised-alpha method has the forces of both ends of the step (see
+!> `rbs_solve_time_implicit_balance`), with the axial forces among them (M. Arnold, O. Bruels, Multibody
+!> Syst. Dyn. 18 (2007) 185-203).
+module rbs_solve_time_finite_step
+   use rbs_base_kinds, only: wp
+   use rbs_base_linalg, only: solve_general_band
+   use rbs_column_column, only: column_type
+   use rbs_column_energy, only: kinetic_energy
+   use rbs_column_finite, only: finite_work, finite_acceleration
+   use rbs_solve_time_finite_joint, only: turned_body, turn_body, body_at, joint_type, joint_change, &
+                                          joint_at, joint_forces, joint_tangent, joint_rates, local
+   use rbs_solve_time_loads, only: lateral, horizontal, vertical, axial
+   use rbs_solve_time_motion, only: motion_result
+   use rbs_solve_time_state, only: state_type
+   implicit none
+   private
+
+   public :: finite_step
+
+   !> Below this share of the forces a change of a spring's force is round-off.
+   real(wp), parameter :: no_change = 1.0e-6_wp
+
+   type :: finite_step
+      !> Whether the forces are those of the mean-value derivatives; else the parameters of generalised-alpha
+      logical :: average = .true.
+      real(wp) :: alpha_m = 0.0_wp, alpha_f = 0.0_wp, beta = 0.25_wp, gamma = 0.5_wp
+      !> What the bodies have moved in the step, and the residual (3, n)
+      real(wp), allocatable :: moved(:, :), r(:, :)
+      !> Axial forces of the joints, tension positive, and how far those that must not open have (n)
+      real(wp), allocatable :: tension(:), gap(:)
+      !> Deformations at the end of the step and their change (unknowns)
+      real(wp), allocatable :: q1(:), change(:)
+      !> Mass; velocities, accelerations and forces of the bodies at the start of the step and at its end
+      !> (3, n)
+      real(wp), allocatable, private :: mass(:, :), v0(:, :), a0(:, :), g0(:, :), v1(:, :), a1(:, :), g1(:, :)
+      !> Rotations at the start of the step (n)
+      real(wp), allocatable, private :: from(:)
+      !> The bodies over the step, and as the forces see them; body 0 is the ground
+      type(turned_body), allocatable, private :: turned(:), seen(:)
+      type(joint_type), allocatable, private :: joint(:)
+      !> Forces of the joints, their derivatives, damping, and velocities of the joints (unknowns)
+      real(wp), allocatable, private :: f(:), k(:), viscous(:), w1(:)
+      !> Derivative of the load on the top body by its rotation
+      real(wp), private :: load_rate(3) = 0.0_wp
+      !> Largest force, moment of the present trial and of all steps so far
+      real(wp), private :: scale(2) = 0.0_wp, largest(2) = 0.0_wp
+      real(wp), allocatable, private :: band(:, :), right(:, :)
+      type(motion_result), private :: now
+      type(finite_work), private :: work
+   contains
+      procedure :: start
+      procedure :: place
+      procedure :: go
+      procedure :: find_residual
+      procedure :: find_correction
+      procedure :: finish
+   end type finite_step
+
+contains
+
+   !> Velocities and accelerations of the bodies at the start of the first step.
+   subroutine start(self, state)
+      class(finite_step), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      integer :: i, m, n, size_of_band, beside
+
+      n = state%motion%column%n
+      m = state%motion%column%unknowns
+      allocate (self%moved(3, n), self%r(3, n), self%mass(3, n), self%v0(3, n), self%a0(3, n), &
+                self%g0(3, n), self%v1(3, n), self%a1(3, n), self%g1(3, n), source=0.0_wp)
+      allocate (self%tension(n), self%gap(n), self%from(n), self%q1(m), self%change(m), self%f(m), &
+                self%k(m), self%viscous(m), self%w1(m), source=0.0_wp)
+      allocate (self%turned(0:n), self%seen(0:n), self%joint(n))
+      size_of_band = merge(3, 4, state%motion%column%opens)*n
+      beside = beside_diagonal(state%motion%column)
+      allocate (self%band(3*beside + 1, size_of_band), self%right(size_of_band, 1), source=0.0_wp)
+      associate (column => state%motion%column)
+         self%mass(1, :) = column%mass
+         self%mass(2, :) = column%mass
+         self%mass(3, :) = column%inertia
+         do i = 1, n
+            self%joint(i)%above = column%lower(i)
+            if (i > 1) self%joint(i)%below = column%upper(i - 1)
+         end do
+         call self%now%create(column)
+         call self%work%create(n)
+         call state%motion%acceleration(state%springs, state%q, state%v, state%load, self%now)
+         call finite_acceleration(column, self%work, state%q, state%v, self%now%f, state%load, self%now%a)
+         self%tension = self%work%axial
+      end associate
+      call self%place(state)
+      call body_velocities(self, state)
+      self%v1 = self%v0
+      call see_end(self, state%motion%column, state%q)
+      call find_forces_at(self, state, state%q, state%v, state%load, 1.0_wp, self%g0)
+      self%a0 = self%g0/self%mass
+      self%largest = self%scale
+   end subroutine start
+
+   !> Half-width of the band.
+   pure integer function beside_diagonal(column) result(beside)
+      type(column_type), intent(in) :: column
+
+      beside = merge(5, 6, column%opens)
+   end function beside_diagonal
+
+   !> Where the step starts.
+   subroutine place(self, state)
+      class(finite_step), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      real(wp) :: rotation
+      integer :: i, n
+
+      n = state%motion%column%n
+      rotation = 0.0_wp
+      do i = 1, n
+         rotation = rotation + state%q(n + i)
+         self%from(i) = rotation
+      end do
+      self%moved = 0.0_wp
+      self%q1 = state%q
+      self%change = 0.0_wp
+   end subroutine place
+
+   !> Velocities of the centroids from those of the joints.
+   subroutine body_velocities(self, state)
+      class(finite_step), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      type(turned_body) :: below, body
+      real(wp) :: top(2), spin, spin_below, opening, opens
+      integer :: i, n
+
+      n = state%motion%column%n
+      top = 0.0_wp
+      spin = 0.0_wp
+      opening = 0.0_wp
+      opens = 0.0_wp
+      do i = 1, n
+         spin_below = spin
+         spin = spin + state%v(n + i)
+         if (state%motion%column%opens) then
+            opening = state%q(2*n + i)
+            opens = state%v(2*n + i)
+         end if
+         call body_at(self%from(i), body)
+         top = top + (state%v(i) + opening*spin_below)*below%t1 + (opens - state%q(i)*spin_below)*below%e1
+         top = top + (state%motion%column%lower(i)*spin)*body%t1
+         self%v0(:, i) = [top(1), top(2), spin]
+         top = top + (state%motion%column%upper(i)*spin)*body%t1
+         below = body
+      end do
+   end subroutine body_velocities
+
+   !> The deformations that follow from what the bodies have moved.
+   subroutine go(self, state)
+      class(finite_step), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      type(turned_body) :: body
+      real(wp) :: moved_below(3), change(2), opening
+      integer :: i, n
+
+      n = state%motion%column%n
+      moved_below = 0.0_wp
+      opening = 0.0_wp
+      do i = 1, n
+         call turn_body(self%from(i), self%moved(3, i), self%turned(i))
+         if (i > 1) then
+            call body_at(self%from(i - 1), body)
+         else
+            body = self%turned(0)
+         end if
+         if (state%motion%column%opens) opening = state%q(2*n + i)
+         call joint_at(body, state%q(i), opening, self%joint(i))
+         call joint_change(self%turned(i - 1), self%turned(i), moved_below, self%moved(:, i), self%joint(i), &
+                           change)
+         self%change(i) = change(1)
+         self%change(n + i) = self%moved(3, i) - moved_below(3)
+         if (state%motion%column%opens) then
+            self%change(2*n + i) = change(2)
+         else
+            self%gap(i) = change(2)
+         end if
+         moved_below = self%moved(:, i)
+      end do
+      self%q1(:) = state%q + self%change
+   end subroutine go
+
+   !> Residual of the step for what the bodies have moved, and its size relative to the forces. The springs
+   !> are at the end of the step, or still at its start if their lines reach so far.
+   subroutine find_residual(self, state, h, load, there, relative)
+      class(finite_step), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      real(wp), intent(in) :: h, load(4)
+      !> Whether the springs are at the end of the step; their work is then counted from its start
+      logical, intent(in) :: there
+      real(wp), intent(out) :: relative
+      integer :: n
+
+      n = state%motion%column%n
+      if (self%average) then
+         self%v1 = (2.0_wp/h)*self%moved - self%v0
+         self%a1 = (2.0_wp/h**2)*(self%moved - h*self%v0)
+         self%seen = self%turned
+         call mean_forces(self, state, h, there)
+         call balance(self, state%motion%column, 0.5_wp*(state%load + load), self%r)
+         self%r = self%r - self%mass*(self%a1 + (state%motion%column%mass_damping/h)*self%moved)
+      else
+         self%a1 = (self%moved - h*self%v0 - (h**2*(0.5_wp - self%beta))*self%a0)/(self%beta*h**2)
+         self%v1 = self%v0 + h*((1.0_wp - self%gamma)*self%a0 + self%gamma*self%a1)
+         call see_end(self, state%motion%column, self%q1)
+         call find_forces_at(self, state, self%q1, self%w1, load, h, self%g1)
+         self%r = (1.0_wp - self%alpha_f)*self%g1 + self%alpha_f*self%g0 &
+                  - self%mass*((1.0_wp - self%alpha_m)*self%a1 + self%alpha_m*self%a0)
+      end if
+      self%scale(1) = max(self%scale(1), maxval(abs(self%mass(:2, :)*self%a1(:2, :))))
+      self%scale(2) = max(self%scale(2), maxval(abs(self%mass(3, :)*self%a1(3, :))))
+      relative = max(maxval(abs(self%r(:2, :)))/max(self%scale(1), self%largest(1), tiny(1.0_wp)), &
+                     maxval(abs(self%r(3, :)))/max(self%scale(2), self%largest(2), tiny(1.0_wp)))
+      if (.not. state%motion%column%opens) then
+         relative = max(relative, maxval(abs(self%gap))/maxval(state%motion%column%length))
+      end if
+   end subroutine find_residual
+
+   !> Forces of the joints that do exactly the work of springs and damping, and their derivatives.
+   subroutine mean_forces(self, state, h, there)
+      class(finite_step), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      real(wp), intent(in) :: h
+      logical, intent(in) :: there
+      real(wp) :: finish, mean
+      integer :: i
+
+      call find_damping(self, state)
+      associate (springs => state%springs)
+         do i = 1, size(self%f)
+            finish = springs%f0(i) + springs%k(i)*(self%q1(i) - springs%d0(i))
+            mean = springs%f0(i) + springs%k(i)*(0.5_wp*(self%q1(i) + state%q(i)) - springs%d0(i))
+            self%k(i) = 0.5_wp*springs%k(i)
+            if (there .and. abs(self%change(i)) > 0.0_wp) then
+               mean = springs%work(i)/self%change(i)
+               if (abs(finish - mean) > no_change*(abs(finish) + abs(mean))) then
+                  self%k(i) = (finish - mean)/self%change(i)
+               end if
+            end if
+            self%f(i) = mean + self%viscous(i)*self%change(i)/h
+            self%k(i) = self%k(i) + self%viscous(i)/h
+         end do
+      end associate
+      if (allocated(state%motion%modal)) self%f = self%f + matmul(state%motion%modal, self%change)/h
+   end subroutine mean_forces
+
+   !> Damping of the joints on their present lines.
+   subroutine find_damping(self, state)
+      class(finite_step), intent(inout) :: self
+      type(state_type), intent(in) :: state
+
+      if (state%motion%column%tangent_damping) then
+         self%viscous = state%motion%column%stiffness_damping*max(state%springs%k, 0.0_wp)
+      else if (state%motion%damped) then
+         self%viscous = state%motion%joint_damping
+      end if
+   end subroutine find_damping
+
+   !> Bodies and joints at the end of the step, and the velocities of the joints.
+   subroutine see_end(self, column, q)
+      class(finite_step), intent(inout) :: self
+      type(column_type), intent(in) :: column
+      real(wp), intent(in), contiguous :: q(:)
+      real(wp) :: rotation, opening, rates(2), below(3)
+      integer :: i, n
+
+      n = column%n
+      rotation = 0.0_wp
+      opening = 0.0_wp
+      below = 0.0_wp
+      call body_at(0.0_wp, self%seen(0))
+      do i = 1, n
+         rotation = rotation + q(n + i)
+         call body_at(rotation, self%seen(i))
+         if (column%opens) opening = q(2*n + i)
+         call joint_at(self%seen(i - 1), q(i), opening, self%joint(i))
+         call joint_rates(self%seen(i - 1), self%seen(i), below, self%v1(:, i), self%joint(i), rates)
+         self%w1(i) = rates(1)
+         self%w1(n + i) = self%v1(3, i) - below(3)
+         if (column%opens) self%w1(2*n + i) = rates(2)
+         below = self%v1(:, i)
+      end do
+   end subroutine see_end
+
+   !> Forces on the bodies at one state.
+   subroutine find_forces_at(self, state, q, v, load, h, g)
+      class(finite_step), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      real(wp), intent(in), contiguous :: q(:), v(:)
+      !> Loads, and length of the step
+      real(wp), intent(in) :: load(4), h
+      real(wp), intent(out) :: g(:, :)
+
+      call find_damping(self, state)
+      associate (springs => state%springs)
+         self%f = springs%f0 + springs%k*(q - springs%d0) + self%viscous*v
+         self%k = springs%k + self%viscous*(self%gamma/(self%beta*h))
+      end associate
+      if (allocated(state%motion%modal)) self%f = self%f + matmul(state%motion%modal, v)
+      call balance(self, state%motion%column, load, g)
+      if (.not. state%motion%column%mass_damping > 0.0_wp) return
+      g = g - state%motion%column%mass_damping*self%mass*self%v1
+   end subroutine find_forces_at
+
+   !> Loads less forces of the joints on the bodies, as the bodies are seen.
+   subroutine balance(self, column, load, g)
+      class(finite_step), intent(inout) :: self
+      type(column_type), intent(in) :: column
+      real(wp), intent(in) :: load(4)
+      real(wp), intent(out) :: g(:, :)
+      real(wp) :: f(3), ground(3), reach(2)
+      integer :: i, n
+
+      n = column%n
+      g = 0.0_wp
+      ground = 0.0_wp
+      reach = 0.0_wp
+      do i = 1, n
+         f = forces_of(self, column, i)
+         reach = max(reach, [max(abs(f(1)), abs(f(3))), abs(f(2))])
+         if (i > 1) then
+            call joint_forces(self%seen(i - 1), self%seen(i), self%joint(i), f, g(:, i - 1), g(:, i))
+         else
+            call joint_forces(self%seen(0), self%seen(1), self%joint(1), f, ground, g(:, 1))
+         end if
+      end do
+      g = -g
+      g(1, :) = g(1, :) - load(horizontal)*column%mass
+      g(2, :) = g(2, :) - (load(vertical) + column%gravity)*column%mass
+      call load_top(self, column, load, g(:, n))
+      self%scale = max(reach, [1.0_wp, column%upper(n)]*(abs(load(lateral)) + abs(column%axial_load)))
+   end subroutine balance
+
+   !> Shear, moment and axial force of a joint.
+   pure function forces_of(self, column, i) result(f)
+      class(finite_step), intent(in) :: self
+      type(column_type), intent(in) :: column
+      integer, intent(in) :: i
+      real(wp) :: f(3)
+
+      f = [self%f(i), self%f(column%n + i), self%tension(i)]
+      if (column%opens) f(3) = self%f(2*column%n + i)
+   end function forces_of
+
+   !> Add the loads at the top to the forces on the last body. The weight of a mass lumped there is in the
+   !> field of gravity, but belongs to the axial load: it is taken away again.
+   subroutine load_top(self, column, load, g)
+      class(finite_step), intent(inout) :: self
+      type(column_type), intent(in) :: column
+      real(wp), intent(in) :: load(4)
+      real(wp), intent(inout) :: g(3)
+      real(wp) :: force(2), rate(2), press
+
+      associate (n => column%n, top => self%seen(column%n))
+         press = column%axial_load + load(axial)
+         force = [0.0_wp, -(column%weight(n) - column%gravity*column%mass(n))]
+         rate = 0.0_wp
+         if (column%axial_follows) then
+            force = force - press*top%eb
+            rate = rate - press*top%eb_rate
+         else
+            force(2) = force(2) - press
+         end if
+         if (column%force_follows) then
+            force = force + load(lateral)*top%tb
+            rate = rate + load(lateral)*top%tb_rate
+         else
+            force(1) = force(1) + load(lateral)
+         end if
+         g = g + [force, column%upper(n)*sum(top%tb*force)]
+         self%load_rate = [rate, column%upper(n)*(sum(top%tb_rate*force) + sum(top%tb*rate))]
+      end associate
+   end subroutine load_top
+
+   !> The correction that takes the residual away as far as the step is linear.
+   subroutine find_correction(self, state, h, dx, dn, regular)
+      class(finite_step), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      real(wp), intent(in) :: h
+      !> Of the bodies (3, n) and of the axial forces of joints that do not open (n)
+      real(wp), intent(out) :: dx(:, :), dn(:)
+      logical, intent(out) :: regular
+      real(wp) :: tangent(local, local), of_mass, share, half, per_force, f(3), k(3)
+      integer :: i, j, l, n, per, first, beside, at(local)
+
+      associate (column => state%motion%column)
+         n = column%n
+         per = merge(3, 4, column%opens)
+         beside = beside_diagonal(column)
+         if (self%average) then
+            half = 0.5_wp
+            share = 1.0_wp
+            of_mass = 2.0_wp/h**2 + column%mass_damping/h
+         else
+            half = 1.0_wp
+            share = 1.0_wp - self%alpha_f
+            of_mass = (1.0_wp - self%alpha_m)/(self%beta*h**2) &
+                      + share*column%mass_damping*self%gamma/(self%beta*h)
+         end if
+         ! The axial forces in units that make both kinds of equations alike.
+         per_force = of_mass*maxval(column%mass)
+         self%band = 0.0_wp
+         first = 2*beside + 1
+         do i = 1, n
+            f = forces_of(self, column, i)
+            k = [self%k(i), self%k(n + i), 0.0_wp]
+            if (column%opens) k(3) = self%k(2*n + i)
+            call joint_tangent(self%seen(i - 1), self%seen(i), self%joint(i), half, f, k, &
+                               .not. column%opens, tangent)
+            tangent = share*tangent
+            tangent(4, :) = tangent(4, :)*(per_force/share)
+            tangent(:, 4) = tangent(:, 4)*per_force
+            ! Places of the local coordinates; those of the ground, and axial forces of springs, have none.
+            at = 0
+            if (i > 1) at(1:3) = per*(i - 1) + [-2, -1, 0]
+            if (.not. column%opens) at(4) = per*(i - 1) + 1
+            at(5:7) = per*i + [-2, -1, 0]
+            do j = 1, local
+               if (at(j) == 0) cycle
+               do l = 1, local
+                  if (at(l) == 0) cycle
+                  associate (place => self%band(first + at(l) - at(j), at(j)))
+                     place = place + tangent(l, j)
+                  end associate
+               end do
+            end do
+         end do
+         do i = 1, n
+            do j = 1, 3
+               l = per*i - 3 + j
+               self%band(first, l) = self%band(first, l) + of_mass*self%mass(j, i)
+               self%right(l, 1) = self%r(j, i)
+            end do
+            if (.not. column%opens) self%right(per*(i - 1) + 1, 1) = -per_force*self%gap(i)
+         end do
+         do j = 1, 3
+            l = per*n - 3 + j
+            associate (place => self%band(first + l - per*n, per*n))
+               place = place - share*self%load_rate(j)
+            end associate
+         end do
+         call solve_general_band(self%band, beside, beside, self%right, regular)
+         dn = 0.0_wp
+         do i = 1, n
+            dx(:, i) = self%right(per*i - 2:per*i, 1)
+            if (.not. column%opens) dn(i) = per_force*self%right(per*(i - 1) + 1, 1)
+         end do
+      end associate
+   end subroutine find_correction
+
+   !> The end of the step becomes the state, the springs excepted.
+   subroutine finish(self, state, h, load)
+      class(finite_step), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      real(wp), intent(in) :: h, load(4)
+      real(wp) :: mean(4), way(2)
+      integer :: n
+
+      associate (column => state%motion%column)
+         n = column%n
+         mean = 0.5_wp*(state%load + load)
+         state%of_loads = state%of_loads - sum(column%mass*(mean(horizontal)*self%moved(1, :) &
+                                                            + mean(vertical)*self%moved(2, :)))
+         associate (top => self%turned(n))
+            way = self%moved(:2, n) + (column%upper(n)*self%moved(3, n))*top%tb
+            if (column%axial_follows) then
+               state%of_loads = state%of_loads - (column%axial_load + mean(axial))*sum(top%eb*way)
+            else
+               state%of_loads = state%of_loads - mean(axial)*way(2)
+            end if
+            if (column%force_follows) then
+               state%of_loads = state%of_loads + mean(lateral)*sum(top%tb*way)
+            else
+               state%of_loads = state%of_loads + mean(lateral)*way(1)
+            end if
+         end associate
+         if (state%motion%damped) then
+            state%of_damping = state%of_damping + sum(self%viscous*self%change**2)/h &
+                               + column%mass_damping*sum(self%mass*self%moved**2)/h
+            if (allocated(state%motion%modal)) then
+               state%of_damping = state%of_damping &
+                                  + sum(self%change*matmul(state%motion%modal, self%change))/h
+            end if
+         end if
+      end associate
+      call see_end(self, state%motion%column, self%q1)
+      state%q(:) = self%q1
+      state%v(:) = self%w1
+      state%along_joints = 0.5_wp*sum(self%mass*self%v1**2) &
+                           - kinetic_energy(state%motion%column, state%q, state%v)
+      state%time = state%time + h
+      state%load = load
+      self%largest = max(self%largest, self%scale)
+      self%v0 = self%v1
+      self%a0 = self%a1
+      self%g0 = self%g1
+   end subroutine finish
+
+end module rbs_solve_time_finite_step
