@@ -69,7 +69,7 @@ def problem(rng: Generator) -> tuple[rbsdem.Column, dict[str, object]]:
     else:
         loading["force"] = strength * wave
     if kinematics != "small" and rng.random() < 0.2:
-        loading["axial_load"] = strength * rng.uniform(-1, 1, time.size)
+        loading["axial_load"] = column.axial_load + strength * rng.uniform(-1, 1, time.size)
     return column, loading
 
 
