@@ -301,6 +301,12 @@ def test_an_axial_load_in_kn_is_noticed():
             call()
 
 
+@pytest.mark.parametrize("load", [744e6, -744e6, 1e12])
+def test_an_axial_load_that_no_section_carries_is_refused_as_such(load):
+    with pytest.raises(InputError, match=r"axial load = .* kN is not between -.* and .* kN"):
+        SECTION.column(1.6, axial_load=load)
+
+
 def test_a_hinge_longer_than_the_column_is_refused():
     with pytest.raises(InputError, match=r"hinge_length = 1.7 m is longer than the column"):
         SECTION.springs(1.6, LOAD, hinge_length=1.7)

@@ -99,17 +99,22 @@ def hinge_joint(
         raise InputError("the layered model needs a section with longitudinal bars; give bars")
     depth, cylinder = section.depth, section.concrete.fc
     strips = section.cut(_STRIPS, restrained=restrained, round_core=round_core)
-    ratio = axial_load / (cylinder * strips.area)
-
-    def by_axial(value: float, exponent: float) -> float:
-        return value * math.exp(exponent * (ratio - 0.2))
-
     modulus = section.concrete_law["ec"]
     strength = hinge.concrete_strength * cylinder * (cylinder / 40e6) ** -hinge.concrete_size
     peak = 0.002 * hinge.peak_strain
     relative = hinge.confinement * strips.confining_stress / cylinder
     gain = -1.254 + 2.254 * math.sqrt(1 + 7.94 * relative) - 2 * relative
     core = gain * strength
+    # Beyond what the section carries the exponentials below have no meaning.
+    bars = sum(hinge.steel_strength * steel.fy * area for _, area, steel in section.bars)
+    of_core = core * sum(strip.area for strip in strips.core)
+    of_cover = strength * sum(strip.area for strip in strips.cover)
+    _check(axial_load, bars, bars + of_core + of_cover)
+    ratio = axial_load / (cylinder * strips.area)
+
+    def by_axial(value: float, exponent: float) -> float:
+        return value * math.exp(exponent * (ratio - 0.2))
+
     core_peak = peak * (1 + 5 * (gain - 1))
     tie_yield = section.ties.steel.fy if section.ties else 0.0
     core_ultimate = 0.004 + 0.14 * strips.tie_ratio * tie_yield / core
@@ -167,7 +172,6 @@ def hinge_joint(
         )
 
     layers += [(y, bar(area, steel)) for y, area, steel in section.bars]
-    _check(axial_load, layers)
     uncracked = modulus * strips.inertia
     uncracked += sum(steel.es * (area * y**2) for y, area, steel in section.bars)
     return HingeJoint(
@@ -201,10 +205,8 @@ def _least_hardening(section: Section, hinge: HingeParameters) -> float:
     return _LEAST_HARDENING * 0.08 / max(rises) if max(rises) > 0 else math.inf
 
 
-def _check(axial_load: float, layers: list[tuple[float, ConcreteSpring | SteelSpring]]) -> None:
-    """Refuse what only hardening bars would carry."""
-    bars = sum(spring.f_y for _, spring in layers if isinstance(spring, SteelSpring))
-    whole = bars + sum(spring.f_peak for _, spring in layers if isinstance(spring, ConcreteSpring))
+def _check(axial_load: float, bars: float, whole: float) -> None:
+    """Refuse what only hardening bars would carry, beyond the bars alone and the whole section."""
     if not -bars < axial_load < whole:
         raise InputError(
             f"axial load = {axial_load / 1e3:g} kN is not between {-bars / 1e3:.0f} and "
