@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
 import shutil
@@ -87,15 +88,32 @@ def test_example_draws(folder, tmp_path):
             assert figures
 
 
-def test_python_blocks_of_the_readme_run(tmp_path):
-    blocks = readme_blocks("python")
-    assert blocks
-    assert any(5 <= len(block.strip().splitlines()) <= 15 for block in blocks)
-    for i, block in enumerate(blocks):
+def test_python_blocks_of_the_readme_print_what_stands_below_them(tmp_path):
+    text = (REPOSITORY / "README.md").read_text("utf-8")
+    blocks = [*BLOCK.findall(text), ("", "")]
+    programs = [pair for pair in itertools.pairwise(blocks) if pair[0][0] == "python"]
+    assert any(5 <= len(block.strip().splitlines()) <= 15 for (_, block), _ in programs)
+    for (_, block), (language, printed) in programs:
         assert "import rbsdem" in block
-        path = tmp_path / f"block{i}.py"
+        assert language == "text", f"no output below\n{block}"
+        path = tmp_path / "block.py"
         path.write_text(block, "utf-8")
-        assert run([sys.executable, "-W", "error", path], tmp_path).strip()
+        assert run([sys.executable, "-W", "error", path], tmp_path) == printed
+
+
+def test_numbers_of_the_readme_stand_in_the_pages_it_names():
+    """Accuracy and speed are measured by scripts, whose tables are on those pages."""
+    text = (REPOSITORY / "README.md").read_text("utf-8")
+    section = text.partition("## How good, how fast")[2].partition("\n## ")[0]
+    points = section.split("\n- ")[1:]
+    counted = 0
+    for point in points:
+        page = (REPOSITORY / re.findall(r"\((docs/\w+\.md)", point)[-1]).read_text("utf-8")
+        numbers = re.findall(r"(?<![\w.])\d+(?:\.\d+)?(?:e-\d)?(?![\w.])", point)
+        missing = [number for number in numbers if number not in page]
+        assert not missing, point
+        counted += len(numbers)
+    assert counted >= 8
 
 
 def test_namelist_blocks_of_the_readme_run(executable, tmp_path):
