@@ -325,3 +325,33 @@ def test_the_case_file_says_the_same(tmp_path) -> None:
     np.testing.assert_array_equal(again.force, here.force)
     path.write_text(case.to_namelist())
     assert rbsdem.read_case(path) == case
+
+
+def test_high_axial_load_ends_the_path() -> None:
+    """A column at 0.9 of f'c A loses its axial load; one at 0.1 does not."""
+    bars = rbsdem.Layout(12, 0.016, rbsdem.Steel(446e6, 702e6))
+    ties = rbsdem.Ties(0.007, 0.085, rbsdem.Steel(364e6), legs=4)
+    section = rbsdem.RectangularSection(
+        0.4, 0.4, rbsdem.Concrete(46.5e6), layout=bars, ties=ties, cover=0.013
+    )
+    path = 1.6 * rbsdem.protocol([0.0025, 0.005, 0.01, 0.02], cycles=2)
+    ends = {}
+    for share in (0.1, 0.9):
+        column = section.column(1.6, axial_load=share * 46.5e6 * 0.16)
+        ends[share] = rbsdem.cyclic(column, displacement=path)
+    assert ends[0.1].summary["status"] == "completed"
+    lost = ends[0.9]
+    assert lost.summary["status"] == "axial_failure"
+    assert lost.time.size < path.size
+    assert np.abs(lost.displacement[-1]) < 0.01 * 1.6
+
+
+def test_peak_force_is_that_of_the_loading_side() -> None:
+    """Second-order moments drive the column on: the force that holds it back is no strength."""
+    column = rbsdem.Column(
+        2.0, 1.0, Elastic(1e12), Bilinear(1e8, 1e-3, 0.0), axial_load=2e6, kinematics="pdelta"
+    )
+    result = rbsdem.cyclic(column, displacement=[0.002, 0.19])
+    # M_y = 1e5 N m = F h + P d
+    assert result.force[-1] == pytest.approx((1e5 - 2e6 * 0.19) / 2)
+    assert result.summary["peak_force"] == pytest.approx((1e5 - 2e6 * 0.002) / 2)

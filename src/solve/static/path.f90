@@ -175,7 +175,9 @@ contains
          ! Where a joint has lost its axial load, that is what ends the path.
          if (summary%lost_joint > 0 .and. allocated(failure)) deallocate (failure)
          if (allocated(failure)) failure%message = 'row '//to_text(i)//': '//failure%message
-         call summary%see_peak(self%displacement, self%force)
+         ! A force that pulls the column back, as where second-order moments drive it on, is no strength.
+         call summary%see_peak(self%displacement, merge(self%force, 0.0_wp, &
+                                                        self%force*self%displacement >= 0.0_wp))
          if (may_collapse) summary%collapsed = abs(self%displacement)/height >= collapse_drift
          if (mod(i - 1, n) == 0 .or. i == size(target) .or. allocated(failure) .or. &
              summary%collapsed .or. summary%lost_joint > 0) then
