@@ -89,9 +89,9 @@ class Result:
         "method" that was used and, if the program chose it, the "reason"; "status": "completed",
         "collapsed" (`collapse_drift` was reached) or "failed" (the result of a `SolveError`).
         Values: steps, rows, events (how often a spring left its line), time_step and stable_step
-        [s], peak_displacement [m], peak_force [N] (in a static analysis where it has the sign of the
-        displacement), displacement_at_peak_force [m], peak_base_shear
-        [N] (in time of the kept rows), energies at the end [J], energy_residual [J] and
+        [s], peak_displacement [m], peak_force [N] (in a static analysis where it has the sign of
+        the displacement), displacement_at_peak_force [m], peak_base_shear [N] (in time of the kept
+        rows), energies at the end [J], energy_residual [J] and
         relative_energy_residual (largest of the kept rows),
         peak_rotation (largest absolute rotation of a body in the kept rows [rad]), cut_steps
         (steps cut at an event, for accuracy, or because they did not converge).
