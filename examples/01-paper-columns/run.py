@@ -199,8 +199,8 @@ def print_histories(console: Console, measured: dict[str, Drive]) -> None:
         console.print(line, markup=False, soft_wrap=True)
     if not all(drive.full for drive in measured.values()):
         console.print(
-            "  With reversal points, the rms error below is taken at these points alone; the\n"
-            "  other values of the test are those of its full history (data/measured_loops.csv).\n"
+            "  With reversal points, the rms error below is taken at these points alone. The\n"
+            "  other values of the test are those of its history (data/measured_loops.csv).\n"
             f"  To use the full histories: --peer DIR or {FOLDER_VARIABLE}; data/README.md."
         )
     console.print()
