@@ -24,8 +24,8 @@ module rbs_output_summary
       !> Time step and stability limit of the scheme [s]; 0 in a static analysis
       real(wp) :: time_step = 0.0_wp, stable_step = 0.0_wp
       !> Largest displacement and force in size, with sign [m, N], and the displacement where the force
-      !> is largest [m]; over all points (static, the force where it has the sign of the displacement) or steps
-      !> (dynamic)
+      !> is largest [m]; over all points (static, the force where it has the sign of the displacement) or
+      !> steps (dynamic)
       real(wp) :: peak_displacement = 0.0_wp, peak_force = 0.0_wp, displacement_at_peak = 0.0_wp
       !> Largest shear force at the base in size, with sign [N]; over all points (static) or rows (dynamic)
       real(wp) :: peak_base_shear = 0.0_wp

@@ -11,6 +11,7 @@ module rbs_solve_time_implicit
    use rbs_solve_time_halving, only: halving_stepper
    use rbs_solve_time_implicit_finite, only: finite_stepper
    use rbs_solve_time_implicit_balance, only: step_balance
+   use rbs_solve_time_implicit_one_body, only: one_body_step
    use rbs_solve_time_implicit_tangent, only: step_tangent
    use rbs_solve_time_loads, only: lateral, horizontal, vertical, axial
    use rbs_solve_time_state, only: state_type, in_bounds, out_of_bounds
@@ -35,6 +36,7 @@ module rbs_solve_time_implicit
       logical, private :: average = .false.
       type(step_balance), private :: step
       type(step_tangent), private :: tangent
+      type(one_body_step), private :: one_body
       !> Correction of the bodies and of the joints, and mean velocities of the joints (unknowns)
       real(wp), allocatable, private :: dx(:), dq(:), mean(:)
    contains
@@ -106,6 +108,11 @@ contains
       logical, intent(out) :: converged
       integer, intent(out) :: busiest
 
+      if (state%motion%plain .and. state%motion%single) then
+         busiest = 0
+         call self%one_body%try_linear_step(self%step, self%tangent, state, h, load, self%wanted, converged)
+         if (converged) return
+      end if
       call solve_step(self, state, h, load, converged, busiest)
       if (converged) call commit(self, state, h, load)
    end subroutine take_step

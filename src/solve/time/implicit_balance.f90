@@ -35,7 +35,8 @@ module rbs_solve_time_implicit_balance
       !> Largest force, moment and lift of the present trial and of all steps so far. Residuals are measured
       !> by them: where a motion passes through zero, or springs and damping cancel each other, all forces of
       !> the moment are round-off.
-      real(wp), private :: scale(3) = 0.0_wp, largest(3) = 0.0_wp
+      real(wp), private :: scale(3) = 0.0_wp
+      real(wp) :: largest(3) = 0.0_wp
    contains
       procedure :: start
       procedure :: find_residual
