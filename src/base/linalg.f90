@@ -271,7 +271,7 @@ contains
    end subroutine solve_tridiagonal
 
    !> Solve a general band system by elimination with pivots.
-   subroutine solve_general_band(band, below, above, b, regular)
+   subroutine solve_general_band(band, below, above, b, regular, work)
       !> Band (2 below + above + 1, n): band(below + above + 1 + i - j, j) = a(i, j); overwritten
       real(wp), intent(inout), contiguous :: band(:, :)
       !> Number of diagonals below and above the main one
@@ -280,11 +280,17 @@ contains
       real(wp), intent(inout), contiguous :: b(:, :)
       !> Whether the matrix has an inverse
       logical, intent(out) :: regular
+      !> Work array (n) of a caller that solves again and again
+      integer, intent(inout), contiguous, optional :: work(:)
       integer, allocatable :: pivot(:)
       integer :: info
 
-      allocate (pivot(size(b, 1)))
-      call dgbsv(size(b, 1), below, above, size(b, 2), band, size(band, 1), pivot, b, size(b, 1), info)
+      if (present(work)) then
+         call dgbsv(size(b, 1), below, above, size(b, 2), band, size(band, 1), work, b, size(b, 1), info)
+      else
+         allocate (pivot(size(b, 1)))
+         call dgbsv(size(b, 1), below, above, size(b, 2), band, size(band, 1), pivot, b, size(b, 1), info)
+      end if
       regular = info == 0
    end subroutine solve_general_band
 

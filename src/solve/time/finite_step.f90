@@ -53,6 +53,7 @@ module rbs_solve_time_finite_step
       !> Largest force, moment of the present trial and of all steps so far
       real(wp), private :: scale(2) = 0.0_wp, largest(2) = 0.0_wp
       real(wp), allocatable, private :: band(:, :), right(:, :)
+      integer, allocatable, private :: pivot(:)
       type(motion_result), private :: now
       type(finite_work), private :: work
    contains
@@ -82,6 +83,7 @@ contains
       size_of_band = merge(3, 4, state%motion%column%opens)*n
       beside = beside_diagonal(state%motion%column)
       allocate (self%band(3*beside + 1, size_of_band), self%right(size_of_band, 1), source=0.0_wp)
+      allocate (self%pivot(size_of_band), source=0)
       associate (column => state%motion%column)
          self%mass(1, :) = column%mass
          self%mass(2, :) = column%mass
@@ -452,7 +454,7 @@ contains
                place = place - share*self%load_rate(j)
             end associate
          end do
-         call solve_general_band(self%band, beside, beside, self%right, regular)
+         call solve_general_band(self%band, beside, beside, self%right, regular, self%pivot)
          dn = 0.0_wp
          do i = 1, n
             dx(:, i) = self%right(per*i - 2:per*i, 1)
