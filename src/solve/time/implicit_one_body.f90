@@ -8,7 +8,7 @@ module rbs_solve_time_implicit_one_body
    use rbs_solve_time_implicit_tangent, only: step_tangent
    use rbs_solve_time_loads, only: lateral, horizontal
    use rbs_solve_time_motion, only: motion_type
-   use rbs_solve_time_state, only: state_type
+   use rbs_solve_time_state, only: state_type, in_bounds
    implicit none
    private
 
@@ -61,6 +61,7 @@ contains
          scale(2) = max(step%largest(2), abs(moment), abs(load(lateral))*motion%column%upper(1), &
                         abs(step%mass(2)*a1(2)))
          if (.not. (abs(r(1)) <= wanted*scale(1) .and. abs(r(2)) <= wanted*scale(2))) return
+         if (.not. in_bounds(2, q)) return
          taken = .true.
          if (motion%acts(lateral)) then
             state%of_loads = state%of_loads + 0.5_wp*(state%load(lateral) + load(lateral)) &
