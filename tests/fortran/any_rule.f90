@@ -348,6 +348,8 @@ contains
       do history = 1, histories
          if (mod(history - 1, histories_each) == 0) then
             call random_spring(random, rule, spec)
+            ! An axial load does work too, which is not that of the spring.
+            spec%axial_load = 0.0_wp
             call virgin%create([spec])
             k = spec%initial_stiffness()
             yield = yield_of(spec)

@@ -27,6 +27,7 @@ program study_rules
       write (output_unit, '(3a, 3(es8.1, a), f6.2, a, 2(es8.1, a))') '| `', trim(rule_names(i)), '` | ', &
          (changed%largest(j), ' | ', j=1, 3), 100*maxval(changed%share), ' % | ', given%virgin, ' | ', &
          given%closed, ' |'
+      flush (output_unit)
       if (only_rule == '') cycle
       call show(changed%spec)
       print '(a, i0, a, es12.4)', 'at ', changed%at, ' length ', changed%length
@@ -40,14 +41,22 @@ program study_rules
 contains
 
    !> Print the parameters of a spring.
-   subroutine show(spec)
+   recursive subroutine show(spec)
       type(spring_record), intent(in) :: spec
       type(key_type), allocatable :: keys(:)
+      type(spring_record) :: layer
       integer :: k
 
       call keys_of(spec%rule, keys)
       do k = 1, size(keys)
          if (is_given(spec%value(k))) print '(2a, es24.16)', trim(keys(k)%name), ' = ', spec%value(k)
+      end do
+      if (.not. allocated(spec%y)) return
+      print '(a, es24.16)', 'axial load', spec%axial_load
+      do k = 1, size(spec%y)
+         layer = spec%layer(k)
+         print '(a, i0, a, es24.16, 2a)', 'layer ', k, ' at ', spec%y(k), ': ', trim(layer%rule)
+         call show(layer)
       end do
    end subroutine show
 
