@@ -25,6 +25,8 @@ module rbs_hysteresis_layers
    integer, parameter :: most_lines = 8
    !> Below this share of the initial axial stiffness the layers count as having none.
    real(wp), parameter :: no_stiffness = 1.0e-12_wp
+   !> Below this share, what is missing from equilibrium is not put right: its round-off would move the joint.
+   real(wp), parameter :: firm = 1.0e-6_wp
    !> A layer this close to an end, relative to the terms of its deformation, is on it; a rate below this
    !> share of its own terms is zero.
    real(wp), parameter :: on_the_end = 1.0e-13_wp, no_rate = 1.0e-13_wp
@@ -461,7 +463,7 @@ contains
             missing = missing + (line%f0 + line%k*((self%opening + self%y(i)*rotation) - line%d0))
          end associate
       end do
-      if (self%a > no_stiffness*self%stiffness) self%opening = self%opening - missing/self%a
+      if (self%a > firm*self%stiffness) self%opening = self%opening - missing/self%a
       self%d = self%opening + self%y*rotation
       self%largest = max(self%largest, abs(self%opening) + self%reach*abs(rotation))
       if (first > 0) call put_on_end(self%line(first), self%d(first))
