@@ -242,7 +242,9 @@ contains
       !> +1: it opens, -1: it closes
       integer, intent(in) :: way
 
-      if (self%marked .and. .not. self%is_kept(i)) call keep(self, i)
+      if (self%marked) then
+         if (.not. self%is_kept(i)) call keep(self, i)
+      end if
       call set_rear_end(self%line(i), self%d(i))
       call self%slot(i)%rule%next(self%line(i), way)
    end subroutine leave
@@ -409,16 +411,16 @@ contains
    pure subroutine find_ends(self, ends)
       class(layer_bank), intent(in) :: self
       type(path_ends), intent(out) :: ends
-      real(wp) :: v, size_v, ahead, back, farthest, least_rate
+      real(wp) :: v, size_v, ahead, back, nearest(2), least_rate
       integer :: i
 
+      ! Not quotients: those would overflow for lines without an end. A distance beyond this counts as none.
+      nearest = 1.0e100_wp
       least_rate = no_rate*(abs(self%open) + self%reach*abs(self%turn))
       do i = 1, self%count
          v = self%open + self%y(i)*self%turn
          size_v = abs(v)
          if (size_v <= least_rate) cycle
-         ! A distance beyond this has no quotient.
-         farthest = 1.0e100_wp*size_v
          associate (line => self%line(i))
             ends%stiffness = ends%stiffness + line%k*v**2
             if (v > 0.0_wp) then
@@ -428,18 +430,20 @@ contains
                ahead = self%d(i) - line%lo
                back = line%hi - self%d(i)
             end if
-            if (ahead < min(ends%ahead*size_v, farthest)) then
-               ends%ahead = max(ahead, 0.0_wp)/size_v
+            if (ahead < nearest(1)*size_v) then
+               nearest(1) = max(ahead, 0.0_wp)/size_v
                ends%first_ahead = i
             end if
             if (line%one_way /= 0) then
                ends%one_way = .true.
-            else if (back < min(ends%behind*size_v, farthest)) then
-               ends%behind = max(back, 0.0_wp)/size_v
+            else if (back < nearest(2)*size_v) then
+               nearest(2) = max(back, 0.0_wp)/size_v
                ends%first_behind = i
             end if
          end associate
       end do
+      if (ends%first_ahead > 0) ends%ahead = nearest(1)
+      if (ends%first_behind > 0) ends%behind = nearest(2)
       if (ends%one_way) ends%behind = 0.0_wp
    end subroutine find_ends
 

@@ -320,7 +320,7 @@ contains
             plan%steps = steps
             plan%finish = steps*plan%dt
             if (allocated(kept)) deallocate (kept)
-            allocate (kept(row_size(column%unknowns), 2))
+            allocate (kept(row_size(column%unknowns, column%damped), 2))
             recorder%rows => kept
             recorder%count = 0
             stepper = rk4_stepper()
