@@ -37,13 +37,15 @@ install_rbsdem --editable .
 (cd / && rbsdem --version && python -c 'import rbsdem; rbsdem.paper_columns()')
 install_rbsdem .
 
-# Tests that only read Python, or that call what other tests call too, see nothing new there.
+# The tests in Python that bring numbers of all kinds to Fortran; the others see nothing new there.
 say "what calls Fortran once more, with bounds checks and floating-point traps"
-apart=()
-for name in examples imports layers package metrics compare peer_drawing peer_predict peer_specimens trade; do
-    apart+=(--ignore "tests/python/test_$name.py")
+crossing=(tests/regression)
+for name in fuzz extremes_columns extremes_input extremes_rotations extremes_scales extremes_springs \
+    extremes_steps extremes_time static dynamics springs springs_capped layered layered_input interaction \
+    physics column doors base_forces section; do
+    crossing+=("tests/python/test_$name.py")
 done
 python -m pip install -q --disable-pip-version-check --no-build-isolation --no-deps --upgrade \
     --target build/checked-site -Cbuild-dir=build/checked -Csetup-args=-Dchecked=true .
 meson test -C build/checked --quiet --print-errorlogs
-PYTHONPATH="$root/build/checked-site" python -m pytest -q -n 2 --dist worksteal "${apart[@]}"
+PYTHONPATH="$root/build/checked-site" python -m pytest -q -n 2 --dist worksteal "${crossing[@]}"
