@@ -183,7 +183,7 @@ MUTANTS = (
     ),
     Mutant(
         "springs-restored-work",
-        "src/hysteresis/springs.f90",
+        "src/hysteresis/spring_lines.f90",
         "self%work = journal%work",
         "self%work = max(self%work, journal%work)",
         "restore",

@@ -1,0 +1,322 @@
+!> Springs one at a time: rules off the hot path, their present lines as arrays, and a mark to return to.
+module rbs_hysteresis_spring_lines
+   use, intrinsic :: iso_fortran_env, only: int64
+   use rbs_base_kinds, only: wp
+   use rbs_base_constants, only: unbounded
+   use rbs_hysteresis_journal, only: journal_type, rule_slot
+   use rbs_hysteresis_segment, only: segment
+   use rbs_hysteresis_spring_record, only: spring_record
+   implicit none
+   private
+
+   public :: spring_lines
+
+   !> Most lines within one move. More mean that a rule goes round in lines without length, which is an error
+   !> of the rule. The longest correct move closes all open inner loops that a rule remembers.
+   integer, parameter :: most_lines = 10000
+
+   !> `count` springs in their present state. Assignment copies everything, memory of the rules too.
+   type :: spring_lines
+      !> Number of springs
+      integer :: count = 0
+      !> Present deformation (count) [m or rad]
+      real(wp), allocatable :: d(:)
+      !> Present line: anchor and slope (count)
+      real(wp), allocatable :: d0(:), f0(:), k(:)
+      !> First and last deformation that belong to the present line (count). Where the end itself does not
+      !> belong to it, they are the numbers next to it.
+      real(wp), allocatable :: first(:), last(:)
+      !> Whether the ends themselves belong to the line (count), see `segment`
+      logical, allocatable :: lo_closed(:), hi_closed(:)
+      !> One-way lines (count), see `segment`
+      integer, allocatable :: one_way(:)
+      !> Work done on each spring along its path, exact (count) [J]
+      real(wp), allocatable :: work(:)
+      !> Number of lines left so far
+      integer :: events = 0
+      !> Changes with every new line, and in `restore`: factors computed for the lines of one version are
+      !> valid while the version is the same
+      integer :: version = 0
+      !> Whether a rule has exceeded `most_lines`; the state must not be used then
+      logical :: stuck = .false.
+      !> Rules (count), and what `mark` has saved
+      type(rule_slot), allocatable :: slot(:)
+      type(journal_type) :: journal
+   contains
+      procedure :: create
+      procedure :: force
+      procedure :: end_toward
+      procedure :: move
+      procedure :: walk
+      procedure :: leave
+      procedure :: arrive
+      procedure :: load_to
+      procedure :: line_of
+      procedure :: mark
+      procedure :: restore
+      procedure :: forget_mark
+   end type spring_lines
+
+contains
+
+   !> Virgin springs.
+   subroutine create(self, specs)
+      class(spring_lines), intent(out) :: self
+      !> Validated parameters of each spring
+      type(spring_record), intent(in) :: specs(:)
+      type(segment) :: line
+      integer :: i, n
+
+      n = size(specs)
+      self%count = n
+      allocate (self%slot(n), self%one_way(n), self%lo_closed(n), self%hi_closed(n))
+      allocate (self%d(n), self%work(n), source=0.0_wp)
+      allocate (self%d0(n), self%f0(n), self%k(n), self%first(n), self%last(n))
+      do i = 1, n
+         call specs(i)%make(self%slot(i)%rule)
+         call self%slot(i)%rule%start(line)
+         call put_line(self, i, line)
+      end do
+   end subroutine create
+
+   !> Force of one spring at its present deformation [N or N m].
+   pure real(wp) function force(self, i)
+      class(spring_lines), intent(in) :: self
+      integer, intent(in) :: i
+
+      force = self%f0(i) + self%k(i)*(self%d(i) - self%d0(i))
+   end function force
+
+   !> The end of the present line in a direction, +1 or -1 [m or rad]. The rear end of a one-way line is the
+   !> present deformation.
+   pure real(wp) function end_toward(self, i, direction)
+      class(spring_lines), intent(in) :: self
+      integer, intent(in) :: i, direction
+
+      if (self%one_way(i) == -direction) then
+         end_toward = self%d(i)
+      else if (direction > 0) then
+         end_toward = upper_end(self%last(i), self%hi_closed(i))
+      else
+         end_toward = lower_end(self%first(i), self%lo_closed(i))
+      end if
+   end function end_toward
+
+   !> The upper end of a line from the last deformation that belongs to it.
+   elemental real(wp) function upper_end(last, closed)
+      real(wp), intent(in) :: last
+      logical, intent(in) :: closed
+
+      upper_end = last
+      if (.not. closed .and. last < unbounded) upper_end = next_above(last)
+   end function upper_end
+
+   !> The lower end of a line from the first deformation that belongs to it.
+   elemental real(wp) function lower_end(first, closed)
+      real(wp), intent(in) :: first
+      logical, intent(in) :: closed
+
+      lower_end = first
+      if (.not. closed .and. first > -unbounded) lower_end = -next_above(-first)
+   end function lower_end
+
+   !> Move one spring monotonically to a new deformation, over any number of lines.
+   subroutine move(self, i, d)
+      class(spring_lines), intent(inout) :: self
+      integer, intent(in) :: i
+      !> New deformation [m or rad]
+      real(wp), intent(in) :: d
+      integer :: lines
+
+      do lines = 1, most_lines
+         if (d > self%last(i)) then
+            call change_line(self, i, 1)
+         else if (d < self%first(i)) then
+            call change_line(self, i, -1)
+         else
+            call walk(self, i, d)
+            return
+         end if
+      end do
+      self%stuck = .true.
+   end subroutine move
+
+   !> Move along the present line to d; the rear end of a one-way line follows.
+   pure subroutine walk(self, i, d)
+      class(spring_lines), intent(inout) :: self
+      integer, intent(in) :: i
+      !> New deformation on the present line [m or rad]
+      real(wp), intent(in) :: d
+      real(wp) :: f_mean
+
+      f_mean = self%f0(i) + self%k(i)*(0.5_wp*(d + self%d(i)) - self%d0(i))
+      self%work(i) = self%work(i) + f_mean*(d - self%d(i))
+      self%d(i) = d
+      if (self%one_way(i) > 0) then
+         self%first(i) = d
+      else if (self%one_way(i) < 0) then
+         self%last(i) = d
+      end if
+   end subroutine walk
+
+   !> Move to the end of the present line and get the line that follows from the rule. When the motion turns
+   !> back, a one-way line ends at the present deformation.
+   subroutine change_line(self, i, direction)
+      class(spring_lines), intent(inout) :: self
+      integer, intent(in) :: i, direction
+      type(segment) :: line
+
+      line = self%line_of(i)
+      if (self%journal%open) call self%journal%keep(i, line, self%slot(i))
+      if (self%one_way(i) /= -direction) call walk(self, i, merge(line%hi, line%lo, direction > 0))
+      call self%slot(i)%rule%next(line, direction)
+      self%events = self%events + 1
+      self%version = modulo(self%version + 1, huge(1))
+      call put_line(self, i, line)
+   end subroutine change_line
+
+   !> A spring is at an end of its line and is about to move beyond it.
+   subroutine leave(self, i, direction)
+      class(spring_lines), intent(inout) :: self
+      integer, intent(in) :: i
+      !> +1: by the upper end, -1: by the lower end
+      integer, intent(in) :: direction
+
+      call change_line(self, i, direction)
+      ! A new one-way line starts at the present deformation, to the last bit.
+      if (self%one_way(i) > 0) self%first(i) = self%d(i)
+      if (self%one_way(i) < 0) self%last(i) = self%d(i)
+   end subroutine leave
+
+   !> Put a spring exactly on the end of its line in a direction; from an open end it goes to the next line.
+   subroutine arrive(self, i, direction)
+      class(spring_lines), intent(inout) :: self
+      integer, intent(in) :: i
+      integer, intent(in) :: direction
+      logical :: closed
+
+      closed = merge(self%hi_closed(i), self%lo_closed(i), direction > 0)
+      call walk(self, i, self%end_toward(i, direction))
+      if (.not. closed) call self%leave(i, direction)
+   end subroutine arrive
+
+   !> Follow the lines of a spring until it has a given force.
+   subroutine load_to(self, i, f, found)
+      class(spring_lines), intent(inout) :: self
+      integer, intent(in) :: i
+      !> Force [N or N m]
+      real(wp), intent(in) :: f
+      !> Whether the spring can reach it
+      logical, intent(out) :: found
+      real(wp) :: way, far
+      integer :: lines, direction
+      logical :: is_there
+
+      found = .true.
+      do lines = 1, most_lines
+         way = f - self%force(i)
+         if (.not. abs(way) > 0.0_wp) return
+         direction = merge(1, -1, way > 0.0_wp)
+         if (self%one_way(i) /= -direction) then
+            associate (d0 => self%d0(i), f0 => self%f0(i), k => self%k(i))
+               far = self%end_toward(i, direction)
+               is_there = k > 0.0_wp .and. abs(far) >= unbounded
+               if (abs(far) < unbounded) is_there = direction*(f0 + k*(far - d0) - f) >= 0.0_wp
+               if (is_there) then
+                  call walk(self, i, d0 + (f - f0)/k)
+                  return
+               end if
+            end associate
+            if (abs(far) >= unbounded) exit
+         end if
+         call self%leave(i, direction)
+      end do
+      found = .false.
+   end subroutine load_to
+
+   !> Mark the present state, to which `restore` returns. Only springs that change their lines are copied.
+   subroutine mark(self)
+      class(spring_lines), intent(inout) :: self
+
+      call self%journal%start(self%d, self%work, self%events)
+   end subroutine mark
+
+   !> Drop the mark.
+   subroutine forget_mark(self)
+      class(spring_lines), intent(inout) :: self
+
+      call self%journal%forget()
+   end subroutine forget_mark
+
+   !> Return to the marked state, to the last bit. The mark stays.
+   subroutine restore(self)
+      class(spring_lines), intent(inout) :: self
+      integer :: i, j
+
+      associate (journal => self%journal)
+         self%d = journal%d
+         self%work = journal%work
+         self%events = journal%events
+         self%stuck = .false.
+         if (journal%changed > 0) self%version = modulo(self%version + 1, huge(1))
+         do j = 1, journal%changed
+            i = journal%spring(j)
+            call journal%give_back(i, self%slot(i))
+            call put_line(self, i, journal%line(j))
+         end do
+         journal%changed = 0
+         where (self%one_way > 0) self%first = self%d
+         where (self%one_way < 0) self%last = self%d
+      end associate
+   end subroutine restore
+
+   !> The present line of a spring, in the form that its rule takes.
+   pure type(segment) function line_of(self, i) result(line)
+      class(spring_lines), intent(in) :: self
+      integer, intent(in) :: i
+
+      line%d0 = self%d0(i)
+      line%f0 = self%f0(i)
+      line%k = self%k(i)
+      line%lo = lower_end(self%first(i), self%lo_closed(i))
+      line%hi = upper_end(self%last(i), self%hi_closed(i))
+      if (self%one_way(i) > 0) line%lo = self%d(i)
+      if (self%one_way(i) < 0) line%hi = self%d(i)
+      line%lo_closed = self%lo_closed(i)
+      line%hi_closed = self%hi_closed(i)
+      line%one_way = self%one_way(i)
+   end function line_of
+
+   !> Store the line of a spring. At an open end the last deformation is the number next to the end.
+   pure subroutine put_line(self, i, line)
+      class(spring_lines), intent(inout) :: self
+      integer, intent(in) :: i
+      type(segment), intent(in) :: line
+
+      self%d0(i) = line%d0
+      self%f0(i) = line%f0
+      self%k(i) = line%k
+      self%lo_closed(i) = line%lo_closed
+      self%hi_closed(i) = line%hi_closed
+      self%one_way(i) = line%one_way
+      self%first(i) = line%lo
+      self%last(i) = line%hi
+      if (.not. line%lo_closed .and. line%lo > -unbounded) self%first(i) = next_above(line%lo)
+      if (.not. line%hi_closed .and. line%hi < unbounded) self%last(i) = -next_above(-line%hi)
+   end subroutine put_line
+
+   !> The next larger number, as `nearest(x, 1.0)` for finite numbers. The latter is a call of the C library,
+   !> and an event needs up to five of them.
+   elemental real(wp) function next_above(x)
+      real(wp), intent(in) :: x
+
+      if (x > 0.0_wp) then
+         next_above = transfer(transfer(x, 0_int64) + 1_int64, x)
+      else if (x < 0.0_wp) then
+         next_above = transfer(transfer(x, 0_int64) - 1_int64, x)
+      else
+         next_above = transfer(1_int64, x)
+      end if
+   end function next_above
+
+end module rbs_hysteresis_spring_lines

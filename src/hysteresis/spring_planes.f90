@@ -1,0 +1,216 @@
+!> Layered joints among the springs whose axial loads vary: they follow straight paths in rotation and axial
+!> load, and are on planes where other springs are on lines.
+module rbs_hysteresis_spring_planes
+   use rbs_base_kinds, only: wp
+   use rbs_base_constants, only: unbounded
+   use rbs_hysteresis_layered, only: layered_rule
+   use rbs_hysteresis_spring_lines, only: spring_lines
+   use rbs_hysteresis_spring_record, only: spring_record
+   implicit none
+   private
+
+   public :: spring_planes
+
+   type, extends(spring_lines) :: spring_planes
+      !> Layered joints among the springs, and whether their axial loads vary along the path
+      integer, allocatable :: layered(:)
+      logical :: pressed = .false.
+      !> Where they vary (count): axial load that the joint is to reach, axial load of the present plane
+      !> [N], and its centre of stiffness e = -dM/dN [m]
+      real(wp), allocatable :: press_to(:), press_at(:), centre(:)
+   contains
+      procedure :: create
+      procedure :: restore
+      procedure :: press_joints
+      procedure :: vary_axial_loads
+      procedure :: lost_joint
+      procedure :: fill_openings
+      procedure :: choose_lines
+      procedure :: way_on_plane
+      procedure :: put_on_plane
+      procedure :: turns_on_plane
+   end type spring_planes
+
+contains
+
+   !> Virgin springs; the axial loads of layered joints do not vary.
+   subroutine create(self, specs)
+      class(spring_planes), intent(out) :: self
+      !> Validated parameters of each spring
+      type(spring_record), intent(in) :: specs(:)
+      integer :: i
+
+      call self%spring_lines%create(specs)
+      self%layered = pack([(i, i=1, self%count)], specs%rule == 'layered')
+   end subroutine create
+
+   !> The axial loads of the layered joints vary from now on: these joints follow straight paths in rotation
+   !> and axial load, towards `press_to`, and have no line of their own that the rotation alone could leave.
+   subroutine vary_axial_loads(self)
+      class(spring_planes), intent(inout) :: self
+      integer :: j
+
+      self%pressed = size(self%layered) > 0
+      if (.not. self%pressed) return
+      allocate (self%press_to(self%count), self%press_at(self%count), self%centre(self%count), &
+                source=0.0_wp)
+      do j = 1, size(self%layered)
+         call read_plane(self, self%layered(j))
+      end do
+      self%press_to(:) = self%press_at
+   end subroutine vary_axial_loads
+
+   !> The plane that a layered joint is on.
+   subroutine read_plane(self, i)
+      type(spring_planes), intent(inout) :: self
+      integer, intent(in) :: i
+
+      select type (rule => self%slot(i)%rule)
+      class is (layered_rule)
+         call rule%plane(self%d0(i), self%press_at(i), self%f0(i), self%k(i), self%centre(i))
+      end select
+      self%first(i) = -unbounded
+      self%last(i) = unbounded
+      self%one_way(i) = 0
+      self%version = modulo(self%version + 1, huge(1))
+   end subroutine read_plane
+
+   !> Layered joints whose axial loads vary go straight to new rotations and to `press_to`.
+   subroutine press_joints(self, d)
+      class(spring_planes), intent(inout) :: self
+      !> New deformations (count) [m or rad]
+      real(wp), intent(in), contiguous :: d(:)
+      integer :: i, j
+
+      do j = 1, size(self%layered)
+         i = self%layered(j)
+         if (.not. abs(d(i) - self%d(i)) + abs(self%press_to(i) - self%press_at(i)) > 0.0_wp) cycle
+         if (self%journal%open) call self%journal%keep(i, self%line_of(i), self%slot(i))
+         select type (rule => self%slot(i)%rule)
+         class is (layered_rule)
+            call rule%go(d(i), self%press_to(i), self%work(i))
+         end select
+         self%events = self%events + 1
+         call read_plane(self, i)
+         self%d(i) = d(i)
+      end do
+   end subroutine press_joints
+
+   !> The first layered joint that can no longer carry its axial load, 0 if all can.
+   pure integer function lost_joint(self) result(lost)
+      class(spring_planes), intent(in) :: self
+      integer :: j
+
+      do j = 1, size(self%layered)
+         lost = self%layered(j)
+         select type (rule => self%slot(lost)%rule)
+         class is (layered_rule)
+            if (rule%failed()) return
+         end select
+      end do
+      lost = 0
+   end function lost_joint
+
+   !> Openings of n joints at the middle of their sections [m], then the rotations from which they count
+   !> theirs [rad]; zero for a joint that is not layered. Without room nothing is filled.
+   pure subroutine fill_openings(self, n, values)
+      class(spring_planes), intent(in) :: self
+      !> Number of joints; their flexural springs are n + 1 to 2 n
+      integer, intent(in) :: n
+      !> (2 n), or empty
+      real(wp), intent(inout) :: values(:)
+      integer :: i, j
+
+      if (size(values) == 0) return
+      values = 0.0_wp
+      do j = 1, size(self%layered)
+         i = self%layered(j)
+         select type (rule => self%slot(i)%rule)
+         class is (layered_rule)
+            if (self%pressed) then
+               values(i - n) = rule%opening_at(self%d(i), self%press_at(i))
+            else
+               values(i - n) = rule%opening_at(self%d(i), rule%present_load())
+            end if
+            values(i) = rule%rotation_at_rest()
+         end select
+      end do
+   end subroutine fill_openings
+
+   !> Put the layers of a joint on the lines on which they go on along a straight path.
+   subroutine choose_lines(self, i, turn, press)
+      class(spring_planes), intent(inout) :: self
+      integer, intent(in) :: i
+      !> Rates of the rotation [rad] and of the axial load [N]
+      real(wp), intent(in) :: turn, press
+
+      select type (rule => self%slot(i)%rule)
+      class is (layered_rule)
+         call rule%choose(turn, press)
+      end select
+      call read_plane(self, i)
+   end subroutine choose_lines
+
+   !> How far a layered joint can go from a point of its plane along a straight path until a layer reaches the
+   !> end of its line.
+   pure subroutine way_on_plane(self, i, rotation, axial_load, turn, press, way, first)
+      class(spring_planes), intent(in) :: self
+      integer, intent(in) :: i
+      real(wp), intent(in) :: rotation, axial_load, turn, press
+      !> In units of the rates; `unbounded` if there is no end
+      real(wp), intent(out) :: way
+      !> The layer, 0 for none
+      integer, intent(out) :: first
+
+      way = unbounded
+      first = 0
+      select type (rule => self%slot(i)%rule)
+      class is (layered_rule)
+         call rule%way_to_event(rotation, axial_load, turn, press, way, first)
+      end select
+   end subroutine way_on_plane
+
+   !> Whether a layer of a joint goes back on a one-way line.
+   pure logical function turns_on_plane(self, i, turn, press)
+      class(spring_planes), intent(in) :: self
+      integer, intent(in) :: i
+      !> Rates of the rotation and of the axial load
+      real(wp), intent(in) :: turn, press
+
+      turns_on_plane = .false.
+      select type (rule => self%slot(i)%rule)
+      class is (layered_rule)
+         turns_on_plane = rule%turns(turn, press)
+      end select
+   end function turns_on_plane
+
+   !> Move a layered joint on its plane to a point, where a layer (0: none) comes to the end of its line.
+   !> Its work is left to the caller, who knows the path.
+   subroutine put_on_plane(self, i, rotation, axial_load, turn, press, first)
+      class(spring_planes), intent(inout) :: self
+      integer, intent(in) :: i
+      real(wp), intent(in) :: rotation, axial_load, turn, press
+      integer, intent(in) :: first
+
+      select type (rule => self%slot(i)%rule)
+      class is (layered_rule)
+         call rule%pass_event(rotation, axial_load, turn, press, first)
+      end select
+      call read_plane(self, i)
+      self%d(i) = rotation
+      if (first > 0) self%events = self%events + 1
+   end subroutine put_on_plane
+
+   !> Return to the marked state, to the last bit. The mark stays.
+   subroutine restore(self)
+      class(spring_planes), intent(inout) :: self
+      integer :: j
+
+      call self%spring_lines%restore()
+      if (.not. self%pressed) return
+      do j = 1, size(self%layered)
+         call read_plane(self, self%layered(j))
+      end do
+   end subroutine restore
+
+end module rbs_hysteresis_spring_planes
