@@ -24,6 +24,9 @@ Array = NDArray[np.float64]
 #: Stands for a whole number that is not given (the constant `unset_integer` of the Fortran part).
 UNSET_INTEGER = -int(np.iinfo(np.int32).max)
 
+#: A number that was not given.
+UNSET = -float(np.finfo(np.float64).max)
+
 #: Larger numbers have no meaning in any unit (the constant `beyond_meaning`).
 BEYOND_MEANING = 1e50
 
@@ -376,13 +379,27 @@ def read_case(path: str) -> tuple[Statement, Array, Array, NDArray[np.int32]]:
         sizes = (length, count, rows)
 
 
-def protocol(amplitudes: Array, cycles: NDArray[np.int32], repeats: int, points: int) -> Array:
-    """Return the points of a cyclic protocol."""
+def named_protocol(
+    name: str, reference: float | None, largest: float | None
+) -> tuple[Array, NDArray[np.int32]]:
+    """Return amplitudes and cycles of a protocol of the literature."""
+    numbers = (UNSET if value is None else value for value in (reference, largest))
+    steps, amplitudes, cycles, status, message = _rbsdem.rbs_named_protocol(name, *numbers)
+    _raise(status, message)
+    return amplitudes[:steps].copy(), cycles[:steps].copy()
+
+
+def protocol(
+    amplitudes: Array, negative: Array, cycles: NDArray[np.int32], repeats: int, points: int
+) -> Array:
+    """Return the points of a cyclic protocol; `negative` may be empty."""
     steps = int(cycles.sum()) if cycles.size > 1 else int(cycles[0]) * amplitudes.size
     size = max(4 * points * steps * repeats + 1, 1)
     if size > np.iinfo(np.int32).max:
         raise InputError(f"protocol: {size} points are too many; reduce cycles, repeats or points")
-    values, status, message = _rbsdem.rbs_protocol(amplitudes, cycles, repeats, points, size)
+    values, status, message = _rbsdem.rbs_protocol(
+        amplitudes, negative, cycles, repeats, points, size
+    )
     _raise(status, message)
     return values
 

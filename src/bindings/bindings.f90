@@ -337,13 +337,13 @@ subroutine rbs_read_case(path, nt, nn, m, statement, number, time, values, actin
    acting = arrays%acting
 end subroutine rbs_read_case
 
-subroutine rbs_protocol(na, amplitudes, nc, cycles, repeats, points, m, values, status, message)
+subroutine rbs_protocol(na, amplitudes, nn, negative, nc, cycles, repeats, points, m, values, status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_bindings_runs, only: protocol_from_numbers, tell
    implicit none
-   integer(c_int), intent(in) :: na, nc, repeats, points, m
-   real(c_double), intent(in) :: amplitudes(na)
+   integer(c_int), intent(in) :: na, nn, nc, repeats, points, m
+   real(c_double), intent(in) :: amplitudes(na), negative(nn)
    integer(c_int), intent(in) :: cycles(nc)
    real(c_double), intent(out) :: values(m)
    integer(c_int), intent(out) :: status
@@ -351,9 +351,37 @@ subroutine rbs_protocol(na, amplitudes, nc, cycles, repeats, points, m, values, 
    !f2py threadsafe
    type(error_type), allocatable :: error
 
-   call protocol_from_numbers(amplitudes, cycles, repeats, points, values, error)
+   call protocol_from_numbers(amplitudes, negative, cycles, repeats, points, values, error)
    call tell(error, status, message)
 end subroutine rbs_protocol
+
+subroutine rbs_named_protocol(name, reference, largest, steps, amplitudes, cycles, status, message)
+   use iso_c_binding, only: c_double, c_int
+   use rbs_base_error, only: error_type
+   use rbs_bindings_runs, only: tell
+   use rbs_loading_named_protocols, only: named_protocol
+   implicit none
+   character(len=*), intent(in) :: name
+   real(c_double), intent(in) :: reference, largest
+   integer(c_int), intent(out) :: steps, cycles(2000), status
+   real(c_double), intent(out) :: amplitudes(2000)
+   character(len=8192), intent(out) :: message
+   !f2py threadsafe
+   type(error_type), allocatable :: error
+   real(c_double), allocatable :: found(:)
+   integer(c_int), allocatable :: counts(:)
+
+   amplitudes = 0.0
+   cycles = 0
+   steps = 0
+   call named_protocol(name, reference, largest, found, counts, error)
+   if (.not. allocated(error)) then
+      steps = size(found)
+      amplitudes(:steps) = found
+      cycles(:steps) = counts
+   end if
+   call tell(error, status, message)
+end subroutine rbs_named_protocol
 
 subroutine rbs_read_history(path, length_unit, force_unit, separator, decimal, skip, columns, most, rows, &
                             name, displacement, force, status, message)

@@ -183,8 +183,10 @@ contains
    end subroutine make_signal
 
    !> Points of a cyclic protocol, in the unit of the amplitudes.
-   subroutine protocol_from_numbers(amplitudes, cycles, repeats, points, values, error)
+   subroutine protocol_from_numbers(amplitudes, negative, cycles, repeats, points, values, error)
       real(c_double), intent(in) :: amplitudes(:)
+      !> Those of the other side; empty: the same
+      real(c_double), intent(in) :: negative(:)
       integer(c_int), intent(in) :: cycles(:), repeats, points
       !> Filled up to the number of points
       real(c_double), intent(out) :: values(:)
@@ -197,6 +199,7 @@ contains
       spec%drive = 'force'
       spec%source = 'protocol'
       spec%amplitudes = amplitudes
+      if (size(negative) > 0) spec%negative_amplitudes = negative
       spec%cycles = cycles
       spec%repeats = repeats
       spec%points = points

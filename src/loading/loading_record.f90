@@ -6,8 +6,9 @@ module rbs_loading_loading_record
    use rbs_base_text, only: to_text
    use rbs_base_check, only: is_given, check_name
    use rbs_base_key_visitor, only: key_visitor
-   use rbs_base_keys, only: any_number, any_value, above_zero, one_or_more
+   use rbs_base_keys, only: any_number, any_value, above_zero, not_negative, one_or_more
    use rbs_base_units, only: unit_type, length_units, force_units, acceleration_units
+   use rbs_loading_named_protocols, only: protocol_names, counted_in_drift
    implicit none
    private
 
@@ -35,7 +36,10 @@ module rbs_loading_loading_record
       character(len=16) :: unit = ''
       real(wp) :: scale = 1.0_wp
       real(wp) :: interval = unset
-      real(wp), allocatable :: amplitudes(:)
+      !> A protocol of the literature, and what its amplitudes are counted in and go up to
+      character(len=16) :: protocol = ''
+      real(wp) :: reference = unset, largest = unset
+      real(wp), allocatable :: amplitudes(:), negative_amplitudes(:)
       integer, allocatable :: cycles(:)
       integer :: repeats = 1
       integer :: points = 25
@@ -69,8 +73,16 @@ contains
       call v%key('scale', self%scale, '', any_number, 'factor on the values')
       call v%key('interval', self%interval, 's', above_zero, &
                  'time from row to row where the file has no column of times', optional=.true.)
+      call v%word('protocol', self%protocol, 'a protocol of the literature in place of amplitudes', &
+                  protocol_names)
+      call v%key('reference', self%reference, '', above_zero, &
+                 'amplitude that the protocol is counted in, or the drift at yield', optional=.true.)
+      call v%key('largest', self%largest, '', above_zero, &
+                 'up to which amplitude the protocol goes; without it to its own end', optional=.true.)
       call v%key('amplitudes', self%amplitudes, '', above_zero, 'amplitudes of a protocol, one a step', &
                  most_amplitudes)
+      call v%key('negative_amplitudes', self%negative_amplitudes, '', not_negative, &
+                 'amplitudes to the other side; without them the same', most_amplitudes)
       call v%key('cycles', self%cycles, '', one_or_more, &
                  'cycles at each amplitude: one for all, or one for each; without it 1', most_amplitudes)
       call v%key('repeats', self%repeats, '', one_or_more, 'how often the whole protocol is run')
@@ -87,7 +99,7 @@ contains
 
       if (self%source /= '') return
       if (allocated(self%values)) self%source = 'values'
-      if (allocated(self%amplitudes)) self%source = 'protocol'
+      if (allocated(self%amplitudes) .or. self%protocol /= '') self%source = 'protocol'
       if (allocated(self%file)) self%source = 'file'
    end subroutine settle
 
@@ -139,8 +151,10 @@ contains
                            "method = 'static' in the group analysis, or drive = 'force'")
       end if
       if (drive > 0) call check_unit(self, messages)
-      if (count([allocated(self%file), allocated(self%amplitudes), allocated(self%values)]) > 1) then
-         call messages%add('loading: more than one of file, amplitudes and values are given; keep '// &
+      if (count([allocated(self%file), allocated(self%amplitudes), self%protocol /= '', &
+                 allocated(self%values)]) > 1) then
+         call messages%add('loading: more than one of file, amplitudes, &
+                           protocol and values are given; keep '// &
                            'the one that is meant')
       end if
       select case (self%source)
@@ -177,9 +191,52 @@ contains
       logical, intent(in) :: dynamic
       type(message_list), intent(inout) :: messages
 
-      if (.not. allocated(self%amplitudes)) then
-         call messages%add('loading: amplitudes are missing; give one for each step of the protocol')
+      if (self%protocol /= '') then
+         call validate_named(self, messages)
+      else if (.not. allocated(self%amplitudes)) then
+         call messages%add('loading: amplitudes are missing; give one for each step, &
+                           or the name of a protocol')
          return
+      else
+         call validate_amplitudes(self, messages)
+      end if
+      if (dynamic .and. .not. is_given(self%period)) then
+         call messages%add('loading: period is missing; give it a value in s')
+      end if
+   end subroutine validate_protocol
+
+   !> What does not go with a protocol of the literature; what it lacks is found where it is made.
+   subroutine validate_named(self, messages)
+      type(loading_record), intent(in) :: self
+      type(message_list), intent(inout) :: messages
+
+      if (allocated(self%cycles) .or. allocated(self%negative_amplitudes)) then
+         call messages%add("loading: protocol = '"//trim(self%protocol)// &
+                           "' has its own cycles and amplitudes; "// &
+                           'leave out cycles and negative_amplitudes, or give amplitudes in its place')
+      end if
+      if (counted_in_drift(self%protocol) .and. &
+          (self%drive /= 'displacement' .or. (self%unit /= '' .and. self%unit /= 'drift'))) then
+         call messages%add("loading: protocol = '"//trim(self%protocol)// &
+                           "' has amplitudes in drift; it goes "// &
+                           "with drive = 'displacement' and no other unit")
+      end if
+   end subroutine validate_named
+
+   subroutine validate_amplitudes(self, messages)
+      type(loading_record), intent(in) :: self
+      type(message_list), intent(inout) :: messages
+
+      if (is_given(self%reference) .or. is_given(self%largest)) then
+         call messages%add('loading: reference and largest belong to a protocol of the literature; leave '// &
+                           'them out, or give protocol in place of amplitudes')
+      end if
+      if (allocated(self%negative_amplitudes)) then
+         if (size(self%negative_amplitudes) /= size(self%amplitudes)) then
+            call messages%add('loading: negative_amplitudes has '//to_text(size(self%negative_amplitudes))// &
+                              ' values for '//to_text(size(self%amplitudes))//' amplitudes; '// &
+                              'give one for each')
+         end if
       end if
       if (allocated(self%cycles)) then
          if (size(self%cycles) /= 1 .and. size(self%cycles) /= size(self%amplitudes)) then
@@ -187,10 +244,7 @@ contains
                               to_text(size(self%amplitudes))//' amplitudes; give one, or one for each')
          end if
       end if
-      if (dynamic .and. .not. is_given(self%period)) then
-         call messages%add('loading: period is missing; give it a value in s')
-      end if
-   end subroutine validate_protocol
+   end subroutine validate_amplitudes
 
    subroutine validate_values(self, dynamic, messages)
       type(loading_record), intent(in) :: self

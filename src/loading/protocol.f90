@@ -4,6 +4,7 @@ module rbs_loading_protocol
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_loading_loading_record, only: loading_record, units_of
+   use rbs_loading_named_protocols, only: named_protocol
    use rbs_base_units, only: unit_type, to_si
    implicit none
    private
@@ -15,8 +16,8 @@ module rbs_loading_protocol
 
 contains
 
-   !> Points of a protocol: from zero, the cycles 0, +a, 0, -a, 0 of every amplitude, with each quarter in
-   !> equal parts; the whole is repeated `repeats` times.
+   !> Points of a protocol: from zero, the cycles 0, +a, 0, -b, 0 of every amplitude a and its negative one b,
+   !> with each quarter in equal parts; the whole is repeated `repeats` times.
    subroutine protocol_values(spec, height, time, value, error)
       !> Validated loading with source = 'protocol'
       type(loading_record), intent(in) :: spec
@@ -27,13 +28,25 @@ contains
       !> Points [m, N or m/s2]
       real(wp), allocatable, intent(out) :: value(:)
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: amplitude, interval
-      integer :: repeat, step, cycle, j, at, quarter
+      real(wp), allocatable :: positive(:), negative(:)
       integer, allocatable :: cycles(:)
-      real(wp) :: total
+      real(wp) :: total, interval, wave
+      integer :: repeat, step, cycle, j, at, quarter
 
-      allocate (cycles(size(spec%amplitudes)), source=1)
-      if (allocated(spec%cycles)) cycles = spec%cycles(min([(j, j=1, size(cycles))], size(spec%cycles)))
+      if (spec%protocol /= '') then
+         call named_protocol(spec%protocol, spec%reference, spec%largest, positive, cycles, error)
+         if (allocated(error)) return
+      else
+         positive = spec%amplitudes
+         allocate (cycles(size(positive)), source=1)
+         if (allocated(spec%cycles)) cycles = spec%cycles(min([(j, j=1, size(cycles))], size(spec%cycles)))
+      end if
+      negative = positive
+      if (allocated(spec%negative_amplitudes)) negative = spec%negative_amplitudes
+      do step = 1, size(cycles)
+         positive(step) = si_amplitude(spec, positive(step), height)
+         negative(step) = si_amplitude(spec, negative(step), height)
+      end do
       quarter = spec%points
       total = 4.0_wp*quarter*sum(real(cycles, wp))*spec%repeats + 1.0_wp
       if (total > real(most_points, wp)) then
@@ -46,10 +59,11 @@ contains
       at = 1
       do repeat = 1, spec%repeats
          do step = 1, size(cycles)
-            amplitude = si_amplitude(spec, spec%amplitudes(step), height)
             do cycle = 1, cycles(step)
                do j = 1, 4*quarter
-                  value(at + j) = amplitude*triangle(j, quarter)
+                  wave = triangle(j, quarter)
+                  ! Zero has no sign.
+                  value(at + j) = merge(positive(step), negative(step), wave > 0.0_wp)*wave + 0.0_wp
                end do
                at = at + 4*quarter
             end do

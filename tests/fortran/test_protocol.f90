@@ -5,6 +5,7 @@ module test_protocol
    use rbs_base_kinds, only: wp
    use rbs_loading_protocol, only: protocol_values
    use rbs_loading_loading_record, only: loading_record
+   use rbs_loading_named_protocols, only: named_protocol
    implicit none
    private
 
@@ -20,6 +21,8 @@ contains
                unit_test('cycles: one for all, or one for each', cycles), &
                unit_test('the whole is repeated', repeats), &
                unit_test('drift, units and scale', units), &
+               unit_test('amplitudes of their own to the other side', two_sides), &
+               unit_test('a protocol of the literature has its steps and cycles', by_name), &
                unit_test('time: number of the point, or by the period', times), &
                unit_test('a protocol with too many points is refused', too_long)]
    end subroutine collect_protocol
@@ -111,6 +114,62 @@ contains
       spec%unit = 'kN'
       call expect(error, spec, [0.0_wp, 97854.0_wp, 0.0_wp, -97854.0_wp, 0.0_wp], 'kilonewtons')
    end subroutine units
+
+   subroutine two_sides(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(loading_record) :: spec
+
+      spec = protocol([1.0_wp, 2.0_wp], 1)
+      spec%negative_amplitudes = [0.5_wp, 0.0_wp]
+      call expect(error, spec, [0.0_wp, 1.0_wp, 0.0_wp, -0.5_wp, 0.0_wp, 2.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], &
+                  'half to the other side, then nothing')
+   end subroutine two_sides
+
+   !> The numbers are those of docs/input.md, "Named protocols".
+   subroutine by_name(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      real(wp), allocatable :: amplitudes(:)
+      integer, allocatable :: cycles(:)
+      type(loading_record) :: spec
+      real(wp), allocatable :: time(:), value(:)
+
+      call named_protocol('sac', -1.0_wp, -1.0_wp, amplitudes, cycles, outcome)
+      call check_passed(error, outcome, 'sac')
+      if (allocated(error)) return
+      call check_close(error, amplitudes, [0.00375_wp, 0.005_wp, 0.0075_wp, 0.01_wp, 0.015_wp, 0.02_wp, &
+                                           0.03_wp, 0.04_wp], 1e-15_wp, 0.0_wp, 'drifts of sac')
+      call check_equal(error, sum(cycles), 30, 'cycles of sac')
+      ! FEMA 461: each step 1.4 times the last, ten of them up to the reference.
+      call named_protocol('fema_461', 0.05_wp, 0.07_wp, amplitudes, cycles, outcome)
+      call check_passed(error, outcome, 'fema_461')
+      if (allocated(error)) return
+      call check_close(error, amplitudes(2:10)/amplitudes(:9), spread(1.4_wp, 1, 9), 1e-14_wp, 0.0_wp, &
+                       'factor')
+      call check_close(error, amplitudes(10:), [0.05_wp, 0.065_wp], 1e-14_wp, 0.0_wp, 'reference and beyond')
+      ! CUREE: a step of one cycle is followed by trailing ones at three quarters.
+      call named_protocol('curee', 2.0_wp, 0.2_wp, amplitudes, cycles, outcome)
+      call check_passed(error, outcome, 'curee')
+      if (allocated(error)) return
+      call check_close(error, amplitudes, [0.1_wp, 0.15_wp, 0.1125_wp, 0.2_wp, 0.15_wp], 1e-15_wp, 0.0_wp, &
+                       'curee')
+      call check_equal(error, cycles(5), 6, 'trailing cycles')
+      call named_protocol('atc_24', 0.01_wp, -1.0_wp, amplitudes, cycles, outcome)
+      call check_failed(error, outcome, bad_input, 'largest')
+      call named_protocol('fema_461', -1.0_wp, -1.0_wp, amplitudes, cycles, outcome)
+      call check_failed(error, outcome, bad_input, 'reference')
+      call named_protocol('aci_374_1', -1.0_wp, 0.05_wp, amplitudes, cycles, outcome)
+      call check_failed(error, outcome, bad_input, 'ends at')
+      ! Drift times height, through the record.
+      spec%drive = 'displacement'
+      spec%protocol = 'sac'
+      spec%source = 'protocol'
+      spec%points = 1
+      call protocol_values(spec, 2.0_wp, time, value, outcome)
+      call check_passed(error, outcome, 'record')
+      call check_close(error, [maxval(value), minval(value)], [0.08_wp, -0.08_wp], 1e-15_wp, 0.0_wp, &
+                       'drift of 2 m')
+   end subroutine by_name
 
    subroutine times(error)
       type(error_type), allocatable, intent(inout) :: error

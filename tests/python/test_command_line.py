@@ -382,7 +382,7 @@ STATIC_FAULTS = [
     ({"shear": E + ", d_y = 1"},
      ["line 3", "&shear: d_y is not used by the rule elastic", "remove"]),
     ({"loading": PROTOCOL + "1, file = 'x.csv'"},
-     ["more than one of file, amplitudes and values", "keep"]),
+     ["more than one of file, amplitudes, protocol and values", "keep"]),
     ({"analysis": "method = 'static ly'"}, ["method = 'static ly'", "static, auto, rk4"]),
     ({"loading": "drive = 'displacment', amplitudes = 1"}, ["'displacment'", "'displacement'"]),
     ({"loading": PROTOCOL + "1, source = 'protocoll'"}, ["'protocoll'", "mean 'protocol'"]),
@@ -456,6 +456,11 @@ STATIC_FAULTS = [
     ({"loading": "amplitudes = 1"}, ["drive is missing", "displacement, force, ground"]),
     ({"loading": "drive = 'force'"}, ["source is missing", "file, protocol"]),
     ({"loading": "drive = 'force', source = 'protocol'"}, ["amplitudes are missing"]),
+    ({"loading": "drive = 'force', protocol = 'sac'"}, ["drift", "drive = 'displacement'"]),
+    ({"loading": "drive = 'displacement', protocol = 'sak'"}, ["'sak'", "'sac'"]),
+    ({"loading": "drive = 'displacement', protocol = 'sac', cycles = 2"}, ["its own cycles"]),
+    ({"loading": PROTOCOL + "1, largest = 2"}, ["largest", "protocol in place of amplitudes"]),
+    ({"loading": PROTOCOL + "1, negative_amplitudes = 1, 2"}, ["2 values for 1 amplitudes"]),
     ({"loading": "drive = 'force', source = 'file'"}, ["file is missing", "path"]),
     ({"column": "n = 2, height = 1, mass = 1", "shear": E + ", joint = 1"},
      ["joint 2 has no &shear", "one without joint"]),
@@ -1367,6 +1372,23 @@ def test_protocol_of_displacements_in_its_units(
     expected = factor * triangles([0.005, 0.02, 0.01], [1, 3, 2], 2, 5)
     np.testing.assert_allclose(rows["displacement_m"], expected, rtol=1e-14)
     assert np.array_equal(rows["step"], np.arange(expected.size))
+
+
+def test_named_protocol_is_that_of_python(run_cli, case_text, tmp_path, read_csv):
+    loading = (
+        "drive = 'displacement', protocol = 'fema_461', reference = 30, unit = 'mm', points = 3"
+    )
+    rows = run_rows(run_cli, read_csv, tmp_path, case_text(loading=loading))
+    expected = 1e-3 * rbsdem.protocol("fema_461", reference=30.0, points=3)
+    np.testing.assert_allclose(rows["displacement_m"], expected, rtol=1e-14, atol=1e-18)
+
+
+def test_protocol_with_another_amplitude_to_the_other_side(run_cli, case_text, tmp_path, read_csv):
+    keys = "0.01, 0.02, negative_amplitudes = 0.005, 0, points = 2"
+    rows = run_rows(run_cli, read_csv, tmp_path, case_text(loading=f"{PROTOCOL} {keys}"))
+    sides = {"negative_amplitudes": [0.008, 0.0], "points": 2}
+    expected = rbsdem.protocol([0.016, 0.032], **sides)
+    np.testing.assert_allclose(rows["displacement_m"], expected, rtol=1e-14, atol=1e-18)
 
 
 @pytest.mark.parametrize(
