@@ -14,6 +14,7 @@ from rbsdem.case import Case, read_case
 from rbsdem.column import Column
 from rbsdem.comparison import Comparison, compare
 from rbsdem.damping import Damping
+from rbsdem.ensembles import Ensemble, ensemble
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, RbsdemError, SolveError
 from rbsdem.paper import paper_columns, paper_sections
 from rbsdem.peer import PeerTest, read_peer, read_test
@@ -56,6 +57,7 @@ __all__ = [
     "ConcreteSpring",
     "Damping",
     "Elastic",
+    "Ensemble",
     "InputError",
     "Layered",
     "Layout",
@@ -79,6 +81,7 @@ __all__ = [
     "compare",
     "comparison",
     "cyclic",
+    "ensemble",
     "mass_matrix",
     "modes",
     "paper_columns",

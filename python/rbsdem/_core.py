@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from itertools import islice
 from typing import Any, NamedTuple
@@ -359,6 +359,115 @@ def time_history(
             told, wanted = True, rows.shape[1]
         elif status != _LITTLE_ROOM:
             return _finish(rows, wanted, *rest)
+
+
+def settings(given: Mapping[str, Any]) -> Statement:
+    """Return the settings of an analysis as a statement."""
+    values: dict[str, Any] = {}
+    for name, value in given.items():
+        if name in ("method", "events"):
+            values[name] = str(value)
+        elif name == "allow_unstable":
+            values[name] = int(switch(value, name))
+        else:
+            values[name] = number(value, name)
+    return group("analysis", values)
+
+
+@cache
+def measures() -> tuple[str, ...]:
+    """Return the names of the measures of a run of an ensemble."""
+    return tuple(_text(_rbsdem.rbs_measures()).split())
+
+
+#: Motions of the ground: times [s] and accelerations [m/s2].
+Motions = Sequence[tuple[Array, Array]]
+
+_AFTER, _AFTER_NUMBER = "\x1e", "\x1f"
+
+
+def plan_ensemble(
+    columns: Sequence[Statement],
+    settings: Statement,
+    yields: Sequence[list[float]],
+    motions: Motions,
+) -> tuple[Array, list[tuple[int, str]]]:
+    """Return the seconds that a run is expected to take, shape (motions, columns), and faults.
+
+    A fault is the number of a column, from 0, and a message; `yields` are the rotations at which
+    the joints of each column yield.
+    """
+    room = 1 << 16
+    while True:
+        seconds, text, length = _rbsdem.rbs_plan_ensemble(
+            *_columns_crossing(columns, settings, yields), *_motions_crossing(motions), room
+        )
+        if length <= room:
+            return seconds, list(_numbered(text[:length]))
+        room = length
+
+
+def run_ensemble(
+    columns: Sequence[Statement],
+    settings: Statement,
+    yields: Sequence[list[float]],
+    motions: Motions,
+    runs: tuple[NDArray[np.int32], NDArray[np.int32], Array],
+    control: NDArray[np.int32],
+    measures: int,
+) -> tuple[NDArray[np.int32], Array, dict[int, str]]:
+    """Run columns under motions; return fates, measures (measures, runs) and errors by run.
+
+    `runs` are the places of columns and motions, from 0, and the scales. `control` is shared: set
+    its first number to stop, read in its second how many runs are done.
+    """
+    column, motion, scale = runs
+    room = (1 << 16) + 300 * scale.size
+    fates, values, text, length = _rbsdem.rbs_run_ensemble(
+        *_columns_crossing(columns, settings, yields),
+        *_motions_crossing(motions),
+        column + np.int32(1),
+        motion + np.int32(1),
+        scale,
+        control,
+        measures,
+        room,
+    )
+    return fates, values, dict(_numbered(text[: min(length, room)]))
+
+
+def _columns_crossing(
+    columns: Sequence[Statement], settings: Statement, yields: Sequence[list[float]]
+) -> tuple[bytes, Array, NDArray[np.int32], Array]:
+    """Return statements, numbers, how many numbers and joints each has, and yield rotations."""
+    whole = [column + settings for column in columns]
+    return (
+        "".join(statement.text + _AFTER for statement in whole).encode("utf-8", "replace"),
+        np.array([number for statement in whole for number in statement.numbers]),
+        np.array(
+            [
+                (len(statement.numbers), len(rotations))
+                for statement, rotations in zip(whole, yields, strict=True)
+            ],
+            dtype=np.int32,
+        ).T,
+        np.array([rotation for rotations in yields for rotation in rotations]),
+    )
+
+
+def _motions_crossing(motions: Motions) -> tuple[Array, Array, NDArray[np.int32]]:
+    return (
+        np.concatenate([time for time, _ in motions]),
+        np.concatenate([acceleration for _, acceleration in motions]),
+        np.array([time.size for time, _ in motions], dtype=np.int32),
+    )
+
+
+def _numbered(text: bytes) -> Iterator[tuple[int, str]]:
+    """Yield number, from 0, and text of each message."""
+    for line in text.decode("utf-8", errors="replace").split(_AFTER)[:-1]:
+        count, _, message = line.partition(_AFTER_NUMBER)
+        yield int(count) - 1, message
 
 
 def read_case(path: str) -> tuple[Statement, Array, Array, NDArray[np.int32]]:

@@ -278,7 +278,7 @@ def time_history(
         "tolerance": tolerance,
         "rho_infinity": rho_infinity,
         "collapse_drift": collapse_drift,
-        "allow_unstable": int(_core.switch(allow_unstable, "allow_unstable")) or None,
+        "allow_unstable": _core.switch(allow_unstable, "allow_unstable") or None,
     }
     kept = not _checked(column).opens and _core.switch(openings, "openings")
     settings = _settings(every, kept, **chosen)
@@ -302,12 +302,7 @@ def _checked(column: Column) -> Column:
 
 def _settings(every: int | None, openings: bool, **given: Any) -> _core.Statement:
     """Return the groups analysis and output with the settings that are given."""
-    settings = {
-        name: str(value) if name in ("method", "events") else _core.number(value, name)
-        for name, value in given.items()
-        if value is not None
-    }
-    statement = _core.group("analysis", settings)
+    statement = _core.settings({name: v for name, v in given.items() if v is not None})
     if every is None and not openings:
         return statement
     if every is not None and _core.whole(every, "every") < 1:

@@ -776,3 +776,62 @@ subroutine rbs_steel_response(statement, nn, number, m, strain, stress, status, 
    call tell(error, status, message)
    if (status == 0) stress = steel_stress(setter%section%steels(1)%law(), strain)
 end subroutine rbs_steel_response
+
+subroutine rbs_measures(names)
+   ! Names of the measures of a run of an ensemble, separated by blanks.
+   use rbs_solve_ensemble_outcome, only: measure_names
+   implicit none
+   character(len=512), intent(out) :: names
+   !f2py threadsafe
+
+   names = measure_names()
+end subroutine rbs_measures
+
+subroutine rbs_plan_ensemble(statements, nn, numbers, nc, counts, ny, yields, m, time, acceleration, nm, &
+                             points, most, seconds, text, length)
+   ! `length` is that of the whole text, which is cut at `most`.
+   use iso_c_binding, only: c_double, c_int
+   use rbs_bindings_ensembles, only: plan_ensemble
+   use rbs_case_text_buffer, only: text_buffer
+   implicit none
+   character(len=*), intent(in) :: statements
+   integer(c_int), intent(in) :: nn, nc, ny, m, nm, most, counts(2, nc), points(nm)
+   real(c_double), intent(in) :: numbers(nn), yields(ny), time(m), acceleration(m)
+   real(c_double), intent(out) :: seconds(nm, nc)
+   character(len=most), intent(out) :: text
+   integer(c_int), intent(out) :: length
+   !f2py threadsafe
+   type(text_buffer) :: buffer
+
+   call plan_ensemble(statements, numbers, counts, yields, time, acceleration, points, seconds, buffer)
+   text = ''
+   length = buffer%length
+   if (length > 0) text = buffer%text(:min(length, most))
+end subroutine rbs_plan_ensemble
+
+subroutine rbs_run_ensemble(statements, nn, numbers, nc, counts, ny, yields, m, time, acceleration, nm, &
+                            points, nr, columns, motions, scales, control, nv, most, fates, values, text, &
+                            length)
+   ! `length` is that of the whole text, which is cut at `most`. Another thread reads and sets `control`.
+   use iso_c_binding, only: c_double, c_int
+   use rbs_bindings_ensembles, only: run_ensemble
+   use rbs_case_text_buffer, only: text_buffer
+   implicit none
+   character(len=*), intent(in) :: statements
+   integer(c_int), intent(in) :: nn, nc, ny, m, nm, nr, nv, most, counts(2, nc), points(nm), columns(nr)
+   integer(c_int), intent(in) :: motions(nr)
+   integer(c_int), intent(inout) :: control(2)
+   real(c_double), intent(in) :: numbers(nn), yields(ny), time(m), acceleration(m), scales(nr)
+   integer(c_int), intent(out) :: fates(nr)
+   real(c_double), intent(out) :: values(nv, nr)
+   character(len=most), intent(out) :: text
+   integer(c_int), intent(out) :: length
+   !f2py threadsafe
+   type(text_buffer) :: buffer
+
+   call run_ensemble(statements, numbers, counts, yields, time, acceleration, points, columns, motions, &
+                     scales, control, fates, values, buffer)
+   text = ''
+   length = buffer%length
+   if (length > 0) text = buffer%text(:min(length, most))
+end subroutine rbs_run_ensemble

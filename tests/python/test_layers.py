@@ -32,10 +32,10 @@ FLOORS = (
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 
 #: Rooms inside solve, by floor: each kind of analysis stands alone, except that time asks modal.
-ANALYSES = {"modal": 0, "static": 1, "time": 1}
+ANALYSES = {"modal": 0, "static": 1, "time": 1, "ensemble": 2}
 
 #: What each room inside solve/ may use of the others; what they share lies beside them.
-INNER = {"": (), "modal": (), "static": (), "time": ("modal",)}
+INNER = {"": (), "modal": (), "static": (), "time": ("modal",), "ensemble": ("modal", "time")}
 
 #: Files without a module: what f2py reads, and the program.
 NO_MODULE = ("bindings/bindings.f90", "app/main.f90")

@@ -1,0 +1,207 @@
+"""The work of an ensemble in pieces: what a piece needs, how it is done, what comes of it."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rbsdem import _core
+from rbsdem._core import Array
+from rbsdem.analysis import time_history
+from rbsdem.column import Column
+from rbsdem.ensembles.inputs import Motion
+from rbsdem.ensembles.measures import STATUSES, Measure, core_measures
+from rbsdem.errors import RbsdemError
+from rbsdem.springs import Spring
+
+__all__ = ["Plan", "Task", "TaskResult", "compute", "cut"]
+
+Integers = NDArray[np.int32]
+
+#: A rotation that no joint reaches: where it is not known when the joint yields.
+_NEVER = float(np.finfo(np.float64).max)
+
+_FAILED = STATUSES.index("failed")
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """Runs that are done at one go, with all that they need; it can be sent to another process."""
+
+    columns: list[Column]
+    motions: list[Motion]
+    settings: dict[str, Any]
+    column: Integers
+    motion: Integers
+    scale: Array
+    functions: dict[str, Measure] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        """Return the number of runs."""
+        return self.scale.size
+
+
+@dataclass(frozen=True, eq=False)
+class TaskResult:
+    """Fates (runs,), measures (measures, runs), those of functions by name, errors by run."""
+
+    fates: NDArray[np.int8]
+    values: Array
+    extra: dict[str, Array]
+    errors: dict[int, str]
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """All runs of an ensemble: columns x motions x scales, without those whose scale is NaN."""
+
+    columns: list[Column]
+    motions: list[Motion]
+    settings: dict[str, Any]
+    functions: dict[str, Measure]
+    column: Integers
+    motion: Integers
+    scale: Array
+
+    def task(self, first: int, last: int) -> Task:
+        """Return the runs from first to before last."""
+        columns, column = np.unique(self.column[first:last], return_inverse=True)
+        motions, motion = np.unique(self.motion[first:last], return_inverse=True)
+        return Task(
+            [self.columns[i] for i in columns],
+            [self.motions[j] for j in motions],
+            self.settings,
+            column.astype(np.int32),
+            motion.astype(np.int32),
+            self.scale[first:last],
+            self.functions,
+        )
+
+
+def cut(plan: Plan, seconds: Array, longest: float) -> list[tuple[int, int]]:
+    """Return first run and the one after the last of each task, none much above `longest` [s].
+
+    `seconds` are those expected of a run of each motion with each column (motions, columns).
+    """
+    reached = np.cumsum(seconds[plan.motion, plan.column])
+    number = np.floor(reached / longest)
+    ends = [*(np.flatnonzero(np.diff(number) > 0) + 1).tolist(), plan.scale.size]
+    return list(zip([0, *ends[:-1]], ends, strict=True))
+
+
+def expected(plan: Plan) -> tuple[Array, list[tuple[int, str]]]:
+    """Return the seconds expected of a run (motions, columns), and what is wrong with columns."""
+    return _core.plan_ensemble(
+        [column._statement for column in plan.columns],
+        _core.settings(plan.settings),
+        [_yields(column) for column in plan.columns],
+        [(motion.time, motion.acceleration) for motion in plan.motions],
+    )
+
+
+def compute(task: Task, control: Integers | None = None) -> TaskResult:
+    """Do the runs of a task.
+
+    `control` is shared with the thread that waits: it sets the first number to end the task before
+    its next run, and reads in the second how many runs are done.
+    """
+    control = np.zeros(2, dtype=np.int32) if control is None else control
+    fates, values, errors = _core.run_ensemble(
+        [column._statement for column in task.columns],
+        _core.settings(task.settings),
+        [_yields(column) for column in task.columns],
+        [(motion.time, motion.acceleration) for motion in task.motions],
+        (task.column, task.motion, task.scale),
+        control,
+        len(core_measures()),
+    )
+    extra = {name: np.full(len(task), np.nan) for name in task.functions}
+    if extra:
+        _call_functions(task, control, fates, errors, extra)
+    return TaskResult(fates.astype(np.int8), values, extra, errors)
+
+
+def _call_functions(
+    task: Task,
+    control: Integers,
+    fates: Integers,
+    errors: dict[int, str],
+    extra: dict[str, Array],
+) -> None:
+    """Fill the measures of functions, each run with its history, which is then dropped."""
+    for run in np.flatnonzero(fates):
+        if control[0]:
+            fates[run:] = 0
+            return
+        if fates[run] == _FAILED:
+            continue
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                result = one_run(
+                    task.columns[task.column[run]],
+                    task.motions[task.motion[run]],
+                    float(task.scale[run]),
+                    task.settings,
+                )
+        except RbsdemError as error:
+            fates[run], errors[int(run)] = _FAILED, str(error)
+            continue
+        for name, function in task.functions.items():
+            try:
+                extra[name][run] = float(function(result))
+            except Exception as error:  # A fault in a measure is that of a run and ends no batch.
+                fates[run] = _FAILED
+                errors[int(run)] = f"measure {name}: {type(error).__name__}: {error}"
+
+
+def one_run(column: Column, motion: Motion, scale: float, settings: dict[str, Any]) -> Any:
+    """Return the `Result` of one run, with its history."""
+    return time_history(
+        column, motion.time, ground_acceleration=scale * motion.acceleration, **settings
+    )
+
+
+def _yields(column: Column) -> list[float]:
+    """Return the rotation at which each joint yields, if its spring says so."""
+    return [_yield(spring) for spring in column.joints("flexure")]
+
+
+def _yield(spring: Spring) -> float:
+    rotation = getattr(spring, "d_y", None)
+    return _NEVER if rotation is None else float(rotation)
+
+
+def joined(results: Sequence[TaskResult], functions: dict[str, Measure]) -> TaskResult:
+    """Return the results of consecutive tasks as one."""
+    errors: dict[int, str] = {}
+    first = 0
+    for result in results:
+        errors.update({first + run: text for run, text in result.errors.items()})
+        first += result.fates.size
+    return TaskResult(
+        np.concatenate([result.fates for result in results]),
+        np.concatenate([result.values for result in results], axis=1),
+        {name: np.concatenate([result.extra[name] for result in results]) for name in functions},
+        errors,
+    )
+
+
+def nothing(runs: int, functions: dict[str, Measure]) -> TaskResult:
+    """Return the result of a task that was not started."""
+    return TaskResult(
+        np.zeros(runs, dtype=np.int8),
+        np.full((len(core_measures()), runs), np.nan),
+        {name: np.full(runs, np.nan) for name in functions},
+        {},
+    )
+
+
+def unsent(task: Task) -> Task:
+    """Return a task without its functions."""
+    return replace(task, functions={})

@@ -1,0 +1,88 @@
+!> The measures of a run, taken row by row as the rows pass; none of them is kept.
+module rbs_solve_ensemble_tally
+   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+   use rbs_base_error, only: error_type
+   use rbs_base_kinds, only: wp
+   use rbs_column_column, only: column_type
+   use rbs_output_recorder, only: recorder_type
+   use rbs_output_row, only: row_time, row_displacement, row_joints
+   use rbs_output_summary, only: summary_type
+   use rbs_solve_ensemble_outcome, only: outcome_type, fate_completed, fate_collapsed, fate_axial, &
+                                         fate_failed, at_peak_displacement, at_residual_displacement, &
+                                         at_peak_base_shear, at_peak_rotation, at_input, at_spring, &
+                                         at_damping, at_residual, at_relative_residual, at_first_yield, &
+                                         at_end, at_time_step, at_steps, at_events, at_cut, at_lost_joint
+   implicit none
+   private
+
+   public :: tally_recorder, settle
+
+   type, extends(recorder_type) :: tally_recorder
+      !> Number of joints, and the rotation at which each yields; `huge` where that is not known (n) [rad]
+      integer :: n = 0
+      real(wp), allocatable :: yield(:)
+      !> Displacement and time of the last row [m, s]; time of the first row in which a joint has yielded [s]
+      real(wp) :: displacement = 0.0_wp, time = 0.0_wp, first_yield = huge(1.0_wp)
+   contains
+      procedure :: record
+   end type tally_recorder
+
+contains
+
+   subroutine record(self, row, error)
+      class(tally_recorder), intent(inout) :: self
+      real(wp), intent(in) :: row(:)
+      type(error_type), allocatable, intent(inout) :: error
+      integer :: i
+
+      if (allocated(error)) return
+      self%time = row(row_time)
+      self%displacement = row(row_displacement)
+      if (self%first_yield < huge(1.0_wp)) return
+      do i = 1, self%n
+         if (abs(row(row_joints + self%n + i - 1)) >= self%yield(i)) self%first_yield = self%time
+      end do
+   end subroutine record
+
+   !> Fate and measures of a run that has ended.
+   subroutine settle(column, tally, summary, error, outcome)
+      type(column_type), intent(in) :: column
+      type(tally_recorder), intent(in) :: tally
+      type(summary_type), intent(in) :: summary
+      type(error_type), allocatable, intent(in) :: error
+      type(outcome_type), intent(inout) :: outcome
+      real(wp) :: figure(size(summary%as_array())), nothing
+
+      nothing = ieee_value(nothing, ieee_quiet_nan)
+      if (allocated(error)) then
+         outcome%fate = fate_failed
+         outcome%message = error%message
+         outcome%value = nothing
+         return
+      end if
+      outcome%fate = fate_completed
+      if (summary%collapsed) outcome%fate = fate_collapsed
+      if (summary%lost_joint > 0) outcome%fate = fate_axial
+      figure = summary%as_array()
+      associate (value => outcome%value)
+         value(at_peak_displacement) = summary%peak_displacement
+         value(at_residual_displacement) = tally%displacement
+         value(at_peak_base_shear) = summary%peak_base_shear
+         value(at_peak_rotation) = summary%peak_rotation
+         value(at_input) = summary%input
+         value(at_spring) = summary%spring
+         value(at_damping) = summary%damping
+         value(at_residual) = summary%residual
+         value(at_relative_residual) = summary%residual/max(summary%largest, tiny(1.0_wp))
+         value(at_first_yield) = nothing
+         if (tally%first_yield < huge(1.0_wp)) value(at_first_yield) = tally%first_yield
+         value(at_end) = tally%time
+         value(at_time_step) = summary%time_step
+         value(at_steps) = real(summary%steps, wp)
+         value(at_events) = real(summary%events, wp)
+         value(at_cut) = real(summary%cut_steps, wp)
+         value(at_lost_joint) = real(summary%lost_joint, wp)
+      end associate
+   end subroutine settle
+
+end module rbs_solve_ensemble_tally

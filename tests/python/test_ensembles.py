@@ -1,0 +1,200 @@
+"""Ensembles: each run is that of `time_history`; no run stops the others; all faults at once."""
+
+from __future__ import annotations
+
+import math
+import re
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import rbsdem
+from rbsdem import InputError, SolveError
+from rbsdem.ensembles import MEASURES
+
+TIME = 0.01 * np.arange(400)
+
+
+def motion(seed: int, points: int = 400, dt: float = 0.01) -> tuple[np.ndarray, np.ndarray]:
+    """Return a motion of some sines [s, m/s2], 3 m/s2 at its largest."""
+    rng = np.random.default_rng(seed)
+    time = dt * np.arange(points)
+    parts = [
+        rng.normal() * np.sin(2 * np.pi * rng.uniform(0.5, 6.0) * time + rng.uniform(0.0, 6.0))
+        for _ in range(20)
+    ]
+    values = np.sum(parts, axis=0) * np.minimum(time, 1.0)
+    return time, 3.0 * values / np.abs(values).max()
+
+
+def column(mass: float = 30e3, **more: object) -> rbsdem.Column:
+    """Return one body with a bilinear and a Takeda spring that yields under such motions."""
+    shear = rbsdem.Bilinear(k=7.0e7, d_y=1.3e-3, k_post=8.0e5)
+    flexure = rbsdem.Takeda(k_c=2.5e8, d_c=3.2e-4, k_y=6.3e7, d_y=2.7e-3, k_u=7.6e6, b1=0.22)
+    weight = {"axial_load": 9.81 * mass, "kinematics": "pdelta", "top_mass": mass}
+    return rbsdem.Column(1.6, 600.0, shear, flexure, **(weight | more))  # type: ignore[arg-type]
+
+
+def same_as_alone(found: rbsdem.Ensemble) -> None:
+    """Hold every run of an ensemble to `time_history`, to the last bit."""
+    for run in range(len(found)):
+        values = {name: found.measures[name][run] for name in found.measures}
+        if found.status[run] == "failed":
+            with pytest.raises(SolveError, match=re.escape(found.errors[run])):
+                found.history(run)
+            assert all(math.isnan(value) for value in values.values())
+            continue
+        result = found.history(run)
+        about = result.summary
+        assert found.status[run] == about["status"]
+        alone = {name: about[name] for name in MEASURES if name in about}
+        alone["end_time"] = result.time[-1]
+        alone["residual_displacement"] = result.displacement[-1]
+        alone["peak_drift"] = abs(about["peak_displacement"]) / result.column.height
+        assert alone == {name: values[name] for name in alone}
+
+
+@pytest.mark.parametrize("settings", [{}, {"method": "newmark"}, {"method": "rk4", "dt": 1e-3}])
+def test_runs_are_those_of_time_history(settings: dict) -> None:
+    columns = {"light": column(10e3), "heavy": column(40e3, damping=0.02)}
+    motions = {"a": motion(1), "b": motion(2, 250, 0.02)}
+    found = rbsdem.ensemble(
+        columns, motions, scales=[0.1, 1.0, 3.0], collapse_drift=0.03, **settings
+    )
+    assert len(found) == 12
+    assert set(found.status) == {"completed", "collapsed"}
+    same_as_alone(found)
+
+
+def test_the_number_of_threads_changes_no_bit() -> None:
+    given = {"scales": np.linspace(0.1, 3.0, 20), "collapse_drift": 0.03, "method": "hht"}
+    one, two = (
+        rbsdem.ensemble([column(), column(15e3)], [motion(1), motion(2)], jobs=jobs, **given)
+        for jobs in (1, 3)
+    )
+    assert list(one.status) == list(two.status)
+    for name in MEASURES:
+        np.testing.assert_array_equal(one.measures[name], two.measures[name])
+
+
+def test_a_run_that_fails_is_a_row() -> None:
+    """Beyond the stability limit RK4 grows without bounds."""
+    elastic = rbsdem.Column(1.6, 600.0, rbsdem.Elastic(7e7), rbsdem.Elastic(2.5e8))
+    found = rbsdem.ensemble(
+        elastic, motion(1), scales=[0.0, 1.0], method="rk4", dt=5e-3, allow_unstable=True
+    )
+    assert list(found.status) == ["completed", "failed"]
+    assert found.counts == {"completed": 1, "failed": 1}
+    assert "grows without bounds" in found.errors[1]
+    same_as_alone(found)
+
+
+def test_scales_for_each_column_and_motion() -> None:
+    scales = np.array([[[1.0, 2.0], [3.0, np.nan]], [[np.nan, np.nan], [0.5, 4.0]]])
+    found = rbsdem.ensemble(
+        [column(), column(10e3)], [motion(1), motion(2)], scales=scales, method="newmark"
+    )
+    assert list(found.column) == [0, 0, 0, 1, 1]
+    assert list(found.motion) == [0, 0, 1, 1, 1]
+    assert list(found.scale) == [1.0, 2.0, 3.0, 0.5, 4.0]
+
+
+def test_names_of_motions() -> None:
+    time, acceleration = motion(1)
+    given = [
+        SimpleNamespace(time=time, acceleration=acceleration, name="kobe"),
+        (0.01, acceleration),
+    ]
+    found = rbsdem.ensemble(column(), given, method="newmark")
+    assert list(found.motions) == ["kobe", 1]
+    assert found.measures["peak_drift"][0] == pytest.approx(found.measures["peak_drift"][1])
+
+
+def test_first_yield_is_that_of_the_history() -> None:
+    found = rbsdem.ensemble(column(), motion(1), scales=[0.05, 10.0], method="newmark")
+    rotation = np.abs(found.history(1).rotation[:, 0])
+    assert math.isnan(found.measures["first_yield"][0])
+    assert found.measures["first_yield"][1] == TIME[np.argmax(rotation >= 2.7e-3)]
+
+
+def test_measures_of_functions() -> None:
+    def mean_force(result: rbsdem.Result) -> float:
+        return float(np.abs(result.base_shear).mean())
+
+    def broken(result: rbsdem.Result) -> float:
+        return result.time[10**6]
+
+    found = rbsdem.ensemble(
+        column(),
+        motion(1),
+        scales=[1.0, 2.0],
+        measures=["peak_drift", mean_force],
+        method="newmark",
+    )
+    assert list(found.measures) == ["peak_drift", "mean_force"]
+    assert found.measures["mean_force"][1] == mean_force(found.history(1))
+    found = rbsdem.ensemble(column(), motion(1), measures=[broken], method="newmark")
+    assert list(found.status) == ["failed"]
+    assert found.errors[0].startswith("measure broken: IndexError")
+
+
+def test_table() -> None:
+    pytest.importorskip("pandas")
+    found = rbsdem.ensemble({"a": column()}, motion(1), scales=[1.0, 2.0], method="newmark")
+    table = found.table
+    assert list(table.columns) == ["column", "motion", "scale", "status", *MEASURES, "error"]
+    assert list(table["column"]) == ["a", "a"]
+    assert table["steps"].dtype.kind == "i"
+    assert list(table["peak_drift"]) == list(found.measures["peak_drift"])
+
+
+def test_all_faults_at_once() -> None:
+    time, acceleration = motion(1)
+    back = time.copy()
+    back[5] = back[4]
+    with pytest.raises(InputError) as caught:
+        rbsdem.ensemble(
+            [column(), 7],
+            {"short": (time, acceleration[1:]), "back": (back, acceleration), "no": "kobe"},
+            scales=[[1.0, 2.0]] * 2,
+            jobs=0,
+            measures=["drift"],
+        )
+    text = str(caught.value)
+    for part in (
+        "column 1: column = 7",
+        "motion 'short': 399 accelerations for 400 times",
+        "motion 'back': time: value 6 of 400",
+        "motion 'no': a str",
+        "scales has shape (2, 2)",
+        "jobs = 0",
+        "measures: 'drift' is not known",
+    ):
+        assert part in text
+    assert len(text.splitlines()) == 7
+
+
+def test_columns_that_cannot_be_run_are_named_before_the_start() -> None:
+    with pytest.raises(InputError, match=r"column 'b': .*stability limit") as caught:
+        rbsdem.ensemble({"a": column(1e6), "b": column(1e2)}, motion(1), method="rk4", dt=2.5e-3)
+    assert "column 'a'" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"columns": []}, "columns is empty"),
+        ({"motions": {}}, "motions is empty"),
+        ({"scales": [np.nan]}, "no run is asked for"),
+        ({"scales": "x"}, "scales must be numbers"),
+        ({"scales": np.inf}, "must be a finite number"),
+        ({"motions": (0.0, [1.0, 2.0])}, "step = 0.0 s must be above zero"),
+        ({"method": "euler"}, "euler"),
+        ({"collapse_drift": -1.0}, "collapse_drift"),
+    ],
+)
+def test_bad_input(given: dict, message: str) -> None:
+    good = {"columns": column(), "motions": motion(1)}
+    with pytest.raises(InputError, match=message):
+        rbsdem.ensemble(**(good | given))
