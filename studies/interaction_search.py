@@ -2,9 +2,10 @@
 
     python studies/interaction_search.py [--cases N] [--seed S]
 
-Random columns of one to three bodies with layered joints (bars, concrete, contacts, bilinear ones)
-follow random displacements under random axial loads, on the static path with small rotations and
-with P-Delta, N given or in proportion to the force. Every path is followed once more with every
+Random columns of one to three bodies with layered joints (bars, concrete, contacts, bilinear ones),
+some with axial springs too, follow random displacements under random axial loads, on the static
+path with small rotations, with P-Delta and with exact rotations, N given or in proportion to the
+force. Every path is followed once more with every
 way cut into seven parts. Printed are the cases whose forces differ, whose balance of energy is
 open, or of which only one ends; and the counts.
 """
@@ -50,6 +51,15 @@ def layered_joint(rng: np.random.Generator) -> rbsdem.Layered:
     return rbsdem.Layered([*((y, strip) for y in places), (-0.16, bar), (0.16, bar)])
 
 
+def axial_spring(rng: np.random.Generator) -> rbsdem.Spring | None:
+    """Return an axial spring, mostly none."""
+    if rng.random() < 0.7:
+        return None
+    if rng.random() < 0.5:
+        return rbsdem.Elastic(3e9)
+    return rbsdem.Bilinear(k=3e9, d_y=1e-4, k_post=rng.choice([1e7, 1e9]))
+
+
 def case(rng: np.random.Generator) -> tuple[rbsdem.Column, np.ndarray, np.ndarray]:
     """Return a column, displacements and axial loads."""
     n = int(rng.integers(1, 4))
@@ -63,10 +73,13 @@ def case(rng: np.random.Generator) -> tuple[rbsdem.Column, np.ndarray, np.ndarra
         rbsdem.Elastic(7e8),
         joints,
         n=n,
-        kinematics=str(rng.choice(["small", "pdelta"])),
+        kinematics=str(rng.choice(["small", "pdelta", "finite"])),
         axial_force_ratio=float(rng.choice([0.0, 1.0, -2.0])),
+        axial_spring=axial_spring(rng),
     )
     points = int(rng.integers(4, 12))
+    if rng.random() < 0.2:
+        return column, 0.5 * rng.uniform(-1, 1, points), rng.uniform(-1e5, 5e5, points)
     return column, 0.03 * rng.uniform(-1, 1, points), rng.uniform(-1e5, 1.2e6, points)
 
 

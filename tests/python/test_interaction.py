@@ -275,11 +275,10 @@ def test_openings_must_be_asked_for() -> None:
     ("fields", "call", "part"),
     [
         ({}, {"axial_load": [1e5, 2e5]}, "2 values for 3 points"),
-        ({"kinematics": "finite"}, {"axial_load": [1e5, 2e5, 3e5]}, "'small' or 'pdelta'"),
         (
-            {"kinematics": "finite", "axial_force_ratio": 1.0},
-            {},
-            "'small' or 'pdelta'",
+            {"kinematics": "finite", "axial_follows": True},
+            {"axial_load": [1e5, 2e5, 3e5]},
+            "no potential",
         ),
         ({}, {"axial_load": [1e5, float("nan"), 3e5]}, "axial_load"),
     ],

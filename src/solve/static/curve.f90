@@ -8,7 +8,7 @@ module rbs_solve_static_curve
    implicit none
    private
 
-   public :: curve_type, clean, first_ahead, largest_turn, most_turn, same_rate
+   public :: curve_type, clean, first_ahead, largest_turn, most_turn, most_bend, same_rate
 
    !> Largest rotation in one stride [rad], how far it may be from its tangent as a share of it, and what
    !> the slopes may correct of its work as a share of the largest energy so far.

@@ -20,8 +20,7 @@ contains
 
    !> Static path through displacements of the top or lateral forces.
    subroutine run_static(column, by_force, target, every, collapse_drift, recorder, summary, error, &
-                         progress, &
-                         axial_load)
+                         progress, axial_load)
       type(column_type), intent(in) :: column
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
@@ -62,8 +61,7 @@ contains
       if (allocated(error)) return
       if (varies) then
          call trace_interaction(column, by_force, target, load, every, collapse_drift, recorder, summary, &
-                                error, &
-                                progress)
+                                error, progress)
       else if (column%kinematics == finite) then
          call trace_finite(column, by_force, target, every, collapse_drift, recorder, summary, error, &
                            progress)
@@ -88,9 +86,10 @@ contains
          return
       end if
       call check_values(axial_load, 'axial_load', error)
-      if (allocated(error) .or. column%kinematics /= small .or. any(column%spring%rule == 'layered')) return
-      call fatal_error(error, bad_input, "axial_load: with kinematics = 'small' and no layered joint a "// &
-                       "history of it does nothing; use 'pdelta', or layered joints")
+      if (allocated(error) .or. column%kinematics /= small .or. column%opens .or. &
+          any(column%spring%rule == 'layered')) return
+      call fatal_error(error, bad_input, "axial_load: with kinematics = 'small', no layered joint and no "// &
+                       "axial spring a history of it does nothing; use 'pdelta', or give such springs")
    end subroutine check_axial_load
 
    !> Whether the column can be followed under an axial load that varies.
@@ -98,14 +97,10 @@ contains
       type(column_type), intent(in) :: column
       type(error_type), allocatable, intent(out) :: error
 
-      if (column%kinematics == finite) then
-         call fatal_error(error, bad_input, 'axial_load: a static path under an axial load that varies '// &
-                          "needs kinematics = 'small' or 'pdelta'")
-      else if (column%opens) then
-         call fatal_error(error, bad_input, 'axial_load: a static path under an axial load that varies '// &
-                          'takes no axial springs; layered joints open by themselves, so remove '// &
-                          'axial_spring, or use a dynamic analysis')
-      end if
+      if (.not. (column%axial_follows .or. column%force_follows)) return
+      call fatal_error(error, bad_input, 'column: loads that follow the top (axial_follows, '// &
+                       'force_follows) have no potential, and a static path could miss the loss of '// &
+                       'stability; use a dynamic analysis')
    end subroutine check_interaction
 
 end module rbs_solve_static_run_static

@@ -15,8 +15,8 @@ module rbs_solve_time_finite_step
    use rbs_column_column, only: column_type
    use rbs_column_energy, only: kinetic_energy
    use rbs_column_finite, only: finite_work, finite_acceleration
-   use rbs_solve_time_finite_joint, only: turned_body, turn_body, body_at, joint_type, joint_change, &
-                                          joint_at, joint_forces, joint_tangent, joint_rates, local
+   use rbs_solve_time_finite_chain, only: finite_chain
+   use rbs_solve_time_finite_joint, only: joint_forces, joint_tangent, local
    use rbs_solve_time_loads, only: lateral, horizontal, vertical, axial
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_state, only: state_type
@@ -28,26 +28,18 @@ module rbs_solve_time_finite_step
    !> Below this share of the forces a change of a spring's force is round-off.
    real(wp), parameter :: no_change = 1.0e-6_wp
 
-   type :: finite_step
+   type, extends(finite_chain) :: finite_step
       !> Whether the forces are those of the mean-value derivatives; else the parameters of generalised-alpha
       logical :: average = .true.
       real(wp) :: alpha_m = 0.0_wp, alpha_f = 0.0_wp, beta = 0.25_wp, gamma = 0.5_wp
-      !> What the bodies have moved in the step, and the residual (3, n)
-      real(wp), allocatable :: moved(:, :), r(:, :)
-      !> Axial forces of the joints, tension positive, and how far those that must not open have (n)
-      real(wp), allocatable :: tension(:), gap(:)
-      !> Deformations at the end of the step and their change (unknowns)
-      real(wp), allocatable :: q1(:), change(:)
-      !> Mass; velocities, accelerations and forces of the bodies at the start of the step and at its end
-      !> (3, n)
-      real(wp), allocatable, private :: mass(:, :), v0(:, :), a0(:, :), g0(:, :), v1(:, :), a1(:, :), g1(:, :)
-      !> Rotations at the start of the step (n)
-      real(wp), allocatable, private :: from(:)
-      !> The bodies over the step, and as the forces see them; body 0 is the ground
-      type(turned_body), allocatable, private :: turned(:), seen(:)
-      type(joint_type), allocatable, private :: joint(:)
-      !> Forces of the joints, their derivatives, damping, and velocities of the joints (unknowns)
-      real(wp), allocatable, private :: f(:), k(:), viscous(:), w1(:)
+      !> The residual (3, n)
+      real(wp), allocatable :: r(:, :)
+      !> Axial forces of the joints, tension positive (n)
+      real(wp), allocatable :: tension(:)
+      !> Mass; accelerations and forces of the bodies at the start of the step and at its end (3, n)
+      real(wp), allocatable, private :: mass(:, :), a0(:, :), g0(:, :), a1(:, :), g1(:, :)
+      !> Forces of the joints, their derivatives and damping (unknowns)
+      real(wp), allocatable, private :: f(:), k(:), viscous(:)
       !> Derivative of the load on the top body by its rotation
       real(wp), private :: load_rate(3) = 0.0_wp
       !> Largest force, moment of the present trial and of all steps so far
@@ -58,8 +50,6 @@ module rbs_solve_time_finite_step
       type(finite_work), private :: work
    contains
       procedure :: start
-      procedure :: place
-      procedure :: go
       procedure :: find_residual
       procedure :: find_correction
       procedure :: finish
@@ -71,15 +61,14 @@ contains
    subroutine start(self, state)
       class(finite_step), intent(inout) :: self
       type(state_type), intent(in) :: state
-      integer :: i, m, n, size_of_band, beside
+      integer :: m, n, size_of_band, beside
 
       n = state%motion%column%n
       m = state%motion%column%unknowns
-      allocate (self%moved(3, n), self%r(3, n), self%mass(3, n), self%v0(3, n), self%a0(3, n), &
-                self%g0(3, n), self%v1(3, n), self%a1(3, n), self%g1(3, n), source=0.0_wp)
-      allocate (self%tension(n), self%gap(n), self%from(n), self%q1(m), self%change(m), self%f(m), &
-                self%k(m), self%viscous(m), self%w1(m), source=0.0_wp)
-      allocate (self%turned(0:n), self%seen(0:n), self%joint(n))
+      call self%make_chain(state%motion%column)
+      allocate (self%r(3, n), self%mass(3, n), self%a0(3, n), self%g0(3, n), self%a1(3, n), self%g1(3, n), &
+                source=0.0_wp)
+      allocate (self%tension(n), self%f(m), self%k(m), self%viscous(m), source=0.0_wp)
       size_of_band = merge(3, 4, state%motion%column%opens)*n
       beside = beside_diagonal(state%motion%column)
       allocate (self%band(3*beside + 1, size_of_band), self%right(size_of_band, 1), source=0.0_wp)
@@ -88,10 +77,6 @@ contains
          self%mass(1, :) = column%mass
          self%mass(2, :) = column%mass
          self%mass(3, :) = column%inertia
-         do i = 1, n
-            self%joint(i)%above = column%lower(i)
-            if (i > 1) self%joint(i)%below = column%upper(i - 1)
-         end do
          call self%now%create(column)
          call self%work%create(n)
          call state%motion%acceleration(state%springs, state%q, state%v, state%load, self%now)
@@ -99,9 +84,9 @@ contains
          self%tension = self%work%axial
       end associate
       call self%place(state)
-      call body_velocities(self, state)
+      call self%body_velocities(state)
       self%v1 = self%v0
-      call see_end(self, state%motion%column, state%q)
+      call self%see_end(state%motion%column, state%q)
       call find_forces_at(self, state, state%q, state%v, state%load, 1.0_wp, self%g0)
       self%a0 = self%g0/self%mass
       self%largest = self%scale
@@ -113,87 +98,6 @@ contains
 
       beside = merge(5, 6, column%opens)
    end function beside_diagonal
-
-   !> Where the step starts.
-   subroutine place(self, state)
-      class(finite_step), intent(inout) :: self
-      type(state_type), intent(in) :: state
-      real(wp) :: rotation
-      integer :: i, n
-
-      n = state%motion%column%n
-      rotation = 0.0_wp
-      do i = 1, n
-         rotation = rotation + state%q(n + i)
-         self%from(i) = rotation
-      end do
-      self%moved = 0.0_wp
-      self%q1 = state%q
-      self%change = 0.0_wp
-   end subroutine place
-
-   !> Velocities of the centroids from those of the joints.
-   subroutine body_velocities(self, state)
-      class(finite_step), intent(inout) :: self
-      type(state_type), intent(in) :: state
-      type(turned_body) :: below, body
-      real(wp) :: top(2), spin, spin_below, opening, opens
-      integer :: i, n
-
-      n = state%motion%column%n
-      top = 0.0_wp
-      spin = 0.0_wp
-      opening = 0.0_wp
-      opens = 0.0_wp
-      do i = 1, n
-         spin_below = spin
-         spin = spin + state%v(n + i)
-         if (state%motion%column%opens) then
-            opening = state%q(2*n + i)
-            opens = state%v(2*n + i)
-         end if
-         call body_at(self%from(i), body)
-         top = top + (state%v(i) + opening*spin_below)*below%t1 + (opens - state%q(i)*spin_below)*below%e1
-         top = top + (state%motion%column%lower(i)*spin)*body%t1
-         self%v0(:, i) = [top(1), top(2), spin]
-         top = top + (state%motion%column%upper(i)*spin)*body%t1
-         below = body
-      end do
-   end subroutine body_velocities
-
-   !> The deformations that follow from what the bodies have moved.
-   subroutine go(self, state)
-      class(finite_step), intent(inout) :: self
-      type(state_type), intent(in) :: state
-      type(turned_body) :: body
-      real(wp) :: moved_below(3), change(2), opening
-      integer :: i, n
-
-      n = state%motion%column%n
-      moved_below = 0.0_wp
-      opening = 0.0_wp
-      do i = 1, n
-         call turn_body(self%from(i), self%moved(3, i), self%turned(i))
-         if (i > 1) then
-            call body_at(self%from(i - 1), body)
-         else
-            body = self%turned(0)
-         end if
-         if (state%motion%column%opens) opening = state%q(2*n + i)
-         call joint_at(body, state%q(i), opening, self%joint(i))
-         call joint_change(self%turned(i - 1), self%turned(i), moved_below, self%moved(:, i), self%joint(i), &
-                           change)
-         self%change(i) = change(1)
-         self%change(n + i) = self%moved(3, i) - moved_below(3)
-         if (state%motion%column%opens) then
-            self%change(2*n + i) = change(2)
-         else
-            self%gap(i) = change(2)
-         end if
-         moved_below = self%moved(:, i)
-      end do
-      self%q1(:) = state%q + self%change
-   end subroutine go
 
    !> Residual of the step for what the bodies have moved, and its size relative to the forces. The springs
    !> are at the end of the step, or still at its start if their lines reach so far.
@@ -217,7 +121,7 @@ contains
       else
          self%a1 = (self%moved - h*self%v0 - (h**2*(0.5_wp - self%beta))*self%a0)/(self%beta*h**2)
          self%v1 = self%v0 + h*((1.0_wp - self%gamma)*self%a0 + self%gamma*self%a1)
-         call see_end(self, state%motion%column, self%q1)
+         call self%see_end(state%motion%column, self%q1)
          call find_forces_at(self, state, self%q1, self%w1, load, h, self%g1)
          self%r = (1.0_wp - self%alpha_f)*self%g1 + self%alpha_f*self%g0 &
                   - self%mass*((1.0_wp - self%alpha_m)*self%a1 + self%alpha_m*self%a0)
@@ -270,32 +174,6 @@ contains
          self%viscous = state%motion%joint_damping
       end if
    end subroutine find_damping
-
-   !> Bodies and joints at the end of the step, and the velocities of the joints.
-   subroutine see_end(self, column, q)
-      class(finite_step), intent(inout) :: self
-      type(column_type), intent(in) :: column
-      real(wp), intent(in), contiguous :: q(:)
-      real(wp) :: rotation, opening, rates(2), below(3)
-      integer :: i, n
-
-      n = column%n
-      rotation = 0.0_wp
-      opening = 0.0_wp
-      below = 0.0_wp
-      call body_at(0.0_wp, self%seen(0))
-      do i = 1, n
-         rotation = rotation + q(n + i)
-         call body_at(rotation, self%seen(i))
-         if (column%opens) opening = q(2*n + i)
-         call joint_at(self%seen(i - 1), q(i), opening, self%joint(i))
-         call joint_rates(self%seen(i - 1), self%seen(i), below, self%v1(:, i), self%joint(i), rates)
-         self%w1(i) = rates(1)
-         self%w1(n + i) = self%v1(3, i) - below(3)
-         if (column%opens) self%w1(2*n + i) = rates(2)
-         below = self%v1(:, i)
-      end do
-   end subroutine see_end
 
    !> Forces on the bodies at one state.
    subroutine find_forces_at(self, state, q, v, load, h, g)
@@ -498,7 +376,7 @@ contains
             end if
          end if
       end associate
-      call see_end(self, state%motion%column, self%q1)
+      call self%see_end(state%motion%column, self%q1)
       state%q(:) = self%q1
       state%v(:) = self%w1
       state%along_joints = 0.5_wp*sum(self%mass*self%v1**2) &
