@@ -13,8 +13,10 @@ from rbsdem.peer import gallery as gallery
 from rbsdem.peer import tables as tables
 from rbsdem.peer.batch import predict, predict_one
 from rbsdem.peer.columns import column
+from rbsdem.peer.doubts import Checked, Doubt, check
 from rbsdem.peer.drawing import Drawing, DrawnBar, draw
 from rbsdem.peer.file import PeerTest, read_peer
+from rbsdem.peer.indicators import Indicators, indicators
 from rbsdem.peer.laboratory import read_test
 from rbsdem.peer.measured import PDELTA_CODES, MeasuredTest, net_force
 from rbsdem.peer.predictions import Group, Prediction, Predictions, Quartiles
@@ -33,9 +35,12 @@ __all__ = [
     "FOLDER_VARIABLE",
     "HISTORY_FILES",
     "PDELTA_CODES",
+    "Checked",
+    "Doubt",
     "Drawing",
     "DrawnBar",
     "Group",
+    "Indicators",
     "MeasuredTest",
     "Observed",
     "PeerTest",
@@ -45,9 +50,11 @@ __all__ = [
     "Reversals",
     "Specimen",
     "Specimens",
+    "check",
     "column",
     "draw",
     "find_history",
+    "indicators",
     "measured_loops",
     "net_force",
     "predict",

@@ -13,6 +13,7 @@ from rbsdem._optional import console, need_rich
 from rbsdem._parser import INTERRUPTED, CommandParser, run_command
 from rbsdem.errors import InputError
 from rbsdem.peer.batch import predict
+from rbsdem.peer.doubts import Checked, check
 from rbsdem.peer.journal import Journal
 from rbsdem.peer.predictions import Predictions
 from rbsdem.peer.specimen import Specimen
@@ -27,7 +28,7 @@ holds specimens.csv and the histories of the PEER Structural Performance Databas
 EPILOG = """\
 Files (--out): results.csv (a row for each test), summary.csv (medians and quartiles of
 groups), gallery.html (all loops, to sort and filter; needs jinja2), loops.png (all loops; needs
-matplotlib).
+matplotlib); with --check only check.csv (indicators and doubts).
 A batch that did not come to its end leaves what was finished in unfinished.jsonl; a second start
 with the same --out goes on from there.
 Exit codes: 0 every test was analysed to its end, 1 some were not, 2 the input is wrong,
@@ -68,6 +69,16 @@ def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
         metavar="WHAT",
         help="groups: kind (form and failure mode), failure_mode, section, series",
     )
+    parser.add_argument(
+        "--check",
+        action="store_true",
+        help="say which tests are doubtful, and why; no column is predicted",
+    )
+    parser.add_argument(
+        "--mended",
+        action="store_true",
+        help="predict with sure doubts mended, or the tests set aside (see --check)",
+    )
     parser.add_argument("--out", type=Path, metavar="DIR", help="write files into this folder")
     parser.add_argument(
         "--loops", action="store_true", help="with --out, write the loops of every test as csv"
@@ -86,6 +97,11 @@ def _run(given: argparse.Namespace) -> int:
     # What may be missing or wrong is reported before the work.
     need_rich()
     tests = chosen(read_specimens(given.folder), given.section, given.failure, given.only)
+    if given.check:
+        return _check(tests, given.out)
+    if given.mended:
+        # Rules by series and twins look at all tests, not at the chosen ones alone.
+        tests = _mended(tests, check(read_specimens(given.folder).with_history()))
     if not hasattr(tests[0], given.by):
         raise InputError(f"--by {given.by} is no property, as failure_mode, section, series")
     options = {} if given.model_version is None else {"version": given.model_version}
@@ -116,6 +132,32 @@ def _run(given: argparse.Namespace) -> int:
         sys.stderr.write(f"rbsdem: peer: broken off after {len(found)} of {len(tests)} tests\n")
         return INTERRUPTED
     return 0 if found.all_completed else 1
+
+
+def _check(tests: Specimens, folder: Path | None) -> int:
+    """Print which tests are doubtful."""
+    checked = check(tests)
+    console(168).print(checked.table())
+    sure = {doubt.specimen.name for doubt in checked.doubts if doubt.sure}
+    hints = {doubt.specimen.name for doubt in checked.doubts} - sure
+    print(
+        f"\n{len(checked.indicators)} tests with a history: {len(sure)} surely doubtful, hints "
+        f"for {len(hints)} more"
+    )
+    if folder is not None:
+        folder.mkdir(parents=True, exist_ok=True)
+        checked.to_csv(folder / "check.csv")
+        print(f"wrote {folder / 'check.csv'}")
+    return 0
+
+
+def _mended(tests: Specimens, checked: Checked) -> Specimens:
+    """Return the chosen tests as they are after mending."""
+    mended = {row.name: row for row in checked.mended()}
+    kept = Specimens(mended[row.name] for row in tests if row.name in mended)
+    if not kept:
+        raise InputError("--mended sets all of these tests aside; --check says why")
+    return kept
 
 
 def chosen(

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from rbsdem._optional import need_rich, plain
 from rbsdem._views import view_of
+from rbsdem.peer.doubts import Checked
 from rbsdem.peer.predictions import Predictions, Quartiles
 
 if TYPE_CHECKING:
@@ -61,6 +62,26 @@ def summary_table(predictions: Predictions, by: str) -> Table:
             *cells,
             _three(group.seconds, 1, 1e3),
             style="bold" if group.name == "all" else None,
+        )
+    return table
+
+
+@view_of(Checked, "table")
+def doubts_table(checked: Checked) -> Table:
+    """Return a row for each doubt, the sure ones first."""
+    rich = need_rich()
+    table = rich.table.Table(box=rich.box.SIMPLE_HEAD, padding=(0, 1), show_edge=False)
+    for name in ("Test", "About", "", "Why", "For the second score"):
+        table.add_column(name, no_wrap=name != "Why")
+    for doubt in sorted(checked.doubts, key=lambda doubt: not doubt.sure):
+        remedy = "set aside" if doubt.code is None else f"code {doubt.code}"
+        table.add_row(
+            plain(doubt.specimen.name),
+            doubt.about,
+            "sure" if doubt.sure else "hint",
+            plain(doubt.why),
+            remedy if doubt.sure else "-",
+            style=None if doubt.sure else "dim",
         )
     return table
 
