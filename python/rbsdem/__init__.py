@@ -5,7 +5,7 @@ SI units throughout: N, m, kg, s, rad. Axial load is positive in compression.
 
 from typing import TYPE_CHECKING
 
-from rbsdem import _moved, comparison, peer, plot
+from rbsdem import _moved, comparison, motions, peer, plot
 from rbsdem._core import version as _version
 from rbsdem.accuracy import Trade, trade
 from rbsdem.analysis import Modes, cyclic, mass_matrix, modes, time_history
@@ -15,7 +15,15 @@ from rbsdem.column import Column
 from rbsdem.comparison import Comparison, compare
 from rbsdem.damping import Damping
 from rbsdem.ensembles import Ensemble, ensemble
-from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, RbsdemError, SolveError
+from rbsdem.errors import (
+    AccuracyWarning,
+    InputError,
+    LongRunWarning,
+    RbsdemError,
+    RepairWarning,
+    SolveError,
+)
+from rbsdem.motions import GroundMotion
 from rbsdem.paper import paper_columns, paper_sections
 from rbsdem.peer import PeerTest, read_peer, read_test
 from rbsdem.protocol import protocol
@@ -58,6 +66,7 @@ __all__ = [
     "Damping",
     "Elastic",
     "Ensemble",
+    "GroundMotion",
     "InputError",
     "Layered",
     "Layout",
@@ -69,6 +78,7 @@ __all__ = [
     "Pinching",
     "RbsdemError",
     "RectangularSection",
+    "RepairWarning",
     "Result",
     "SolveError",
     "Spiral",
@@ -84,6 +94,7 @@ __all__ = [
     "ensemble",
     "mass_matrix",
     "modes",
+    "motions",
     "paper_columns",
     "paper_sections",
     "peer",

@@ -513,6 +513,15 @@ def protocol(
     return values
 
 
+def spectrum(acceleration: Array, dt: float, period: Array, damping: float) -> Array:
+    """Return peaks of relative displacement, relative velocity, absolute acceleration, a row each.
+
+    Values that are not finite must not come here.
+    """
+    peaks: Array = _rbsdem.rbs_spectrum(acceleration, dt, period, damping)
+    return np.ascontiguousarray(peaks)
+
+
 def read_history(
     path: str,
     length: str,

@@ -15,6 +15,8 @@ from rbsdem._core import Array
 from rbsdem.column import Column, checked_column
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning
 from rbsdem.methods import IN_TIME
+from rbsdem.motions.acting import acting
+from rbsdem.motions.motion import GroundMotion
 from rbsdem.result import Result, result_from_rows
 
 #: Names of the methods in time.
@@ -169,14 +171,14 @@ def cyclic(
 
 def time_history(
     column: Column,
-    time: ArrayLike,
+    time: ArrayLike | None = None,
     *,
     force: ArrayLike | None = None,
-    ground_acceleration: ArrayLike | None = None,
+    ground_acceleration: ArrayLike | GroundMotion | None = None,
     dt: float | None = None,
     method: Method | None = None,
     initial: Mapping[str, ArrayLike] | None = None,
-    vertical_acceleration: ArrayLike | None = None,
+    vertical_acceleration: ArrayLike | GroundMotion | None = None,
     axial_load: ArrayLike | None = None,
     events: Literal["step", "located"] | None = None,
     tolerance: float | None = None,
@@ -192,11 +194,12 @@ def time_history(
     ----------
     column : Column
         The column.
-    time : array_like, shape (m,)
-        Times of the loading, ascending [s]; two are enough for a free vibration.
+    time : array_like, shape (m,), optional
+        Times of the loading, ascending [s]; two are enough for a free vibration. A ground motion
+        that is a `GroundMotion` brings its own.
     force : array_like, shape (m,), optional
         Lateral force at the top [N], linear between the times.
-    ground_acceleration : array_like, shape (m,), optional
+    ground_acceleration : array_like of shape (m,), or GroundMotion, optional
         Acceleration of the ground [m/s2], linear between the times.
     dt : float, optional
         Step [s]. If it divides every interval of `time`, rows are kept at `time`; otherwise the
@@ -214,7 +217,7 @@ def time_history(
         "rotation_velocity", "opening_velocity", each of shape (n,). The springs are loaded
         from zero to this state. Without "opening" the joints start in equilibrium under axial load
         and weight.
-    vertical_acceleration : array_like, shape (m,), optional
+    vertical_acceleration : array_like of shape (m,), or GroundMotion, optional
         Vertical acceleration of the ground, upward positive [m/s2].
     axial_load : array_like, shape (m,), optional
         Axial load at the top [N], compression positive, in place of the constant one of the column.
@@ -266,11 +269,14 @@ def time_history(
         "vertical_acceleration": vertical_acceleration,
         "axial_load": axial_load,
     }
+    time, given = acting(time, given, "time_history")
     loads = {name: _loading(values, name) for name, values in given.items() if values is not None}
     if not loads and not initial:
         raise InputError(
             "time_history: nothing acts; give a load (" + ", ".join(given) + ") or an initial state"
         )
+    if time is None:
+        raise InputError("time_history: time is missing; give the times of the loading")
     chosen = {
         "method": method,
         "dt": dt,

@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rbsdem.analysis import Result
 
-__all__ = ["AccuracyWarning", "InputError", "LongRunWarning", "RbsdemError", "SolveError"]
+__all__ = [
+    "AccuracyWarning",
+    "InputError",
+    "LongRunWarning",
+    "RbsdemError",
+    "RepairWarning",
+    "SolveError",
+]
 
 
 class RbsdemError(Exception):
@@ -49,3 +56,7 @@ class LongRunWarning(UserWarning):
 
 class AccuracyWarning(UserWarning):
     """A result of valid input may mislead: the message says why, and what to use instead."""
+
+
+class RepairWarning(UserWarning):
+    """A file was not in order and has been mended: the message says what is missing, and where."""

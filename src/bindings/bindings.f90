@@ -383,6 +383,19 @@ subroutine rbs_named_protocol(name, reference, largest, steps, amplitudes, cycle
    call tell(error, status, message)
 end subroutine rbs_named_protocol
 
+subroutine rbs_spectrum(m, acceleration, dt, np, period, damping, peak)
+   ! Peaks of relative displacement, relative velocity and absolute acceleration, a column for each period.
+   use iso_c_binding, only: c_double, c_int
+   use rbs_loading_spectrum, only: response_spectrum
+   implicit none
+   integer(c_int), intent(in) :: m, np
+   real(c_double), intent(in) :: acceleration(m), dt, period(np), damping
+   real(c_double), intent(out) :: peak(3, np)
+   !f2py threadsafe
+
+   call response_spectrum(acceleration, dt, period, damping, peak)
+end subroutine rbs_spectrum
+
 subroutine rbs_read_history(path, length_unit, force_unit, separator, decimal, skip, columns, most, rows, &
                             name, displacement, force, status, message)
    ! With skip < 0 the file says what its layout and its columns are.

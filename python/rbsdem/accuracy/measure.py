@@ -20,6 +20,8 @@ from rbsdem.accuracy.rows import Row, choose, make_rows, third_method
 from rbsdem.accuracy.scene import Scene, make_scene
 from rbsdem.column import Column
 from rbsdem.errors import InputError, SolveError
+from rbsdem.motions.acting import acting
+from rbsdem.motions.motion import GroundMotion
 from rbsdem.springs import Spring
 
 __all__ = ["trade"]
@@ -34,9 +36,9 @@ def trade(
     time: ArrayLike | None = None,
     *,
     force: ArrayLike | None = None,
-    ground_acceleration: ArrayLike | None = None,
+    ground_acceleration: ArrayLike | GroundMotion | None = None,
     displacement: ArrayLike | None = None,
-    vertical_acceleration: ArrayLike | None = None,
+    vertical_acceleration: ArrayLike | GroundMotion | None = None,
     axial_load: ArrayLike | None = None,
     initial: Mapping[str, ArrayLike] | None = None,
     methods: Sequence[str] | None = None,
@@ -61,11 +63,11 @@ def trade(
     column : Column
         The column. Its kinematics are those of the reference.
     time : array_like, shape (m,), optional
-        Times of the loading [s]. Without it the path is static.
+        Times of the loading [s]. Without it and without a `GroundMotion` the path is static.
     force : array_like, shape (m,), optional
         Lateral force at the top [N]; without time it drives the static path.
-    ground_acceleration, vertical_acceleration : array_like, shape (m,), optional
-        Accelerations of the ground [m/s2].
+    ground_acceleration, vertical_acceleration : array_like or GroundMotion, optional
+        Accelerations of the ground [m/s2], shape (m,).
     axial_load : array_like, shape (m,), optional
         Axial load, in addition to that of the column [N].
     initial : mapping, optional
@@ -121,6 +123,7 @@ def trade(
         "vertical_acceleration": vertical_acceleration,
         "axial_load": axial_load,
     }
+    time, loads = acting(time, loads, "trade")
     scene = make_scene(column, time, loads, initial, collapse_drift)
     clock = Budget(budget)
     with _telling(progress, clock) as told:

@@ -1,0 +1,20 @@
+"""Ground motions: records read, measured, scaled and joined, and synthetic ones."""
+
+from rbsdem.motions import figure as figure
+from rbsdem.motions.motion import STANDARD_GRAVITY, GroundMotion
+from rbsdem.motions.read import read_motion, read_motions
+from rbsdem.motions.shaping import corrected, resampled, sequence
+from rbsdem.motions.spectrum import Spectrum
+from rbsdem.motions.synthetic import synthetic
+
+__all__ = [
+    "STANDARD_GRAVITY",
+    "GroundMotion",
+    "Spectrum",
+    "corrected",
+    "read_motion",
+    "read_motions",
+    "resampled",
+    "sequence",
+    "synthetic",
+]

@@ -1,0 +1,263 @@
+"""A ground motion: accelerations at equal steps, and what is computed of them."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rbsdem import _core, _views
+from rbsdem._core import Array
+from rbsdem._files import whole_file
+from rbsdem.errors import InputError
+from rbsdem.motions.spectrum import Spectrum, response_spectrum
+
+#: Standard acceleration of gravity [m/s2].
+STANDARD_GRAVITY = 9.80665
+
+#: Longest step that has a meaning for an earthquake [s]; a longer one is a slip in its unit.
+_LONGEST_STEP = 10.0
+
+
+@dataclass(frozen=True, repr=False, eq=False, init=False)
+class GroundMotion:
+    """An acceleration of the ground at equal steps, linear between them.
+
+    Parameters
+    ----------
+    acceleration : array_like, shape (m,)
+        Accelerations [m/s2]; kept as an array that cannot be written to.
+    dt : float
+        Step [s]; the first value is at time 0.
+    name : str, optional
+        Name in tables and figures; `read_motion` takes that of the file.
+    description : str, optional
+        What the file says of event, station and component.
+
+    Raises
+    ------
+    InputError
+        With a line for everything that is wrong.
+    """
+
+    acceleration: Array
+    dt: float
+    name: str
+    description: str
+
+    def __init__(
+        self, acceleration: ArrayLike, dt: float, name: str = "", description: str = ""
+    ) -> None:
+        who = f"motion {name}" if name else "motion"
+        faults, values, step = [], np.empty(0), 0.0
+        try:
+            values = np.array(_core.finite_vector(acceleration, f"{who}: acceleration"))
+            if values.size < 2:
+                faults.append(f"{who}: acceleration has {values.size} values; give two or more")
+        except InputError as error:
+            faults.append(str(error))
+        try:
+            step = _core.number(dt, f"{who}: dt")
+            if not 0 < step <= _LONGEST_STEP:
+                faults.append(f"{who}: dt = {step:g} s must be above 0 and at most 10 s")
+        except InputError as error:
+            faults.append(str(error))
+        if faults:
+            raise InputError("\n".join(faults))
+        values.flags.writeable = False
+        given = {"acceleration": values, "dt": step, "name": name, "description": description}
+        for key, value in given.items():
+            object.__setattr__(self, key, value)
+
+    @property
+    def time(self) -> Array:
+        """Times of the accelerations [s], shape (m,)."""
+        return self.dt * np.arange(self.acceleration.size)
+
+    @property
+    def length(self) -> float:
+        """Time from the first to the last value [s]."""
+        return self.dt * (self.acceleration.size - 1)
+
+    @property
+    def velocity(self) -> Array:
+        """Velocity of the ground, zero at first [m/s], shape (m,)."""
+        return _integral(self.acceleration, self.dt)
+
+    @property
+    def displacement(self) -> Array:
+        """Displacement of the ground, zero at first [m], shape (m,)."""
+        # Exact for an acceleration that is linear between its points.
+        a, v = self.acceleration, self.velocity
+        steps = self.dt * v[:-1] + self.dt**2 * (2 * a[:-1] + a[1:]) / 6
+        return np.concatenate([[0.0], np.cumsum(steps)])
+
+    @property
+    def pga(self) -> float:
+        """Largest absolute acceleration of the ground [m/s2]."""
+        return float(np.abs(self.acceleration).max())
+
+    @property
+    def pgv(self) -> float:
+        """Largest absolute velocity of the ground [m/s], at the points."""
+        return float(np.abs(self.velocity).max())
+
+    @property
+    def arias(self) -> float:
+        """Arias intensity [m/s]: pi/(2 g) times the integral of the squared acceleration."""
+        return float(self._husid()[-1])
+
+    def duration(self, start: float = 5.0, end: float = 95.0) -> float:
+        """Return the significant duration [s].
+
+        Parameters
+        ----------
+        start, end : float, optional
+            Parts of the Arias intensity [%] between which the time counts: 5 and 95, or 5 and 75.
+        """
+        low, high = _core.number(start, "start"), _core.number(end, "end")
+        if not 0 <= low < high <= 100:
+            raise InputError(
+                f"duration: start = {low:g} and end = {high:g} must be percentages, start < end"
+            )
+        husid = self._husid()
+        if husid[-1] == 0:
+            raise InputError(f"{self._who()}: a motion without acceleration has no duration")
+        at = np.interp([low, high], 100 * husid / husid[-1], self.time)
+        return float(at[1] - at[0])
+
+    def spectrum(self, periods: ArrayLike | None = None, damping: float = 0.05) -> Spectrum:
+        """Return the elastic response spectrum.
+
+        The oscillators are solved exactly for an acceleration that is linear between its points
+        (Nigam and Jennings 1969), with the peaks between points, and those of the free vibration
+        after the end of the motion.
+
+        Parameters
+        ----------
+        periods : array_like, shape (n,), optional
+            Natural periods [s], 0 for a rigid oscillator; by default 100 from 0.02 to 10 s.
+        damping : float, optional
+            Damping ratio.
+        """
+        return response_spectrum(self.acceleration, self.dt, periods, damping)
+
+    def sa(self, period: float, damping: float = 0.05) -> float:
+        """Return the pseudo-spectral acceleration at a period [m/s2]."""
+        value = _core.number(period, "period")
+        return float(self.spectrum([value], damping).pseudo_acceleration[0])
+
+    def sa_avg(self, periods: ArrayLike, damping: float = 0.05) -> float:
+        """Return the geometric mean of the pseudo-spectral accelerations at periods [m/s2]."""
+        sa = self.spectrum(periods, damping).pseudo_acceleration
+        if not (sa > 0).all():
+            raise InputError(f"{self._who()}: a motion without acceleration has no mean of Sa")
+        return float(np.exp(np.log(sa).mean()))
+
+    def scaled(
+        self,
+        factor: float | None = None,
+        *,
+        pga: float | None = None,
+        sa: tuple[float, float] | None = None,
+        damping: float = 0.05,
+    ) -> GroundMotion:
+        """Return the motion times a factor.
+
+        Parameters
+        ----------
+        factor : float, optional
+            The factor; exactly one of `factor`, `pga` and `sa` is given.
+        pga : float, optional
+            Peak acceleration that the motion gets [m/s2].
+        sa : (float, float), optional
+            A period [s] and the pseudo-spectral acceleration [m/s2] that the motion gets there.
+        damping : float, optional
+            Damping ratio for `sa`.
+        """
+        if sum(value is not None for value in (factor, pga, sa)) != 1:
+            raise InputError("scaled: give exactly one of factor, pga and sa")
+        if factor is not None:
+            return replace(self, acceleration=self.acceleration * _core.number(factor, "factor"))
+        if pga is not None:
+            wanted, name, has = _core.number(pga, "pga"), "pga", self.pga
+        else:
+            try:
+                period, wanted = sa  # type: ignore[misc]
+            except (TypeError, ValueError):
+                raise InputError(
+                    f"scaled: sa = {sa!r} must be a period in s and an acceleration in m/s2"
+                ) from None
+            wanted, name = _core.number(wanted, "sa"), f"Sa({period:g} s)"
+            has = self.sa(period, damping)
+        if not (math.isfinite(wanted) and wanted > 0):
+            raise InputError(f"scaled: {name} = {wanted:g} m/s2 must be above 0")
+        if has == 0:
+            raise InputError(f"{self._who()}: its {name} is 0, which no factor changes")
+        return replace(self, acceleration=self.acceleration * (wanted / has))
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write time [s] and acceleration [m/s2] as csv, from which the same values come back.
+
+        Parameters
+        ----------
+        path : path
+            File to write; `read_motion` and the loading of a case read it.
+        """
+        head = f"# {_one_line(self.description or self.name)}\ntime_s,acceleration_m/s2\n"
+        rows = zip(self.time.tolist(), self.acceleration.tolist(), strict=True)
+        with whole_file(path) as file:
+            file.write((head + "".join(f"{t!r},{a!r}\n" for t, a in rows)).encode())
+
+    def plot(self, ax: Any = None, **line: Any) -> Any:
+        """Draw the acceleration over time; see `rbsdem.motions.figure.draw_motion`."""
+        return _views.view(self, "plot", ax, **line)
+
+    def _husid(self) -> Array:
+        return np.pi / (2 * STANDARD_GRAVITY) * _integral(self.acceleration**2, self.dt)
+
+    def _who(self) -> str:
+        return f"motion {self.name}" if self.name else "motion"
+
+    def __repr__(self) -> str:
+        name = f"{self.name!r}, " if self.name else ""
+        size = self.acceleration.size
+        return f"GroundMotion({name}{size} values, dt={self.dt:g} s, pga={self.pga:.4g} m/s2)"
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether another motion has the same values, step, name and description."""
+        if not isinstance(other, GroundMotion):
+            return NotImplemented
+        return self._key() == other._key()
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+    def _key(self) -> tuple[bytes, float, str, str]:
+        return self.acceleration.tobytes(), self.dt, self.name, self.description
+
+
+def checked_motion(motion: object, who: str = "") -> GroundMotion:
+    """Return a motion, or raise `InputError` with what makes one."""
+    if isinstance(motion, GroundMotion):
+        return motion
+    given = repr(motion)
+    if len(given) > 60:
+        given = f"a {type(motion).__name__}"
+    raise InputError(
+        f"{who}motion = {given} must be a GroundMotion; motions.read_motion(path) or "
+        "motions.GroundMotion(acceleration, dt) makes one"
+    )
+
+
+def _integral(values: Array, dt: float) -> Array:
+    """Return the integral by the rule of trapezoids, zero at first."""
+    return np.concatenate([[0.0], np.cumsum(0.5 * dt * (values[:-1] + values[1:]))])
+
+
+def _one_line(text: str) -> str:
+    return "".join(character if character.isprintable() else " " for character in text)
