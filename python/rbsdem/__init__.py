@@ -15,6 +15,7 @@ from rbsdem.column import Column
 from rbsdem.comparison import Comparison, compare
 from rbsdem.damping import Damping
 from rbsdem.ensembles import Ensemble, ensemble
+from rbsdem.envelopes import Envelope, Idealisation, envelope
 from rbsdem.errors import (
     AccuracyWarning,
     InputError,
@@ -23,6 +24,7 @@ from rbsdem.errors import (
     RepairWarning,
     SolveError,
 )
+from rbsdem.export import load
 from rbsdem.motions import GroundMotion
 from rbsdem.paper import paper_columns, paper_sections
 from rbsdem.peer import PeerTest, read_peer, read_test
@@ -66,7 +68,9 @@ __all__ = [
     "Damping",
     "Elastic",
     "Ensemble",
+    "Envelope",
     "GroundMotion",
+    "Idealisation",
     "InputError",
     "Layered",
     "Layout",
@@ -92,6 +96,8 @@ __all__ = [
     "comparison",
     "cyclic",
     "ensemble",
+    "envelope",
+    "load",
     "mass_matrix",
     "modes",
     "motions",

@@ -21,6 +21,11 @@ def need_pandas() -> Any:
     return _need("pandas", "a DataFrame needs", "pandas")
 
 
+def need_xarray() -> Any:
+    """Return xarray, or raise `ImportError` with the installation command."""
+    return _need("xarray", "netCDF and Datasets need", "netcdf")
+
+
 def need_rich() -> Any:
     """Return rich, or raise `ImportError` with the installation command."""
     rich = _need("rich", "tables and progress need", "")

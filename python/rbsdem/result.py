@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -18,6 +19,9 @@ from rbsdem.springs import Layered
 if TYPE_CHECKING:
     from rbsdem.accuracy.answer import Errors
     from rbsdem.case import Case
+    from rbsdem.comparison.cycles import HalfCycles
+    from rbsdem.envelopes.envelope import Envelope
+    from rbsdem.envelopes.idealise import Idealisation, Method
 
 #: Names of the energies.
 ENERGIES = ("input", "kinetic", "spring", "damping", "axial", "residual")
@@ -187,6 +191,136 @@ class Result:
         return bool(self.summary["analysis"] == "dynamic")
 
     @property
+    def drift(self) -> Array:
+        """Drift ratio, displacement of the top over the height, shape (steps,)."""
+        return self.displacement / self.column.height
+
+    @property
+    def residual_drift(self) -> float:
+        """Drift ratio that is left.
+
+        In time it is the one about which the column swings in the end: a quarter, a half and a
+        quarter of the last three extremes of the displacement (the mean of two if there are only
+        two, the last value if it does not swing). Of a static path it is the one at the last zero
+        of the force, NaN if the force never returns to zero.
+        """
+        return _residual(self.displacement, None if self.dynamic else self.force) / (
+            self.column.height
+        )
+
+    def at(self, time: float) -> dict[str, Any]:
+        """Return the state at a time, or at a point of a static path, linear between rows.
+
+        Parameters
+        ----------
+        time : float
+            Within `time` [s]; in a static analysis the number of the point, which may lie between
+            two.
+
+        Returns
+        -------
+        dict
+            Every array of the result by name, its value or its values of the joints; "energy" is a
+            dict of the energies.
+
+        Raises
+        ------
+        InputError
+            If the time is outside of the rows.
+        """
+        at = _core.number(time, "time")
+        if not self.time.size or not self.time[0] <= at <= self.time[-1]:
+            span = f"{self.time[0]:g} to {self.time[-1]:g}" if self.time.size else "nothing"
+            raise InputError(f"time = {at:g} is outside of the rows, which hold {span}")
+        row = int(np.searchsorted(self.time, at, side="right")) - 1
+        after = min(row + 1, self.time.size - 1)
+        length = self.time[after] - self.time[row]
+        share = (at - self.time[row]) / length if length > 0 else 0.0
+
+        def between(values: Any) -> Any:
+            if isinstance(values, dict):
+                return {name: between(value) for name, value in values.items()}
+            mixed = values[row] if share == 0 else (1 - share) * values[row] + share * values[after]
+            return float(mixed) if np.ndim(mixed) == 0 else np.array(mixed)
+
+        arrays = {
+            name: value for name, value in vars(self).items() if isinstance(value, np.ndarray)
+        }
+        state: dict[str, Any] = {name: between(values) for name, values in arrays.items()}
+        return state | {"energy": between(self.energy), "time": at}
+
+    def envelope(self, side: Literal[1, -1] = 1) -> Envelope:
+        """Return the envelope of the loop to one side; see `rbsdem.envelope`."""
+        found: Envelope = _views.view(self, "envelope", side)
+        return found
+
+    def idealise(
+        self,
+        method: Method = "asce_41",
+        side: Literal[1, -1] = 1,
+        *,
+        end: float | None = None,
+    ) -> Idealisation:
+        """Replace the envelope of a side by two straight lines; see `Envelope.idealise`."""
+        found: Idealisation = _views.view(self, "idealise", method, side, end)
+        return found
+
+    def half_cycles(self) -> HalfCycles:
+        """Return energy, stiffness and damping of each half-cycle.
+
+        See `rbsdem.comparison.half_cycles`.
+        """
+        found: HalfCycles = _views.view(self, "half_cycles")
+        return found
+
+    def strength_loss(self, share: float = 0.2) -> float:
+        """Return the displacement at which a share of the strength is lost [m]; NaN if it is not.
+
+        See `rbsdem.comparison.strength_loss`.
+        """
+        return float(_views.view(self, "strength_loss", share))
+
+    def to_pandas(self) -> Any:
+        """Return a DataFrame, a row for each of the result, with units in the names; needs pandas.
+
+        The names are those of the columns of the executable's csv.
+        """
+        return _views.view(self, "to_pandas")
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write the rows as csv with all digits, whole or not at all, as the executable does.
+
+        Parameters
+        ----------
+        path : path
+            File to write.
+        """
+        _views.view(self, "to_csv", path)
+
+    def to_xarray(self) -> Any:
+        """Return a Dataset of xarray with units and joints as coordinates; needs xarray."""
+        return _views.view(self, "to_xarray")
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the whole result into one file, which `rbsdem.load` reads back bit for bit.
+
+        It holds the arrays, the column and the case as text, the summary, the settings, units and
+        version. It is written whole or not at all. A column that a section made comes back as the
+        plain `Column` that was solved.
+
+        Parameters
+        ----------
+        path : path
+            File to write: ``.npz`` (numpy), or ``.nc`` (netCDF; needs the extra "netcdf").
+
+        Raises
+        ------
+        InputError
+            For another ending.
+        """
+        _views.view(self, "save", path)
+
+    @property
     def error_estimate(self) -> ErrorEstimate:
         """What is known of the error: the class of the method, and the balance of energy."""
         about = self.summary
@@ -247,6 +381,36 @@ def _same(one: Any, other: Any) -> bool:
     if isinstance(one, float) and isinstance(other, float):
         return one == other or (math.isnan(one) and math.isnan(other))
     return bool(one == other)
+
+
+def _residual(displacement: Array, force: Array | None) -> float:
+    """Return what is left of a displacement [m]; see `Result.residual_drift`."""
+    if displacement.size == 0:
+        return math.nan
+    return _rest_of_swing(displacement) if force is None else _last_zero(displacement, force)
+
+
+def _last_zero(displacement: Array, force: Array) -> float:
+    """Return the displacement at the last zero of the force [m], NaN if it never returns to it."""
+    if force[-1] == 0:
+        return float(displacement[-1])
+    changes = np.flatnonzero(force[1:] * force[:-1] <= 0)
+    # The start has no force either, and is no return.
+    changes = changes[force[changes] != 0]
+    if changes.size == 0:
+        return math.nan
+    row = int(changes[-1])
+    share = force[row] / (force[row] - force[row + 1])
+    return float(displacement[row] + share * (displacement[row + 1] - displacement[row]))
+
+
+def _rest_of_swing(displacement: Array) -> float:
+    """Return about what a displacement swings in the end [m]."""
+    moves = np.diff(displacement)
+    turns = np.flatnonzero(moves[1:] * moves[:-1] < 0) + 1
+    extremes = displacement[turns[-3:]]
+    weights = {0: (), 1: (), 2: (0.5, 0.5), 3: (0.25, 0.5, 0.25)}[extremes.size]
+    return float(np.dot(weights, extremes)) if weights else float(displacement[-1])
 
 
 def _width(column: Column, with_base: bool) -> int:

@@ -130,3 +130,60 @@ def test_trade_passes_keywords_on():
     found.plot(ax=own)
     assert {family for family, _ in fonts(figure)} == before
     assert np.isfinite(own.get_ylim()).all()
+
+
+# ---- over time and over the height ---------------------------------------------------------------
+
+
+def shaken(n=3):
+    """A column of n bodies that is shaken at its top."""
+    time = np.arange(0.0, 0.5, 0.01)
+    column = rbsdem.Column(
+        1.6, 600.0, COLUMN.shear, COLUMN.flexure, n=n, kinematics="pdelta", axial_load=1e5
+    )
+    return rbsdem.time_history(column, time, force=1e4 * np.sin(20 * time), method="rk4")
+
+
+def test_history_has_the_units_of_its_label():
+    result = shaken()
+    for over, factor, unit in (("drift", 100, "%"), ("base_shear", 1e-3, "kN")):
+        ax = plot.history(result, over)
+        assert ax.get_lines()[0].get_ydata() == pytest.approx(factor * getattr(result, over))
+        assert f"({unit})" in ax.get_ylabel()
+        assert ax.get_xlabel() == "Time (s)"
+    assert plot.history(RESULT).get_xlabel() == "Point of the path"
+    with pytest.raises(rbsdem.InputError, match="over = 'speed'"):
+        plot.history(result, "speed")
+
+
+def test_energies_that_stay_zero_are_left_out():
+    ax = plot.energy(shaken())
+    texts = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert texts == ["input", "kinetic", "springs", "axial load and weight"]
+    assert ax.get_lines()[0].get_ydata()[-1] == pytest.approx(1e-3 * shaken().energy["input"][-1])
+
+
+def test_profile_is_that_of_the_bodies():
+    """The top has its drift; the moment falls in a straight line where nothing acts in between."""
+    result = rbsdem.cyclic(shaken().column, displacement=[0.0, 0.01])
+    drift, shear, moment = plot.profile(result)
+    heights, drifts = drift.get_lines()[0].get_ydata(), drift.get_lines()[0].get_xdata()
+    assert (heights[-1], drifts[-1]) == (pytest.approx(1.6), pytest.approx(100 * 0.01 / 1.6))
+    assert shear.get_lines()[0].get_xdata() == pytest.approx(1e-3 * result.force[-1], rel=0.02)
+    at = moment.get_lines()[0]
+    assert at.get_xdata()[0] == pytest.approx(1e-3 * result.base_moment[-1])
+    assert at.get_xdata()[-1] == 0
+    with pytest.raises(rbsdem.InputError, match="outside"):
+        plot.profile(result, [7.0])
+    with pytest.raises(rbsdem.InputError, match="one to"):
+        plot.profile(result, [0.0] * 9)
+
+
+def test_views_of_a_response_keep_the_axes_of_the_caller():
+    axes = plt.subplots(1, 3)[1]
+    result = shaken()
+    assert plot.profile(result, axes=axes) == list(axes)
+    assert plot.history(result, ax=axes[0], color="red").get_lines()[-1].get_color() != "black"
+    assert plot.energy(result, ax=axes[1]) is axes[1]
+    with pytest.raises(rbsdem.InputError, match="three"):
+        plot.profile(result, axes=axes[:2])

@@ -1,95 +1,36 @@
-"""Figures of force-displacement loops for publication: mm and kN, the model over the test.
-
-Needs matplotlib (``pip install "rbsdem[plot]"``), which is imported when a figure is asked for.
-Functions take SI and draw millimetres and kilonewtons. Without axes they make a figure in the house
-style, the dictionary `RC`; axes that are given keep the style of the caller.
-"""
+"""Force-displacement loops: mm and kN, the model over the test."""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from weakref import WeakSet
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rbsdem._curve import Curve, pair
-from rbsdem._files import write_figure
 from rbsdem._optional import need_matplotlib
 from rbsdem.errors import InputError
+from rbsdem.plot.style import (
+    MODEL_LINE,
+    TEST_LINE,
+    TEST_POINTS,
+    ZERO_LINE,
+    axes_or_new,
+    keep_letters,
+    line_of,
+    style,
+)
 from rbsdem.result import Result
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = [
-    "RC",
-    "Panel",
-    "axes_or_new",
-    "four_panels",
-    "line_of",
-    "loop",
-    "loops_over_test",
-    "save",
-    "style",
-]
-
-RC: dict[str, Any] = {
-    "font.family": "STIXGeneral",
-    "font.size": 9.0,
-    "mathtext.fontset": "stix",
-    "axes.labelsize": 9.0,
-    "axes.titlesize": 9.0,
-    "axes.linewidth": 0.6,
-    "axes.unicode_minus": True,
-    "axes.grid": False,
-    "xtick.labelsize": 8.0,
-    "ytick.labelsize": 8.0,
-    "xtick.direction": "in",
-    "ytick.direction": "in",
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
-    "xtick.major.size": 3.0,
-    "ytick.major.size": 3.0,
-    "lines.linewidth": 0.8,
-    "lines.solid_joinstyle": "round",
-    "legend.frameon": False,
-    "legend.fontsize": 9.0,
-    "figure.facecolor": "white",
-    "savefig.facecolor": "white",
-    "pdf.fonttype": 42,
-}
-"""The style of every figure, as matplotlib parameters."""
-
-MODEL_LINE: dict[str, Any] = {"color": "black", "linestyle": "-", "linewidth": 0.75, "zorder": 3}
-TEST_LINE: dict[str, Any] = {
-    "color": "0.55",
-    "linestyle": (0, (3.2, 1.4)),
-    "linewidth": 0.85,
-    "zorder": 2,
-}
-TEST_POINTS: dict[str, Any] = {
-    "color": "0.45",
-    "linestyle": "none",
-    "marker": "o",
-    "markersize": 3.4,
-    "markerfacecolor": "white",
-    "markeredgewidth": 0.8,
-    "zorder": 4,
-}
-ZERO_LINE: dict[str, Any] = {"color": "0.75", "linewidth": 0.4, "zorder": 1}
-
-# Figures that were made in the house style.
-_HOUSE: WeakSet[Any] = WeakSet()
+__all__ = ["Panel", "four_panels", "loop", "loops_over_test"]
 
 FIGURE_SIZE = (6.9, 6.0)
-DPI = 300
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -113,77 +54,6 @@ class Panel:
     test: Curve
     height: float | None = None
     test_points: bool = False
-
-
-@contextmanager
-def style() -> Iterator[None]:
-    """Use the house style `RC` inside a ``with`` block only."""
-    need_matplotlib()
-    import matplotlib as mpl  # noqa: PLC0415
-
-    with mpl.rc_context(RC):
-        yield
-
-
-def new_axes(rows: int, columns: int, size: tuple[float, float]) -> list[Axes]:
-    """Make a figure of pyplot in the house style.
-
-    Parameters
-    ----------
-    rows, columns : int
-        Axes below and beside each other.
-    size : tuple of float
-        Width and height [in].
-
-    Returns
-    -------
-    list of matplotlib Axes
-        Row by row. What is drawn on them later has the house style, too.
-    """
-    need_matplotlib()
-    import matplotlib.pyplot as plt  # noqa: PLC0415
-
-    with style():
-        figure, grid = plt.subplots(
-            rows, columns, figsize=size, layout="constrained", squeeze=False
-        )
-    _HOUSE.add(figure)
-    return list(grid.ravel())
-
-
-@contextmanager
-def style_of(ax: Axes) -> Iterator[None]:
-    """Use the house style in a ``with`` block if the axes were made in it, else that of the caller.
-
-    Parameters
-    ----------
-    ax : matplotlib Axes
-        Where is drawn.
-    """
-    if ax.get_figure() not in _HOUSE:
-        yield
-        return
-    with style():
-        yield
-
-
-@contextmanager
-def axes_or_new(ax: Axes | None, size: tuple[float, float] = (3.5, 3.0)) -> Iterator[Axes]:
-    """Yield the axes of the caller in the caller's style, or new axes in the house style.
-
-    Parameters
-    ----------
-    ax : matplotlib Axes or None
-        Axes of the caller; None makes a figure.
-    size : tuple of float
-        Width and height of a new figure [in].
-    """
-    if ax is not None:
-        with style_of(ax):
-            yield ax
-        return
-    with style():
-        yield new_axes(1, 1, size)[0]
 
 
 def loop(
@@ -361,42 +231,6 @@ def four_panels(
     return figure
 
 
-def save(figure: Figure, path: str | os.PathLike[str], *, pdf: bool = False) -> list[Path]:
-    """Write a figure as PNG at 300 dpi, and as PDF beside it if asked for.
-
-    Parameters
-    ----------
-    figure : matplotlib Figure
-        What to write.
-    path : path
-        File to write; the ending .png is added if it is missing, and the folder is created.
-    pdf : bool, default False
-        Write the PDF as well.
-
-    Returns
-    -------
-    list of Path
-        The files written.
-    """
-    target = Path(path)
-    if not target.suffix:
-        target = target.with_suffix(".png")
-    target.parent.mkdir(parents=True, exist_ok=True)
-    files = [target, target.with_suffix(".pdf")] if pdf else [target]
-    with style():
-        for file in files:
-            write_figure(figure.savefig, file, dpi=DPI)
-    return files
-
-
-def line_of(default: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
-    """Return the properties of a line, those given in place of the defaults, aliases included."""
-    from matplotlib.cbook import normalize_kwargs  # noqa: PLC0415
-    from matplotlib.lines import Line2D  # noqa: PLC0415
-
-    return {**default, **normalize_kwargs(given, Line2D)}
-
-
 def _curve(curve: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return displacements [mm] and forces [kN] of a result, a test or a pair of arrays."""
     d, f = (np.asarray(values) for values in pair(curve, name))
@@ -428,7 +262,7 @@ def _dress(ax: Axes, height: float | None) -> None:
         ax.axvline(0.0, gid="zero", **ZERO_LINE)
     for axis in (ax.xaxis, ax.yaxis):
         # More ticks will be made, perhaps in another style than that in which the axes were.
-        _keep_letters(axis, axis)
+        keep_letters(axis, axis)
     steps = [1, 2, 2.5, 5, 10]
     ax.xaxis.set_major_locator(MaxNLocator(nbins=7, symmetric=True, steps=steps))
     ax.yaxis.set_major_locator(MaxNLocator(nbins=9, symmetric=True, steps=steps))
@@ -447,13 +281,4 @@ def _dress(ax: Axes, height: float | None) -> None:
         top.xaxis.set_major_locator(MaxNLocator(nbins=9, symmetric=True, steps=[1, 2, 5, 10]))
         # In the letters of the axes below, wherever those come from.
         top.set_xlabel("Drift ratio (%)", fontproperties=ax.xaxis.label.get_fontproperties())
-        _keep_letters(top.xaxis, ax.xaxis)
-
-
-def _keep_letters(axis: Any, model: Any) -> None:
-    """Give all ticks of an axis, those to come as well, the letters that one of another has."""
-    label = model.get_major_ticks()[0].label1
-    options = {"labelsize": label.get_fontsize(), "labelcolor": label.get_color()}
-    axis.set_tick_params(**options)
-    with suppress(ValueError):  # matplotlib 3.7 does not know it
-        axis.set_tick_params(labelfontfamily=label.get_fontfamily())
+        keep_letters(top.xaxis, ax.xaxis)

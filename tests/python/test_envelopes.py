@@ -1,0 +1,136 @@
+"""Envelopes and their idealisation, by closed forms and by the worked numbers of the sources."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+import rbsdem
+from rbsdem import Envelope, InputError, envelope
+
+# A worked envelope: (0, 0) (5, 100) (10, 160) (20, 200) (40, 210) (60, 190), mm and kN.
+WORKED = Envelope(
+    1,
+    np.array([0.0, 5.0, 10.0, 20.0, 40.0, 60.0]) * 1e-3,
+    np.array([0.0, 100.0, 160.0, 200.0, 210.0, 190.0]) * 1e3,
+)
+COLUMN = rbsdem.paper_columns()["zahn_7"]
+
+
+# The numbers are worked by hand from the definitions: areas 6800 and 10800 N m.
+@pytest.mark.parametrize(
+    ("method", "force", "displacement"),
+    [
+        ("asce_41", 179.259, 9.3827),
+        ("ec_8", 210.0, 15.2381),
+        ("park", 210.0, 13.0556),
+        ("equal_energy", 196.008, 9.8004),
+    ],
+)
+def test_worked_numbers(method, force, displacement):
+    lines = WORKED.idealise(method)
+    assert lines.yield_force == pytest.approx(force * 1e3, rel=5e-6)
+    assert lines.yield_displacement == pytest.approx(displacement * 1e-3, rel=1e-5)
+    assert lines.ductility == pytest.approx(0.06 / lines.yield_displacement)
+    assert not lines.lost
+
+
+@pytest.mark.parametrize("method", ["asce_41", "ec_8", "equal_energy"])
+def test_areas_are_equal(method):
+    lines = WORKED.idealise(method)
+    x = np.linspace(0.0, lines.end_displacement, 200_001)
+    one = np.trapezoid(lines.force(x), x)
+    other = np.trapezoid(np.interp(x, WORKED.displacement, WORKED.force), x)
+    assert one == pytest.approx(other, rel=1e-8)
+
+
+@pytest.mark.parametrize("method", ["asce_41", "ec_8", "equal_energy"])
+def test_two_straight_lines_are_found_again(method):
+    """An elastic and perfectly plastic envelope is its own idealisation."""
+    own = Envelope(1, np.array([0.0, 0.01, 0.05]), np.array([0.0, 2e5, 2e5]))
+    lines = own.idealise(method, **({} if method == "equal_energy" else {"end": 0.05}))
+    assert lines.yield_displacement == pytest.approx(0.01, rel=1e-9)
+    assert lines.yield_force == pytest.approx(2e5, rel=1e-9)
+    assert lines.ductility == pytest.approx(5.0, rel=1e-9)
+
+
+def test_hardening_lines_are_found_again_by_asce_41():
+    own = Envelope(1, np.array([0.0, 0.01, 0.05]), np.array([0.0, 2e5, 3e5]))
+    lines = own.idealise("asce_41")
+    assert (lines.yield_displacement, lines.yield_force) == pytest.approx((0.01, 2e5), rel=1e-9)
+    assert lines.post_yield_ratio == pytest.approx(0.125)
+
+
+def test_elastic_envelope_is_one_line():
+    lines = Envelope(1, np.array([0.0, 0.02]), np.array([0.0, 1e5])).idealise()
+    assert (lines.yield_displacement, lines.yield_force) == pytest.approx((0.02, 1e5))
+    assert (lines.post_yield_ratio, lines.ductility) == (0.0, 1.0)
+
+
+def test_loss_of_strength_ends_it():
+    falling = Envelope(1, np.array([0.0, 0.01, 0.03]), np.array([0.0, 1e5, 5e4]))
+    lines = falling.idealise("park")
+    assert lines.lost
+    # 80 % of the peak lies at 0.4 of the way down.
+    assert lines.ultimate_displacement == pytest.approx(0.018)
+    assert falling.displacement_at(0.8, falling=True) == pytest.approx(0.018)
+    assert falling.displacement_at(0.5) == pytest.approx(0.005)
+    assert np.isnan(falling.displacement_at(0.4, falling=True))
+
+
+def test_envelope_of_a_cyclic_path_lies_on_the_push():
+    """A Takeda column without P-Delta comes back to its backbone in every larger cycle."""
+    path = COLUMN.height * rbsdem.protocol([0.002, 0.005, 0.01, 0.02], points=20)
+    cyclic = rbsdem.cyclic(COLUMN, displacement=path)
+    push = rbsdem.cyclic(COLUMN, displacement=np.linspace(0, 0.02 * COLUMN.height, 400))
+    for side in (1, -1):
+        found = cyclic.envelope(side)
+        assert np.all(np.diff(found.displacement) > 0)
+        assert found.largest_displacement == pytest.approx(0.02 * COLUMN.height)
+        tips = np.array([0.002, 0.005, 0.01, 0.02]) * COLUMN.height
+        for tip in tips:
+            on_push = np.interp(tip, push.displacement, push.force)
+            assert found.force_at(tip) == pytest.approx(on_push, rel=1e-3)
+
+
+def test_result_speaks_by_the_definitions_of_the_comparison():
+    path = COLUMN.height * rbsdem.protocol([0.01, 0.02], points=10)
+    result = rbsdem.cyclic(COLUMN, displacement=path)
+    cycles = rbsdem.comparison.half_cycles(result.displacement, result.force)
+    assert np.array_equal(result.half_cycles().energy, cycles.energy)
+    assert np.isnan(result.strength_loss())
+    assert result.idealise("park", -1) == result.envelope(-1).idealise("park")
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: WORKED.idealise("asce"), "asce_41"),
+        (lambda: WORKED.idealise("park", end=0.01), "leave out end"),
+        (lambda: WORKED.idealise(end=0.07), "0.06"),
+        (lambda: WORKED.force_at(0.07), "0.06"),
+        (lambda: WORKED.displacement_at(1.2), "share = 1.2"),
+        (lambda: envelope(([0, 1], [0, 1]), 2), "side = 2"),
+        (lambda: envelope(([0, 1], [0, 1]), -1), "side = 1"),
+        (lambda: envelope(([0, np.nan], [0, 1])), "displacement"),
+        (lambda: envelope(([0, 1], [0, -1])), "no force"),
+    ],
+)
+def test_faults_are_named(call, words):
+    with pytest.raises(InputError, match=words):
+        call()
+
+
+def test_ec_8_refuses_an_end_far_behind_the_peak():
+    own = Envelope(1, np.array([0.0, 0.01, 0.02, 0.05]), np.array([0.0, 2e5, 1e5, 2e4]))
+    with pytest.raises(InputError, match="no yield point"):
+        own.idealise("ec_8", end=0.05)
+
+
+def test_figure():
+    ax = WORKED.plot(method="asce_41")
+    corners = ax.get_lines()[1].get_xydata()
+    assert corners[1] == pytest.approx([9.3827, 179.259], rel=1e-4)
+    assert ax.get_xlabel() == "Top displacement (mm)"
+    plt.close(ax.figure)

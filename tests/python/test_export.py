@@ -1,0 +1,204 @@
+"""Results as tables and files."""
+
+from __future__ import annotations
+
+import csv
+import json
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import rbsdem
+from rbsdem import InputError
+from rbsdem.springs import Elastic
+
+TIME = np.arange(0.0, 1.0, 0.01)
+MOTION = 3.0 * np.sin(8 * TIME)
+
+
+def layered() -> rbsdem.Column:
+    section = rbsdem.RectangularSection(
+        0.4,
+        0.4,
+        rbsdem.Concrete(40e6),
+        layout=rbsdem.Layout(8, 0.02, rbsdem.Steel(450e6, 650e6)),
+        ties=rbsdem.Ties(0.01, 0.08, rbsdem.Steel(400e6), legs=3),
+        cover=0.02,
+    )
+    return section.column(1.6, axial_load=7e5)
+
+
+def results() -> dict[str, rbsdem.Result]:
+    paper = rbsdem.paper_columns()["zahn_7"]
+    damped = rbsdem.Column(
+        1.6,
+        600.0,
+        paper.shear,
+        paper.flexure,
+        n=3,
+        damping=0.02,
+        axial_load=1e5,
+        kinematics="pdelta",
+    )
+    opening = rbsdem.Column(
+        1.6, 600.0, Elastic(1e9), Elastic(1e9), axial_spring=Elastic(1e9), n=2, kinematics="pdelta"
+    )
+    path = 1.6 * rbsdem.protocol([0.005, 0.01], points=5)
+    return {
+        "static": rbsdem.cyclic(paper, displacement=path),
+        "force": rbsdem.cyclic(paper, force=[0.0, 1e4, -2e4]),
+        "dynamic": rbsdem.time_history(
+            damped, TIME, ground_acceleration=MOTION, initial={"slip": [1e-5, 0, 0]}, every=3
+        ),
+        "opening": rbsdem.time_history(opening, TIME, vertical_acceleration=MOTION),
+    }
+
+
+RESULTS = results()
+
+
+@pytest.mark.parametrize("name", RESULTS)
+@pytest.mark.parametrize("ending", [".npz", ".nc"])
+def test_saved_result_comes_back_bit_for_bit(tmp_path, name, ending):
+    path = tmp_path / f"{name}{ending}"
+    RESULTS[name].save(path)
+    back = rbsdem.load(path)
+    assert back == RESULTS[name]
+    assert pickle.loads(pickle.dumps(back)) == back
+    assert [file.name for file in tmp_path.iterdir()] == [path.name]
+
+
+def test_layers_and_a_case_come_back_too(tmp_path):
+    column = layered()
+    path = column.height * rbsdem.protocol([0.01], points=5)
+    kept = rbsdem.cyclic(column, displacement=path, openings=True)
+    kept.save(tmp_path / "a.npz")
+    back = rbsdem.load(tmp_path / "a.npz")
+    # As what it is solved: the section that made it is not in the file.
+    assert type(back.column) is rbsdem.Column
+    assert back.column.to_namelist() == column.to_namelist()
+    assert replace(back, column=column) == kept
+    assert np.array_equal(back.layer_deformation(), kept.layer_deformation())
+    case = tmp_path / "case.nml"
+    case.write_text(
+        f"&case title = 'a pier' /\n{column.to_namelist()}\n"
+        "&loading drive = 'displacement', amplitudes = 0.01, points = 3 /\n"
+    )
+    run = rbsdem.read_case(case).run()
+    run.save(tmp_path / "b.npz")
+    assert rbsdem.load(tmp_path / "b.npz") == run
+
+
+def test_csv_is_that_of_the_executable(run_cli, tmp_path):
+    column = replace(rbsdem.paper_columns()["zahn_7"], axial_load=0.0)
+    (tmp_path / "case.nml").write_text(
+        f"&case title = 'a pier' /\n{column.to_namelist()}\n"
+        "&loading drive = 'displacement', amplitudes = 0.01, points = 3 /\n"
+    )
+    assert run_cli(["run", "case.nml", "-q", "-o", "executable.csv"], tmp_path).returncode == 0
+    rbsdem.read_case(tmp_path / "case.nml").run().to_csv(tmp_path / "python.csv")
+    one, other = (
+        (tmp_path / f"{name}.csv").read_text().splitlines() for name in ("executable", "python")
+    )
+    assert one[:4] == other[:4]
+    for row, same in zip(csv.reader(one[4:]), csv.reader(other[4:]), strict=True):
+        assert [float(cell) for cell in row] == [float(cell) for cell in same]
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_frame_has_the_columns_of_the_csv(tmp_path, name):
+    pytest.importorskip("pandas")
+    result = RESULTS[name]
+    frame = result.to_pandas()
+    result.to_csv(tmp_path / "a.csv")
+    names = (tmp_path / "a.csv").read_text().splitlines()[3].split(",")
+    assert list(frame.columns) == names
+    assert np.array_equal(frame["displacement_m"], result.displacement)
+    last = result.column.n
+    assert np.array_equal(frame[f"moment_{last}_Nm"], result.moment[:, -1])
+
+
+def test_dataset_has_units_and_joints():
+    dataset = RESULTS["dynamic"].to_xarray()
+    assert dataset["moment"].attrs["units"] == "N m"
+    assert dataset["moment"].dims == ("time", "joint")
+    assert dataset["joint"].values.tolist() == [1, 2, 3]
+    assert (
+        float(dataset["displacement"].sel(time=0.3, method="nearest"))
+        == (RESULTS["dynamic"].displacement[np.abs(RESULTS["dynamic"].time - 0.3).argmin()])
+    )
+
+
+@pytest.mark.parametrize("ending", [".txt", "", ".csv"])
+def test_other_endings_are_refused(tmp_path, ending):
+    with pytest.raises(InputError, match=r"\.npz .* or \.nc"):
+        RESULTS["static"].save(tmp_path / f"a{ending}")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("ending", [".npz", ".nc"])
+@pytest.mark.parametrize("content", [b"", b"PK\x03\x04 nonsense", b"CDF\x01nonsense"])
+def test_foreign_file_is_told(tmp_path, ending, content):
+    path = tmp_path / f"a{ending}"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match="no saved result"):
+        rbsdem.load(path)
+
+
+def test_missing_later_and_damaged_files_are_told(tmp_path):
+    with pytest.raises(InputError, match="no such file"):
+        rbsdem.load(tmp_path / "none.npz")
+    path = tmp_path / "a.npz"
+    RESULTS["static"].save(path)
+    with np.load(path) as file:
+        arrays = dict(file)
+    about = json.loads(str(arrays["about"]))
+
+    def written(**changes) -> None:
+        np.savez(path, **(arrays | changes))
+
+    written(about=np.array(json.dumps(about | {"format_version": 99})))
+    with pytest.raises(InputError, match="later format"):
+        rbsdem.load(path)
+    written(about=np.array(json.dumps(about | {"format": "another"})))
+    with pytest.raises(InputError, match="no saved result"):
+        rbsdem.load(path)
+    del arrays["slip"]
+    written()
+    with pytest.raises(InputError, match="slip"):
+        rbsdem.load(path)
+
+
+def test_state_between_rows_is_linear():
+    result = RESULTS["dynamic"]
+    middle = 0.5 * (result.time[4] + result.time[5])
+    state = result.at(middle)
+    assert state["displacement"] == pytest.approx(result.displacement[4:6].mean(), rel=1e-12)
+    assert state["moment"] == pytest.approx(result.moment[4:6].mean(axis=0), rel=1e-12)
+    assert result.at(result.time[-1])["energy"]["spring"] == result.energy["spring"][-1]
+    for outside in (-0.1, 2.0):
+        with pytest.raises(InputError, match="outside"):
+            result.at(outside)
+
+
+def test_residual_drift_of_a_static_path_is_at_the_last_zero_of_force():
+    """An elastic and perfectly plastic spring: what is beyond yield is left."""
+    spring = rbsdem.Bilinear(k=1e6, d_y=0.01, k_post=0.0)
+    column = rbsdem.Column(2.0, 100.0, spring, Elastic(1e12))
+    path = rbsdem.cyclic(column, displacement=[0.0, 0.03, 0.015])
+    assert path.residual_drift == pytest.approx(0.02 / 2.0, rel=1e-5)
+    held = rbsdem.cyclic(column, displacement=[0.0, 0.03])
+    assert np.isnan(held.residual_drift)
+    released = rbsdem.cyclic(column, force=[0.0, 5e3, 0.0])
+    assert released.residual_drift == pytest.approx(0.0, abs=1e-15)
+
+
+def test_residual_drift_in_time_is_that_about_which_it_swings():
+    """An undamped elastic column swings about the displacement of a force held on it."""
+    column = rbsdem.Column(2.0, 100.0, Elastic(1e6), Elastic(1e12))
+    time = np.arange(0.0, 2.0, 0.001)
+    swing = rbsdem.time_history(column, time, force=np.full(time.size, 1e4), method="rk4")
+    assert swing.residual_drift == pytest.approx(0.01 / 2.0, rel=1e-3)
+    assert swing.drift == pytest.approx(swing.displacement / 2.0)
