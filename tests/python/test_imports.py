@@ -16,8 +16,18 @@ PACKAGE = REPOSITORY / "python" / "rbsdem"
 OPTIONAL = {"jinja2", "matplotlib", "pandas", "rich", "scipy"}
 
 # Modules that draw, tabulate or write records. Packages, commands and other views import them.
-VIEWS = {"contact_sheet", "figure", "files", "gallery", "plot", "shear_figure", "table", "tables"}
-VIEWS |= {"view"}
+VIEWS = {
+    "contact_sheet",
+    "figure",
+    "files",
+    "gallery",
+    "interaction_figure",
+    "plot",
+    "shear_figure",
+    "table",
+    "tables",
+}
+VIEWS |= {"interaction_figure", "view"}
 MAY_IMPORT_VIEWS = {"__init__", "__main__", "command"} | VIEWS
 
 

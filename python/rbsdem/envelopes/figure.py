@@ -34,8 +34,8 @@ def draw(envelope: Envelope, ax: Axes | None, method: Method | None) -> Axes:
                 **{**plot.TEST_POINTS, "color": "black"},
             )
             drawn.legend(loc="lower right")
-        drawn.set_xlim(left=0)
-        drawn.set_ylim(bottom=0)
+        drawn.set_xlim(left=0.0, auto=True)
+        drawn.set_ylim(bottom=0.0, auto=True)
         drawn.set_xlabel("Top displacement (mm)")
         drawn.set_ylabel("Lateral force (kN)")
     return drawn

@@ -6,9 +6,11 @@ positive in compression, y is positive to the face that a positive curvature put
 """
 
 from rbsdem.section import figure as figure
+from rbsdem.section import interaction_figure as interaction_figure
 from rbsdem.section import shear_figure as shear_figure
 from rbsdem.section.circular import CircularSection
 from rbsdem.section.diagram import Confinement, Diagram, Events, Point
+from rbsdem.section.interaction import InteractionDiagram
 from rbsdem.section.materials import Concrete, Steel
 from rbsdem.section.model import MODELS, LayeredColumn, LayeredModel
 from rbsdem.section.parameters import (
@@ -34,6 +36,7 @@ __all__ = [
     "Diagram",
     "Events",
     "HingeParameters",
+    "InteractionDiagram",
     "LayeredColumn",
     "LayeredModel",
     "Layout",

@@ -50,6 +50,7 @@ class CircularSection(Section):
 
     shape: ClassVar[str] = "circle"
     hoops: ClassVar[str] = "a spiral"
+    narrows: ClassVar[bool] = True
 
     diameter: float
     concrete: Concrete
@@ -97,6 +98,19 @@ class CircularSection(Section):
     def effective_depth(self) -> float:
         """0.8 of the diameter [m] (ACI 318-19, 22.5.2.2)."""
         return 0.8 * self.diameter
+
+    def part(self, depth: float) -> tuple[float, float]:
+        """Return area and first moment about mid-depth of the concrete near the compression face.
+
+        Parameters
+        ----------
+        depth : float
+            From that face [m].
+        """
+        radius = 0.5 * self.diameter
+        angle = math.acos(min(max(1.0 - depth / radius, -1.0), 1.0))
+        area = radius**2 * (angle - math.sin(angle) * math.cos(angle))
+        return area, -2.0 / 3.0 * (radius * math.sin(angle)) ** 3
 
     # ---- geometry for the figure -----------------------------------------------------------------
 

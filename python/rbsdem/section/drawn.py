@@ -44,6 +44,16 @@ class DrawnSection(ABC):
     def effective_depth(self) -> float:
         """From the compression face to the centre of the bars in the half in tension [m]."""
 
+    #: Whether the width falls towards the extreme fibres.
+    narrows: ClassVar[bool] = False
+
+    @abstractmethod
+    def part(self, depth: float) -> tuple[float, float]:
+        """Return area and first moment about mid-depth of the concrete near one face [m2, m3].
+
+        `depth` is measured from the compression face, y = -depth of the section/2 [m].
+        """
+
     @abstractmethod
     def outline(self) -> Array:
         """Return the outline of the concrete, a point a row: x and y [m]."""

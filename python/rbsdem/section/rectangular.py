@@ -106,6 +106,17 @@ class RectangularSection(Section):
             return 0.8 * self.depth
         return 0.5 * self.depth + sum(y * a for y, a in outer) / sum(a for _, a in outer)
 
+    def part(self, depth: float) -> tuple[float, float]:
+        """Return area and first moment about mid-depth of the concrete near the compression face.
+
+        Parameters
+        ----------
+        depth : float
+            From that face [m].
+        """
+        area = self.width * depth
+        return area, 0.5 * area * (depth - self.depth)
+
     # ---- geometry for the figure -----------------------------------------------------------------
 
     def outline(self) -> Array:

@@ -14,6 +14,7 @@ from rbsdem._core import Array
 from rbsdem.errors import InputError
 from rbsdem.section.diagram import Diagram, make_diagram
 from rbsdem.section.drawn import DrawnSection
+from rbsdem.section.interaction import Code, InteractionDiagram, interaction_diagram
 from rbsdem.section.materials import Tension
 from rbsdem.section.model import DEFAULT, LayeredColumn, Model, make_column
 from rbsdem.section.parameters import ModelParameters
@@ -174,6 +175,34 @@ class Section(DrawnSection):
             points,
             furthest,
         )
+
+    def interaction(
+        self, code: Code | None = None, *, points: int = 60, confined: bool = False
+    ) -> InteractionDiagram:
+        """Return the interaction diagram of axial load and moment, y > 0 in tension.
+
+        Parameters
+        ----------
+        code : {"aci318", "ec2"}, optional
+            "aci318": ACI 318-19 with its factors phi and its limit of the axial load. "ec2":
+            EN 1992-1-1 with gamma_c = 1.5, gamma_s = 1.15 and alpha_cc = 1, without a least
+            eccentricity. None: the largest moments of `moment_curvature` at each axial load.
+        points : int, optional
+            About how many points.
+        confined : bool, optional
+            For the section's own laws: whether the core is confined and the cover spalls.
+
+        Returns
+        -------
+        InteractionDiagram
+            Nominal and design strength; its method `plot` draws them with demands.
+
+        Raises
+        ------
+        InputError
+            If the code is not known or does not cover the section.
+        """
+        return interaction_diagram(self, code, points, self._confined(confined))
 
     def springs(self, length: float, axial_load: float, **options: Any) -> SectionSprings:
         """Return the springs of a column with this section, from its base to the lateral load.

@@ -1,0 +1,298 @@
+"""Interaction of axial load and moment: by the own laws of a section, or by the block of a code.
+
+A section fails where its extreme fibre in compression reaches the strain of the code. Each neutral
+axis then gives one axial load and one moment, from bars that all yield in tension to uniform
+compression. Bars displace the concrete of the block that they stand in.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rbsdem import _core, _views
+from rbsdem._core import Array
+from rbsdem.errors import InputError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from rbsdem.section.section import Section
+
+__all__ = ["Code", "InteractionDiagram", "interaction_diagram"]
+
+Code = Literal["aci318", "ec2"]
+
+_MPA = 1.0e6
+
+
+@dataclass(frozen=True, eq=False)
+class InteractionDiagram:
+    """Axial loads that a section carries with their moments, from tension to compression.
+
+    Attributes
+    ----------
+    code : {"aci318", "ec2"} or None
+        Whose stress block; None: the section's own laws.
+    axial_load, moment : ndarray, shape (k,)
+        Nominal strength: axial load [N], ascending, compression positive; moment about mid-depth
+        [N m] with y > 0 in tension.
+    design_axial_load, design_moment : ndarray, shape (m,)
+        Strength with the factors of the code, and its limit of the axial load. Equal to the nominal
+        one for the section's own laws.
+    neutral_axis : ndarray, shape (k,)
+        Its distance from the extreme fibre in compression [m]; infinite in uniform compression, 0
+        in tension; NaN for the section's own laws.
+    tension_strain : ndarray, shape (k,)
+        Strain of the outermost bar in tension, elongation positive; NaN likewise.
+    """
+
+    code: Code | None
+    axial_load: Array
+    moment: Array
+    design_axial_load: Array
+    design_moment: Array
+    neutral_axis: Array
+    tension_strain: Array
+
+    def moment_at(self, axial_load: ArrayLike, *, design: bool = False) -> Array:
+        """Return the moment that the section carries with an axial load [N m].
+
+        Parameters
+        ----------
+        axial_load : array_like
+            Compression positive [N].
+        design : bool, optional
+            The design strength in place of the nominal one.
+
+        Returns
+        -------
+        ndarray, shape of `axial_load`
+            Linear between points of the diagram; NaN for axial loads that it does not carry.
+        """
+        load, moment = self._curve(design)
+        at = np.asarray(axial_load, dtype=np.float64)
+        # The factors of a code can turn the curve back: the outermost of its lines counts.
+        before, after = at[..., None] - load[:-1], load[1:] - at[..., None]
+        step = np.diff(load)
+        share = np.where(step == 0, 1.0, before / np.where(step == 0, 1.0, step))
+        found = moment[:-1] + share * np.diff(moment)
+        found = np.where(before * after >= 0, found, -np.inf).max(axis=-1)
+        return np.where(np.isfinite(found), found, np.nan)[()]
+
+    def utilisation(
+        self, axial_load: ArrayLike, moment: ArrayLike, *, design: bool = True
+    ) -> Array:
+        """Return a moment over the strength that goes with its axial load.
+
+        Parameters
+        ----------
+        axial_load, moment : array_like
+            Demands [N, N m]; the sign of the moment does not count.
+        design : bool, optional
+            Against the design strength, as by default, or the nominal one.
+
+        Returns
+        -------
+        ndarray, shape of the demands
+            Above 1 where the section fails; infinite for axial loads that it does not carry.
+        """
+        strength = self.moment_at(axial_load, design=design)
+        carried = np.isfinite(strength) & (strength > 0)
+        demand = np.abs(np.asarray(moment, dtype=np.float64))
+        return np.where(carried, demand / np.where(carried, strength, 1.0), np.inf)[()]
+
+    def plot(
+        self,
+        ax: Axes | None = None,
+        *,
+        demand: ArrayLike | None = None,
+        design: bool = True,
+    ) -> Axes:
+        """Draw the diagram in kN m and kN.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; a new figure without it.
+        demand : array_like, shape (p, 2), optional
+            Axial loads [N] and moments [N m] to mark.
+        design : bool, optional
+            Whether to draw the design strength of a code too.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+        """
+        axes: Axes = _views.view(self, "plot", ax, demand, design)
+        return axes
+
+    def _curve(self, design: bool) -> tuple[Array, Array]:
+        if design:
+            return self.design_axial_load, self.design_moment
+        return self.axial_load, self.moment
+
+    def __repr__(self) -> str:
+        return (
+            f"InteractionDiagram({self.code or 'own laws'}, N from {self.axial_load[0]:.4g} to "
+            f"{self.axial_load[-1]:.4g} N, largest moment {self.moment.max():.4g} N m)"
+        )
+
+
+def interaction_diagram(
+    section: Section, code: Code | None = None, points: int = 60, confined: bool = False
+) -> InteractionDiagram:
+    """Return the interaction diagram of a section; see `Section.interaction`."""
+    count = _core.whole(points, "interaction: points")
+    if count < 5:
+        raise InputError(f"interaction: points = {count} must be 5 or more")
+    if code is None:
+        return _own(section, count, confined)
+    if code not in get_args(Code):
+        raise InputError(
+            f"interaction: code = {code!r} is not known; it is one of {get_args(Code)}, or None "
+            "for the section's own laws"
+        )
+    if confined:
+        raise InputError("interaction: the blocks of codes are those of unconfined concrete")
+    if not section.bars:
+        raise InputError("interaction: the section has no bars; give it some")
+    return _aci_318(section, count) if code == "aci318" else _ec_2(section, count)
+
+
+def _own(section: Section, count: int, confined: bool) -> InteractionDiagram:
+    """Return the largest moment of the moment-curvature diagram at each axial load.
+
+    From the load under which all bars yield in tension: beyond it only their hardening carries.
+    """
+    least = -sum(area * steel.fy for _, area, steel in section.bars)
+    loads = np.linspace(least, section.axial_capacity[1], count)
+    moments = np.zeros(count)
+    for i, load in enumerate(loads[1:-1], 1):
+        moments[i] = max(0.0, section.diagram(float(load), confined=confined).moment.max())
+    unknown = np.full(count, np.nan)
+    return InteractionDiagram(None, loads, moments, loads, moments, unknown, unknown)
+
+
+@dataclass(frozen=True)
+class _Block:
+    """The block of a code: uniform stress over a part of the depth in compression, in Pa."""
+
+    section: Section
+    stress: float
+    share: float
+    steel_factor: float = 1.0
+
+    def point(self, axis: float, strains: Callable[[Array], Array]) -> tuple[float, float]:
+        """Return axial load and moment for a neutral axis; strains of bars by their places."""
+        deep = min(self.share * axis, self.section.depth)
+        area, first = self.section.part(deep)
+        load, moment = self.stress * area, -self.stress * first
+        for y, bar, steel in self.section.bars:
+            limit = self.steel_factor * steel.fy
+            stress = min(max(float(strains(np.array([y]))[0]) * steel.es, -limit), limit)
+            if y + 0.5 * self.section.depth <= deep and stress > 0:
+                stress -= self.stress
+            load += stress * bar
+            moment -= stress * bar * y
+        return load, moment
+
+    def ends(self, strain: float) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Return the points of bars that all yield in tension, and of uniform compression."""
+        pulled = self.point(0.0, lambda y: np.full(y.shape, -math.inf))
+        pressed = self.point(math.inf, lambda y: np.full(y.shape, strain))
+        return pulled, pressed
+
+
+def _axes(section: Section, ultimate: float, count: int, strains: list[float]) -> Array:
+    """Return neutral axes, ascending, with those at which the outermost bar has given strains."""
+    outermost = max(y for y, _, _ in section.bars) + 0.5 * section.depth
+    # A bar at the face has no depth: the section is then in compression from the start.
+    depth = max(outermost, 0.05 * section.depth)
+    yielded = np.geomspace(0.15, 1e-4, count // 2)
+    by_strain = depth * ultimate / (ultimate + np.concatenate((yielded, strains)))
+    beyond = depth * np.linspace(1.0, 4.0, count - count // 2)
+    return np.unique(np.concatenate((by_strain, beyond, [section.depth])))
+
+
+def _aci_318(section: Section, count: int) -> InteractionDiagram:
+    """ACI 318-19: 22.2.2.4 (block), 21.2.2 (phi), 22.4.2.1 (limit of the axial load)."""
+    fc, half = section.concrete_law["fc"], 0.5 * section.depth
+    ultimate = 0.003
+    share = min(max(0.85 - 0.05 * (fc / _MPA - 28.0) / 7.0, 0.65), 0.85)
+    block = _Block(section, 0.85 * fc, share)
+    outermost, _, steel = max(section.bars, key=lambda bar: bar[0])
+    yields = steel.fy / steel.es
+    axes = _axes(section, ultimate, count, [0.0, yields, yields + 0.003, 0.005])
+
+    def strains(axis: float) -> Callable[[Array], Array]:
+        return lambda y: ultimate * (1.0 - (y + half) / axis)
+
+    rows = [block.point(axis, strains(axis)) for axis in axes]
+    pulled, pressed = block.ends(math.inf)
+    load, moment = np.array([pulled, *rows, pressed]).T
+    tension = np.concatenate(
+        ([math.inf], [-strains(axis)(np.array([outermost]))[0] for axis in axes], [-ultimate])
+    )
+    spiral = section.ties is not None and section.ties.is_round and not section.ties.hoops
+    pressed_factor, cap = (0.75, 0.85) if spiral else (0.65, 0.80)
+    factor = pressed_factor + (0.9 - pressed_factor) * np.clip((tension - yields) / 0.003, 0.0, 1.0)
+    design = _capped(factor * load, factor * moment, pressed_factor * cap * load[-1])
+    axis = np.concatenate(([0.0], axes, [math.inf]))
+    return InteractionDiagram("aci318", load, moment, *design, axis, tension)
+
+
+def _ec_2(section: Section, count: int) -> InteractionDiagram:
+    """EN 1992-1-1: 3.1.7(3) (block), table 3.1 (strains), 2.4.2.4 (partial factors).
+
+    gamma_c = 1.5, gamma_s = 1.15, alpha_cc = 1. Wholly in compression, strains turn about the fibre
+    that stays at eps_c3 (figure 6.1).
+    """
+    fc = section.concrete_law["fc"]
+    high = max(fc / _MPA - 50.0, 0.0)
+    if high > 40.0:
+        raise InputError(f"interaction: fc = {fc / _MPA:g} MPa is beyond the 90 MPa of EN 1992-1-1")
+    ultimate, plateau = 0.0035, 0.00175
+    if high > 0.0:
+        ultimate = (2.6 + 35.0 * ((90.0 - fc / _MPA) / 100.0) ** 4) / 1e3
+        plateau = (1.75 + 0.55 * high / 40.0) / 1e3
+    share, strength = 0.8 - high / 400.0, 1.0 - high / 200.0
+    if section.narrows:
+        # 3.1.7(3): where the width falls towards the extreme fibre.
+        strength *= 0.9
+    depth, half = section.depth, 0.5 * section.depth
+    outermost, _, steel = max(section.bars, key=lambda bar: bar[0])
+    axes = _axes(section, ultimate, count, [0.0, steel.fy / steel.es])
+    fixed = (1.0 - plateau / ultimate) * depth
+
+    def strains(axis: float) -> Callable[[Array], Array]:
+        face = ultimate if axis <= depth else plateau * axis / (axis - fixed)
+        return lambda y: face * (1.0 - (y + half) / axis)
+
+    curves = []
+    for concrete_factor, steel_factor in ((1.0, 1.0), (1.0 / 1.5, 1.0 / 1.15)):
+        block = _Block(section, concrete_factor * strength * fc, share, steel_factor)
+        pulled, pressed = block.ends(plateau)
+        curves.append(np.array([pulled, *(block.point(x, strains(x)) for x in axes), pressed]).T)
+    tension = np.concatenate(
+        ([math.inf], [-strains(x)(np.array([outermost]))[0] for x in axes], [-plateau])
+    )
+    axis = np.concatenate(([0.0], axes, [math.inf]))
+    return InteractionDiagram("ec2", *curves[0], *curves[1], axis, tension)
+
+
+def _capped(load: Array, moment: Array, most: float) -> tuple[Array, Array]:
+    """Return a curve up to an axial load, closed by the line there."""
+    over = np.flatnonzero(load > most)
+    if over.size == 0:
+        return load, moment
+    at = int(over[0])
+    share = (most - load[at - 1]) / (load[at] - load[at - 1])
+    edge = moment[at - 1] + share * (moment[at] - moment[at - 1])
+    return np.append(load[:at], [most, most]), np.append(moment[:at], [edge, 0.0])

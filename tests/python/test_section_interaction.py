@@ -1,0 +1,184 @@
+"""Interaction of axial load and moment: closed forms, another program's points, own laws."""
+
+from __future__ import annotations
+
+import math
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+import rbsdem
+from rbsdem import InputError
+
+STEEL = rbsdem.Steel(460e6, es=200e9)
+BAR = 0.25 * math.pi * 0.025**2
+TIES = rbsdem.Ties(0.01, 0.1, STEEL, legs=3)
+#: 500 x 500 mm, f'c = 35 MPa, 8 bars of 25 mm at 62.5 mm from the faces.
+SQUARE = rbsdem.RectangularSection(
+    0.5,
+    0.5,
+    rbsdem.Concrete(35e6),
+    bars=[(0.1875, 3 * BAR, STEEL), (0.0, 2 * BAR, STEEL), (-0.1875, 3 * BAR, STEEL)],
+    bar_diameter=0.025,
+    ties=TIES,
+    cover=0.04,
+)
+PLAIN = {"concrete": rbsdem.Concrete(30e6), "cover": 0.03}
+ROUND = rbsdem.CircularSection(
+    0.6,
+    layout=rbsdem.Layout(12, 0.025, STEEL),
+    spiral=rbsdem.Spiral(0.01, 0.08, STEEL),
+    **PLAIN,
+)
+BARE = rbsdem.RectangularSection(0.3, 0.3, rbsdem.Concrete(3e7))
+
+
+# Neutral axis [mm], axial load [kN], moment [kN m] by the program concreteproperties 0.7.0.
+@pytest.mark.parametrize(
+    ("axis", "load", "moment"),
+    [
+        (500.0, 6959.36, 395.59),
+        (437.5, 6063.09, 509.27),
+        (247.642, 2880.68, 687.48),
+        (164.062, 1469.55, 581.32),
+        (158.133, 1352.70, 570.41),
+    ],
+)
+def test_aci_points_of_another_program(axis, load, moment):
+    diagram = SQUARE.interaction("aci318")
+    at = np.argmin(np.abs(diagram.neutral_axis - axis * 1e-3))
+    assert diagram.neutral_axis[at] == pytest.approx(axis * 1e-3, rel=1e-5)
+    assert diagram.axial_load[at] == pytest.approx(load * 1e3, rel=1e-5)
+    assert diagram.moment[at] == pytest.approx(moment * 1e3, rel=2e-5)
+
+
+def test_aci_ends_in_closed_form():
+    diagram = SQUARE.interaction("aci318")
+    steel = 8 * BAR
+    squash = 0.85 * 35e6 * (0.25 - steel) + 460e6 * steel
+    assert diagram.axial_load[[0, -1]] == pytest.approx([-460e6 * steel, squash])
+    assert diagram.moment[[0, -1]] == pytest.approx([0.0, 0.0], abs=1e-6)
+    assert diagram.design_axial_load[-1] == pytest.approx(0.65 * 0.80 * squash)
+    assert diagram.design_axial_load[0] == pytest.approx(-0.9 * 460e6 * steel)
+    # Without axial load: another program has 367.62 to 367.71 kN m.
+    assert diagram.moment_at(0.0) == pytest.approx(367.7e3, rel=1e-3)
+
+
+def test_aci_factor_goes_from_ties_to_tension():
+    """phi = 0.65 up to yield, 0.9 from 0.003 beyond it, in a straight line between."""
+    diagram = SQUARE.interaction("aci318", points=200)
+    inside = diagram.axial_load < 0.8 * diagram.axial_load[-1]
+    inside &= np.abs(diagram.moment) > 1.0
+    inside[len(diagram.design_moment) - 2 :] = False
+    factor = diagram.design_moment[: inside.size][inside[: len(diagram.design_moment)]]
+    factor = factor / diagram.moment[inside]
+    expected = 0.65 + 0.25 * np.clip((diagram.tension_strain[inside] - 0.0023) / 0.003, 0.0, 1.0)
+    assert factor == pytest.approx(expected, rel=1e-12)
+
+
+def test_published_example_of_sp_column():
+    """16 x 16 in, four #9 at each of two faces, 2.5 in deep, f'c = 5 ksi, f_y = 60 ksi."""
+    inch, psi, kip = 0.0254, 6894.757293, 4448.2216
+    steel = rbsdem.Steel(60e3 * psi, es=29e6 * psi)
+    bars = [(side * 5.5 * inch, 4.0 * inch**2, steel) for side in (1, -1)]
+    section = rbsdem.RectangularSection(
+        16 * inch, 16 * inch, rbsdem.Concrete(5e3 * psi), bars=bars, bar_diameter=1.128 * inch
+    )
+    diagram = section.interaction("aci318")
+    for strain, load, moment in ((0.0, 957, 261), (60 / 29000, 417, 386), (0.005, 195, 320)):
+        at = np.argmin(np.abs(diagram.tension_strain - strain))
+        assert diagram.axial_load[at] / kip == pytest.approx(load, rel=6e-3)
+        assert diagram.moment[at] / (kip * 0.3048) == pytest.approx(moment, rel=3e-3)
+    assert diagram.moment_at(0.0) / (kip * 0.3048) == pytest.approx(238, rel=2e-3)
+    assert diagram.axial_load[[0, -1]] / kip == pytest.approx([-480, 1534], rel=1e-3)
+
+
+def test_ec_2_ends_and_pure_bending_in_closed_form():
+    """Two rows that yield: lambda x from equilibrium, M by arms about mid-depth."""
+    area = 1e-3
+    section = rbsdem.RectangularSection(
+        0.3, 0.5, bars=[(0.2, area, STEEL)], bar_diameter=0.02, **PLAIN
+    )
+    diagram = section.interaction("ec2", points=400)
+    squash = 30e6 * (0.15 - area) + min(460e6, 0.00175 * 200e9) * area
+    assert diagram.axial_load[[0, -1]] == pytest.approx([-460e6 * area, squash])
+    for factor_c, factor_s, design in ((1.0, 1.0, False), (1 / 1.5, 1 / 1.15, True)):
+        force = 460e6 * factor_s * area
+        deep = force / (30e6 * factor_c * 0.3)
+        expected = force * (0.45 - 0.5 * deep)
+        assert diagram.moment_at(0.0, design=design) == pytest.approx(expected, rel=1e-4)
+
+
+def test_circle_by_the_block_of_another_integration():
+    """The part of a circle by many strips."""
+    for depth in (0.0, 0.1, 0.3, 0.45, 0.6):
+        y = np.linspace(-0.3, -0.3 + depth, 200_001)
+        width = 2 * np.sqrt(np.maximum(0.09 - y**2, 0.0))
+        area, first = ROUND.part(depth)
+        assert area == pytest.approx(np.trapezoid(width, y), rel=1e-6, abs=1e-12)
+        assert first == pytest.approx(np.trapezoid(width * y, y), rel=1e-5, abs=1e-9)
+    spiral = ROUND.interaction("aci318")
+    assert spiral.design_axial_load[-1] == pytest.approx(0.75 * 0.85 * spiral.axial_load[-1])
+    # A narrowing width costs a tenth of the strength in EN 1992-1-1.
+    ring = ROUND.interaction("ec2")
+    gross = ROUND.gross_area - ROUND.steel_area
+    assert ring.axial_load[-1] == pytest.approx(
+        0.9 * 30e6 * gross + 0.00175 * 200e9 * ROUND.steel_area, rel=1e-9
+    )
+
+
+def test_own_laws_are_those_of_moment_curvature():
+    diagram = SQUARE.interaction(points=12)
+    for load, moment in list(zip(diagram.axial_load, diagram.moment, strict=True))[3:-1:3]:
+        assert moment == pytest.approx(SQUARE.diagram(float(load)).moment.max())
+    assert diagram.axial_load[-1] == SQUARE.axial_capacity[1]
+    # Strain hardening and the fuller curve of concrete carry more than the block of the code.
+    code = SQUARE.interaction("aci318")
+    loads = np.linspace(0.0, 0.7 * code.axial_load[-1], 8)
+    assert np.all(diagram.moment_at(loads) > 0.97 * code.moment_at(loads))
+
+
+def test_utilisation():
+    diagram = SQUARE.interaction("aci318")
+    strength = diagram.moment_at(1e6, design=True)
+    assert diagram.utilisation(1e6, -0.5 * strength) == pytest.approx(0.5)
+    assert diagram.utilisation([2e7, -1e7], [0.0, 1.0]).tolist() == [math.inf, math.inf]
+    nominal = diagram.utilisation([0.0, 1e6], [1e5, 1e5], design=False)
+    assert nominal == pytest.approx(1e5 / diagram.moment_at([0.0, 1e6]))
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: SQUARE.interaction("aci"), "'aci'"),
+        (lambda: SQUARE.interaction("ec2", confined=True), "unconfined"),
+        (lambda: SQUARE.interaction(points=2), "points = 2"),
+        (
+            lambda: rbsdem.RectangularSection(0.3, 0.3, rbsdem.Concrete(3e7)).interaction("ec2"),
+            "bars",
+        ),
+        (
+            lambda: rbsdem.RectangularSection(
+                0.3, 0.3, rbsdem.Concrete(1e8), bars=[(0.1, 1e-3, STEEL)]
+            ).interaction("ec2"),
+            "90 MPa",
+        ),
+        (lambda: SQUARE.interaction("ec2").plot(demand=[1.0, 2.0, 3.0]), "a row for each"),
+    ],
+)
+def test_faults_are_named(call, words):
+    with pytest.raises(InputError, match=words):
+        call()
+
+
+def test_figure_shows_both_strengths_and_the_demand():
+    diagram = SQUARE.interaction("ec2")
+    ax = diagram.plot(demand=[(1e6, -2e5)])
+    nominal, design, demand = ax.get_lines()[:3]
+    assert nominal.get_ydata()[-1] == pytest.approx(1e-3 * diagram.axial_load[-1])
+    assert design.get_xdata().max() == pytest.approx(1e-3 * diagram.design_moment.max())
+    assert demand.get_xydata()[0] == pytest.approx([200.0, 1000.0])
+    SQUARE.interaction("aci318").plot(ax)
+    assert ax.get_xlim()[1] > 1e-3 * diagram.moment.max()
+    plt.close(ax.figure)
