@@ -1,7 +1,9 @@
 !> The lines on which the layers of a joint go on along a straight path in rotation and axial load.
 module rbs_hysteresis_layer_choice
+   use rbs_base_constants, only: unbounded
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_layer_lines, only: layer_lines, rate_of, on_the_end, no_rate
+   use rbs_hysteresis_layer_kernels, only: look_along
+   use rbs_hysteresis_layer_lines, only: layer_lines, no_rate
    implicit none
    private
 
@@ -15,51 +17,138 @@ module rbs_hysteresis_layer_choice
    !> Below this share of the initial axial stiffness the layers count as having none.
    real(wp), parameter, public :: no_stiffness = 1.0e-12_wp
 
+   !> A way beyond this, in units of the rates, is none; a rate below the other is none.
+   real(wp), parameter, public :: beyond = 1.0e100_wp
+   real(wp), parameter :: least_speed = 1.0e-150_wp
+
    !> Layers that find their lines.
    type, extends(layer_lines) :: choosing_layers
    contains
       procedure :: choose
+      procedure :: least_rate
    end type choosing_layers
 
 contains
 
-   !> Put every layer on the line on which it goes on along a straight path from where the joint stands.
+   !> Put every layer on the line on which it goes on along a straight path from where the joint stands, and
+   !> find how far the path goes on these lines.
    subroutine choose(self, turn, press)
       class(choosing_layers), intent(inout) :: self
       !> Rates of the rotation [rad] and of the axial load [N]
       real(wp), intent(in) :: turn, press
-      real(wp) :: v, least_rate, least_room
-      integer :: i, pass, way
-      logical :: changed
+      real(wp) :: least_room
+      integer :: pass
 
       self%failed = .false.
       self%turn = turn
       self%press = press
-      least_room = self%room_in_digits()
+      ! Mostly one layer has come to its end, and all others have room.
+      if (self%on_end > 0) call leave_end(self)
       do pass = 1, most_passes
-         call self%sum_up()
          if (.not. self%a > no_stiffness*self%stiffness) exit
          self%open = -(self%s*turn + press)/self%a
-         changed = .false.
-         least_rate = no_rate*(abs(self%open) + self%reach*abs(turn))
-         do i = 1, self%count
-            v = self%open + self%y(i)*turn
-            way = 0
-            associate (line => self%line(i), d => self%d(i))
-               if (v > least_rate) then
-                  if (line%one_way < 0 .or. line%hi - d <= least_room + on_the_end*abs(line%hi)) way = 1
-               else if (v < -least_rate) then
-                  if (line%one_way > 0 .or. d - line%lo <= least_room + on_the_end*abs(line%lo)) way = -1
-               end if
-            end associate
-            if (way == 0) cycle
-            call self%leave(i, way)
-            changed = .true.
-         end do
-         if (.not. changed) return
+         call look_ahead(self, least_room)
+         if (least_room > 0.0_wp) then
+            call set_ends(self)
+            return
+         end if
+         call leave_all(self)
       end do
       call weigh_both_ways(self)
+      if (self%failed) return
+      call look_ahead(self, least_room)
+      call set_ends(self)
    end subroutine choose
+
+   !> The layer that has come to its end leaves its line, if it goes on in that direction.
+   subroutine leave_end(self)
+      type(choosing_layers), intent(inout) :: self
+      real(wp) :: v
+      integer :: i, way
+
+      if (.not. self%a > no_stiffness*self%stiffness) return
+      i = self%on_end
+      self%open = -(self%s*self%turn + self%press)/self%a
+      v = self%open + self%y(i)*self%turn
+      if (.not. abs(v) > self%least_rate(self%open, self%turn)) return
+      way = merge(1, -1, v > 0.0_wp)
+      associate (line => self%line(i), d => self%deformation(i))
+         if (abs(line%end_toward(way) - d) > abs(line%end_toward(-way) - d)) return
+      end associate
+      call self%leave(i, way)
+      call self%sum_up()
+   end subroutine leave_end
+
+   !> All layers without room leave their lines.
+   subroutine leave_all(self)
+      type(choosing_layers), intent(inout) :: self
+      real(wp) :: v, least, room
+      integer :: i
+
+      least = self%least_rate(self%open, self%turn)
+      room = self%room_in_digits()
+      do i = 1, self%count
+         v = self%open + self%y(i)*self%turn
+         if (abs(v) <= least) cycle
+         if (self%one_way(i)*v < 0.0_wp .or. self%ahead(i)*abs(v) <= room + self%slack(i)) then
+            call self%leave(i, merge(1, -1, v > 0.0_wp))
+         end if
+      end do
+      call self%sum_up()
+   end subroutine leave_all
+
+   !> Rates of layers that are round-off, as the opening and the rotation move.
+   pure real(wp) function least_rate(self, open, turn)
+      class(choosing_layers), intent(in) :: self
+      real(wp), intent(in) :: open, turn
+
+      least_rate = max(no_rate*(abs(open) + self%reach*abs(turn)), least_speed)
+   end function least_rate
+
+   !> Ways of all layers to the ends of their lines.
+   pure subroutine look_ahead(self, least_room)
+      type(choosing_layers), intent(inout) :: self
+      !> Not above zero if a layer has none
+      real(wp), intent(out) :: least_room
+
+      associate (ends => self%ends)
+         call look_along(self%count, self%y, self%k, self%lo, self%hi, self%slack, self%one_way, &
+                         self%both_ways, self%opening, self%rotation, self%open, self%turn, &
+                         self%least_rate(self%open, self%turn), self%room_in_digits(), self%ahead, &
+                         self%behind, ends%ahead, ends%behind, least_room, ends%one_way, ends%stiffness)
+      end associate
+   end subroutine look_ahead
+
+   !> How far the chosen path goes, ahead and back, until a layer reaches the end of its line.
+   pure subroutine set_ends(self)
+      type(choosing_layers), intent(inout) :: self
+      integer :: i
+
+      associate (ends => self%ends)
+         ends%first_ahead = 0
+         ends%first_behind = 0
+         if (ends%ahead < beyond) then
+            do i = 1, self%count
+               if (self%ahead(i) <= ends%ahead) exit
+            end do
+            ends%first_ahead = i
+            ends%ahead = max(ends%ahead, 0.0_wp)
+         else
+            ends%ahead = unbounded
+         end if
+         if (ends%one_way) then
+            ends%behind = 0.0_wp
+         else if (-ends%behind < beyond) then
+            do i = 1, self%count
+               if (self%behind(i) >= ends%behind) exit
+            end do
+            ends%first_behind = i
+            ends%behind = max(-ends%behind, 0.0_wp)
+         else
+            ends%behind = unbounded
+         end if
+      end associate
+   end subroutine set_ends
 
    !> The lines that lead on, where changing those without room does not end, or where layers soften or have
    !> no stiffness. The rate x of the opening is a root of the continuous, piecewise linear
@@ -72,7 +161,7 @@ contains
    subroutine weigh_both_ways(self)
       type(choosing_layers), intent(inout) :: self
       real(wp), dimension(self%count) :: opening, closing, corner
-      real(wp) :: x, best, wanted, at, next_at, slope, value, free
+      real(wp) :: x, best, wanted, at, next_at, slope, value, free, rate
       integer :: order(self%count)
       integer :: i, j, m, way, lines
       logical :: found
@@ -127,14 +216,13 @@ contains
       end if
       self%open = best
       do i = 1, self%count
-         associate (v => rate_of(self%y(i), self%turn, best, self%reach))
-            if (.not. abs(v) > 0.0_wp) cycle
-            way = merge(1, -1, v > 0.0_wp)
-            do lines = 1, most_lines
-               if (.not. (self%line(i)%one_way == -way .or. self%has_no_room(i, way))) exit
-               call self%leave(i, way)
-            end do
-         end associate
+         rate = best + self%y(i)*self%turn
+         if (abs(rate) <= self%least_rate(best, self%turn)) cycle
+         way = merge(1, -1, rate > 0.0_wp)
+         do lines = 1, most_lines
+            if (.not. (self%line(i)%one_way == -way .or. self%has_no_room(i, way))) exit
+            call self%leave(i, way)
+         end do
       end do
       call self%sum_up()
 
@@ -175,23 +263,22 @@ contains
       type(choosing_layers) :: copy
       integer :: lines
 
-      k = self%line(i)%k
+      k = self%k(i)
       if (.not. (self%line(i)%one_way == -way .or. self%has_no_room(i, way))) return
-      copy%count = 1
       copy%y = [self%y(i)]
-      allocate (copy%slot(1), copy%line(1), copy%d(1))
+      copy%weight = [self%weight(i)]
+      allocate (copy%slot(1))
       allocate (copy%slot(1)%rule, source=self%slot(i)%rule)
-      copy%line(1) = self%line(i)
-      copy%d(1) = self%d(i)
-      copy%opening = self%opening
-      copy%rotation = self%rotation
+      copy%line = [self%line(i)]
+      allocate (copy%k(1), copy%c(1), copy%lo(1), copy%hi(1), copy%slack(1), copy%one_way(1), &
+                copy%both_ways(1))
+      copy%bank_state = self%bank_state
       copy%reach = self%reach
-      copy%largest = self%largest
       do lines = 1, most_lines
          if (.not. (copy%line(1)%one_way == -way .or. copy%has_no_room(1, way))) exit
          call copy%leave(1, way)
       end do
-      k = copy%line(1)%k
+      k = copy%k(1)
    end function slope_ahead
 
    !> Sort indices by values, by insertion: there are few.

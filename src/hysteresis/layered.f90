@@ -13,7 +13,7 @@ module rbs_hysteresis_layered
    use rbs_base_constants, only: unbounded
    use rbs_base_keys, only: key_type
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_layers, only: layer_bank, path_ends
+   use rbs_hysteresis_layers, only: layer_bank
    use rbs_hysteresis_rule, only: rule_type, places_length, in_flexure
    use rbs_hysteresis_segment, only: segment
    implicit none
@@ -33,8 +33,6 @@ module rbs_hysteresis_layered
       logical :: carries = .true.
       !> Rotation under the first axial load alone, from which the rotation of the joint is counted
       real(wp), private :: rest = 0.0_wp
-      !> Layers at the ends of the present line
-      type(path_ends), private :: ends, kept_ends
    contains
       procedure, nopass :: keys
       procedure, nopass :: places
@@ -87,6 +85,7 @@ contains
 
       do i = 1, size(k)
          k(i) = self%layers%slot(i)%rule%initial_stiffness()
+         if (allocated(self%layers%weight)) k(i) = k(i)*self%layers%weight(i)
       end do
       associate (y => self%layers%y)
          initial_stiffness = sum(k*(y - sum(k*y)/sum(k))**2)
@@ -121,7 +120,7 @@ contains
             return
          end if
          way = layers%turn*(rotation - layers%rotation)
-         first = merge(self%ends%first_ahead, self%ends%first_behind, direction*layers%turn > 0.0_wp)
+         first = merge(layers%ends%first_ahead, layers%ends%first_behind, direction*layers%turn > 0.0_wp)
          ! Turned back on a one-way line, somewhere between its ends.
          if (line%one_way == -direction) first = 0
          call layers%place(rotation, layers%axial_load, way, first)
@@ -147,13 +146,12 @@ contains
                                 one_way=.true.)
             return
          end if
-         call layers%find_ends(self%ends)
-         line%k = self%ends%stiffness
+         line%k = layers%ends%stiffness
          far = direction*unbounded
          near = -direction*unbounded
-         if (self%ends%ahead < unbounded) far = line%d0 + direction*self%ends%ahead
-         if (self%ends%behind < unbounded) near = line%d0 - direction*self%ends%behind
-         line = line%outward(direction, near=near, far=far, near_closed=.false., one_way=self%ends%one_way)
+         if (layers%ends%ahead < unbounded) far = line%d0 + direction*layers%ends%ahead
+         if (layers%ends%behind < unbounded) near = line%d0 - direction*layers%ends%behind
+         line = line%outward(direction, near=near, far=far, near_closed=.false., one_way=layers%ends%one_way)
       end associate
    end subroutine make_line
 
@@ -279,7 +277,6 @@ contains
    subroutine mark(self)
       class(layered_rule), intent(inout) :: self
 
-      self%kept_ends = self%ends
       call self%layers%mark()
    end subroutine mark
 
@@ -287,7 +284,6 @@ contains
    subroutine restore(self)
       class(layered_rule), intent(inout) :: self
 
-      self%ends = self%kept_ends
       call self%layers%restore()
    end subroutine restore
 

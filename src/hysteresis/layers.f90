@@ -11,32 +11,21 @@
 module rbs_hysteresis_layers
    use rbs_base_constants, only: unbounded
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_layer_choice, only: choosing_layers, no_stiffness
-   use rbs_hysteresis_layer_lines, only: rate_of, set_rear_end, no_rate
-   use rbs_hysteresis_segment, only: segment
+   use rbs_hysteresis_layer_choice, only: choosing_layers, no_stiffness, beyond
+   use rbs_hysteresis_layer_kernels, only: look_along
    implicit none
    private
 
-   public :: layer_bank, path_ends
+   public :: layer_bank
 
    !> Below this share, what is missing from equilibrium is not put right: its round-off would move the joint.
    real(wp), parameter :: firm = 1.0e-6_wp
 
-   !> How far a path goes on the present lines, in units of its rates.
-   type :: path_ends
-      !> Ahead and back; `unbounded` if no layer reaches an end
-      real(wp) :: ahead = unbounded, behind = unbounded
-      !> The layers that end it, 0 for none
-      integer :: first_ahead = 0, first_behind = 0
-      !> Whether a layer is on a one-way line, so that there is no way back
-      logical :: one_way = .false.
-      !> sum k v**2: for a rotation at a constant axial load the slope of the moment [N m/rad]
-      real(wp) :: stiffness = 0.0_wp
-   end type path_ends
+   !> Layers that are looked at together.
+   integer, parameter :: block = 64
 
    type, extends(choosing_layers) :: layer_bank
    contains
-      procedure :: find_ends
       procedure :: place
       procedure :: go
       procedure :: opening_at
@@ -48,80 +37,26 @@ module rbs_hysteresis_layers
 
 contains
 
-   !> How far the chosen path goes, ahead and back, until a layer reaches the end of its line.
-   pure subroutine find_ends(self, ends)
-      class(layer_bank), intent(in) :: self
-      type(path_ends), intent(out) :: ends
-      real(wp) :: v, size_v, ahead, back, nearest(2), least_rate
-      integer :: i
-
-      ! Not quotients: those would overflow for lines without an end. A distance beyond this counts as none.
-      nearest = 1.0e100_wp
-      least_rate = no_rate*(abs(self%open) + self%reach*abs(self%turn))
-      do i = 1, self%count
-         v = self%open + self%y(i)*self%turn
-         size_v = abs(v)
-         if (size_v <= least_rate) cycle
-         associate (line => self%line(i))
-            ends%stiffness = ends%stiffness + line%k*v**2
-            if (v > 0.0_wp) then
-               ahead = line%hi - self%d(i)
-               back = self%d(i) - line%lo
-            else
-               ahead = self%d(i) - line%lo
-               back = line%hi - self%d(i)
-            end if
-            if (ahead < nearest(1)*size_v) then
-               nearest(1) = max(ahead, 0.0_wp)/size_v
-               ends%first_ahead = i
-            end if
-            if (line%one_way /= 0) then
-               ends%one_way = .true.
-            else if (back < nearest(2)*size_v) then
-               nearest(2) = max(back, 0.0_wp)/size_v
-               ends%first_behind = i
-            end if
-         end associate
-      end do
-      if (ends%first_ahead > 0) ends%ahead = nearest(1)
-      if (ends%first_behind > 0) ends%behind = nearest(2)
-      if (ends%one_way) ends%behind = 0.0_wp
-   end subroutine find_ends
-
    !> Move the joint along the chosen path to a rotation and an axial load on the present lines.
    pure subroutine place(self, rotation, axial_load, way, first)
       class(layer_bank), intent(inout) :: self
       real(wp), intent(in) :: rotation, axial_load
       !> Way in units of the rates, negative: back
       real(wp), intent(in) :: way
-      !> The layer that comes exactly to the end of its line, 0 for none
+      !> The layer that comes to the end of its line, 0 for none
       integer, intent(in) :: first
-      real(wp) :: missing
-      integer :: i
 
-      self%opening = self%opening + self%open*way
       self%rotation = rotation
       self%axial_load = axial_load
-      missing = axial_load
-      do i = 1, self%count
-         associate (line => self%line(i))
-            missing = missing + (line%f0 + line%k*((self%opening + self%y(i)*rotation) - line%d0))
-         end associate
-      end do
-      if (self%a > firm*self%stiffness) self%opening = self%opening - missing/self%a
-      self%d = self%opening + self%y*rotation
+      self%on_end = first
+      if (self%a > firm*self%stiffness) then
+         self%opening = -(axial_load + (self%force_0 + self%s*rotation))/self%a
+      else
+         self%opening = self%opening + self%open*way
+      end if
       self%largest = max(self%largest, abs(self%opening) + self%reach*abs(rotation))
-      if (first > 0) call put_on_end(self%line(first), self%d(first))
-      call set_rear_end(self%line, self%d)
+      self%moment = self%moment_0 + (self%s*self%opening + self%q*rotation)
    end subroutine place
-
-   !> Put a layer exactly on the end of its line that it has reached but for round-off.
-   pure subroutine put_on_end(line, d)
-      type(segment), intent(in) :: line
-      real(wp), intent(inout) :: d
-
-      d = merge(line%hi, line%lo, line%hi - d < d - line%lo)
-   end subroutine put_on_end
 
    !> Opening of the joint at the middle at a rotation and an axial load on the present lines [m].
    pure real(wp) function opening_at(self, rotation, axial_load)
@@ -153,7 +88,7 @@ contains
       end if
       stiffness = 0.0_wp
       do i = 1, self%count
-         stiffness = stiffness + self%line(i)%k*(self%y(i) - centre)**2
+         stiffness = stiffness + self%k(i)*(self%y(i) - centre)**2
       end do
    end subroutine find_plane
 
@@ -167,24 +102,30 @@ contains
       real(wp), intent(out) :: way
       !> The layer, 0 for none
       integer, intent(out) :: first
-      real(wp) :: opening, open, v, ahead, d
-      integer :: i
+      real(wp) :: ahead(block), behind(block), opening, open, nearest, last, least_room, stiffness
+      integer :: i, begin, n
+      logical :: one_way
 
       way = unbounded
       first = 0
       opening = self%opening_at(rotation, axial_load)
       open = rate_of_opening(self, turn, press)
-      do i = 1, self%count
-         v = rate_of(self%y(i), turn, open, self%reach)
-         if (.not. abs(v) > 0.0_wp) cycle
-         d = opening + self%y(i)*rotation
-         ahead = merge(self%line(i)%hi - d, d - self%line(i)%lo, v > 0.0_wp)
-         ! A layer that goes back on a one-way line is an event of its own, see `turns_back`.
-         if (self%line(i)%one_way*v < 0.0_wp) cycle
-         if (ahead < min(way, 1.0e100_wp)*abs(v)) then
-            way = ahead/abs(v)
-            first = i
-         end if
+      do begin = 1, self%count, block
+         n = min(block, self%count - begin + 1)
+         associate (finish => begin + n - 1)
+            ! A layer that goes back on a one-way line is an event of its own, see `turns_back`.
+            call look_along(n, self%y(begin:finish), self%k(begin:finish), self%lo(begin:finish), &
+                            self%hi(begin:finish), self%slack(begin:finish), self%one_way(begin:finish), &
+                            self%both_ways(begin:finish), opening, rotation, open, turn, &
+                            self%least_rate(open, turn), 0.0_wp, ahead, behind, nearest, last, least_room, &
+                            one_way, stiffness)
+         end associate
+         if (.not. nearest < min(way, beyond)) cycle
+         do i = 1, n
+            if (ahead(i) <= nearest) exit
+         end do
+         first = begin + i - 1
+         way = nearest
       end do
    end subroutine way_from
 
@@ -206,13 +147,14 @@ contains
    pure logical function turns_back(self, turn, press)
       class(layer_bank), intent(in) :: self
       real(wp), intent(in) :: turn, press
-      real(wp) :: open
+      real(wp) :: open, least_rate
       integer :: i
 
       open = rate_of_opening(self, turn, press)
+      least_rate = self%least_rate(open, turn)
       turns_back = .false.
       do i = 1, self%count
-         turns_back = turns_back .or. self%line(i)%one_way*rate_of(self%y(i), turn, open, self%reach) < 0.0_wp
+         turns_back = turns_back .or. self%one_way(i)*(open + self%y(i)*turn) < -least_rate
       end do
    end function turns_back
 
@@ -230,7 +172,6 @@ contains
       self%press = press
       self%opening = opening
       call self%place(rotation, axial_load, 0.0_wp, first)
-      call self%sum_up()
    end subroutine put
 
    !> Go straight to a rotation and an axial load, from event to event.
@@ -240,7 +181,6 @@ contains
       !> Work of the moment along the way, to be added to [J]
       real(wp), intent(inout), optional :: work
       real(wp) :: begin(2), way(2), here, before(2)
-      type(path_ends) :: ends
       integer :: event
       logical :: arrives
 
@@ -251,20 +191,19 @@ contains
       do event = 1, 1000 + 1000*self%count
          call self%choose(way(1), way(2))
          if (self%failed) return
-         call self%find_ends(ends)
          before = [self%rotation, self%moment]
-         arrives = ends%ahead >= 1.0_wp - here
+         arrives = self%ends%ahead >= 1.0_wp - here
          if (arrives) then
             call self%place(rotation, axial_load, 1.0_wp - here, 0)
          else
-            associate (there => here + ends%ahead)
-               call self%place(begin(1) + there*way(1), begin(2) + there*way(2), ends%ahead, ends%first_ahead)
+            associate (there => here + self%ends%ahead)
+               call self%place(begin(1) + there*way(1), begin(2) + there*way(2), self%ends%ahead, &
+                               self%ends%first_ahead)
             end associate
          end if
-         call self%sum_up()
          if (present(work)) work = work + 0.5_wp*(before(2) + self%moment)*(self%rotation - before(1))
          if (arrives) return
-         here = here + ends%ahead
+         here = here + self%ends%ahead
       end do
       self%failed = .true.
    end subroutine go

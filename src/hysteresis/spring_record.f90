@@ -207,11 +207,18 @@ contains
       type(spring_record), intent(in) :: self
       integer, intent(in) :: i
 
-      same_as_before = .false.
-      if (i == 1) return
-      if (self%layer_rule(i) /= self%layer_rule(i - 1)) return
-      same_as_before = all(same_bits(self%layer_value(:, i), self%layer_value(:, i - 1)))
+      same_as_before = i > 1
+      if (same_as_before) same_as_before = same_layer(self, i, i - 1)
    end function same_as_before
+
+   !> Whether two layers have the same spring.
+   pure logical function same_layer(self, i, j)
+      type(spring_record), intent(in) :: self
+      integer, intent(in) :: i, j
+
+      same_layer = self%layer_rule(i) == self%layer_rule(j)
+      if (same_layer) same_layer = all(same_bits(self%layer_value(:, i), self%layer_value(:, j)))
+   end function same_layer
 
    !> Whether two numbers are the same, without comparing a NaN.
    elemental logical function same_bits(a, b)
@@ -239,9 +246,7 @@ contains
       class(spring_record), intent(in) :: self
       class(rule_type), allocatable, intent(out) :: rule
       type(key_type), allocatable :: keys(:)
-      type(spring_record) :: layer
       real(wp) :: value(most_parameters)
-      integer :: i
 
       call new_rule(rule, self%rule)
       keys = rule%keys()
@@ -250,14 +255,53 @@ contains
       select type (rule)
       type is (layered_rule)
          rule%axial_load = self%axial_load
-         rule%layers%y = self%y
-         allocate (rule%layers%slot(size(self%y)))
-         do i = 1, size(self%y)
-            layer = self%layer(i)
-            call layer%make(rule%layers%slot(i)%rule)
-         end do
+         call make_layers(self, rule)
       end select
    end subroutine make
+
+   !> The layers of a joint. Equal ones at one place, as bars in a row, are one that counts several times.
+   recursive subroutine make_layers(self, joint)
+      type(spring_record), intent(in) :: self
+      type(layered_rule), intent(inout) :: joint
+      type(spring_record) :: layer
+      real(wp) :: weight(size(self%y))
+      !> The first equal spring at each layer's place, and anywhere
+      integer, dimension(size(self%y)) :: here, anywhere
+      integer :: i, j
+
+      weight = 0.0_wp
+      do i = 1, size(self%y)
+         here(i) = i
+         anywhere(i) = i
+         do j = i - 1, 1, -1
+            if (anywhere(j) < j .or. .not. same_layer(self, i, j)) cycle
+            anywhere(i) = j
+            exit
+         end do
+         do j = 1, i - 1
+            if (anywhere(j) == anywhere(i) .and. same_bits(self%y(j), self%y(i))) exit
+         end do
+         here(i) = j
+         weight(j) = weight(j) + 1.0_wp
+      end do
+      joint%layers%y = pack(self%y, weight > 0.0_wp)
+      joint%layers%weight = pack(weight, weight > 0.0_wp)
+      allocate (joint%layers%slot(size(joint%layers%y)))
+      associate (slot => joint%layers%slot)
+         j = 0
+         do i = 1, size(self%y)
+            if (here(i) < i) cycle
+            j = j + 1
+            here(i) = j
+            if (anywhere(i) < i) then
+               allocate (slot(j)%rule, source=slot(here(anywhere(i)))%rule)
+            else
+               layer = self%layer(i)
+               call layer%make(slot(j)%rule)
+            end if
+         end do
+      end associate
+   end subroutine make_layers
 
    !> Stiffness of the virgin spring, of the stiffer side if they differ [N/m or N m/rad].
    impure elemental real(wp) function initial_stiffness(self)

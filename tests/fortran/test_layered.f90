@@ -143,11 +143,7 @@ contains
 
       select type (rule => self%rule)
       type is (layered_rule)
-         ! At an event one layer is exactly on its end; between events all follow from the opening.
-         d = rule%layers%d
-         if (abs(self%rotation - rule%layers%rotation) > 0.0_wp) then
-            d = rule%opening_at(self%rotation, self%axial_load) + self%y*self%rotation
-         end if
+         d = rule%opening_at(self%rotation, self%axial_load) + self%y*self%rotation
       end select
       call self%layers%move_all(d)
       do i = 1, size(d)

@@ -65,9 +65,9 @@ contains
          call balance%find_press(point)
          if (trial == 1) cycle
          if (balance%straight) return
-         if (abs(step) <= no_way .and. is_small(correction, point%q)) return
+         if (abs(step) <= no_way .and. is_small(correction, point)) return
       end do
-      found = abs(step) <= 1.0e-9_wp .and. is_small(1.0e-4_wp*correction, point%q)
+      found = abs(step) <= 1.0e-9_wp .and. is_small(1.0e-4_wp*correction, point)
    end subroutine find_end
 
    !> The point at a share of the way on the present lines.
@@ -89,7 +89,7 @@ contains
          if (.not. found) return
          point%q = point%q + correction
          point%force = point%force + force_correction
-         if (is_small(correction, point%q)) exit
+         if (is_small(correction, point)) exit
       end do
       call balance%find_press(point)
    end subroutine find_point
@@ -158,11 +158,14 @@ contains
       end do
    end function hides_event
 
-   !> Whether a correction is such that the next one would be round-off: Newton's method squares it.
-   pure logical function is_small(correction, q)
-      real(wp), intent(in) :: correction(:), q(:)
+   !> Whether a correction is such that the next one would be round-off: Newton's method squares it. The way
+   !> counts as well as the point, which may be the straight column.
+   pure logical function is_small(correction, point)
+      real(wp), intent(in) :: correction(:)
+      type(pressed_point), intent(in) :: point
 
-      is_small = maxval(abs(correction)) <= 1.0e-11_wp*maxval(abs(q))
+      is_small = maxval(abs(correction)) <= 1.0e-11_wp*max(maxval(abs(point%q)), &
+                                                           1.0e-4_wp*maxval(abs(point%rate)))
    end function is_small
 
    !> How far a spring can go on its line, in shares of the way.

@@ -1,0 +1,98 @@
+!> The two loops over all layers of a joint that every event needs, on plain arrays. Sums and minima may be
+!> taken in any order (`omp simd`), so that they are taken several layers at a time.
+module rbs_hysteresis_layer_kernels
+   use rbs_base_kinds, only: wp
+   implicit none
+   private
+
+   public :: add_lines, look_along
+
+   !> Added to what must not count as nearest
+   real(wp), parameter :: far_away = 1.0e120_wp
+
+contains
+
+   !> Sums over the lines  f_i = c_i + k_i d_i  of layers with  d_i = w + y_i phi: the axial force is
+   !> c_0 + a w + s phi, the moment c_1 + s w + q phi.
+   pure subroutine add_lines(n, y, k, c, a, s, q, c_0, c_1)
+      integer, intent(in) :: n
+      !> Distances [m], slopes [N/m] and forces at d = 0 [N] of the layers
+      real(wp), intent(in) :: y(n), k(n), c(n)
+      real(wp), intent(out) :: a, s, q, c_0, c_1
+      integer :: i
+
+      a = 0.0_wp
+      s = 0.0_wp
+      q = 0.0_wp
+      c_0 = 0.0_wp
+      c_1 = 0.0_wp
+      !$omp simd reduction(+:a, s, q, c_0, c_1)
+      do i = 1, n
+         a = a + k(i)
+         s = s + k(i)*y(i)
+         q = q + k(i)*y(i)*y(i)
+         c_0 = c_0 + c(i)
+         c_1 = c_1 + c(i)*y(i)
+      end do
+   end subroutine add_lines
+
+   !> Look along a straight path, on which layer i is at  w + y_i phi  and moves with  v_i = open + y_i turn:
+   !> when it comes to the end of its line ahead, and when it was at the one behind.
+   !>
+   !> Written without branches. Of both ends divided by the rate, one lies ahead (the larger quotient) and one
+   !> behind (the smaller).
+   pure subroutine look_along(n, y, k, lo, hi, slack, one_way, both_ways, w, phi, open, turn, least_rate, &
+                              room, ahead, behind, nearest, last, least_room, any_one_way, stiffness)
+      integer, intent(in) :: n
+      !> Distances, slopes and ends of the lines; finite, so that quotients do not overflow
+      real(wp), intent(in) :: y(n), k(n), lo(n), hi(n)
+      !> A layer this close to its end is on it, with `room` [m]
+      real(wp), intent(in) :: slack(n)
+      !> -1, 0 or 1 as in `segment`, and 1 where that is 0, else 0
+      real(wp), intent(in) :: one_way(n), both_ways(n)
+      real(wp), intent(in) :: w, phi, open, turn
+      !> Rates up to this count as zero; what is added to `slack` [m]
+      real(wp), intent(in) :: least_rate, room
+      !> Ways to the ends ahead, and back to those behind (negative), in units of the rates
+      real(wp), intent(out) :: ahead(n), behind(n)
+      !> The least way ahead, and the one behind that is nearest to zero
+      real(wp), intent(out) :: nearest, last
+      !> Not above zero if a layer is on the end that it goes to, or goes back on a one-way line
+      real(wp), intent(out) :: least_room
+      !> Whether any layer is on a one-way line
+      logical, intent(out) :: any_one_way
+      !> sum k v**2
+      real(wp), intent(out) :: stiffness
+      real(wp) :: least_both, v, size_v, d, per_v, to_lo, to_hi, still, per_least
+      integer :: i
+
+      nearest = huge(1.0_wp)
+      last = -huge(1.0_wp)
+      least_room = huge(1.0_wp)
+      least_both = 1.0_wp
+      stiffness = 0.0_wp
+      per_least = far_away/(epsilon(1.0_wp)*least_rate)
+      !$omp simd reduction(min:nearest, least_room, least_both) reduction(max:last) reduction(+:stiffness) &
+      !$omp private(v, size_v, d, per_v, to_lo, to_hi, still)
+      do i = 1, n
+         v = open + y(i)*turn
+         d = w + y(i)*phi
+         stiffness = stiffness + k(i)*v*v
+         size_v = abs(v)
+         ! Zero for a layer that moves, else far away.
+         still = max(0.0_wp, least_rate - size_v)*per_least
+         per_v = 1.0_wp/sign(max(size_v, least_rate), v)
+         to_lo = (lo(i) - d)*per_v
+         to_hi = (hi(i) - d)*per_v
+         ahead(i) = max(to_lo, to_hi) + still
+         behind(i) = min(to_lo, to_hi) - still
+         nearest = min(nearest, ahead(i))
+         last = max(last, behind(i))
+         least_room = min(least_room, min(ahead(i) - (room + slack(i))*abs(per_v), &
+                                          one_way(i)*v + both_ways(i) + still))
+         least_both = min(least_both, both_ways(i))
+      end do
+      any_one_way = least_both < 0.5_wp
+   end subroutine look_along
+
+end module rbs_hysteresis_layer_kernels
