@@ -415,11 +415,13 @@ def run_ensemble(
     runs: tuple[NDArray[np.int32], NDArray[np.int32], Array],
     control: NDArray[np.int32],
     measures: int,
+    kernel: int = 0,
 ) -> tuple[NDArray[np.int32], Array, dict[int, str]]:
     """Run columns under motions; return fates, measures (measures, runs) and errors by run.
 
     `runs` are the places of columns and motions, from 0, and the scales. `control` is shared: set
-    its first number to stop, read in its second how many runs are done.
+    its first number to stop, read in its second how many runs are done. `kernel` is 0 for the
+    fastest lanes that the processor has, 1 to 3 for those of no higher level, -1 for none.
     """
     column, motion, scale = runs
     room = (1 << 16) + 300 * scale.size
@@ -429,6 +431,7 @@ def run_ensemble(
         column + np.int32(1),
         motion + np.int32(1),
         scale,
+        kernel,
         control,
         measures,
         room,

@@ -823,8 +823,8 @@ subroutine rbs_plan_ensemble(statements, nn, numbers, nc, counts, ny, yields, m,
 end subroutine rbs_plan_ensemble
 
 subroutine rbs_run_ensemble(statements, nn, numbers, nc, counts, ny, yields, m, time, acceleration, nm, &
-                            points, nr, columns, motions, scales, control, nv, most, fates, values, text, &
-                            length)
+                            points, nr, columns, motions, scales, level, control, nv, most, fates, values, &
+                            text, length)
    ! `length` is that of the whole text, which is cut at `most`. Another thread reads and sets `control`.
    use iso_c_binding, only: c_double, c_int
    use rbs_bindings_ensembles, only: run_ensemble
@@ -832,7 +832,7 @@ subroutine rbs_run_ensemble(statements, nn, numbers, nc, counts, ny, yields, m, 
    implicit none
    character(len=*), intent(in) :: statements
    integer(c_int), intent(in) :: nn, nc, ny, m, nm, nr, nv, most, counts(2, nc), points(nm), columns(nr)
-   integer(c_int), intent(in) :: motions(nr)
+   integer(c_int), intent(in) :: motions(nr), level
    integer(c_int), intent(inout) :: control(2)
    real(c_double), intent(in) :: numbers(nn), yields(ny), time(m), acceleration(m), scales(nr)
    integer(c_int), intent(out) :: fates(nr)
@@ -843,7 +843,7 @@ subroutine rbs_run_ensemble(statements, nn, numbers, nc, counts, ny, yields, m, 
    type(text_buffer) :: buffer
 
    call run_ensemble(statements, numbers, counts, yields, time, acceleration, points, columns, motions, &
-                     scales, control, fates, values, buffer)
+                     scales, level, control, fates, values, buffer)
    text = ''
    length = buffer%length
    if (length > 0) text = buffer%text(:min(length, most))

@@ -8,8 +8,9 @@ module rbs_bindings_ensembles
    use rbs_bindings_statements, only: column_from_statements
    use rbs_case_case_record, only: case_record
    use rbs_case_text_buffer, only: text_buffer
-   use rbs_solve_ensemble_block, only: ensemble_column, ensemble_motion, run_type, plan_column, run_block
+   use rbs_solve_ensemble_block, only: plan_column, run_block
    use rbs_solve_ensemble_outcome, only: outcome_type
+   use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, run_type
    use rbs_solve_time_loads, only: loads_type
    implicit none
    private
@@ -53,7 +54,7 @@ contains
 
    !> Runs, each of a column and a motion, into their fates and measures.
    subroutine run_ensemble(statements, numbers, counts, yields, time, acceleration, points, columns, &
-                           motions, scales, control, fates, values, text)
+                           motions, scales, level, control, fates, values, text)
       !> As for `plan_ensemble`
       character(len=*), intent(in) :: statements
       real(c_double), intent(in) :: numbers(:), yields(:)
@@ -63,6 +64,8 @@ contains
       !> Column, motion and factor of the accelerations (runs)
       integer(c_int), intent(in) :: columns(:), motions(:)
       real(c_double), intent(in) :: scales(:)
+      !> See `run_block`
+      integer(c_int), intent(in) :: level
       !> See `run_block`
       integer(c_int), intent(inout), volatile :: control(2)
       integer(c_int), intent(out) :: fates(:)
@@ -87,7 +90,7 @@ contains
       do i = 1, size(run)
          run(i) = run_type(columns(i), motions(i), scales(i))
       end do
-      call run_block(column, motion, run, outcome, control)
+      call run_block(column, motion, run, level, outcome, control)
       do i = 1, size(run)
          fates(i) = outcome(i)%fate
          values(:, i) = outcome(i)%value

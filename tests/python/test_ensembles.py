@@ -12,6 +12,9 @@ import pytest
 import rbsdem
 from rbsdem import InputError, SolveError
 from rbsdem.ensembles import MEASURES
+from rbsdem.ensembles.inputs import Motion
+from rbsdem.ensembles.measures import core_measures
+from rbsdem.ensembles.tasks import Task, compute
 
 TIME = 0.01 * np.arange(400)
 
@@ -198,3 +201,49 @@ def test_bad_input(given: dict, message: str) -> None:
     good = {"columns": column(), "motions": motion(1)}
     with pytest.raises(InputError, match=message):
         rbsdem.ensemble(**(good | given))
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"method": "newmark"},
+        {"method": "hht", "rho_infinity": 0.7, "dt": 5e-3},
+        {"method": "generalised_alpha", "collapse_drift": 0.05},
+        {"method": "rk4", "collapse_drift": 0.05},
+        {"method": "rk4", "dt": 2e-4, "allow_unstable": True},
+    ],
+)
+def test_lanes_have_the_bits_of_a_run_alone(settings: dict) -> None:
+    """By each set of instructions, whatever the neighbours do, and where there are few of them."""
+    columns = [column(mass) for mass in (2e3, 10e3, 30e3, 80e3)]
+    stiff = rbsdem.Elastic(7e9)
+    columns.append(rbsdem.Column(1.6, 600.0, stiff, columns[0].flexure))
+    motions = [
+        Motion(0, *motion(1)),
+        Motion(1, *motion(2, 150, 0.02)),
+        Motion(2, np.array([0.0, 1.0]), np.array([0.0, 2.0])),
+    ]
+    scales = np.array([0.0, 0.1, 0.5, 1.0, 3.0, 10.0, 100.0])
+    grid = np.meshgrid(np.arange(5), np.arange(3), np.arange(7), indexing="ij")
+    place = [axis.ravel().astype(np.int32) for axis in grid]
+    task = Task(columns, motions, settings, place[0], place[1], scales[place[2]])
+    alone = compute(task, kernel=-1)
+    for kernel in (1, 2, 3):
+        found = compute(task, kernel=kernel)
+        np.testing.assert_array_equal(found.fates, alone.fates)
+        np.testing.assert_array_equal(found.values, alone.values)
+        assert found.errors == alone.errors
+    events = alone.values[core_measures().index("events")]
+    assert events.max() > 100
+
+
+def test_lanes_leave_uneven_steps_to_runs_alone() -> None:
+    time, acceleration = motion(1)
+    later = (time + 1.0, acceleration)
+    uneven = (time + 1e-3 * (np.arange(time.size) % 2), acceleration)
+    damped = column(damping=0.05)
+    found = rbsdem.ensemble(
+        [column(), damped], [later, uneven], scales=[0.5, 2.0], method="newmark"
+    )
+    assert set(found.status) == {"completed"}
+    same_as_alone(found)

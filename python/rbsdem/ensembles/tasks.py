@@ -104,7 +104,7 @@ def expected(plan: Plan) -> tuple[Array, list[tuple[int, str]]]:
     )
 
 
-def compute(task: Task, control: Integers | None = None) -> TaskResult:
+def compute(task: Task, control: Integers | None = None, kernel: int = 0) -> TaskResult:
     """Do the runs of a task.
 
     `control` is shared with the thread that waits: it sets the first number to end the task before
@@ -119,6 +119,7 @@ def compute(task: Task, control: Integers | None = None) -> TaskResult:
         (task.column, task.motion, task.scale),
         control,
         len(core_measures()),
+        kernel,
     )
     extra = {name: np.full(len(task), np.nan) for name in task.functions}
     if extra:

@@ -3,10 +3,10 @@ module rbs_solve_ensemble_block
    use rbs_base_constants, only: unset_integer
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_case_analysis_record, only: analysis_record
-   use rbs_column_column, only: column_type
    use rbs_output_summary, only: summary_type
+   use rbs_solve_ensemble_lane_runs, only: lane_task, takes_lanes, run_in_lanes
    use rbs_solve_ensemble_outcome, only: outcome_type
+   use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, run_type
    use rbs_solve_ensemble_tally, only: tally_recorder, settle
    use rbs_solve_time_effort, only: expected_seconds
    use rbs_solve_time_loads, only: loads_type
@@ -16,29 +16,10 @@ module rbs_solve_ensemble_block
    implicit none
    private
 
-   public :: ensemble_column, ensemble_motion, run_type, plan_column, run_block
+   public :: plan_column, run_block, without_lanes
 
-   !> A column and what is asked of it.
-   type :: ensemble_column
-      type(column_type) :: column
-      type(analysis_record) :: analysis
-      !> Rotation at which each joint yields; `huge` where that is not known (n) [rad]
-      real(wp), allocatable :: yield(:)
-      !> What is wrong with it; all its runs fail
-      type(error_type), allocatable :: error
-   end type ensemble_column
-
-   !> A ground motion.
-   type :: ensemble_motion
-      !> Times (m) [s], ascending, and accelerations (m) [m/s2]
-      real(wp), allocatable :: time(:), acceleration(:)
-   end type ensemble_motion
-
-   !> One run: its column, its motion, and the factor of the accelerations.
-   type :: run_type
-      integer :: column = 0, motion = 0
-      real(wp) :: scale = 1.0_wp
-   end type run_type
+   !> Tells `run_block` to run everything without lanes.
+   integer, parameter :: without_lanes = -1
 
 contains
 
@@ -49,65 +30,129 @@ contains
       type(ensemble_motion), intent(in) :: motion(:)
       real(wp), intent(out) :: seconds(:)
       type(error_type), allocatable, intent(out) :: error
-      type(loads_type) :: loads
       type(time_plan) :: plan
       integer :: j
 
       seconds = 0.0_wp
       do j = 1, size(motion)
-         loads%ground%time = motion(j)%time
-         loads%ground%value = motion(j)%acceleration
-         call plan_dynamic(column%column, column%analysis, motion(j)%time, loads, plan, error)
+         call plan_run(column, motion(j), plan, error)
          if (allocated(error)) return
          seconds(j) = expected_seconds(column%column, plan)
       end do
    end subroutine plan_column
 
    !> Run them all.
-   subroutine run_block(column, motion, run, outcome, control)
+   subroutine run_block(column, motion, run, level, outcome, control)
       type(ensemble_column), intent(in) :: column(:)
       type(ensemble_motion), intent(in) :: motion(:)
       type(run_type), intent(in) :: run(:)
+      !> Of the kernel: 0 for the fastest, see `chosen_kernel`; `without_lanes`
+      integer, intent(in) :: level
       type(outcome_type), intent(inout) :: outcome(:)
       !> Shared with other threads: 1: not zero to stop before the next run, 2: number of runs that are done
       integer, intent(inout), volatile :: control(2)
-      integer :: i
+      type(lane_task), allocatable :: task(:), others(:)
+      type(time_plan) :: plan
+      type(error_type), allocatable :: error
+      logical :: in_lanes
+      integer :: i, count
 
+      allocate (task(size(run)))
+      count = 0
+      in_lanes = .false.
       do i = 1, size(run)
          if (control(1) /= 0) return
-         call run_alone(column(run(i)%column), motion(run(i)%motion), run(i)%scale, outcome(i))
+         associate (one => column(run(i)%column), shaken => motion(run(i)%motion))
+            if (is_new(run, i)) then
+               in_lanes = .false.
+               call plan_run(one, shaken, plan, error)
+               if (.not. allocated(error) .and. level /= without_lanes) then
+                  in_lanes = takes_lanes(one%column, one%analysis, plan, shaken%time)
+               end if
+            end if
+            if (in_lanes) then
+               count = count + 1
+               task(count)%run = i
+               task(count)%parts = plan%parts(1)
+               call keep_plan(plan, task(count)%plan)
+               cycle
+            end if
+            call run_alone(one, shaken, run(i)%scale, plan, error, outcome(i))
+         end associate
          control(2) = control(2) + 1
+      end do
+      ! All lanes go by one method. Where the program chooses it, runs may differ.
+      task = task(:count)
+      do while (size(task) > 0)
+         others = pack(task, task%plan%method /= task(1)%plan%method)
+         call run_in_lanes(column, motion, run, pack(task, task%plan%method == task(1)%plan%method), level, &
+                           outcome, control)
+         call move_alloc(others, task)
       end do
    end subroutine run_block
 
+   !> Whether the column or the motion of a run is another one than before.
+   pure logical function is_new(run, i)
+      type(run_type), intent(in) :: run(:)
+      integer, intent(in) :: i
+
+      is_new = i == 1
+      if (.not. is_new) is_new = run(i)%column /= run(i - 1)%column .or. run(i)%motion /= run(i - 1)%motion
+   end function is_new
+
+   !> A plan without its list of intervals.
+   subroutine keep_plan(plan, kept)
+      type(time_plan), intent(in) :: plan
+      type(time_plan), intent(inout) :: kept
+
+      kept%dt = plan%dt
+      kept%method = plan%method
+      kept%limit = plan%limit
+      kept%located = plan%located
+   end subroutine keep_plan
+
+   subroutine plan_run(column, motion, plan, error)
+      type(ensemble_column), intent(in) :: column
+      type(ensemble_motion), intent(in) :: motion
+      type(time_plan), intent(out) :: plan
+      type(error_type), allocatable, intent(out) :: error
+      type(loads_type) :: loads
+
+      if (allocated(column%error)) then
+         error = column%error
+         return
+      end if
+      loads%ground%time = motion%time
+      loads%ground%value = motion%acceleration
+      call plan_dynamic(column%column, column%analysis, motion%time, loads, plan, error)
+   end subroutine plan_run
+
    !> One run by itself.
-   subroutine run_alone(column, motion, scale, outcome)
+   subroutine run_alone(column, motion, scale, plan, unplanned, outcome)
       type(ensemble_column), intent(in) :: column
       type(ensemble_motion), intent(in) :: motion
       real(wp), intent(in) :: scale
+      type(time_plan), intent(in) :: plan
+      !> Why there is no plan
+      type(error_type), allocatable, intent(in) :: unplanned
       type(outcome_type), intent(inout) :: outcome
       type(loads_type) :: loads
-      type(time_plan) :: plan
       type(initial_state) :: at_rest
       type(tally_recorder) :: tally
       type(summary_type) :: summary
       type(error_type), allocatable :: error
 
-      if (allocated(column%error)) then
-         error = column%error
-         call settle(column%column, tally, summary, error, outcome)
+      if (allocated(unplanned)) then
+         call settle(tally, summary, unplanned, outcome)
          return
       end if
       loads%ground%time = motion%time
       loads%ground%value = scale*motion%acceleration
       tally%n = column%column%n
       tally%yield = column%yield
-      call plan_dynamic(column%column, column%analysis, motion%time, loads, plan, error)
-      if (.not. allocated(error)) then
-         call run_dynamic(column%column, column%analysis, plan, motion%time, loads, at_rest, unset_integer, &
-                          tally, summary, error)
-      end if
-      call settle(column%column, tally, summary, error, outcome)
+      call run_dynamic(column%column, column%analysis, plan, motion%time, loads, at_rest, unset_integer, &
+                       tally, summary, error)
+      call settle(tally, summary, error, outcome)
    end subroutine run_alone
 
 end module rbs_solve_ensemble_block

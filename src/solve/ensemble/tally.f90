@@ -3,7 +3,6 @@ module rbs_solve_ensemble_tally
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type
    use rbs_output_recorder, only: recorder_type
    use rbs_output_row, only: row_time, row_displacement, row_joints
    use rbs_output_summary, only: summary_type
@@ -45,13 +44,12 @@ contains
    end subroutine record
 
    !> Fate and measures of a run that has ended.
-   subroutine settle(column, tally, summary, error, outcome)
-      type(column_type), intent(in) :: column
+   subroutine settle(tally, summary, error, outcome)
       type(tally_recorder), intent(in) :: tally
       type(summary_type), intent(in) :: summary
       type(error_type), allocatable, intent(in) :: error
       type(outcome_type), intent(inout) :: outcome
-      real(wp) :: figure(size(summary%as_array())), nothing
+      real(wp) :: nothing
 
       nothing = ieee_value(nothing, ieee_quiet_nan)
       if (allocated(error)) then
@@ -63,7 +61,6 @@ contains
       outcome%fate = fate_completed
       if (summary%collapsed) outcome%fate = fate_collapsed
       if (summary%lost_joint > 0) outcome%fate = fate_axial
-      figure = summary%as_array()
       associate (value => outcome%value)
          value(at_peak_displacement) = summary%peak_displacement
          value(at_residual_displacement) = tally%displacement

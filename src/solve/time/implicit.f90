@@ -34,9 +34,9 @@ module rbs_solve_time_implicit
       real(wp) :: wanted = 1.0e-12_wp, acceptable = 1.0e-7_wp
       !> Whether it is average acceleration, which with finite rotations has the forces of the mean
       logical, private :: average = .false.
-      type(step_balance), private :: step
-      type(step_tangent), private :: tangent
-      type(one_body_step), private :: one_body
+      type(step_balance) :: step
+      type(step_tangent) :: tangent
+      type(one_body_step) :: one_body
       !> Correction of the bodies and of the joints, and mean velocities of the joints (unknowns)
       real(wp), allocatable, private :: dx(:), dq(:), mean(:)
    contains

@@ -7,7 +7,6 @@ module rbs_solve_time_implicit_one_body
    use rbs_solve_time_implicit_balance, only: step_balance
    use rbs_solve_time_implicit_tangent, only: step_tangent
    use rbs_solve_time_loads, only: lateral, horizontal
-   use rbs_solve_time_motion, only: motion_type
    use rbs_solve_time_state, only: state_type, in_bounds
    implicit none
    private
@@ -16,10 +15,12 @@ module rbs_solve_time_implicit_one_body
 
    type :: one_body_step
       !> Inverse of the tangent, and what it belongs to; 1/(beta h^2)
-      real(wp), private :: inverse(2, 2) = 0.0_wp, h = -1.0_wp, per_h = 0.0_wp
+      real(wp) :: inverse(2, 2) = 0.0_wp, per_h = 0.0_wp
+      real(wp), private :: h = -1.0_wp
       integer, private :: version = -1
    contains
       procedure :: try_linear_step
+      procedure :: fit
    end type one_body_step
 
 contains
@@ -34,81 +35,111 @@ contains
       !> Share of the forces that the residual may have
       real(wp), intent(in) :: wanted
       logical, intent(out) :: taken
-      real(wp) :: g(2), r(2), moved(2), q(2), a1(2), v1(2), before(2), lower
-      real(wp) :: scale(2), shear, moment
+      real(wp) :: alpha_m, alpha_f, beta, gamma, per_h, mass_1, mass_2, lower, upper, softening
+      real(wp) :: d0_1, f0_1, k_1, d0_2, f0_2, k_2, inverse_11, inverse_12, inverse_21, inverse_22
+      real(wp) :: q_1, q_2, v0_1, v0_2, a0_1, a0_2, g0_1, g0_2, largest_1, largest_2, push, ground
+      real(wp) :: before_1, before_2, shear, moment, moved_1, moved_2, to_1, to_2
+      real(wp) :: v1_1, v1_2, a1_1, a1_2, g1_1, g1_2, rest_1, rest_2, scale_1, scale_2
 
       taken = .false.
-      if (self%version /= state%springs%version .or. abs(h - self%h) > 0.0_wp) then
-         call find_inverse(self, step, tangent, state, h)
-      end if
+      call self%fit(step, tangent, state, h)
+      alpha_m = step%alpha_m
+      alpha_f = step%alpha_f
+      beta = step%beta
+      gamma = step%gamma
+      per_h = self%per_h
+      mass_1 = step%mass(1)
+      mass_2 = step%mass(2)
+      push = load(lateral)
+      ground = load(horizontal)
+      inverse_11 = self%inverse(1, 1)
+      inverse_12 = self%inverse(1, 2)
+      inverse_21 = self%inverse(2, 1)
+      inverse_22 = self%inverse(2, 2)
+      q_1 = state%q(1)
+      q_2 = state%q(2)
+      v0_1 = step%v0(1)
+      v0_2 = step%v0(2)
+      a0_1 = step%a0(1)
+      a0_2 = step%a0(2)
+      g0_1 = step%g0(1)
+      g0_2 = step%g0(2)
+      largest_1 = step%largest(1)
+      largest_2 = step%largest(2)
       associate (motion => state%motion, springs => state%springs)
          lower = motion%column%lower(1)
-         before = h*step%v0 + (h**2*(0.5_wp - step%beta))*step%a0
-         call forces_at(motion, springs%d0, springs%f0, springs%k, state%q, load, g, shear, moment)
-         r = (1.0_wp - step%alpha_f)*g + step%alpha_f*step%g0 &
-             - step%mass*((step%alpha_m - 1.0_wp)*self%per_h*before + step%alpha_m*step%a0)
-         moved = self%inverse(:, 1)*r(1) + self%inverse(:, 2)*r(2)
-         q = [state%q(1) + (moved(1) - lower*moved(2)), state%q(2) + moved(2)]
+         upper = motion%column%upper(1)
+         softening = 0.0_wp
+         if (motion%second_order) softening = motion%column%axial_body(1)*motion%column%length(1)
+         d0_1 = springs%d0(1)
+         f0_1 = springs%f0(1)
+         k_1 = springs%k(1)
+         d0_2 = springs%d0(2)
+         f0_2 = springs%f0(2)
+         k_2 = springs%k(2)
+         ! The lanes of ensembles take the lines up to the next mark from here.
+         !---
+         before_1 = h*v0_1 + (h**2*(0.5_wp - beta))*a0_1
+         before_2 = h*v0_2 + (h**2*(0.5_wp - beta))*a0_2
+         shear = f0_1 + k_1*(q_1 - d0_1)
+         moment = f0_2 + k_2*(q_2 - d0_2)
+         g1_1 = (push - shear) - mass_1*ground
+         g1_2 = ((lower*shear + upper*push) - moment) + softening*q_2
+         rest_1 = (1.0_wp - alpha_f)*g1_1 + alpha_f*g0_1 &
+                  - mass_1*((alpha_m - 1.0_wp)*per_h*before_1 + alpha_m*a0_1)
+         rest_2 = (1.0_wp - alpha_f)*g1_2 + alpha_f*g0_2 &
+                  - mass_2*((alpha_m - 1.0_wp)*per_h*before_2 + alpha_m*a0_2)
+         moved_1 = inverse_11*rest_1 + inverse_12*rest_2
+         moved_2 = inverse_21*rest_1 + inverse_22*rest_2
+         to_1 = q_1 + (moved_1 - lower*moved_2)
+         to_2 = q_2 + moved_2
+         a1_1 = (moved_1 - before_1)*per_h
+         a1_2 = (moved_2 - before_2)*per_h
+         v1_1 = v0_1 + (h*(1.0_wp - gamma))*a0_1 + (h*gamma)*a1_1
+         v1_2 = v0_2 + (h*(1.0_wp - gamma))*a0_2 + (h*gamma)*a1_2
+         shear = f0_1 + k_1*(to_1 - d0_1)
+         moment = f0_2 + k_2*(to_2 - d0_2)
+         g1_1 = (push - shear) - mass_1*ground
+         g1_2 = ((lower*shear + upper*push) - moment) + softening*to_2
+         rest_1 = (1.0_wp - alpha_f)*g1_1 + alpha_f*g0_1 - mass_1*((1.0_wp - alpha_m)*a1_1 + alpha_m*a0_1)
+         rest_2 = (1.0_wp - alpha_f)*g1_2 + alpha_f*g0_2 - mass_2*((1.0_wp - alpha_m)*a1_2 + alpha_m*a0_2)
+         scale_1 = max(largest_1, abs(shear), abs(push), abs(mass_1*a1_1))
+         scale_2 = max(largest_2, abs(moment), abs(push)*upper, abs(mass_2*a1_2))
+         !---
          ! Written so that a number that is not one leaves too.
-         if (.not. (q(1) <= springs%last(1) .and. q(1) >= springs%first(1) .and. &
-                    q(2) <= springs%last(2) .and. q(2) >= springs%first(2))) return
-         a1 = (moved - before)*self%per_h
-         v1 = step%v0 + (h*(1.0_wp - step%gamma))*step%a0 + (h*step%gamma)*a1
-         call forces_at(motion, springs%d0, springs%f0, springs%k, q, load, g, shear, moment)
-         r = (1.0_wp - step%alpha_f)*g + step%alpha_f*step%g0 &
-             - step%mass*((1.0_wp - step%alpha_m)*a1 + step%alpha_m*step%a0)
-         scale(1) = max(step%largest(1), abs(shear), abs(load(lateral)), abs(step%mass(1)*a1(1)))
-         scale(2) = max(step%largest(2), abs(moment), abs(load(lateral))*motion%column%upper(1), &
-                        abs(step%mass(2)*a1(2)))
-         if (.not. (abs(r(1)) <= wanted*scale(1) .and. abs(r(2)) <= wanted*scale(2))) return
-         if (.not. in_bounds(2, q)) return
+         if (.not. (to_1 <= springs%last(1) .and. to_1 >= springs%first(1) .and. &
+                    to_2 <= springs%last(2) .and. to_2 >= springs%first(2))) return
+         if (.not. (abs(rest_1) <= wanted*scale_1 .and. abs(rest_2) <= wanted*scale_2)) return
+         if (.not. in_bounds(2, [to_1, to_2])) return
          taken = .true.
          if (motion%acts(lateral)) then
-            state%of_loads = state%of_loads + 0.5_wp*(state%load(lateral) + load(lateral)) &
-                             *(moved(1) + motion%column%upper(1)*moved(2))
+            state%of_loads = state%of_loads + 0.5_wp*(state%load(lateral) + push)*(moved_1 + upper*moved_2)
          end if
          if (motion%acts(horizontal)) then
-            state%of_loads = state%of_loads - 0.5_wp*(state%load(horizontal) + load(horizontal)) &
-                             *motion%column%mass(1)*moved(1)
+            state%of_loads = state%of_loads - 0.5_wp*(state%load(horizontal) + ground)*mass_1*moved_1
          end if
       end associate
-      call state%springs%carry_to(q)
-      state%q(:) = q
-      state%v(:) = [v1(1) - lower*v1(2), v1(2)]
+      call state%springs%carry_to([to_1, to_2])
+      state%q(:) = [to_1, to_2]
+      state%v(:) = [v1_1 - lower*v1_2, v1_2]
       state%time = state%time + h
       state%load = load
-      step%largest(:2) = scale
-      step%v0(:) = v1
-      step%a0(:) = a1
-      step%g0(:) = g
+      step%largest(:2) = [scale_1, scale_2]
+      step%v0(:) = [v1_1, v1_2]
+      step%a0(:) = [a1_1, a1_2]
+      step%g0(:) = [g1_1, g1_2]
    end subroutine try_linear_step
 
-   !> Forces on the body, inertia of the ground included, and those of the joint.
-   pure subroutine forces_at(motion, d0, f0, k, q, load, g, shear, moment)
-      type(motion_type), intent(in) :: motion
-      !> Lines of the springs, and deformations
-      real(wp), intent(in) :: d0(2), f0(2), k(2), q(2)
-      real(wp), intent(in) :: load(4)
-      real(wp), intent(out) :: g(2), shear, moment
-
-      shear = f0(1) + k(1)*(q(1) - d0(1))
-      moment = f0(2) + k(2)*(q(2) - d0(2))
-      associate (column => motion%column)
-         g(1) = (load(lateral) - shear) - column%mass(1)*load(horizontal)
-         g(2) = (column%lower(1)*shear + column%upper(1)*load(lateral)) - moment
-         if (motion%second_order) g(2) = g(2) + column%axial_body(1)*column%length(1)*q(2)
-      end associate
-   end subroutine forces_at
-
-   !> The inverse of the tangent on the present lines.
-   subroutine find_inverse(self, step, tangent, state, h)
-      type(one_body_step), intent(inout) :: self
+   !> Find the inverse of the tangent on the present lines, where that is not the one that is there.
+   subroutine fit(self, step, tangent, state, h)
+      class(one_body_step), intent(inout) :: self
       type(step_balance), intent(inout) :: step
       type(step_tangent), intent(inout) :: tangent
       type(state_type), intent(in) :: state
       real(wp), intent(in) :: h
       integer :: j
 
+      if (self%version == state%springs%version .and. .not. abs(h - self%h) > 0.0_wp) return
       do j = 1, 2
          step%r(:) = 0.0_wp
          step%r(j) = 1.0_wp
@@ -117,6 +148,6 @@ contains
       self%h = h
       self%per_h = 1.0_wp/(step%beta*h**2)
       self%version = state%springs%version
-   end subroutine find_inverse
+   end subroutine fit
 
 end module rbs_solve_time_implicit_one_body

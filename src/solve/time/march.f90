@@ -20,7 +20,10 @@ module rbs_solve_time_march
    implicit none
    private
 
-   public :: initial_state, march
+   public :: initial_state, march, start_state, report_state, step_of
+
+   !> Share of a step by which those of equal length may differ.
+   real(wp), parameter :: same_step = 1.0e-10_wp
 
    !> State at the start; arrays that are not allocated are zero.
    type :: initial_state
@@ -77,7 +80,7 @@ contains
       do interval = 1, plan%intervals
          begin = finish
          call interval_of(plan, time, interval, finish, parts)
-         h = (finish - begin)/parts
+         h = step_of(plan, (finish - begin)/parts)
          do part = 1, parts
             call stepper%advance(state, h, error)
             if (allocated(error)) then
@@ -133,6 +136,16 @@ contains
          finish = time(interval + 1)
       end if
    end subroutine interval_of
+
+   !> Times that are multiples of one step differ by it up to round-off; the steps are then equal to the last
+   !> bit, and what a method has found for a step holds for all of them.
+   pure real(wp) function step_of(plan, h)
+      type(time_plan), intent(in) :: plan
+      real(wp), intent(in) :: h
+
+      step_of = h
+      if (abs(h - plan%dt) <= same_step*plan%dt) step_of = plan%dt
+   end function step_of
 
    subroutine start_state(state, column, loads, initial, begin, error)
       type(state_type), intent(out) :: state

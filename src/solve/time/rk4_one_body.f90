@@ -10,7 +10,7 @@ module rbs_solve_time_rk4_one_body
    implicit none
    private
 
-   public :: advance_one_body, step_of_one_body
+   public :: advance_one_body, step_of_one_body, inverse_of_mass
 
 contains
 
@@ -55,66 +55,92 @@ contains
       real(wp), intent(inout) :: q(2), v(2)
       real(wp), intent(out) :: of_loads
       real(wp) :: half, sixth, flexible, coupling, turning, softening
-      real(wp) :: along(3), about(3), load_along(3), load_about(3), force, moment, shear, flexure
+      real(wp) :: d0_1, f0_1, k_1, d0_2, f0_2, k_2, q_1, q_2, v_1, v_2
+      real(wp) :: along_1, along_2, along_3, about_1, about_2, about_3, push, turn, shear, flexure
       real(wp) :: g11, g12, g21, g22
       real(wp) :: u1, u2, u3, u4, r1, r2, r3, r4, a1, a2, a3, a4, b1, b2, b3, b4
-      integer :: j
 
-      ! Inverse of the mass matrix in slip and rotation.
-      flexible = motion%inverse_mass(1) + motion%column%lower(1)**2*motion%inverse_inertia(1)
-      coupling = -motion%column%lower(1)*motion%inverse_inertia(1)
-      turning = motion%inverse_inertia(1)
-      softening = 0.0_wp
-      if (motion%second_order) softening = motion%column%axial_body(1)*motion%column%length(1)
+      call inverse_of_mass(motion, flexible, coupling, turning, softening)
+      d0_1 = d0(1)
+      f0_1 = f0(1)
+      k_1 = k(1)
+      d0_2 = d0(2)
+      f0_2 = f0(2)
+      k_2 = k(2)
+      q_1 = q(1)
+      q_2 = q(2)
+      v_1 = v(1)
+      v_2 = v(2)
       ! Loads along the slip and about the joint.
-      do j = 1, 3
-         load_along(j) = load_force(j) - motion%column%ground_arm(1)*load_ground(j)
-         load_about(j) = motion%column%arm(2)*load_force(j) - motion%column%ground_arm(2)*load_ground(j)
-      end do
+      along_1 = load_force(1) - motion%column%ground_arm(1)*load_ground(1)
+      about_1 = motion%column%arm(2)*load_force(1) - motion%column%ground_arm(2)*load_ground(1)
+      along_2 = load_force(2) - motion%column%ground_arm(1)*load_ground(2)
+      about_2 = motion%column%arm(2)*load_force(2) - motion%column%ground_arm(2)*load_ground(2)
+      along_3 = load_force(3) - motion%column%ground_arm(1)*load_ground(3)
+      about_3 = motion%column%arm(2)*load_force(3) - motion%column%ground_arm(2)*load_ground(3)
+      ! The lanes of ensembles take the lines up to the next mark from here.
+      !---
       half = 0.5_wp*h
       sixth = h*(1.0_wp/6.0_wp)
 
       ! On its line a spring resists a stage with its force at the start of the step plus k times the way from
       ! there, which is a multiple of the velocity: the accelerations are c - G v. This keeps the chain of
       ! dependent operations from stage to stage short.
-      shear = half*k(1)
-      flexure = half*(k(2) - softening)
+      shear = half*k_1
+      flexure = half*(k_2 - softening)
       g11 = flexible*shear
       g12 = coupling*flexure
       g21 = coupling*shear
       g22 = turning*flexure
-      along = load_along - (f0(1) + k(1)*(q(1) - d0(1)))
-      about = load_about - (f0(2) + k(2)*(q(2) - d0(2))) + softening*q(2)
+      shear = f0_1 + k_1*(q_1 - d0_1)
+      flexure = f0_2 + k_2*(q_2 - d0_2)
 
-      u1 = v(1)
-      r1 = v(2)
-      a1 = flexible*along(1) + coupling*about(1)
-      b1 = coupling*along(1) + turning*about(1)
+      u1 = v_1
+      r1 = v_2
+      a1 = flexible*(along_1 - shear) + coupling*((about_1 - flexure) + softening*q_2)
+      b1 = coupling*(along_1 - shear) + turning*((about_1 - flexure) + softening*q_2)
       u2 = u1 + half*a1
       r2 = r1 + half*b1
 
-      force = flexible*along(2) + coupling*about(2)
-      moment = coupling*along(2) + turning*about(2)
-      a2 = force - (g11*u1 + g12*r1)
-      b2 = moment - (g21*u1 + g22*r1)
+      push = flexible*(along_2 - shear) + coupling*((about_2 - flexure) + softening*q_2)
+      turn = coupling*(along_2 - shear) + turning*((about_2 - flexure) + softening*q_2)
+      a2 = push - (g11*u1 + g12*r1)
+      b2 = turn - (g21*u1 + g22*r1)
       u3 = u1 + half*a2
       r3 = r1 + half*b2
 
-      a3 = force - (g11*u2 + g12*r2)
-      b3 = moment - (g21*u2 + g22*r2)
+      a3 = push - (g11*u2 + g12*r2)
+      b3 = turn - (g21*u2 + g22*r2)
       u4 = u1 + h*a3
       r4 = r1 + h*b3
 
-      a4 = (flexible*along(3) + coupling*about(3)) - 2.0_wp*(g11*u3 + g12*r3)
-      b4 = (coupling*along(3) + turning*about(3)) - 2.0_wp*(g21*u3 + g22*r3)
+      a4 = (flexible*(along_3 - shear) + coupling*((about_3 - flexure) + softening*q_2)) &
+           - 2.0_wp*(g11*u3 + g12*r3)
+      b4 = (coupling*(along_3 - shear) + turning*((about_3 - flexure) + softening*q_2)) &
+           - 2.0_wp*(g21*u3 + g22*r3)
 
-      q(1) = q(1) + sixth*(u1 + 2.0_wp*(u2 + u3) + u4)
-      q(2) = q(2) + sixth*(r1 + 2.0_wp*(r2 + r3) + r4)
-      v(1) = u1 + sixth*(a1 + 2.0_wp*(a2 + a3) + a4)
-      v(2) = r1 + sixth*(b1 + 2.0_wp*(b2 + b3) + b4)
-      of_loads = sixth*((load_along(1)*u1 + load_about(1)*r1) &
-                        + 2.0_wp*(load_along(2)*(u2 + u3) + load_about(2)*(r2 + r3)) &
-                        + (load_along(3)*u4 + load_about(3)*r4))
+      q_1 = q_1 + sixth*(u1 + 2.0_wp*(u2 + u3) + u4)
+      q_2 = q_2 + sixth*(r1 + 2.0_wp*(r2 + r3) + r4)
+      v_1 = u1 + sixth*(a1 + 2.0_wp*(a2 + a3) + a4)
+      v_2 = r1 + sixth*(b1 + 2.0_wp*(b2 + b3) + b4)
+      of_loads = sixth*((along_1*u1 + about_1*r1) + 2.0_wp*(along_2*(u2 + u3) + about_2*(r2 + r3)) &
+                        + (along_3*u4 + about_3*r4))
+      !---
+      q = [q_1, q_2]
+      v = [v_1, v_2]
    end subroutine step_of_one_body
+
+   !> Inverse of the mass matrix in slip and rotation [1/kg, 1/(kg m), 1/(kg m2)], and the moment of the axial
+   !> force per rotation [N m].
+   pure subroutine inverse_of_mass(motion, flexible, coupling, turning, softening)
+      type(motion_type), intent(in) :: motion
+      real(wp), intent(out) :: flexible, coupling, turning, softening
+
+      flexible = motion%inverse_mass(1) + motion%column%lower(1)**2*motion%inverse_inertia(1)
+      coupling = -motion%column%lower(1)*motion%inverse_inertia(1)
+      turning = motion%inverse_inertia(1)
+      softening = 0.0_wp
+      if (motion%second_order) softening = motion%column%axial_body(1)*motion%column%length(1)
+   end subroutine inverse_of_mass
 
 end module rbs_solve_time_rk4_one_body

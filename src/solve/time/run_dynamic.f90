@@ -27,7 +27,7 @@ module rbs_solve_time_run_dynamic
    implicit none
    private
 
-   public :: plan_dynamic, run_dynamic
+   public :: plan_dynamic, run_dynamic, new_stepper
 
    !> What `auto` assumes: an implicit step costs as much as this number of explicit ones, with small and with
    !> finite rotations.
