@@ -5,7 +5,7 @@ SI units throughout: N, m, kg, s, rad. Axial load is positive in compression.
 
 from typing import TYPE_CHECKING
 
-from rbsdem import _moved, comparison, motions, peer, plot
+from rbsdem import _moved, codes, comparison, motions, peer, plot
 from rbsdem._core import version as _version
 from rbsdem.accuracy import Trade, trade
 from rbsdem.analysis import Modes, cyclic, mass_matrix, modes, time_history
@@ -92,6 +92,7 @@ __all__ = [
     "Ties",
     "Trade",
     "calibrate",
+    "codes",
     "compare",
     "comparison",
     "cyclic",

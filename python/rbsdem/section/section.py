@@ -25,6 +25,7 @@ from rbsdem.section.strength import shear_strength_mcft
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from rbsdem.codes.values import CodeValues
     from rbsdem.column import Column
 
 __all__ = ["Section"]
@@ -203,6 +204,34 @@ class Section(DrawnSection):
             If the code is not known or does not cover the section.
         """
         return interaction_diagram(self, code, points, self._confined(confined))
+
+    def code_values(self, height: float, axial_load: float) -> CodeValues:
+        """Return what codes and regressions say of a column with this section.
+
+        Stiffness, strengths, chord and plastic rotations, drifts at failures: ASCE 41-17 (ACI
+        369.1), EN 1998-3, Panagiotakos and Fardis, Elwood and Eberhard, Elwood and Moehle, Sezen
+        and Moehle, Haselton, Berry and Eberhard, Goodnight; each with its source, and whether its
+        formula is confirmed. Those that were made for rectangles are left out for circles.
+
+        Parameters
+        ----------
+        height : float
+            Shear span, from the foot to the point without moment [m].
+        axial_load : float
+            Compression positive [N].
+
+        Returns
+        -------
+        rbsdem.codes.CodeValues
+            The values by name; its method `table` prints them.
+
+        Raises
+        ------
+        InputError
+            If the section has no bars near both faces, or a number is refused.
+        """
+        found: CodeValues = _views.view(self, "code_values", height, axial_load)
+        return found
 
     def springs(self, length: float, axial_load: float, **options: Any) -> SectionSprings:
         """Return the springs of a column with this section, from its base to the lateral load.
