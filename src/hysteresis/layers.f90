@@ -33,6 +33,7 @@ module rbs_hysteresis_layers
       procedure :: way_from
       procedure :: put
       procedure :: turns_back
+      procedure :: rate_of_opening
    end type layer_bank
 
 contains
@@ -109,7 +110,7 @@ contains
       way = unbounded
       first = 0
       opening = self%opening_at(rotation, axial_load)
-      open = rate_of_opening(self, turn, press)
+      open = self%rate_of_opening(turn, press)
       do begin = 1, self%count, block
          n = min(block, self%count - begin + 1)
          associate (finish => begin + n - 1)
@@ -131,7 +132,7 @@ contains
 
    !> Rate of the opening on the present lines.
    pure real(wp) function rate_of_opening(self, turn, press) result(open)
-      type(layer_bank), intent(in) :: self
+      class(layer_bank), intent(in) :: self
       real(wp), intent(in) :: turn, press
 
       if (self%a > no_stiffness*self%stiffness) then
@@ -150,7 +151,7 @@ contains
       real(wp) :: open, least_rate
       integer :: i
 
-      open = rate_of_opening(self, turn, press)
+      open = self%rate_of_opening(turn, press)
       least_rate = self%least_rate(open, turn)
       turns_back = .false.
       do i = 1, self%count
@@ -167,7 +168,7 @@ contains
       real(wp) :: opening
 
       opening = self%opening_at(rotation, axial_load)
-      self%open = rate_of_opening(self, turn, press)
+      self%open = self%rate_of_opening(turn, press)
       self%turn = turn
       self%press = press
       self%opening = opening

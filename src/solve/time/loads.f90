@@ -26,6 +26,7 @@ module rbs_solve_time_loads
       procedure :: set_begin
       procedure :: at_time
       procedure :: corner_after
+      procedure :: slope_after
    end type loads_type
 
 contains
@@ -62,6 +63,19 @@ contains
       if (self%acts(vertical)) load(vertical) = self%vertical%at_time(t)
       if (self%acts(axial)) load(axial) = self%axial%at_time(t)
    end subroutine at_time
+
+   !> Slopes of all four loads until the first corner after t [per s].
+   subroutine slope_after(self, t, slope)
+      class(loads_type), intent(inout) :: self
+      real(wp), intent(in) :: t
+      real(wp), intent(out) :: slope(4)
+
+      slope = 0.0_wp
+      if (self%acts(lateral)) slope(lateral) = self%force%slope_after(t)
+      if (self%acts(horizontal)) slope(horizontal) = self%ground%slope_after(t)
+      if (self%acts(vertical)) slope(vertical) = self%vertical%slope_after(t)
+      if (self%acts(axial)) slope(axial) = self%axial%slope_after(t)
+   end subroutine slope_after
 
    !> The first time after t at which a load changes its slope; `huge` if there is none [s].
    real(wp) function corner_after(self, t) result(corner)

@@ -8,9 +8,12 @@ module rbs_solve_time_located
    use rbs_base_text, only: to_text
    use rbs_column_chain, only: kinetic_of
    use rbs_column_column, only: joint_name
+   use rbs_hysteresis_layer_events, only: turn_layer
+   use rbs_solve_time_event, only: event_type, find_event, same_event, distance_to, standing_rotation
+   use rbs_solve_time_loads, only: lateral, horizontal, vertical, axial
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_scheme, only: scheme_type
-   use rbs_solve_time_state, only: state_type, stepper_type, out_of_bounds, in_bounds
+   use rbs_solve_time_state, only: state_type, stepper_type, in_bounds
    implicit none
    private
 
@@ -19,17 +22,8 @@ module rbs_solve_time_located
    !> Error that stands for an attempt that is not finite.
    real(wp), parameter :: not_finite = 1.0e10_wp
 
-   !> An event of a spring, and when in the step it is expected.
-   type :: event_type
-      !> Spring, 0 for none
-      integer :: spring = 0
-      !> Direction in which it leaves its line: +1, -1
-      integer :: way = 0
-      !> Whether it leaves because it turns back, else because its line ends
-      logical :: turns = .false.
-      !> Time from the start of the step: an estimate, and after which it has certainly happened [s]
-      real(wp) :: estimate = 0.0_wp, latest = 0.0_wp
-   end type event_type
+   !> An acceleration below this share of those of the single forces is round-off.
+   real(wp), parameter :: felt = 32.0_wp*epsilon(1.0_wp)
 
    type, extends(stepper_type) :: located_stepper
       class(scheme_type), allocatable :: scheme
@@ -41,6 +35,9 @@ module rbs_solve_time_located
       real(wp), private :: largest = 0.0_wp
       !> The equation of motion where springs stand still, and where one turns back
       type(motion_result), private :: now
+      !> Slopes of the loads in the present part of a step, and velocities at its start (unknowns)
+      real(wp), private :: slope(4) = 0.0_wp
+      real(wp), allocatable, private :: v_start(:)
    contains
       procedure :: advance
    end type located_stepper
@@ -58,7 +55,10 @@ contains
       integer :: tries, idle
 
       if (allocated(error)) return
-      if (.not. allocated(self%now%a)) call self%now%create(state%motion%column)
+      if (.not. allocated(self%now%a)) then
+         call self%now%create(state%motion%column)
+         allocate (self%v_start(size(state%v)))
+      end if
       finish = state%time + h
       left = h
       idle = 0
@@ -77,6 +77,11 @@ contains
             ! Two equal steps rather than a long and a short one.
             part = min(self%next_step, 0.5_wp*part)
          end if
+         if (state%springs%pressed) then
+            call state%loads%slope_after(state%time, self%slope)
+            call choose_planes(self, state)
+            if (state%springs%lost_joint() > 0) return
+         end if
          call leave_at_once(self, state, error)
          if (allocated(error)) return
          do tries = 1, 200
@@ -93,22 +98,59 @@ contains
                return
             end if
          end do
-         call find_event(state, self%scheme, part, event)
+         call find_event(state, self%scheme, part, self%slope, event)
          if (event%spring > 0) call locate(self, state, event, part)
          call accept(self, state, event, part, wrong)
          left = left - part
          state%time = finish - left
          idle = merge(0, idle + 1, part > 4.0_wp*spacing(h))
-         if (idle > 20 + 10*state%springs%count) then
+         if (idle > most_idle(state)) then
             call report_standstill(state, event%spring, error)
             return
          end if
          self%steps = self%steps + 1
          if (state%springs%stuck) return
          if (state%lost) return
+         if (event%spring > 0) then
+            if (state%springs%lost_joint() > 0) return
+         end if
       end do
       state%time = finish
    end subroutine advance
+
+   !> How many parts of no length a step may have in a row.
+   pure integer function most_idle(state)
+      type(state_type), intent(in) :: state
+
+      most_idle = 20 + 10*state%springs%count
+      if (state%springs%pressed) most_idle = most_idle + 100*size(state%springs%layered)
+   end function most_idle
+
+   !> Layered joints whose axial loads vary choose the lines of their layers for the present rates, or where
+   !> nothing moves for those that follow.
+   subroutine choose_planes(self, state)
+      class(located_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      real(wp) :: turn, press
+      integer :: i, j
+      logical :: known
+
+      known = .false.
+      do j = 1, size(state%springs%layered)
+         i = state%springs%layered(j)
+         turn = state%v(i)
+         press = state%motion%press_rate(i - state%motion%column%n, self%slope)
+         if (.not. abs(turn) + abs(press) > 0.0_wp) then
+            if (.not. known) then
+               call state%motion%acceleration(state%springs, state%q, state%v, state%load, self%now)
+               known = .true.
+            end if
+            turn = felt_acceleration(self, state, i)
+         end if
+         if (abs(turn) + abs(press) > 0.0_wp) call state%springs%choose_lines(i, turn, press)
+      end do
+      self%scheme%begun = .false.
+   end subroutine choose_planes
 
    !> Take the attempt; the springs follow, that of the event onto its next line.
    subroutine accept(self, state, event, h, wrong)
@@ -118,22 +160,26 @@ contains
       real(wp), intent(in) :: h, wrong
       integer :: i
 
+      self%v_start(:) = state%v
       call self%scheme%accept(state, h)
       state%lost = .not. in_bounds(size(state%q), state%q)
       if (state%lost) return
       i = event%spring
       if (i > 0) then
          self%cut_steps = self%cut_steps + 1
-         if (event%turns) then
+         if (event%layer > 0) then
+            if (event%turns) state%v(i) = standing_rotation(state, event, self%slope)
+         else if (event%turns) then
             state%v(i) = 0.0_wp
          else
             state%q(i) = state%springs%end_toward(i, event%way)
          end if
       end if
+      if (state%springs%pressed) call carry_planes(self, state, event, h)
       associate (springs => state%springs)
          ! No other spring has passed an end by more than the last digits.
          call springs%carry_to(state%q)
-         if (i > 0) call springs%leave(i, event%way)
+         if (i > 0 .and. event%layer == 0) call springs%leave(i, event%way)
       end associate
       if (self%tolerance > 0.0_wp) then
          self%longest_step = max(self%longest_step, h)
@@ -145,6 +191,33 @@ contains
          end if
       end if
    end subroutine accept
+
+   !> Layered joints whose axial loads vary go on their planes to the end of a step. Between its ends the load
+   !> is straight in time and the rotation a cubic: the work of the moment is that of the trapezoidal rule and
+   !> a correction by the velocities.
+   subroutine carry_planes(self, state, event, h)
+      class(located_stepper), intent(in) :: self
+      type(state_type), intent(inout) :: state
+      type(event_type), intent(in) :: event
+      real(wp), intent(in) :: h
+      real(wp) :: turned, before, press, centre
+      integer :: i, j, layer
+
+      associate (springs => state%springs)
+         do j = 1, size(springs%layered)
+            i = springs%layered(j)
+            layer = merge(event%layer, 0, i == event%spring .and. .not. event%turns)
+            press = state%motion%press_rate(i - state%motion%column%n, self%slope)
+            turned = state%q(i) - springs%d(i)
+            before = springs%force(i)
+            centre = springs%centre(i)
+            call springs%put_on_plane(i, state%q(i), springs%press_to(i), state%v(i), press, layer)
+            springs%work(i) = springs%work(i) + 0.5_wp*(before + springs%force(i))*turned &
+                              + centre*press*h**2/12.0_wp*(self%v_start(i) - state%v(i))
+         end do
+         if (event%layer > 0 .and. event%turns) call turn_layer(springs, event%spring, event%layer, event%way)
+      end associate
+   end subroutine carry_planes
 
    !> Error of the attempt over the tolerance, in energy norm; above 1 also where it is not finite.
    real(wp) function error_of(self, state) result(wrong)
@@ -194,7 +267,7 @@ contains
                      call state%motion%acceleration(springs, state%q, state%v, state%load, self%now)
                      known = .true.
                   end if
-                  way = direction_of(self%now%a(i))
+                  way = direction_of(felt_acceleration(self, state, i))
                end if
                if (way == 0) cycle
                if (springs%one_way(i) == -way) exit
@@ -209,6 +282,28 @@ contains
       end associate
       call report_standstill(state, i, error)
    end subroutine leave_at_once
+
+   !> Acceleration of an unknown, zero where it is the round-off of the forces: on either side of the end of a
+   !> line that has another sign.
+   pure real(wp) function felt_acceleration(self, state, i) result(a)
+      type(located_stepper), intent(in) :: self
+      type(state_type), intent(in) :: state
+      integer, intent(in) :: i
+      real(wp) :: along, about, reach
+      integer :: n
+
+      associate (column => state%motion%column, f => self%now%f, m => size(self%now%f))
+         n = column%n
+         reach = maxval(column%length)
+         along = max(maxval(abs(f(:n))), maxval(abs(f(2*n + 1:m))), abs(state%load(lateral)), &
+                     abs(column%axial_load + state%load(axial)))
+         about = (maxval(abs(f(n + 1:2*n))) + along*reach)/minval(column%inertia)
+         along = along/minval(column%mass) + abs(state%load(horizontal)) + abs(state%load(vertical)) &
+                 + column%gravity + about*reach
+         a = self%now%a(i)
+         if (abs(a) <= felt*merge(about, along, (i - 1)/n == 1)) a = 0.0_wp
+      end associate
+   end function felt_acceleration
 
    !> Report a spring that changes its lines in a circle.
    subroutine report_standstill(state, i, error)
@@ -229,84 +324,6 @@ contains
       if (x < 0.0_wp) direction_of = -1
    end function direction_of
 
-   !> The first event of an attempt of length h, by the parabola through both velocities.
-   pure subroutine find_event(state, scheme, h, event)
-      type(state_type), intent(in) :: state
-      class(scheme_type), intent(in) :: scheme
-      real(wp), intent(in) :: h
-      type(event_type), intent(out) :: event
-      type(event_type) :: one
-      integer :: i
-
-      event%estimate = huge(1.0_wp)
-      do i = 1, state%springs%count
-         ! Most springs stay inside their line and do not turn.
-         if (scheme%q(i) >= state%springs%first(i) .and. scheme%q(i) <= state%springs%last(i) .and. &
-             state%v(i)*scheme%v(i) > 0.0_wp) cycle
-         call event_of_spring(state, scheme, i, h, one)
-         if (one%spring > 0 .and. one%estimate < event%estimate) event = one
-      end do
-   end subroutine find_event
-
-   pure subroutine event_of_spring(state, scheme, i, h, event)
-      type(state_type), intent(in) :: state
-      class(scheme_type), intent(in) :: scheme
-      integer, intent(in) :: i
-      real(wp), intent(in) :: h
-      type(event_type), intent(out) :: event
-      real(wp) :: d, v, turning, furthest, far
-      integer :: way
-
-      d = state%q(i)
-      v = state%v(i)
-      way = direction_of(v)
-      turning = huge(1.0_wp)
-      if (v*scheme%v(i) < 0.0_wp) turning = h*v/(v - scheme%v(i))
-      if (way /= 0 .and. turning < h) then
-         furthest = d + 0.5_wp*v*turning
-         if (is_beyond(state, i, furthest, way)) then
-            ! It passes the end and comes back within the step.
-            far = state%springs%end_toward(i, way) - d
-            event = event_type(i, way, .false., time_to(far, v, turning), turning)
-            return
-         else if (state%springs%one_way(i) == way) then
-            event = event_type(i, -way, .true., turning, h)
-            return
-         end if
-      end if
-      way = direction_of(scheme%q(i) - d)
-      if (turning < h) way = -direction_of(v)
-      if (way == 0) return
-      if (is_beyond(state, i, scheme%q(i), way)) then
-         far = state%springs%end_toward(i, way) - d
-         event = event_type(i, way, .false., h*min(max(far/(scheme%q(i) - d), 0.0_wp), 1.0_wp), h)
-      else if (state%springs%one_way(i) == -way) then
-         event = event_type(i, way, .true., 0.5_wp*h, h)
-      end if
-   end subroutine event_of_spring
-
-   !> Whether a deformation is beyond the end of a line in a direction, by more than the last digits. The
-   !> rear end of a one-way line does not count.
-   pure logical function is_beyond(state, i, d, way)
-      type(state_type), intent(in) :: state
-      integer, intent(in) :: i, way
-      real(wp), intent(in) :: d
-      real(wp) :: end_of_line
-
-      is_beyond = .false.
-      if (state%springs%one_way(i) == -way) return
-      end_of_line = state%springs%end_toward(i, way)
-      if (abs(end_of_line) > out_of_bounds) return
-      is_beyond = way*(d - end_of_line) > 4.0_wp*spacing(max(abs(end_of_line), abs(state%q(i))))
-   end function is_beyond
-
-   !> Time in which a decelerated motion, which would turn after `turning`, covers a distance.
-   pure real(wp) function time_to(way, v, turning) result(t)
-      real(wp), intent(in) :: way, v, turning
-
-      t = turning*(1.0_wp - sqrt(max(1.0_wp - 2.0_wp*way/(v*turning), 0.0_wp)))
-   end function time_to
-
    !> Shorten the step to the event: attempts of shorter and shorter steps, by Newton's method within
    !> bounds. If another event turns out to come before, that one is located.
    subroutine locate(self, state, event, h)
@@ -318,11 +335,11 @@ contains
       type(event_type) :: other
       integer :: rounds
 
-      do rounds = 1, 2 + 2*state%springs%count
+      do rounds = 1, 2 + most_idle(state)/5
          call approach(self, state, event, h)
-         call find_event(state, self%scheme, h, other)
+         call find_event(state, self%scheme, h, self%slope, other)
          if (other%spring == 0) return
-         if (other%spring == event%spring .and. (other%turns .eqv. event%turns)) return
+         if (same_event(other, event)) return
          event = other
       end do
    end subroutine locate
@@ -333,28 +350,16 @@ contains
       type(state_type), intent(inout) :: state
       type(event_type), intent(in) :: event
       real(wp), intent(inout) :: h
-      real(wp) :: low, high, t, wrong, slope, target, small
-      integer :: iteration, i
+      real(wp) :: low, high, t, wrong, growth, small
+      integer :: iteration
 
-      i = event%spring
-      target = state%springs%end_toward(i, event%way)
       low = 0.0_wp
       high = min(event%latest, h)
       t = min(max(event%estimate, 0.0_wp), high)
       if (.not. t > 0.0_wp) t = 0.5_wp*high
       do iteration = 1, 60
          call self%scheme%attempt(state, t)
-         if (event%turns) then
-            wrong = event%way*self%scheme%v(i)
-            small = 4.0_wp*epsilon(1.0_wp)*abs(state%v(i))
-            call state%motion%acceleration(state%springs, self%scheme%q, self%scheme%v, self%scheme%load, &
-                                           self%now)
-            slope = event%way*self%now%a(i)
-         else
-            wrong = event%way*(self%scheme%q(i) - target)
-            small = 2.0_wp*spacing(max(abs(target), abs(state%q(i))))
-            slope = event%way*self%scheme%v(i)
-         end if
+         call distance_to(state, self%scheme, event, self%slope, self%now, wrong, growth, small)
          h = t
          if (abs(wrong) <= small .or. high - low <= 4.0_wp*epsilon(1.0_wp)*high) exit
          if (wrong > 0.0_wp) then
@@ -363,8 +368,8 @@ contains
             low = t
          end if
          t = 0.5_wp*(low + high)
-         if (slope > 0.0_wp) then
-            if (h - wrong/slope > low .and. h - wrong/slope < high) t = h - wrong/slope
+         if (growth > 0.0_wp) then
+            if (h - wrong/growth > low .and. h - wrong/growth < high) t = h - wrong/growth
          end if
       end do
    end subroutine approach

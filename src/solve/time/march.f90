@@ -97,10 +97,12 @@ contains
             end if
             state%clock = begin + part*h
             if (part == parts) state%clock = finish
+            summary%lost_joint = max(state%springs%lost_joint() - column%n, 0)
+            ! A joint may have lost its axial load within the step.
+            if (summary%lost_joint > 0) state%clock = min(state%clock, plan%begin + state%time)
             state%time = state%clock - plan%begin
             displacement = top_displacement(state%motion%column, state%q)
             call summary%see_peak(displacement, state%load(lateral))
-            summary%lost_joint = max(state%springs%lost_joint() - column%n, 0)
             summary%collapsed = abs(displacement) >= furthest
             ends = summary%collapsed .or. summary%lost_joint > 0
             if (ends .or. step == next_row .or. &

@@ -71,6 +71,8 @@ module rbs_solve_time_motion
       procedure :: acceleration
       procedure :: forces_on_bodies
       procedure :: press
+      procedure :: axial_force
+      procedure :: press_rate
       procedure :: load_power
       procedure :: lifting_power
       procedure :: damping_power
@@ -206,7 +208,7 @@ contains
       if (springs%pressed) then
          do j = 1, size(springs%layered)
             i = springs%layered(j)
-            f(i) = f(i) - springs%centre(i)*(axial_force(self, i - self%column%n, load) - springs%press_at(i))
+            f(i) = f(i) - springs%centre(i)*(self%axial_force(i - self%column%n, load) - springs%press_at(i))
          end do
       end if
       if (.not. self%damped) return
@@ -220,13 +222,23 @@ contains
 
    !> Axial force in a joint from axial load, weight and vertical motion, compression positive [N].
    pure real(wp) function axial_force(self, joint, load)
-      type(motion_type), intent(in) :: self
+      class(motion_type), intent(in) :: self
       integer, intent(in) :: joint
       real(wp), intent(in) :: load(4)
 
       axial_force = self%column%compression(joint) + load(axial) &
                     + load(vertical)*self%column%lifted_joint(joint)
    end function axial_force
+
+   !> Rate of the axial force in a joint [N/s].
+   pure real(wp) function press_rate(self, joint, slope)
+      class(motion_type), intent(in) :: self
+      integer, intent(in) :: joint
+      !> Slopes of the loads [per s]
+      real(wp), intent(in) :: slope(4)
+
+      press_rate = slope(axial) + slope(vertical)*self%column%lifted_joint(joint)
+   end function press_rate
 
    !> Tell layered joints the axial forces that their next move leads to.
    subroutine press(self, springs, load)
@@ -239,7 +251,7 @@ contains
       if (.not. springs%pressed) return
       do j = 1, size(springs%layered)
          i = springs%layered(j)
-         springs%press_to(i) = axial_force(self, i - self%column%n, load)
+         springs%press_to(i) = self%axial_force(i - self%column%n, load)
       end do
    end subroutine press
 
