@@ -14,7 +14,7 @@ from rbsdem.case import Case, read_case
 from rbsdem.column import Column
 from rbsdem.comparison import Comparison, compare
 from rbsdem.damping import Damping
-from rbsdem.ensembles import Ensemble, ensemble
+from rbsdem.ensembles import Ensemble, cloud, ensemble, ida, stripes
 from rbsdem.envelopes import Envelope, Idealisation, envelope
 from rbsdem.errors import (
     AccuracyWarning,
@@ -92,12 +92,14 @@ __all__ = [
     "Ties",
     "Trade",
     "calibrate",
+    "cloud",
     "codes",
     "compare",
     "comparison",
     "cyclic",
     "ensemble",
     "envelope",
+    "ida",
     "load",
     "mass_matrix",
     "modes",
@@ -110,6 +112,7 @@ __all__ = [
     "read_case",
     "read_peer",
     "read_test",
+    "stripes",
     "time_history",
     "trade",
 ]

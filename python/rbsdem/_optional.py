@@ -34,6 +34,17 @@ def need_rich() -> Any:
     return rich
 
 
+def need_pyarrow() -> Any:
+    """Return pyarrow, or raise `ImportError` with the installation command."""
+    return _need("pyarrow", "Parquet needs", "ensembles")
+
+
+def need_scipy(part: str) -> Any:
+    """Return a part of scipy, or raise `ImportError` with the installation command."""
+    _need("scipy", "the statistics of ensembles need", "ensembles")
+    return import_module(f"scipy.{part}")
+
+
 def _need(package: str, who: str, extra: str) -> Any:
     try:
         return import_module(package)

@@ -1,0 +1,363 @@
+"""Statistics of ensembles: fits against closed forms and scipy, hazard, regressions, samples."""
+
+from __future__ import annotations
+
+import copy
+
+import numpy as np
+import pytest
+from scipy import integrate, optimize, special, stats
+
+from rbsdem import AccuracyWarning, Column, Elastic, InputError
+from rbsdem.ensembles import (
+    Capacities,
+    Counts,
+    Fragility,
+    Hazard,
+    Uncertain,
+    fit_fragility,
+    lognormal,
+    variance_split,
+)
+from rbsdem.ensembles.lognormal import fit_brackets, fit_counts
+from rbsdem.ensembles.regression import fit_line, fit_logistic
+
+
+def counts(level, number, failures, paired=False) -> Counts:
+    failed = np.full((len(level), max(number)), np.nan)
+    for i, (n, k) in enumerate(zip(number, failures, strict=True)):
+        failed[i, :n] = np.arange(n) < k
+    return Counts(np.array(level, float), failed, paired)
+
+
+def drawn(n: int, theta: float, beta: float, seed: int = 7) -> np.ndarray:
+    return theta * np.exp(beta * np.random.default_rng(seed).standard_normal(n))
+
+
+# ---- fits ----------------------------------------------------------------------------------------
+
+
+def test_known_capacities_have_the_moments_of_their_logarithms():
+    """Baker 2015, eqs 1 and 2; variances of a normal sample: beta^2/n and beta^2/(2 (n - 1))."""
+    values = drawn(25, 3.0, 0.4)
+    found = fit_fragility("x", Capacities(values, values))
+    assert found.theta == pytest.approx(stats.gmean(values), rel=1e-12)
+    assert found.beta == pytest.approx(np.log(values).std(ddof=1), rel=1e-12)
+    assert found.covariance[0, 0] == pytest.approx((found.theta * found.beta) ** 2 / 25)
+    assert found.covariance[1, 1] == pytest.approx(found.beta**2 / 48)
+
+
+def test_two_stripes_are_met_exactly():
+    """Two levels, two parameters: the curve goes through both shares; its covariance from theirs.
+
+    With z the normal quantile of a share p, var z = p (1 - p)/(n phi(z)^2); beta = dx/(z2 - z1) and
+    ln theta = x1 - beta z1 carry it on.
+    """
+    level, number, failures = [2.0, 5.0], [40, 50], [8, 35]
+    found = fit_fragility("x", counts(level, number, failures))
+    x, p, n = np.log(level), np.array([0.2, 0.7]), np.array(number)
+    z = special.ndtri(p)
+    beta = (x[1] - x[0]) / (z[1] - z[0])
+    theta = np.exp(x[0] - beta * z[0])
+    assert found.beta == pytest.approx(beta, rel=1e-9)
+    assert found.theta == pytest.approx(theta, rel=1e-9)
+    variance = np.diag(p * (1 - p) / (n * stats.norm.pdf(z) ** 2))
+    db = np.array([1, -1]) * beta / (z[1] - z[0])
+    dmu = np.array([-beta, 0.0]) - z[0] * db
+    jacobian = np.array([theta * dmu, db])
+    assert found.covariance == pytest.approx(jacobian @ variance @ jacobian.T, rel=1e-5)
+
+
+def test_stripes_have_the_largest_likelihood():
+    """Against a search by scipy over the binomial likelihood (Baker 2015, eq 11)."""
+    level = np.array([1.0, 2.0, 3.0, 4.0, 6.0, 9.0])
+    number = np.array([20, 20, 20, 30, 20, 20])
+    failures = np.array([0, 2, 5, 17, 15, 20])
+
+    def loss(at):
+        p = stats.norm.cdf((np.log(level) - at[0]) / np.exp(at[1]))
+        return -stats.binom.logpmf(failures, number, p).sum()
+
+    best = optimize.minimize(loss, [1.0, -1.0], method="Nelder-Mead", options={"xatol": 1e-9})
+    found = fit_fragility("x", counts(level, number, failures))
+    assert np.log(found.theta) == pytest.approx(best.x[0], abs=1e-5)
+    assert np.log(found.beta) == pytest.approx(best.x[1], abs=1e-5)
+
+
+def test_many_samples_are_fitted_as_one_after_the_other():
+    level = np.array([1.0, 2.0, 4.0, 8.0])
+    failures = np.array([[0, 3, 9, 10], [1, 1, 2, 6], [0, 0, 0, 0], [5, 5, 5, 5], [0, 0, 10, 10]])
+    mu, beta = fit_counts(level, np.full(4, 10), failures)
+    for i, row in enumerate(failures):
+        one = fit_counts(level, np.full(4, 10), row)
+        assert [mu[i], beta[i]] == pytest.approx([float(v) for v in one], rel=1e-8, nan_ok=True)
+    assert np.isnan(mu[2])
+    # A step between two levels: the curve is as steep as it can be, and stands between them.
+    assert beta[4] < 0.1
+    assert 2.0 < np.exp(mu[4]) < 4.0
+
+
+def test_bounds_of_capacities_have_the_largest_likelihood():
+    """Against scipy's own fit of censored data: points, brackets, values not reached."""
+    values = drawn(40, 3.0, 0.5)
+    level = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.0])
+    place = np.searchsorted(level, values)
+    lower = level[place - 1]
+    upper = np.append(level, np.inf)[place]
+    lower[:5] = upper[:5] = values[:5]
+    logs = np.log(np.maximum(lower, 1e-300))
+    interval = [
+        (low if start > 0 else -np.inf, np.log(end))
+        for start, low, end in zip(lower, logs, upper, strict=True)
+        if np.isfinite(end) and start < end
+    ]
+    data = stats.CensoredData(
+        uncensored=np.log(values[:5]), right=logs[np.isinf(upper)], interval=interval
+    )
+    other = stats.norm.fit(data)
+    assert [float(v) for v in fit_brackets(lower, upper)] == pytest.approx(other, rel=1e-4)
+    found = fit_fragility("x", Capacities(lower, upper))
+    assert np.log(found.theta) == pytest.approx(other[0], rel=1e-4)
+
+
+def test_bounds_that_are_the_values_have_the_moments():
+    """The likelihood of a normal sample is largest at its mean and its spread over n."""
+    values = drawn(30, 2.0, 0.6)
+    mu, beta = fit_brackets(values, values)
+    assert float(mu) == pytest.approx(np.log(values).mean(), rel=1e-9)
+    assert float(beta) == pytest.approx(np.log(values).std(), rel=1e-6)
+
+
+def test_bootstrap_scatters_as_the_likelihood_says():
+    """For many records both estimate the same spread; 2000 samples know it to a few percent."""
+    values = drawn(200, 3.0, 0.4)
+    level = np.linspace(1.0, 7.0, 8)
+    failed = (values < level[:, None]).astype(float)
+    for data in (
+        Capacities(values, values),
+        Counts(level, failed, False),
+    ):
+        found = fit_fragility("x", data)
+        theta, beta = found.samples(2000)
+        assert theta.std() == pytest.approx(np.sqrt(found.covariance[0, 0]), rel=0.12)
+        assert beta.std() == pytest.approx(np.sqrt(found.covariance[1, 1]), rel=0.12)
+
+
+def test_paired_records_are_drawn_together():
+    """With the same records at all levels the curve is known as well as from their capacities."""
+    values = drawn(200, 3.0, 0.4)
+    level = np.geomspace(0.5, 15.0, 60)
+    failed = (values < level[:, None]).astype(float)
+    paired = fit_fragility("x", Counts(level, failed, True)).samples(500)[0].std()
+    exact = fit_fragility("x", Capacities(values, values)).samples(500)[0].std()
+    assert paired == pytest.approx(exact, rel=0.2)
+
+
+def test_band_holds_the_curve():
+    values = drawn(20, 3.0, 0.4)
+    found = fit_fragility("x", Capacities(values, values))
+    x = np.array([0.0, 1.0, 3.0, 9.0])
+    low, high = found.band(x, 0.9)
+    p = found.probability(x)
+    assert (low <= p).all()
+    assert (p <= high).all()
+    narrow = found.band(x, 0.5)
+    assert (narrow[1] - narrow[0] <= high - low).all()
+    assert p[0] == 0
+    assert found.probability(found.theta) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: fit_fragility("x", counts([1, 2], [9, 9], [0, 0])), "no run reached the limit st"),
+        (lambda: fit_fragility("x", counts([1, 2], [9, 9], [9, 9])), "all reached the limit state"),
+        (lambda: fit_fragility("x", counts([1], [9], [3])), "one level does not give a curve"),
+        (lambda: fit_fragility("x", Capacities(np.ones(3), np.full(3, np.inf))), "no record reach"),
+        (lambda: fit_fragility("x", Capacities(np.ones(1), np.ones(1))), "1 records; give two"),
+        (lambda: FOUND.band([1.0], 90), "level = 90 must be above 0 and below 1"),
+        (lambda: FOUND.samples(3), "n = 3 must be 10 or more"),
+        (lambda: FOUND.mean_annual_frequency(3.0), "must be a Hazard"),
+        (lambda: Hazard([1.0], [1.0]), "1 intensities and 1 frequencies"),
+        (lambda: Hazard([1.0, 2.0], [0.1, 0.2]), "must be above 0 and descend strictly"),
+        (lambda: Hazard([2.0, 1.0], [0.2, 0.1]), "must be above 0 and ascend strictly"),
+    ],
+)
+def test_bad_input_of_fits(call, words):
+    with pytest.raises(InputError, match=words):
+        call()
+
+
+FOUND = Fragility("x", 3.0, 0.4, np.eye(2), Capacities(drawn(9, 3, 0.4), drawn(9, 3, 0.4)))
+
+
+# ---- hazard --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("k", [0.5, 2.0, 3.5])
+def test_frequency_under_a_power_law(k):
+    """Cornell et al. 2002: lambda(theta) exp(k^2 beta^2/2)."""
+    x = np.geomspace(1e-3, 1e3, 30)
+    hazard = Hazard(x, 0.01 * x**-k)
+    wanted = 0.01 * 3.0**-k * np.exp(0.5 * (k * 0.4) ** 2)
+    assert FOUND.mean_annual_frequency(hazard) == pytest.approx(wanted, rel=1e-12)
+
+
+def test_frequency_under_a_curved_hazard():
+    """Against the integral of P(f | im) |d lambda| by scipy."""
+    x = np.array([0.3, 1.0, 2.0, 4.0, 8.0, 20.0])
+    hazard = Hazard(x, [2e-1, 3e-2, 8e-3, 1.5e-3, 2e-4, 5e-6])
+    assert hazard.exceeded(x) == pytest.approx(hazard.frequency, rel=1e-12)
+    u = np.log(x)
+    slope = np.diff(np.log(hazard.frequency)) / np.diff(u)
+    ends = [np.log(1e-4), *u[1:-1], np.log(1e4)]
+    wanted = sum(
+        integrate.quad(
+            lambda t, s=s: -s * hazard.exceeded(np.exp(t)) * special.ndtr((t - np.log(3.0)) / 0.4),
+            low,
+            high,
+            points=[np.log(3.0)] if low < np.log(3.0) < high else None,
+            epsabs=1e-14,
+        )[0]
+        for s, low, high in zip(slope, ends[:-1], ends[1:], strict=True)
+    )
+    assert FOUND.mean_annual_frequency(hazard) == pytest.approx(wanted, rel=1e-8)
+
+
+def test_a_hazard_that_ends_too_early_is_told():
+    hazard = Hazard([0.1, 0.3, 1.0], [1.0, 0.1, 0.01])
+    with pytest.warns(AccuracyWarning, match="come from intensities beyond its points"):
+        FOUND.mean_annual_frequency(hazard)
+
+
+# ---- regressions ---------------------------------------------------------------------------------
+
+
+def test_line_of_a_cloud():
+    """Against scipy.stats.linregress: slope, intercept and their standard errors."""
+    random = np.random.default_rng(3)
+    x = random.uniform(-1, 2, 30)
+    y = 0.3 + 1.2 * x + 0.4 * random.standard_normal(30)
+    line, other = fit_line(x, y), stats.linregress(x, y)
+    assert [line.a, line.b] == pytest.approx([other.intercept, other.slope], rel=1e-12)
+    errors = np.sqrt(np.diag(line.covariance))
+    assert errors == pytest.approx([other.intercept_stderr, other.stderr], rel=1e-10)
+    rest = y - line.a - line.b * x
+    assert line.sigma == pytest.approx(np.sqrt((rest**2).sum() / 28), rel=1e-12)
+
+
+@pytest.mark.parametrize(("low", "high"), [((12, 3), (10, 7)), ((8, 0), (9, 9))])
+def test_logistic_curve_of_two_groups(low, high):
+    """Firth 1993: with two groups his penalty adds half a run to each of the four counts."""
+    x = np.repeat([0.5, 2.0], [low[0], high[0]])
+    happened = np.concatenate([np.arange(low[0]) < low[1], np.arange(high[0]) < high[1]])
+    found = fit_logistic(x, happened)
+    wanted = [(k + 0.5) / (n + 1) for n, k in (low, high)]
+    assert found.probability(np.array([0.5, 2.0])) == pytest.approx(wanted, rel=1e-8)
+
+
+# ---- uncertain columns ---------------------------------------------------------------------------
+
+
+def make(k: float, mass: float) -> Column:
+    return Column(2.0, mass, Elastic(k), Elastic(4e9))
+
+
+VARIABLES = {"k": lognormal(4e5, 0.3), "mass": stats.norm(1000.0, 100.0)}
+
+
+@pytest.mark.parametrize("method", ["sobol", "lhs", "random"])
+def test_samples_have_their_distributions(method):
+    """Means and correlation of 1024 points; Sobol and Latin points know a median exactly."""
+    uncertain = Uncertain(make, VARIABLES, {("k", "mass"): 0.6})
+    values = uncertain.values(1024, method)
+    logs = np.log(values[:, 0] / 4e5) / 0.3
+    normal = (values[:, 1] - 1000.0) / 100.0
+    rough = 0.1 if method == "random" else 0.03
+    assert logs.mean() == pytest.approx(0, abs=rough)
+    assert logs.std() == pytest.approx(1, abs=rough)
+    assert normal.mean() == pytest.approx(0, abs=rough)
+    assert np.corrcoef(logs, normal)[0, 1] == pytest.approx(0.6, abs=0.06)
+    assert np.array_equal(values, uncertain.values(1024, method))
+    if method == "lhs":
+        # One point in each of the 1024 equal shares of the first variable.
+        share = np.sort(special.ndtr(logs)) * 1024
+        assert np.array_equal(np.floor(share), np.arange(1024))
+
+
+def test_samples_make_columns():
+    sample = Uncertain(make, VARIABLES).sample(8, "sobol")
+    assert list(sample.columns) == [f"sample {i}" for i in range(1, 9)]
+    assert sample.columns["sample 3"].mass == sample.values[2, 1]
+    assert sample.columns["sample 3"].shear == Elastic(sample.values[2, 0])
+
+
+def test_all_bad_samples_are_told_at_once():
+    uncertain = Uncertain(make, VARIABLES | {"mass": stats.norm(0.0, 100.0)})
+    with pytest.raises(InputError) as caught:
+        uncertain.sample(10, "lhs")
+    lines = [line for line in str(caught.value).splitlines() if line.startswith("sample ")]
+    assert len(lines) == 5
+    assert "mass = -" in lines[0]
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: Uncertain(make, {}), "variables is empty"),
+        (lambda: Uncertain(make, {"k": 3.0}), "k = 3.0 is not a distribution"),
+        (lambda: Uncertain(None, {"k": lognormal(1, 1)}), "make must be a function"),
+        (lambda: Uncertain(make, VARIABLES, {("k", "x"): 0.1}), "give it for pairs of k, mass"),
+        (lambda: Uncertain(make, VARIABLES, {("k", "mass"): 1.5}), "contradict each other"),
+        (lambda: Uncertain(make, VARIABLES).values(10, "sobol"), "n = 10 must be a power of 2"),
+        (lambda: Uncertain(make, VARIABLES).values(0), "n = 0 must be from 1"),
+        (lambda: Uncertain(make, VARIABLES).values(8, "halton"), "method = 'halton' is not one of"),
+        (lambda: Uncertain(lambda k, mass: 3, VARIABLES).sample(1), "make returned a int"),
+        (lambda: lognormal(-1.0, 0.2), "must be above 0"),
+    ],
+)
+def test_bad_input_of_samples(call, words):
+    with pytest.raises(InputError, match=words):
+        call()
+
+
+def test_variance_of_two_sources_that_add():
+    """ln c = record + model: no residual, and each variance is that of its own values."""
+    records = np.array([0.1, -0.3, 0.4, 0.0, 0.2])
+    models = np.array([0.05, -0.05, 0.1])
+    found = variance_split(np.exp(models[:, None] + records))
+    assert found.record == pytest.approx(records.var(ddof=1), rel=1e-12)
+    assert found.model == pytest.approx(models.var(ddof=1), rel=1e-12)
+    assert found.residual == pytest.approx(0, abs=1e-15)
+    assert sum(found.share.values()) == pytest.approx(1)
+    assert found.beta["total"] == pytest.approx(np.sqrt(found.record + found.model))
+
+
+def test_variance_of_three_sources_is_found_without_bias():
+    """Mean of many experiments with known variances 0.16, 0.04 and 0.01."""
+    random = np.random.default_rng(5)
+    parts = []
+    for _ in range(400):
+        record, model = 0.4 * random.standard_normal(8), 0.2 * random.standard_normal((10, 1))
+        found = variance_split(np.exp(record + model + 0.1 * random.standard_normal((10, 8))))
+        parts.append([found.record, found.model, found.residual])
+    assert np.mean(parts, axis=0) == pytest.approx([0.16, 0.04, 0.01], rel=0.06)
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ([1.0, 2.0], r"shape \(2,\)"),
+        ([[1.0, 2.0]], r"shape \(1, 2\)"),
+        ([[1.0, np.inf], [1.0, 2.0]], "1 of 4 capacities are not known"),
+    ],
+)
+def test_bad_input_of_the_split(values, words):
+    with pytest.raises(InputError, match=words):
+        variance_split(values)
+
+
+def test_records_can_be_copied():
+    again = copy.deepcopy(FOUND)
+    assert repr(again) == repr(FOUND)
+    assert again.data.size == 9
