@@ -285,6 +285,10 @@ class PeakOriented(Spring):
     c : float, optional
         Exponent of deterioration: an excursion that dissipates E reduces the quantity by the share
         (E/(lambda f_y d_y - sum E))^c.
+    lambda_h, s_min : float, optional
+        For shear springs: the strength falls to the share s_min + (1 - s_min)/(1 + W/(lambda_h f_y
+        d_y)), W the work of the flexural spring of the same joint since cracking. 0 means that it
+        does not.
     d_y_neg, f_y_neg, d_cap_neg, f_cap_neg, d_pc_neg, f_res_neg, d_u_neg, d_c_neg, f_c_neg : float
         The backbone of the negative side, as positive numbers. A value that is not given is that of
         the positive side.
@@ -320,6 +324,8 @@ class PeakOriented(Spring):
     d_u_neg: float | None = None
     d_c_neg: float | None = None
     f_c_neg: float | None = None
+    lambda_h: float = 0.0
+    s_min: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -336,7 +342,7 @@ class Pinching(PeakOriented):
         above 0, up to 1.
     d_y, f_y, d_cap, f_cap, d_pc, f_res, d_u, d_c, f_c, b0 : float
         As for `PeakOriented`, by keyword.
-    lambda_s, lambda_c, lambda_k, lambda_a, c : float, optional
+    lambda_s, lambda_c, lambda_k, lambda_a, c, lambda_h, s_min : float, optional
         As for `PeakOriented`.
     d_y_neg, f_y_neg, d_cap_neg, f_cap_neg, d_pc_neg, f_res_neg, d_u_neg, d_c_neg, f_c_neg : float
         As for `PeakOriented`.
@@ -399,6 +405,9 @@ class ConcreteSpring(Spring):
         Share of the widest opening at which the faces of a closing crack touch, below 1.
     wear : float, optional
         Share of the strength that is lost each time the crack closes and opens again, below 1.
+    friction : float, optional
+        Share of the force by which the path of opening is below that of closing, once the spring
+        was closed by `d_peak` or more; below 1.
 
     Raises
     ------
@@ -416,6 +425,7 @@ class ConcreteSpring(Spring):
     contact: float = 0.0
     misfit: float = 0.0
     wear: float = 0.0
+    friction: float = 0.0
 
 
 @renamed(
@@ -454,6 +464,11 @@ class SteelSpring(Spring):
     endurance : float, optional
         Plastic deformation over d_y, added up while the reach does not grow, at which half of the
         strength is left; 0: it stays. Not below the widest limit of an element, about 10.
+    d_buckle : float, optional
+        Tensile deformation from which on the bar bows when it is compressed again [m].
+    buckling : float, optional
+        Compression after an elongation d beyond `d_buckle` counts 1 + buckling (d/d_buckle - 1)
+        times in `endurance`.
 
     Raises
     ------
@@ -473,6 +488,8 @@ class SteelSpring(Spring):
     f_u: float | None = None
     plateau: float = 0.0
     endurance: float = 0.0
+    d_buckle: float | None = None
+    buckling: float = 0.0
 
 
 @renamed(axial_load="the axial load of the column: Column(axial_load=...)")

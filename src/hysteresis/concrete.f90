@@ -10,6 +10,10 @@
 !> path does so while there is no force, or on the envelope in such a way that the path never stores more
 !> than the envelope gave: closed loops give no energy. Every change is in proportion to the movement that
 !> causes it: small reversals have small effects.
+!>
+!> With `friction` the path of opening has only a share of the force of the path of closing. Between the two
+!> the spring moves with its initial stiffness, as a block that rubs: what is closed and opened again takes
+!> up energy, whether the crack opens or not.
 module rbs_hysteresis_concrete
    use rbs_base_error, only: message_list
    use rbs_base_keys, only: key_type, above_zero, not_negative, share_below_one, &
@@ -26,6 +30,8 @@ module rbs_hysteresis_concrete
 
    !> Kinds of the present line
    integer, parameter :: envelope = 1, unloading = 2, contact = 3, opening = 4, closing = 5
+   !> With friction: on the lower path while the spring opens, and between the paths
+   integer, parameter :: releasing = 6, parting = 7, between = 8
 
    !> Corners of the chords of the rising curve, as shares of the closing at the peak
    real(wp), parameter :: chord_ends(4) = [0.25_wp, 0.5_wp, 0.75_wp, 1.0_wp]
@@ -48,7 +54,9 @@ module rbs_hysteresis_concrete
       key_type('misfit', bound=share_below_one, default=0.0_wp, &
                meaning='share of the widest opening at which the faces of a closing crack touch'), &
       key_type('wear', bound=share_below_one, default=0.0_wp, &
-               meaning='share of the strength that a wide opening of the crack takes')]
+               meaning='share of the strength that a wide opening of the crack takes'), &
+      key_type('friction', bound=share_below_one, default=0.0_wp, &
+               meaning='share of the force that opening gives up at once after closing to d_peak or more')]
 
    type, extends(rule_type) :: concrete_rule
       !> Initial stiffness [N/m]
@@ -65,6 +73,8 @@ module rbs_hysteresis_concrete
       real(wp) :: misfit = 0.0_wp
       !> Share of the strength that an opening takes, after twice the closing at the peak or more
       real(wp) :: wear = 0.0_wp
+      !> Share of the force by which the path of opening is below that of closing
+      real(wp) :: friction = 0.0_wp
       integer, private :: stage = envelope
       !> Largest closing so far and the force there without wear; plastic closing [m, N]
       real(wp), private :: c_u = 0.0_wp, f_u = 0.0_wp, c_p = 0.0_wp
@@ -112,6 +122,7 @@ contains
       self%contact = value(7)
       self%misfit = value(8)
       self%wear = value(9)
+      self%friction = value(10)
    end subroutine set
 
    pure real(wp) function initial_stiffness(self)
@@ -169,6 +180,10 @@ contains
          case (opening)
             call widen(self, c)
             call close_up(self, c, line)
+         case (releasing, parting)
+            call rub(self, c, f, line)
+         case (between)
+            call close_on(self, c, line)
          case default
             call touch(self, line)
          end select
@@ -177,12 +192,30 @@ contains
          case (envelope)
             if (c > 0.0_wp) then
                call leave_envelope(self, c, f/self%strength)
-               call unload(self, line)
+               if (self%friction > 0.0_wp) then
+                  call rub(self, c, f, line)
+               else
+                  call unload(self, line)
+               end if
             else
                call open_up(self, c, line)
             end if
          case (unloading)
-            call touch(self, line)
+            if (self%friction > 0.0_wp) then
+               call rub(self, c, f, line)
+            else
+               call touch(self, line)
+            end if
+         case (contact)
+            if (self%friction > 0.0_wp .and. c > self%c_p - self%gap) then
+               call rub(self, c, f, line)
+            else
+               call open_up(self, c, line)
+            end if
+         case (between)
+            call release(self, c, line)
+         case (releasing)
+            call release(self, c, line)
          case default
             call open_up(self, c, line)
          end select
@@ -256,7 +289,11 @@ contains
       self%stage = unloading
       call full_closing(self, c_closed, f_closed)
       line = chord(c_closed, f_closed, self%c_u, self%strength*self%f_u)
-      line%hi_closed = .not. self%gap > 0.0_wp
+      if (self%friction > 0.0_wp) then
+         call set_one_way(line)
+      else
+         line%hi_closed = .not. self%gap > 0.0_wp
+      end if
    end subroutine unload
 
    !> On the line between the first touch of the faces and full closing; without length it is skipped.
@@ -272,12 +309,109 @@ contains
          line = chord(self%c_p - self%gap, 0.0_wp, c_closed, f_closed)
          line%lo_closed = .true.
          line%hi_closed = .true.
+         if (self%friction > 0.0_wp) call set_one_way(line)
       else if (self%stage == closing) then
          call unload(self, line)
       else
          call open_up(self, self%c_p, line)
       end if
    end subroutine touch
+
+   !> Between the paths through (c, f): as stiff as the virgin spring, up to the path of closing and down to
+   !> that of opening.
+   subroutine rub(self, c, f, line)
+      type(concrete_rule), intent(inout) :: self
+      real(wp), intent(in) :: c, f
+      type(segment), intent(out) :: line
+      real(wp) :: upper, lower
+
+      upper = c
+      lower = c
+      if (self%stage == releasing .or. self%stage == parting) then
+         upper = min(max(meeting(self, 1.0_wp, c, f), c), self%c_u)
+      else
+         lower = min(meeting(self, 1.0_wp - share_of_friction(self), c, f), c)
+      end if
+      self%stage = between
+      line = segment(d0=-c, f0=-f, k=self%k, lo=-upper, hi=-lower)
+   end subroutine rub
+
+   !> The share by which the path of opening is lower: none where the virgin spring is elastic.
+   elemental real(wp) function share_of_friction(self)
+      type(concrete_rule), intent(in) :: self
+
+      share_of_friction = (self%c_u/self%d_peak - chord_ends(1))/(1.0_wp - chord_ends(1))
+      share_of_friction = self%friction*min(max(share_of_friction, 0.0_wp), 1.0_wp)
+   end function share_of_friction
+
+   !> Where the line of the initial stiffness through (c, f) meets a share of the path of closing [m].
+   real(wp) function meeting(self, share, c, f)
+      type(concrete_rule), intent(in) :: self
+      real(wp), intent(in) :: share, c, f
+      real(wp) :: c_closed, f_closed, c_0, f_0, slope
+
+      call full_closing(self, c_closed, f_closed)
+      if (f + self%k*(c_closed - c) < share*f_closed) then
+         c_0 = c_closed
+         f_0 = share*f_closed
+         slope = (share*self%strength*self%f_u - f_0)/(self%c_u - c_0)
+      else
+         c_0 = self%c_p - self%gap
+         f_0 = 0.0_wp
+         slope = 0.0_wp
+         if (c_closed > c_0) slope = share*f_closed/(c_closed - c_0)
+      end if
+      ! Both lines from c_0 on.
+      meeting = c_0
+      if (self%k*(1.0_wp - 1.0e-9_wp) > slope) meeting = c_0 + (f_0 - f - self%k*(c_0 - c))/(self%k - slope)
+      meeting = max(meeting, self%c_p - self%gap)
+   end function meeting
+
+   !> On the path of closing from the closing c on.
+   subroutine close_on(self, c, line)
+      type(concrete_rule), intent(inout) :: self
+      real(wp), intent(in) :: c
+      type(segment), intent(out) :: line
+      real(wp) :: c_closed, f_closed
+
+      call full_closing(self, c_closed, f_closed)
+      if (c >= self%c_u) then
+         call follow_envelope(self, self%c_u, self%strength*self%f_u, line)
+      else if (c >= c_closed) then
+         call unload(self, line)
+         line%hi = -c
+      else
+         self%stage = contact
+         line = chord(self%c_p - self%gap, 0.0_wp, c_closed, f_closed)
+         line%hi = -c
+         call set_one_way(line)
+      end if
+   end subroutine close_on
+
+   !> On the path of opening from the closing c on.
+   subroutine release(self, c, line)
+      type(concrete_rule), intent(inout) :: self
+      real(wp), intent(in) :: c
+      type(segment), intent(out) :: line
+      real(wp) :: c_closed, f_closed, left, c_touch
+
+      call full_closing(self, c_closed, f_closed)
+      left = 1.0_wp - share_of_friction(self)
+      c_touch = self%c_p - self%gap
+      if (c > c_closed) then
+         self%stage = releasing
+         line = chord(c_closed, left*f_closed, self%c_u, left*self%strength*self%f_u)
+      else if (c > c_touch) then
+         self%stage = parting
+         line = chord(c_touch, 0.0_wp, c_closed, left*f_closed)
+      else
+         call open_up(self, c, line)
+         return
+      end if
+      line%lo = -c
+      line%lo_closed = .true.
+      line%one_way = 1
+   end subroutine release
 
    !> Where a closing crack is fully closed.
    pure subroutine full_closing(self, c, f)

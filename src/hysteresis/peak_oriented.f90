@@ -15,7 +15,7 @@
 module rbs_hysteresis_peak_oriented
    use rbs_base_check, only: is_given
    use rbs_base_error, only: message_list
-   use rbs_base_keys, only: key_type, bound_type, not_negative
+   use rbs_base_keys, only: key_type, bound_type, not_negative, share_below_one
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_backbone, only: backbone_side
    use rbs_hysteresis_backbone_parameters, only: backbone_parameters, backbone_keys, other_side_keys, &
@@ -48,7 +48,7 @@ module rbs_hysteresis_peak_oriented
 
    !> Parameters of this rule and of those that extend it: of the positive side, of both sides, of the
    !> negative side.
-   type(key_type), parameter :: shared_keys(6) = [ &
+   type(key_type), parameter :: shared_keys(8) = [ &
       key_type('b0', bound=not_negative, default=0.0_wp, &
                meaning='exponent of the unloading stiffness over ductility'), &
       key_type('lambda_s', bound=not_negative, default=0.0_wp, &
@@ -60,7 +60,11 @@ module rbs_hysteresis_peak_oriented
       key_type('lambda_a', bound=not_negative, default=0.0_wp, &
                meaning='the same for the target of reloading'), &
       key_type('c', bound=bound_type(least=1.0_wp, reason=small_excursions), default=1.0_wp, &
-               meaning='exponent of deterioration')]
+               meaning='exponent of deterioration'), &
+      key_type('lambda_h', bound=not_negative, default=0.0_wp, &
+               meaning='work of the flexural spring over f_y d_y that halves what can decay; 0: none'), &
+      key_type('s_min', bound=share_below_one, default=0.0_wp, &
+               meaning='share of the strength that stays, whatever the flexural spring has done')]
    integer, parameter :: sides = size(backbone_keys), shared = size(shared_keys)
    type(key_type), parameter :: capped_keys(*) = [backbone_keys, shared_keys, other_side_keys]
 
@@ -68,6 +72,12 @@ module rbs_hysteresis_peak_oriented
       !> Exponent of the unloading stiffness over ductility
       real(wp) :: b0 = 0.0_wp
       type(deterioration_type) :: deterioration
+      !> Work of the flexural spring that halves what can decay [J], 0: none; share that stays
+      real(wp) :: hinge_work = 0.0_wp, s_min = 0.0_wp
+      !> Work of the flexural spring up to the last event, and up to cracking [J]
+      real(wp), private :: heard = 0.0_wp, heard_at_cracking = 0.0_wp
+      !> Of each side: share of the strength that the work of the flexural spring has left
+      real(wp), private :: left_by_hinge(-1:1) = 1.0_wp
       !> Parameters of both sides
       type(backbone_parameters), private :: given(-1:1)
       !> Present backbones
@@ -102,6 +112,8 @@ module rbs_hysteresis_peak_oriented
       procedure :: next
       procedure :: unloading_stiffness
       procedure :: break_point
+      procedure :: hears
+      procedure :: hear
    end type peak_oriented_rule
 
 contains
@@ -133,6 +145,8 @@ contains
          self%deterioration = deterioration_type(lambda(1)*energy, lambda(2)*energy, lambda(3)*energy, &
                                                  lambda(4)*energy, value(sides + 6))
       end associate
+      self%hinge_work = value(sides + 7)*energy
+      self%s_min = value(sides + 8)
    end subroutine set
 
    pure real(wp) function initial_stiffness(self)
@@ -172,6 +186,9 @@ contains
       self%yielded = .false.
       self%stiffness_left = 1.0_wp
       self%deterioration%spent = 0.0_wp
+      self%heard = 0.0_wp
+      self%heard_at_cracking = 0.0_wp
+      self%left_by_hinge = 1.0_wp
       self%excursion = 0.0_wp
       self%zero = 0.0_wp
       self%begun = point()
@@ -207,6 +224,8 @@ contains
       select case (self%branch)
       case (virgin)
          if (direction*here%d > 0.0_wp) then
+            ! What the flexural spring did before counts for nothing: an uncracked spring has not decayed.
+            self%heard_at_cracking = self%heard
             call follow_backbone(self, line, direction, here%d)
          else
             self%side = direction
@@ -355,6 +374,7 @@ contains
                return
             end if
             backbone%strength = backbone%strength*(1.0_wp - strength)
+            if (self%hinge_work > 0.0_wp) call decay(self, s)
             backbone%softening = backbone%softening*(1.0_wp - softening)
             call backbone%draw()
             peak = self%peak(s)
@@ -365,9 +385,40 @@ contains
                self%peak(s) = backbone%strength*self%given(s)%d_c
             end if
          end associate
+      else if (self%hinge_work > 0.0_wp) then
+         call decay(self, s)
+         call self%backbone(s)%draw()
+         if (.not. self%loaded(s)) self%peak(s) = self%backbone(s)%strength*self%given(s)%d_c
       end if
       call reload(self, line, s, zero)
    end subroutine end_excursion
+
+   !> The strength of a side falls with the work of the flexural spring of the joint since cracking.
+   pure subroutine decay(self, s)
+      class(peak_oriented_rule), intent(inout) :: self
+      integer, intent(in) :: s
+      real(wp) :: work, left
+
+      work = max(self%heard - self%heard_at_cracking, 0.0_wp)
+      left = min(self%s_min + (1.0_wp - self%s_min)/(1.0_wp + work/self%hinge_work), self%left_by_hinge(s))
+      self%backbone(s)%strength = self%backbone(s)%strength*(left/self%left_by_hinge(s))
+      self%left_by_hinge(s) = left
+   end subroutine decay
+
+   !> Whether the strength falls with the work of the flexural spring.
+   pure logical function hears(self)
+      class(peak_oriented_rule), intent(in) :: self
+
+      hears = self%hinge_work > 0.0_wp
+   end function hears
+
+   !> Take the work of the flexural spring so far [J].
+   pure subroutine hear(self, work)
+      class(peak_oriented_rule), intent(inout) :: self
+      real(wp), intent(in) :: work
+
+      self%heard = work
+   end subroutine hear
 
    !> Reload from zero force toward side s: to the break of the line (pinching), or to the last turning point
    !> if the line to it is steeper, else directly to the largest peak.

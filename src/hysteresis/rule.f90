@@ -31,6 +31,8 @@ module rbs_hysteresis_rule
       procedure(start_interface), deferred :: start
       procedure(next_interface), deferred :: next
       procedure :: copy_memory
+      procedure :: hears
+      procedure :: hear
    end type rule_type
 
    abstract interface
@@ -95,6 +97,23 @@ contains
 
       done = .false. .and. same_type_as(self, other)
    end subroutine copy_memory
+
+   !> Whether the rule wants to be told of the work of the flexural spring of its joint.
+   pure logical function hears(self)
+      class(rule_type), intent(in) :: self
+
+      hears = .false. .and. same_type_as(self, self)
+   end function hears
+
+   !> Take the work that the flexural spring of the joint has taken up so far. A rule that `hears` is told at
+   !> each of its own events, before `next`.
+   pure subroutine hear(self, work)
+      class(rule_type), intent(inout) :: self
+      !> [J]
+      real(wp), intent(in) :: work
+
+      if (work > 0.0_wp .and. .not. same_type_as(self, self)) return
+   end subroutine hear
 
    !> Add messages on relations between parameters that are each within their bounds. A rule without such
    !> relations inherits this procedure.

@@ -32,6 +32,10 @@ module rbs_hysteresis_spring_lines
       integer, allocatable :: one_way(:)
       !> Work done on each spring along its path, exact (count) [J]
       real(wp), allocatable :: work(:)
+      !> The flexural spring whose work the rule of a spring is told at its events, 0: none (count)
+      integer, allocatable :: heard(:)
+      !> Work from before `work` was counted, where a step counts it from its own start (count) [J]
+      real(wp), allocatable :: work_before(:)
       !> Number of lines left so far
       integer :: events = 0
       !> Changes with every new line, and in `restore`: factors computed for the lines of one version are
@@ -70,12 +74,17 @@ contains
       n = size(specs)
       self%count = n
       allocate (self%slot(n), self%one_way(n), self%lo_closed(n), self%hi_closed(n))
-      allocate (self%d(n), self%work(n), source=0.0_wp)
+      allocate (self%d(n), self%work(n), self%work_before(n), source=0.0_wp)
       allocate (self%d0(n), self%f0(n), self%k(n), self%first(n), self%last(n))
       do i = 1, n
          call specs(i)%make(self%slot(i)%rule)
          call self%slot(i)%rule%start(line)
          call put_line(self, i, line)
+      end do
+      ! In a column the first half are the shear springs of the joints, the second their flexural springs.
+      allocate (self%heard(n), source=0)
+      do i = 1, n/2
+         if (self%slot(i)%rule%hears()) self%heard(i) = i + n/2
       end do
    end subroutine create
 
@@ -169,6 +178,9 @@ contains
       line = self%line_of(i)
       if (self%journal%open) call self%journal%keep(i, line, self%slot(i))
       if (self%one_way(i) /= -direction) call walk(self, i, merge(line%hi, line%lo, direction > 0))
+      associate (j => self%heard(i))
+         if (j > 0) call self%slot(i)%rule%hear(self%work_before(j) + self%work(j))
+      end associate
       call self%slot(i)%rule%next(line, direction)
       self%events = self%events + 1
       self%version = modulo(self%version + 1, huge(1))

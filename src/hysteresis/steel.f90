@@ -10,7 +10,7 @@ module rbs_hysteresis_steel
    use rbs_base_check, only: is_given
    use rbs_base_constants, only: unbounded, unset
    use rbs_base_error, only: message_list
-   use rbs_base_keys, only: key_type, above_zero, not_negative, share_below_one, force, stiffness
+   use rbs_base_keys, only: key_type, above_zero, not_negative, share_below_one, force, stiffness, deformation
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_hysteresis_rule, only: rule_type, check_product, places_length, in_shear, in_flexure, &
@@ -61,7 +61,11 @@ module rbs_hysteresis_steel
       key_type('plateau', bound=not_negative, default=0.0_wp, &
                meaning='length of the yield plateau over the yield deformation; needs f_u'), &
       key_type('endurance', bound=not_negative, default=0.0_wp, &
-               meaning='plastic deformation over d_y inside the reach that halves the strength; 0: none')]
+               meaning='plastic deformation over d_y inside the reach that halves the strength; 0: none'), &
+      key_type('d_buckle', unit=deformation, bound=above_zero, optional=.true., &
+               meaning='tensile deformation from which on bars bow when they are compressed again'), &
+      key_type('buckling', bound=not_negative, default=0.0_wp, &
+               meaning='by how much more compression wears a bar that has been stretched to 2 d_buckle')]
 
    !> Limits over k_i d_y in rows of the plastic reach: linear between them, constant after the last.
    type :: table_type
@@ -81,6 +85,10 @@ module rbs_hysteresis_steel
       real(wp) :: f_u = unset
       !> Length of the plateau, and plastic deformation that halves the strength (0: none), over d_y
       real(wp) :: plateau = 0.0_wp, endurance = 0.0_wp
+      !> Tensile deformation from which on bars bow [m], `unset`: never; growth of the wear beyond it
+      real(wp) :: d_buckle = unset, buckling = 0.0_wp
+      !> Largest factor of the wear: no limit may move faster than its element
+      real(wp), private :: most_wear = 1.0_wp
       !> Yield deformation [m]
       real(wp), private :: d_y = 0.0_wp
       type(table_type), private :: table
@@ -134,6 +142,8 @@ contains
       self%f_u = value(9)
       self%plateau = value(10)
       self%endurance = value(11)
+      self%d_buckle = value(12)
+      self%buckling = value(13)
    end subroutine set
 
    pure real(wp) function initial_stiffness(self)
@@ -166,6 +176,10 @@ contains
       else if (self%plateau > 0.0_wp) then
          call messages%add(name//': plateau = '//to_text(self%plateau)//' needs f_u, where hardening ends')
       end if
+      if (self%buckling > 0.0_wp .and. .not. (is_given(self%d_buckle) .and. self%endurance > 0.0_wp)) then
+         call messages%add(name//': buckling = '//to_text(self%buckling)//' is a factor of the wear '// &
+                           'beyond d_buckle; give d_buckle and endurance, or remove it')
+      end if
       call check_product(self%k, self%f_y/self%k, name, 'k d_y', messages)
       if (messages%count > before .or. .not. self%endurance > 0.0_wp) return
       largest = largest_limit(self)
@@ -183,6 +197,7 @@ contains
       self%k_element = [(self%k - self%k_post)*share, self%k_post]
       self%limited = merge(elements, yielding, is_given(self%f_u))
       call make_table(self, self%table)
+      self%most_wear = max(1.0_wp, self%endurance/maxval(self%table%y(:self%limited, :self%table%rows)))
       self%s = 0.0_wp
       self%rate = self%k_element
       self%d = 0.0_wp
@@ -218,7 +233,7 @@ contains
       one_slips = any(slips(:n))
       self%wear_rate = 0.0_wp
       if (self%endurance > 0.0_wp .and. .not. growing .and. one_slips) then
-         call wear(self, limit, slips, growth, ahead)
+         call wear(self, bowing(self, direction), limit, slips, growth, ahead)
       end if
       self%rate(:n) = merge(growth(:n), self%k_element(:n), slips(:n))
       do i = 1, n
@@ -289,10 +304,24 @@ contains
       end associate
    end subroutine find_limits
 
+   !> Factor of the wear: a bar that has been stretched beyond `d_buckle` bows when it is compressed, and what
+   !> is bowed and straightened cracks. The largest elongation is settled where the bar turns back.
+   pure real(wp) function bowing(self, direction)
+      type(steel_rule), intent(in) :: self
+      integer, intent(in) :: direction
+
+      bowing = 1.0_wp
+      if (direction > 0 .or. .not. self%buckling > 0.0_wp) return
+      if (self%highest <= self%d_buckle) return
+      bowing = min(1.0_wp + self%buckling*(self%highest/self%d_buckle - 1.0_wp), self%most_wear)
+   end function bowing
+
    !> Wear and force along a line determine each other: the limits y_i lose e_i for each unit of plastic
    !> deformation d - f/k, and its share in the deformation follows from the slope that this gives.
-   pure subroutine wear(self, limit, slips, growth, ahead)
+   pure subroutine wear(self, times, limit, slips, growth, ahead)
       type(steel_rule), intent(inout) :: self
+      !> What a unit of plastic deformation counts
+      real(wp), intent(in) :: times
       real(wp), intent(in) :: limit(elements)
       logical, intent(in) :: slips(elements)
       !> (elements) [N/m]
@@ -309,13 +338,13 @@ contains
          self%worn = 2.0_wp*self%endurance*self%d_y
          return
       end if
-      loss(:n) = limit(:n)/left
+      loss(:n) = times*limit(:n)/left
       slipping = sum(loss(:n), mask=slips(:n))
       slope = sum(self%k_element(:n), mask=.not. slips(:n)) - slipping
       if (n < elements) slope = slope + self%k_post
       slope = slope/(1.0_wp - slipping/self%k)
-      self%wear_rate = 1.0_wp - slope/self%k
-      growth(:n) = -loss(:n)*self%wear_rate
+      growth(:n) = -loss(:n)*(1.0_wp - slope/self%k)
+      self%wear_rate = times*(1.0_wp - slope/self%k)
       ahead = min(ahead, left/self%wear_rate)
    end subroutine wear
 

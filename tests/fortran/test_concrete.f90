@@ -33,7 +33,8 @@ contains
                unit_test('copies and trial moves leave no trace', copies), &
                unit_test('start clears the memory', forgets), &
                unit_test('property 9: work is not negative', work_positive), &
-               unit_test('envelope is never left outward', envelope)]
+               unit_test('envelope is never left outward', envelope), &
+               unit_test('friction: two paths, and the initial stiffness between them', friction)]
    end subroutine collect_concrete
 
    !> A spring with simple parameters: 100 at a closing of 2, then slope -10 down to 20 at 10.
@@ -330,5 +331,24 @@ contains
          end do
       end do
    end subroutine envelope
+
+   !> Unloading from (4, 80) leads to c_p = 2 (0.84 - 0.0415625), along a slope of 80/(4 - c_p); with half of
+   !> it lost to friction opening is on half of that line.
+   subroutine friction(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp), parameter :: c_p = 2.0_wp*(0.84_wp - 0.0415625_wp), slope = 80.0_wp/(4.0_wp - c_p)
+      type(spring_record) :: spec
+      real(wp) :: f(8)
+
+      spec = hand()
+      call spec%set('friction', 0.5_wp)
+      call follow_path(spec, [-4.0_wp, -3.7_wp, -3.0_wp, -2.0_wp, -2.02_wp, -3.0_wp, -4.0_wp, -5.0_wp], f)
+      call check_close(error, f, -[80.0_wp, 50.0_wp, 0.5_wp*slope*(3.0_wp - c_p), &
+                                   0.5_wp*slope*(2.0_wp - c_p), 0.5_wp*slope*(2.0_wp - c_p) + 2.0_wp, &
+                                   slope*(3.0_wp - c_p), 80.0_wp, 70.0_wp], 1.0e-12_wp, 0.0_wp, 'force')
+      ! No friction where the virgin spring is elastic.
+      call follow_path(spec, [-0.4_wp, -0.2_wp, 0.0_wp, -0.2_wp, -0.4_wp, -0.2_wp, 0.0_wp, 1.0_wp], f)
+      call check_close(error, f(2), 0.5_wp*f(1), 1.0e-12_wp, 0.0_wp, 'elastic')
+   end subroutine friction
 
 end module test_concrete

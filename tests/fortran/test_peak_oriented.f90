@@ -1,10 +1,11 @@
 !> The peak-oriented and the pinching spring: sequences of docs/rules.md, computed by hand.
 module test_peak_oriented
-   use check, only: unit_test, check_close
+   use check, only: unit_test, check_close, check_same, check_true
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_spring_record, only: spring_record
-   use rbs_hysteresis_springs, only: follow_path
+   use rbs_hysteresis_springs, only: follow_path, spring_array
+   use samples, only: random_type
    implicit none
    private
 
@@ -28,7 +29,9 @@ contains
                unit_test('strength deteriorates', strength), &
                unit_test('the softening line deteriorates', softening), &
                unit_test('the unloading stiffness deteriorates where the motion turns back', unloading), &
-               unit_test('the target of reloading moves outward', target)]
+               unit_test('the target of reloading moves outward', target), &
+               unit_test('the strength decays with the work of the hinge', decay), &
+               unit_test('decay: small detours of both springs have small effects', small_detours)]
    end subroutine collect_peak_oriented
 
    !> Elastic 100 up to (1, 100), cap (3, 120), softening with -10 to the residual 20 at 13.
@@ -193,5 +196,82 @@ contains
       call expect(error, spec, [2.0_wp, -2.0_wp, 1.0_wp], &
                   [110.0_wp, -110.0_wp, slope*1.9_wp], 'forces')
    end subroutine target
+
+   !> A hinge, elastic 100 up to 1 and then plastic.
+   type(spring_record) function hinge() result(spec)
+      spec%rule = 'bilinear'
+      call spec%set('k', 100.0_wp)
+      call spec%set('d_y', 1.0_wp)
+      call spec%set('k_post', 0.0_wp)
+   end function hinge
+
+   !> A work of 200 = lambda_h f_y d_y leaves 0.2 + 0.8/2 = 0.6 of the side that is entered next; what the
+   !> hinge did before the spring left its first line, 450, counts for nothing.
+   subroutine decay(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_array) :: springs
+      type(spring_record) :: spec
+
+      spec = hand('peak_oriented')
+      call spec%set('lambda_h', 2.0_wp)
+      call spec%set('s_min', 0.2_wp)
+      call springs%create([spec, hinge()])
+      call springs%move(2, 5.0_wp)
+      call springs%move(1, 2.0_wp)
+      call check_same(error, springs%force(1), 110.0_wp, 'not yet')
+      call springs%move(2, 7.0_wp)
+      call check_same(error, springs%work(2), 650.0_wp, 'work of the hinge')
+      call springs%move(1, -0.6_wp)
+      call check_close(error, springs%force(1), -60.0_wp, close, 0.0_wp, 'yield of the other side')
+      call springs%move(1, -1.6_wp)
+      call check_close(error, springs%force(1), -66.0_wp, close, 0.0_wp, 'its hardening, 0.6 times 10')
+      ! Alone there is no hinge to hear of.
+      call expect(error, spec, [2.0_wp, -1.0_wp], [110.0_wp, -100.0_wp], 'alone')
+   end subroutine decay
+
+   subroutine small_detours(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_array) :: springs(2)
+      type(spring_record) :: spec
+      real(wp) :: d(2, 20), e, worst
+      integer :: history, step, at, i
+
+      worst = 0.0_wp
+      do history = 1, 400
+         spec = hand(merge('pinching     ', 'peak_oriented', mod(history, 2) == 0))
+         if (mod(history, 2) == 0) then
+            call spec%set('kappa_f', 0.4_wp)
+            call spec%set('kappa_d', 0.5_wp)
+         end if
+         call spec%set('lambda_h', 2.0_wp)
+         if (mod(history, 3) == 0) then
+            call spec%set('d_c', 0.3_wp)
+            call spec%set('f_c', 60.0_wp)
+         end if
+         e = 10.0_wp**random%uniform(-9.0_wp, -4.0_wp)
+         at = int(random%uniform(2.0_wp, 18.0_wp))
+         do step = 1, size(d, 2)
+            d(:, step) = [random%uniform(-3.0_wp, 3.0_wp), random%uniform(-2.0_wp, 2.0_wp)]
+            ! Near zero force the excursions end.
+            if (random%uniform(0.0_wp, 1.0_wp) < 0.3_wp) d(:, step) = 0.01_wp*d(:, step)
+         end do
+         do i = 1, 2
+            call springs(i)%create([spec, hinge()])
+         end do
+         do step = 1, size(d, 2)
+            do i = 1, 2
+               call springs(i)%move_all(d(:, step))
+            end do
+            if (step == at) then
+               call springs(2)%move_all(d(:, step) - e)
+               call springs(2)%move_all(d(:, step))
+            end if
+            worst = max(worst, abs(springs(1)%force(1) - springs(2)%force(1))/(200.0_wp*e))
+         end do
+      end do
+      call check_true(error, worst <= 10.0_wp, 'a detour of e changes later forces by 10 k e at most')
+      call check_true(error, worst > 0.0_wp, 'there was an effect')
+   end subroutine small_detours
 
 end module test_peak_oriented

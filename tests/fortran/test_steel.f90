@@ -50,7 +50,8 @@ contains
                unit_test('few lines in a cycle', lines_of_cycle), &
                unit_test('property 2: 1, 7, 1000 increments, to the last bit', increments), &
                unit_test('copies and trial moves leave no trace', copies), &
-               unit_test('start forgets everything', forgets)]
+               unit_test('start forgets everything', forgets), &
+               unit_test('bars that were stretched far wear faster in compression', buckling)]
    end subroutine collect_steel
 
    !> Yields at (1, 1).
@@ -587,5 +588,28 @@ contains
          end do
       end do
    end subroutine forgets
+
+   !> Stretched to 4 = 2 d_buckle, a unit of plastic compression counts 1 + 4 (2 - 1) = 5 times: the strength
+   !> loses 5/(2 endurance - 5) = 1/19 for each unit of the way; in tension 1/99 as ever.
+   subroutine buckling(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_record) :: spec
+      real(wp) :: f(4)
+
+      spec%rule = 'steel'
+      call spec%set('k', 1.0_wp)
+      call spec%set('f_y', 1.0_wp)
+      call spec%set('k_post', 0.0_wp)
+      call spec%set('r0', 1.0e12_wp)
+      call spec%set('cr1', 0.0_wp)
+      call spec%set('endurance', 50.0_wp)
+      call spec%set('d_buckle', 2.0_wp)
+      call spec%set('buckling', 4.0_wp)
+      call follow_path(spec, [4.0_wp, -1.0_wp, -3.0_wp, 4.0_wp], f)
+      call check_close(error, f, [1.0_wp, -16.0_wp/19.0_wp, -16.0_wp/19.0_wp, 1483.0_wp/1881.0_wp], &
+                       1.0e-12_wp, 0.0_wp, 'stretched to twice d_buckle')
+      call follow_path(spec, [2.0_wp, 0.0_wp, -1.0_wp, 0.0_wp], f)
+      call check_close(error, f(3), -98.0_wp/99.0_wp, 1.0e-12_wp, 0.0_wp, 'stretched to d_buckle')
+   end subroutine buckling
 
 end module test_steel

@@ -32,6 +32,7 @@ _LARGEST_CONTACT = 0.9
 _LEAST_SOFTENING, _LEAST_HARDENING = 1e6, 0.0005
 # Bars endure at least as much as the widest limit of their elements may be (docs/rules.md).
 _LEAST_ENDURANCE = 103.4
+_ES = 200e9
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,10 @@ class HingeJoint:
         E I of the column above [N m2].
     shear_stiffness : float
         G A of the column [N].
+    yield_work : float
+        Moment at yield, about, times the rotation of the hinge there [J].
+    confinement : float
+        Confining stress over the cylinder strength.
     limits : dict of str to (float, float)
         Least and largest values of the parameters that have them for this column: beyond them they
         would change nothing.
@@ -57,6 +62,8 @@ class HingeJoint:
     length: float
     flexural_stiffness: float
     shear_stiffness: float
+    yield_work: float
+    confinement: float
     limits: dict[str, tuple[float, float]]
 
 
@@ -142,6 +149,7 @@ def hinge_joint(
             contact=contact,
             misfit=hinge.misfit,
             wear=hinge.wear,
+            friction=hinge.friction,
         )
 
     layers: list[tuple[float, ConcreteSpring | SteelSpring]] = []
@@ -155,6 +163,11 @@ def hinge_joint(
     for strip in strips.cover:
         layers.append((strip.y, concrete(round(strip.area, 12), strength, peak, softening, 0.0)))
     slip = by_axial(hinge.slip_length, hinge.slip_axial) * bond
+    stress = min(axial_load / strips.area / 40e6, 1.5)
+    r0 = by_axial(hinge.r0, hinge.r0_axial) * math.exp(hinge.r0_stress * (stress - 0.15))
+    buckles = hinge.buckling > 0 and hinge.fatigue > 0
+    bows = _buckling_strain(strips.tie_ratio * tie_yield, ratio) * hinge.buckling_strain
+    bows *= steel_length + slip
 
     @cache
     def bar(area: float, steel: Steel) -> SteelSpring:
@@ -164,11 +177,13 @@ def hinge_joint(
             k=stiffness,
             f_y=fy * area,
             k_post=stiffness * max(_LEAST_HARDENING, hinge.hardening * (fu - fy) / 0.08 / steel.es),
-            r0=by_axial(hinge.r0, hinge.r0_axial),
+            r0=r0,
             cr1=hinge.cr1,
             cr2=hinge.cr2,
             isotropic_hardening=hinge.isotropic_hardening,
             endurance=max(1 / hinge.fatigue, _LEAST_ENDURANCE) if hinge.fatigue > 0 else 0.0,
+            d_buckle=bows if buckles else None,
+            buckling=hinge.buckling if buckles else 0.0,
         )
 
     layers += [(y, bar(area, steel)) for y, area, steel in section.bars]
@@ -179,6 +194,8 @@ def hinge_joint(
         concrete_length,
         min(_STIFFEST, by_axial(hinge.stiffness, hinge.stiffness_axial)) * uncracked,
         hinge.shear_stiffness * modulus / 2.4 * strips.shear_area,
+        _yield_work(section, axial_load, ratio, yield_stress, steel_length + slip),
+        strips.confining_stress / cylinder,
         {
             "hinge_length": (
                 0.0,
@@ -197,6 +214,23 @@ def hinge_joint(
             "fatigue": (0.0, 1 / _LEAST_ENDURANCE),
         },
     )
+
+
+def _buckling_strain(confinement: float, ratio: float) -> float:
+    """Return the strain from which on bars buckle when they are compressed again.
+
+    Goodnight, Kowalsky and Nau (2013); `confinement` is rho_s f_yh [Pa], `ratio` that of the load.
+    """
+    return max(0.01, 0.03 + 700 * confinement / _ES - 0.1 * ratio)
+
+
+def _yield_work(
+    section: Section, axial_load: float, ratio: float, stress: float, length: float
+) -> float:
+    """Return moment at yield (AIJ 1999) times rotation, bars at yield over their length [J]."""
+    pressed = max(0.0, 0.5 * axial_load * section.depth * (1 - ratio))
+    moment = 0.4 * stress * section.steel_area * section.depth + pressed
+    return moment * stress / _ES * length / (0.65 * section.effective_depth)
 
 
 def _least_hardening(section: Section, hinge: HingeParameters) -> float:

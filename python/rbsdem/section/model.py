@@ -291,6 +291,7 @@ class LayeredModel:
             self.axial_load,
             joint.shear_stiffness,
             self.parameters.shear,
+            joint,
         )
         rigid = Elastic(1e3 * joint.shear_stiffness / self.height)
         return {

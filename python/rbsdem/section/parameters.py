@@ -37,6 +37,9 @@ class HingeParameters:
         Factor of the slope from the yield stress to the ultimate stress at 8 % strain.
     r0, r0_axial : float
         R0 of Menegotto and Pinto (1973).
+    r0_stress : float
+        Exponent e of a factor exp(e (min(P/(40 MPa A_g), 1.5) - 0.15)) of R0: branches are the less
+        round the larger the axial stress.
     cr1, cr2 : float
         Their cR1 and cR2.
     isotropic_hardening : float
@@ -68,6 +71,12 @@ class HingeParameters:
         it makes up for the hinge, which is lumped at the foot.
     shear_stiffness : float
         Shear stiffness of the column over the uncracked one.
+    buckling, buckling_strain : float
+        By how much more compression wears bars that were stretched to twice the strain e from which
+        on they buckle; factor of e = 0.03 + 700 rho_s f_yh/E_s - 0.1 P/(f'c A_g) >= 0.01
+        (Goodnight, Kowalsky and Nau 2013).
+    friction : float
+        Of the concrete layers: share of the force by which opening is below closing.
     plastic, misfit, contact, contact_axial, wear : float
         Of the concrete layers, see `rbsdem.ConcreteSpring`; the contact is 0.9 at most.
     """
@@ -101,6 +110,10 @@ class HingeParameters:
     contact: float
     contact_axial: float
     wear: float
+    r0_stress: float = 0.0
+    buckling: float = 0.0
+    buckling_strain: float = 1.0
+    friction: float = 0.0
 
     def __post_init__(self) -> None:
         _take(self, "hinge")
@@ -127,6 +140,22 @@ class ShearParameters:
         Energy that the strength lasts for, over yield force times yield slip; 0: for ever.
     pinch_force, pinch_slip : float
         `kappa_f` and `kappa_d` of `rbsdem.Pinching`.
+    decay : float
+        Share of the strength that can decay which is left after the hinge has worked M_y theta_y/a:
+        the factor a of D = a W/(M_y theta_y), to which the strength falls by 1/(1 + D).
+    decay_shelter : float
+        Confining stress over f'c that divides a by e.
+    decay_ties, decay_strut : float
+        What stays: the share V_s/V_y of the ties at 45 degrees times the first (2.5 times that for
+        spirals and round hoops), or f'c b d/V_y times the second if that is less; 0.95 at most.
+    cap_ties, softening_ties : float
+        Exponents of V_s/(0.35 V_y) in factors of `cap` (0.1 to 2.5) and `softening` (0.25 to 2.5):
+        with few ties the force falls at once.
+    squat, round : float
+        Exponent of a factor 2.5 d/L of the strength of columns shorter than that, for the strut
+        that goes straight into the foot; factor of the strength with spirals and round hoops.
+    snap_back : float
+        Steepest softening over the stiffness 3 E I/L^3 of the column above; 0: no limit.
     """
 
     strength: float
@@ -137,6 +166,15 @@ class ShearParameters:
     endurance: float
     pinch_force: float
     pinch_slip: float
+    decay: float = 0.0
+    decay_shelter: float = 0.02
+    decay_ties: float = 1.0
+    decay_strut: float = 0.1
+    cap_ties: float = 0.0
+    softening_ties: float = 0.0
+    snap_back: float = 0.0
+    squat: float = 0.0
+    round: float = 1.0
 
     def __post_init__(self) -> None:
         _take(self, "shear spring")

@@ -18,6 +18,7 @@ from rbsdem.section.strength import (
 from rbsdem.springs import Pinching
 
 if TYPE_CHECKING:
+    from rbsdem.section.hinge import HingeJoint
     from rbsdem.section.parameters import ShearParameters
     from rbsdem.section.section import Section
 
@@ -28,6 +29,10 @@ _ES = 200e9
 # Cracked stiffness without ties, and cracking force under tension: shares of the uncracked
 # stiffness and of the yield force that keep the lines of the spring apart.
 _LEAST = 0.01
+
+# Ties that spirals are worth, against those of rectangular hoops: their cracks are flatter than 45
+# degrees (30 degrees would be 1.73), and they hold a whole circle.
+_ROUND = 2.5
 
 
 def cracked_shear_stiffness(section: Section) -> float:
@@ -59,6 +64,7 @@ def shear_spring(
     axial_load: float,
     stiffness: float,
     given: ShearParameters,
+    joint: HingeJoint | None = None,
 ) -> Pinching:
     """Make the shear spring of a column.
 
@@ -74,6 +80,8 @@ def shear_spring(
         Shear stiffness before cracking, force over strain [N].
     given : ShearParameters
         Parameters of the model.
+    joint : HingeJoint, optional
+        The hinge, with whose work the strength decays; without it the strength does not.
 
     Returns
     -------
@@ -87,7 +95,7 @@ def shear_spring(
     InputError
         If the length is not positive.
     """
-    return _shear(section, length, axial_load, stiffness, given)[0]
+    return _shear(section, length, axial_load, stiffness, given, joint)[0]
 
 
 def shear_limits(
@@ -118,11 +126,16 @@ def _shear(
     axial_load: float,
     stiffness: float,
     given: ShearParameters,
+    joint: HingeJoint | None = None,
 ) -> tuple[Pinching, dict[str, tuple[float, float]]]:
     """Return the spring and the limits of its parameters."""
     sizes = shear_sizes(section)
     # A section without bars in tension, which has no strength, still needs a spring with one.
     by_theory = shear_strength_mcft(section, length, axial_load)
+    # Near the foot a strut carries part of the force straight into it.
+    by_theory *= max(1.0, 2.5 * sizes.d / length) ** given.squat
+    if section.ties is not None and section.ties.is_round:
+        by_theory *= given.round
     least = 1e-4 * sizes.fc * sizes.gross_area
     f_y = max(given.strength * by_theory, least)
     f_cap = max(given.hardening, 1.0) * f_y
@@ -135,7 +148,16 @@ def _shear(
     d_y = d_c + (f_y - f_c) / cracked
     # Behind yield it may not go up steeper than before.
     least_rise = 1.01 * (f_cap - f_y) / cracked
-    rise = max(given.cap * length, least_rise)
+    # With few ties the force falls at once, and steeply.
+    ties = max(by_ties / (0.35 * f_y), 0.01)
+    cap = given.cap * min(max(ties**given.cap_ties, 0.1), 2.5)
+    rise = max(cap * length, least_rise)
+    fall = given.softening * length * min(max(ties**given.softening_ties, 0.25), 2.5)
+    if given.snap_back > 0.0:
+        # What falls faster than the column above springs back has no equilibrium.
+        above = 3 * section.concrete_law["ec"] * section._figures["inertia"] / length**3
+        fall = max(fall, f_cap / (given.snap_back * above))
+    lambda_h, s_min = _decay(section, f_y, by_ties, given, joint)
     limits = {
         "strength": (least / by_theory if by_theory > 0.0 else 0.0, math.inf),
         "hardening": (1.0, math.inf),
@@ -150,10 +172,34 @@ def _shear(
         f_y=f_y,
         d_cap=d_y + rise,
         f_cap=f_cap,
-        d_pc=given.softening * length,
+        d_pc=fall,
         f_res=min(given.residual * f_cap, 0.9 * f_y),
         lambda_s=given.endurance,
         kappa_f=given.pinch_force,
         kappa_d=given.pinch_slip,
+        lambda_h=lambda_h / (f_y * d_y),
+        s_min=s_min,
     )
     return spring, limits
+
+
+def _decay(
+    section: Section,
+    f_y: float,
+    by_ties: float,
+    given: ShearParameters,
+    joint: HingeJoint | None,
+) -> tuple[float, float]:
+    """Return the work of the hinge that halves what can decay [J], 0: none, and what stays."""
+    if joint is None or not given.decay > 0.0:
+        return 0.0, 0.0
+    sizes = shear_sizes(section)
+    is_round = section.ties is not None and section.ties.is_round
+    stays = min(
+        0.95,
+        given.decay_ties * (_ROUND if is_round else 1.0) * by_ties / f_y,
+        given.decay_strut * sizes.fc * sizes.width * sizes.d / f_y,
+    )
+    # What is confined keeps the interlock of its cracks.
+    shelter = math.exp(min(joint.confinement / given.decay_shelter, 50.0))
+    return joint.yield_work * shelter / given.decay, stays

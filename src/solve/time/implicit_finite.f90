@@ -57,6 +57,7 @@ contains
       marked = .false.
       self%work(:) = state%springs%work
       self%tension(:) = self%step%tension
+      state%springs%work_before(:) = self%work
       state%springs%work = 0.0_wp
       call state%motion%press(state%springs, load)
       call iterate(self, state, h, load, converged, marked)
@@ -70,6 +71,7 @@ contains
          state%springs%work = self%work
          self%step%tension(:) = self%tension
       end if
+      state%springs%work_before(:) = 0.0_wp
       if (marked) call state%springs%forget_mark()
    end subroutine take_step
 
