@@ -1,13 +1,21 @@
 """The command `rbsdem`: starts the executable that was built with the package.
 
-`rbsdem trade` and `rbsdem peer` are run by Python.
+Some commands are run by Python.
 """
 
 from __future__ import annotations
 
 import os
 import sys
+from importlib import import_module
 from importlib.resources import files
+
+#: Commands that are run by Python, and their modules.
+COMMANDS = {
+    "trade": "rbsdem.accuracy.command",
+    "peer": "rbsdem.peer.command",
+    "ensemble": "rbsdem.ensembles.command",
+}
 
 
 def executable() -> str:
@@ -28,18 +36,13 @@ def executable() -> str:
 
 
 def main() -> int:
-    """Run the executable with the arguments of the command line, or `trade` or `peer`."""
+    """Run the executable with the arguments of the command line, or a command of the package."""
     words = sys.argv[1:]
-    if words[:1] in (["--help"], ["-h"]) and words[1:2] in (["trade"], ["peer"]):
+    if words[:1] in (["--help"], ["-h"]) and words[1:2] and words[1] in COMMANDS:
         words = [words[1], "--help"]
-    if words[:1] == ["trade"]:
-        from rbsdem.accuracy.command import main as trade  # noqa: PLC0415
-
-        return trade(words[1:])
-    if words[:1] == ["peer"]:
-        from rbsdem.peer.command import main as peer  # noqa: PLC0415
-
-        return peer(words[1:])
+    if words and words[0] in COMMANDS:
+        code: int = import_module(COMMANDS[words[0]]).main(words[1:])
+        return code
     try:
         program = executable()
     except FileNotFoundError as error:

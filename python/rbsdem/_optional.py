@@ -39,6 +39,12 @@ def need_pyarrow() -> Any:
     return _need("pyarrow", "Parquet needs", "ensembles")
 
 
+def need_parquet() -> Any:
+    """Return pyarrow.parquet, or raise `ImportError` with the installation command."""
+    need_pyarrow()
+    return import_module("pyarrow.parquet")
+
+
 def need_scipy(part: str) -> Any:
     """Return a part of scipy, or raise `ImportError` with the installation command."""
     _need("scipy", "the statistics of ensembles need", "ensembles")

@@ -83,7 +83,7 @@ contains
          '  rbsdem --help | --version', &
          '', &
          'rbsdem trade CASE.nml needs the command that comes with the Python package,', &
-         'and so does rbsdem peer DIR.', &
+         'and so do rbsdem peer DIR and rbsdem ensemble CASE.nml RECORD ... --out DIR.', &
          '', &
          'CASE.nml may be -, which is standard input.', &
          '', &

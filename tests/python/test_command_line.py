@@ -60,7 +60,7 @@ def test_help_of_a_command_is_its_own(run_cli, command):
     shown = run_cli([command, "--help"])
     assert (shown.returncode, shown.stderr) == (0, "")
     assert shown.stdout.startswith(f"usage: rbsdem {command} ")
-    others = {"run", "check", "modes", "keys", "trade", "peer"} - {command}
+    others = {"run", "check", "modes", "keys", "trade", "peer", "ensemble"} - {command}
     assert not any(f"rbsdem {other}" in shown.stdout for other in others)
     assert max(len(line) for line in shown.stdout.splitlines()) <= 84
     options = {"run": "--output", "check": "--quiet", "modes": "rk4", "keys": "--json"}
@@ -69,7 +69,7 @@ def test_help_of_a_command_is_its_own(run_cli, command):
         assert run_cli(again).stdout == shown.stdout
 
 
-@pytest.mark.parametrize("command", ["trade", "peer"])
+@pytest.mark.parametrize("command", ["trade", "peer", "ensemble"])
 def test_help_of_a_command_of_the_package(command):
     shown = [
         subprocess.run(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Sequence
+from contextlib import ExitStack
 from typing import Any, Literal
 
 import numpy as np
@@ -13,6 +14,8 @@ from numpy.typing import ArrayLike
 from rbsdem import _core
 from rbsdem._core import Array
 from rbsdem.analysis import Method
+from rbsdem.ensembles.cluster import check_client, in_cluster
+from rbsdem.ensembles.collected import Collected
 from rbsdem.ensembles.inputs import (
     check_jobs,
     named_columns,
@@ -21,9 +24,11 @@ from rbsdem.ensembles.inputs import (
     scale_array,
 )
 from rbsdem.ensembles.measures import STATUSES, Measure, checked_measures, core_measures
+from rbsdem.ensembles.progress import telling
 from rbsdem.ensembles.record import Ensemble
-from rbsdem.ensembles.tasks import Plan, TaskResult, cut, expected, joined
-from rbsdem.ensembles.threads import in_threads
+from rbsdem.ensembles.store import Store
+from rbsdem.ensembles.tasks import Plan, TaskResult, cut, expected
+from rbsdem.ensembles.threads import Piece, in_threads
 from rbsdem.errors import InputError
 
 #: Expected seconds of a task at the most. The lanes take less.
@@ -44,6 +49,10 @@ def ensemble(
     collapse_drift: float | None = None,
     allow_unstable: bool = False,
     jobs: int | None = None,
+    store: str | os.PathLike[str] | None = None,
+    shard: tuple[int, int] | None = None,
+    seeds: Any = None,
+    client: Any = None,
     progress: bool = False,
 ) -> Ensemble:
     """Run columns under ground motions at several scales, and measure each run.
@@ -76,6 +85,17 @@ def ensemble(
         As for `time_history`.
     jobs : int, optional
         Threads; by default one for each processor that this process may use.
+    store : path, optional
+        A folder that keeps what is computed, in files of some seconds of work each. A second start
+        with the same inputs computes what is missing there, after whatever end of the first. Needs
+        pyarrow (``pip install "rbsdem[ensembles]"``).
+    shard : tuple of two int, optional
+        (i, n): do part i of n, from 1 to n, for jobs that share the work and the store. Runs of the
+        other parts are in the result if the store has them.
+    seeds : optional
+        What the inputs were drawn from, for the manifest of the store: anything that JSON takes.
+    client : dask.distributed.Client, optional
+        A cluster that does the work in place of threads.
     progress : bool, optional
         Show runs, rate and time left on stderr, if it is a terminal.
 
@@ -111,9 +131,15 @@ def ensemble(
         names, functions = checked_measures(measures)
     except InputError as error:
         faults.append(str(error))
+    part = _checked_part(shard, store, faults)
+    if client is not None:
+        try:
+            check_client(client)
+        except InputError as error:
+            faults.append(str(error))
     raise_faults(faults)
-    kept = np.flatnonzero(~np.isnan(full).ravel())
-    column, motion, _ = np.unravel_index(kept, full.shape)
+    wanted = np.flatnonzero(~np.isnan(full).ravel())
+    column, motion, _ = np.unravel_index(wanted, full.shape)
     plan = Plan(
         column_items,
         motion_items,
@@ -121,15 +147,35 @@ def ensemble(
         functions,
         column.astype(np.int32),
         motion.astype(np.int32),
-        full.ravel()[kept],
+        full.ravel()[wanted],
     )
     seconds, wrong = expected(plan)
     raise_faults([f"column {column_names[i]!r}: {text}" for i, text in wrong])
     threads = jobs or available_processors()
     total = float(seconds[plan.motion, plan.column].sum())
-    pieces = cut(plan, seconds, min(_LONGEST, total / (8 * threads)))
-    results, interrupted = in_threads(plan, pieces, threads, progress)
-    result = joined(results, functions)
+    longest = _LONGEST if store is not None else min(_LONGEST, total / (8 * threads))
+    pieces = cut(plan, seconds, longest)
+    collected = Collected(plan.scale.size, functions)
+    with ExitStack() as stack:
+        kept = None
+        resumed = 0
+        if store is not None:
+            own_names = column_names, [item.name for item in motion_items]
+            kept = Store(store, plan, own_names, pieces, seeds)
+            stack.enter_context(kept.locked(part))
+            pieces, resumed = _missing(kept, part, collected)
+
+        def take(piece: Piece, result: TaskResult) -> None:
+            collected.put(piece, result)
+            if kept is not None:
+                kept.write(piece, result)
+
+        runs = sum(last - first for first, last in pieces)
+        told = stack.enter_context(telling(progress, runs))
+        if client is None:
+            interrupted = in_threads(plan, pieces, threads, take, told)
+        else:
+            interrupted = in_cluster(plan, pieces, client, take, told)
     return Ensemble(
         columns=dict(zip(column_names, column_items, strict=True)),
         motions={item.name: item for item in motion_items},
@@ -137,12 +183,44 @@ def ensemble(
         column=plan.column,
         motion=plan.motion,
         scale=plan.scale,
-        status=np.array(STATUSES)[result.fates],
-        measures=_named(names, result, plan) | result.extra,
-        errors=result.errors,
+        status=np.array(STATUSES)[collected.fates],
+        measures=_named(names, collected, plan) | collected.extra,
+        errors=dict(sorted(collected.errors.items())),
         seconds=time.perf_counter() - begin,
         interrupted=interrupted,
+        resumed=resumed,
     )
+
+
+def _checked_part(shard: Any, store: Any, faults: list[str]) -> tuple[int, int]:
+    """Return which part of how many this process does; without parts the first of one."""
+    if shard is None:
+        return 1, 1
+    try:
+        place, parts = (_core.whole(number, "shard") for number in shard)
+        if not 1 <= place <= parts:
+            raise ValueError
+    except (InputError, TypeError, ValueError):
+        faults.append(f"shard = {shard!r} must be two whole numbers (i, n) with 1 <= i <= n")
+        return 1, 1
+    if store is None:
+        faults.append("shard: parts come together in a store; give store=")
+    return place, parts
+
+
+def _missing(store: Store, part: tuple[int, int], collected: Collected) -> tuple[list[Piece], int]:
+    """Collect what the store has; return the pieces of a part that it has not, and its runs."""
+    resumed = 0
+    missing = []
+    own = set(store.part(part))
+    for piece in store.shards:
+        result = store.read(piece)
+        if result is not None:
+            collected.put(piece, result)
+            resumed += piece[1] - piece[0]
+        elif piece in own:
+            missing.append(piece)
+    return missing, resumed
 
 
 def available_processors() -> int:
@@ -152,7 +230,7 @@ def available_processors() -> int:
     return os.cpu_count() or 1
 
 
-def _named(names: tuple[str, ...], result: TaskResult, plan: Plan) -> dict[str, Array]:
+def _named(names: tuple[str, ...], result: Collected, plan: Plan) -> dict[str, Array]:
     values = dict(zip(core_measures(), result.values, strict=True))
     heights = np.array([column.height for column in plan.columns])[plan.column]
     values["peak_drift"] = np.abs(values["peak_displacement"]) / heights

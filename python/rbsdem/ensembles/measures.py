@@ -17,7 +17,7 @@ Measure: TypeAlias = Callable[[Result], float]
 
 #: The fates of a run, in the order of their numbers in the Fortran part; "" is a run that was not
 #: started because the ensemble was broken off.
-STATUSES = ("", "completed", "collapsed", "axial_failure", "failed")
+STATUSES: tuple[str, ...] = ("", "completed", "collapsed", "axial_failure", "failed")
 
 #: What each measure is; "drift" is a displacement of the top over the height.
 MEASURES = {

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -176,33 +175,3 @@ def _yields(column: Column) -> list[float]:
 def _yield(spring: Spring) -> float:
     rotation = getattr(spring, "d_y", None)
     return _NEVER if rotation is None else float(rotation)
-
-
-def joined(results: Sequence[TaskResult], functions: dict[str, Measure]) -> TaskResult:
-    """Return the results of consecutive tasks as one."""
-    errors: dict[int, str] = {}
-    first = 0
-    for result in results:
-        errors.update({first + run: text for run, text in result.errors.items()})
-        first += result.fates.size
-    return TaskResult(
-        np.concatenate([result.fates for result in results]),
-        np.concatenate([result.values for result in results], axis=1),
-        {name: np.concatenate([result.extra[name] for result in results]) for name in functions},
-        errors,
-    )
-
-
-def nothing(runs: int, functions: dict[str, Measure]) -> TaskResult:
-    """Return the result of a task that was not started."""
-    return TaskResult(
-        np.zeros(runs, dtype=np.int8),
-        np.full((len(core_measures()), runs), np.nan),
-        {name: np.full(runs, np.nan) for name in functions},
-        {},
-    )
-
-
-def unsent(task: Task) -> Task:
-    """Return a task without its functions."""
-    return replace(task, functions={})

@@ -2,61 +2,67 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 
 import numpy as np
 
-from rbsdem.ensembles.progress import telling
-from rbsdem.ensembles.tasks import Integers, Plan, TaskResult, compute, nothing
+from rbsdem.ensembles.tasks import Integers, Plan, TaskResult, compute
+
+__all__ = ["Piece", "in_threads"]
+
+#: First run of a task, and the one after its last.
+Piece = tuple[int, int]
 
 #: How often the display is renewed, and Ctrl-C seen [s].
 _BEAT = 0.2
 
 
 def in_threads(
-    plan: Plan, pieces: list[tuple[int, int]], jobs: int, progress: bool
-) -> tuple[list[TaskResult], bool]:
-    """Return the results of all pieces in their order, and whether Ctrl-C broke it off.
+    plan: Plan,
+    pieces: list[Piece],
+    jobs: int,
+    take: Callable[[Piece, TaskResult], None],
+    told: Callable[[int], None],
+) -> bool:
+    """Do all pieces; `take` gets their results as they come. Return whether Ctrl-C broke it off.
 
-    After Ctrl-C the runs under way are finished, the others are not started.
+    After Ctrl-C, and where `take` raises an error, the runs under way are finished and the others
+    are not started.
     """
-    found = [nothing(last - first, plan.functions) for first, last in pieces]
-    if not pieces:
-        return found, False
-    controls = [np.zeros(2, dtype=np.int32) for _ in pieces]
+    controls = {piece: np.zeros(2, dtype=np.int32) for piece in pieces}
     interrupted = False
-    with ThreadPoolExecutor(jobs) as pool, telling(progress, plan.scale.size) as told:
-        waiting: dict[Future[TaskResult], int] = {}
-        left = iter(range(len(pieces)))
+    waiting: dict[Future[TaskResult], Piece] = {}
+
+    def take_done() -> None:
+        done, _ = wait(waiting, timeout=_BEAT, return_when=FIRST_COMPLETED)
+        for future in done:
+            take(waiting.pop(future), future.result())
+        told(sum(int(control[1]) for control in controls.values()))
+
+    with ThreadPoolExecutor(jobs) as pool:
         try:
-            for place in left:
-                waiting[pool.submit(_piece, plan, pieces[place], controls[place])] = place
-                if len(waiting) == 2 * jobs:
-                    _take(waiting, found, controls, told)
+            for piece in pieces:
+                waiting[pool.submit(_do, plan, piece, controls[piece])] = piece
+                while len(waiting) >= 2 * jobs:
+                    take_done()
             while waiting:
-                _take(waiting, found, controls, told)
+                take_done()
         except KeyboardInterrupt:
             interrupted = True
-            for control in controls:
-                control[0] = 1
+            _stop(controls)
             while waiting:
-                _take(waiting, found, controls, told)
-    return found, interrupted
+                take_done()
+        except BaseException:
+            _stop(controls)
+            raise
+    return interrupted
 
 
-def _piece(plan: Plan, piece: tuple[int, int], control: Integers) -> TaskResult:
+def _do(plan: Plan, piece: Piece, control: Integers) -> TaskResult:
     return compute(plan.task(*piece), control)
 
 
-def _take(
-    waiting: dict[Future[TaskResult], int],
-    found: list[TaskResult],
-    controls: list[Integers],
-    told: object,
-) -> None:
-    """Take what is done, after waiting for a task or for a beat."""
-    done, _ = wait(waiting, timeout=_BEAT, return_when=FIRST_COMPLETED)
-    for future in done:
-        found[waiting.pop(future)] = future.result()
-    if callable(told):
-        told(sum(int(control[1]) for control in controls))
+def _stop(controls: dict[Piece, Integers]) -> None:
+    for control in controls.values():
+        control[0] = 1

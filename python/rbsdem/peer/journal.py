@@ -5,17 +5,16 @@ from __future__ import annotations
 import base64
 import dataclasses
 import hashlib
-import importlib.util
 import json
 import os
 import pickle
 from collections.abc import Mapping, Sequence
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from rbsdem._code import code_digest
 from rbsdem._files import whole_file
 from rbsdem.comparison import compare
 from rbsdem.errors import InputError, RbsdemError
@@ -62,7 +61,9 @@ class Journal:
         self.path = Path(path)
         self._tests = tests
         self._model = model
-        given = hashlib.sha256(_code() + model.encode() + pickle.dumps(dict(options), 5)).digest()
+        given = hashlib.sha256(
+            code_digest() + model.encode() + pickle.dumps(dict(options), 5)
+        ).digest()
         self._keys = [_key(specimen, given) for specimen in tests]
         if self.path.is_symlink() or (self.path.exists() and not self.path.is_file()):
             raise InputError(f"journal: {self.path} is no ordinary file; give another path")
@@ -153,17 +154,3 @@ def _key(specimen: Specimen, given: bytes) -> str:
     if path is not None:
         digest.update(path.read_bytes())
     return digest.hexdigest()
-
-
-@cache
-def _code() -> bytes:
-    """Return the digest of the code of the package: Python files and extension."""
-    root = Path(__file__).resolve().parents[1]
-    files = sorted(root.rglob("*.py"))
-    extension = importlib.util.find_spec("rbsdem._rbsdem")
-    if extension is not None and extension.origin is not None:
-        files.append(Path(extension.origin))
-    digest = hashlib.sha256()
-    for file in files:
-        digest.update(hashlib.sha256(file.read_bytes()).digest())
-    return digest.digest()

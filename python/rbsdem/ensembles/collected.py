@@ -1,0 +1,42 @@
+"""Where the results of tasks come together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rbsdem._core import Array
+from rbsdem.ensembles.measures import core_measures
+from rbsdem.ensembles.tasks import TaskResult
+
+__all__ = ["Collected"]
+
+
+class Collected:
+    """Fates, measures and errors of all runs, in arrays that are made once.
+
+    Parameters
+    ----------
+    runs : int
+        Number of runs.
+    functions : iterable of str
+        Names of the measures of functions.
+    """
+
+    def __init__(self, runs: int, functions: Iterable[str]) -> None:
+        self.fates: NDArray[np.int8] = np.zeros(runs, dtype=np.int8)
+        self.values: Array = np.full((len(core_measures()), runs), np.nan)
+        self.extra: dict[str, Array] = {name: np.full(runs, np.nan) for name in functions}
+        self.errors: dict[int, str] = {}
+
+    def put(self, piece: tuple[int, int], result: TaskResult) -> None:
+        """Take the result of the runs from `piece[0]` to before `piece[1]`."""
+        first, last = piece
+        done = result.fates != 0
+        self.fates[first:last] = result.fates
+        self.values[:, first:last] = np.where(done, result.values, np.nan)
+        for name, values in result.extra.items():
+            self.extra[name][first:last] = values
+        self.errors.update({first + run: text for run, text in result.errors.items()})

@@ -1,0 +1,317 @@
+"""The store of an ensemble: a folder that keeps what was computed.
+
+Each shard is a Parquet file with a row for each of its runs, named by the digest of all that they
+follow from, and written whole or not at all. So a second start computes what is missing, after
+whatever end of the first.
+"""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import inspect
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rbsdem import _core
+from rbsdem._code import code_digest
+from rbsdem._files import whole_file
+from rbsdem._optional import need_parquet
+from rbsdem.ensembles.measures import STATUSES, Measure, core_measures
+from rbsdem.ensembles.tasks import Plan, Task, TaskResult
+from rbsdem.ensembles.threads import Piece
+from rbsdem.errors import InputError
+
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
+
+__all__ = ["Store"]
+
+_MANIFEST = "manifest.json"
+
+#: Letters of a digest in the name of a shard.
+_LETTERS = 32
+
+
+class Store:
+    """A folder for the shards of one ensemble.
+
+    Parameters
+    ----------
+    folder : path
+        It is made if it is not there.
+    plan : Plan
+        The runs.
+    names : tuple of lists
+        Names of the columns and of the motions.
+    pieces : list of tuple
+        The runs of each shard.
+    seeds : mapping
+        What the inputs were drawn from, for the manifest.
+
+    Raises
+    ------
+    InputError
+        If the folder holds another ensemble, that of another version, or other files, or a function
+        among the measures has no source.
+    ImportError
+        If pyarrow is not installed.
+    """
+
+    def __init__(
+        self,
+        folder: str | os.PathLike[str],
+        plan: Plan,
+        names: tuple[list[str | int], list[str | int]],
+        pieces: list[Piece],
+        seeds: Any = None,
+    ) -> None:
+        need_parquet()
+        self.folder = Path(folder).expanduser()
+        self._names = names
+        self._plan = plan
+        given = _given(plan)
+        self.shards = {piece: _shard_name(plan.task(*piece), given) for piece in pieces}
+        self._check_folder()
+        manifest = self._manifest(seeds)
+        known = self._known()
+        if known is None:
+            self._write_manifest(manifest)
+        else:
+            _compare(self.folder, known, manifest)
+
+    def _check_folder(self) -> None:
+        if self.folder.exists() and not self.folder.is_dir():
+            raise InputError(f"store: {self.folder} is no folder; give another path")
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            others = [path.name for path in self.folder.iterdir() if path.suffix != ".partial"]
+        except OSError as error:
+            raise InputError(f"store: {self.folder}: {error.strerror}") from None
+        if others and _MANIFEST not in others and not set(others) <= {"shards"}:
+            raise InputError(
+                f"store: {self.folder} holds other files ({others[0]}) and no {_MANIFEST}; give an "
+                "empty folder"
+            )
+
+    def _manifest(self, seeds: Any) -> dict[str, Any]:
+        plan = self._plan
+        columns, motions = self._names
+        return {
+            "version": _version(),
+            "code": code_digest().hex(),
+            "digests": {
+                "columns": _digest(column.to_namelist() for column in plan.columns),
+                "motions": _digest(_motion_bytes(plan, j) for j in range(len(plan.motions))),
+                "scales": _digest([plan.column, plan.motion, plan.scale]),
+                "settings": _digest([json.dumps(plan.settings, sort_keys=True)]),
+                "measures": _digest(_source(f) for f in plan.functions.values()),
+            },
+            "settings": plan.settings,
+            "measures": list(plan.functions),
+            "seeds": seeds,
+            "runs": int(plan.scale.size),
+            "shards": list(self.shards.values()),
+            "motions": {str(name): motions.index(name) for name in motions},
+            "columns": {
+                str(name): column.to_namelist()
+                for name, column in zip(columns, plan.columns, strict=True)
+            },
+        }
+
+    def _known(self) -> dict[str, Any] | None:
+        path = self.folder / _MANIFEST
+        try:
+            known = json.loads(path.read_text(encoding="utf-8"))
+            if isinstance(known, dict) and isinstance(known.get("digests"), dict):
+                return known
+        except FileNotFoundError:
+            return None
+        except (OSError, ValueError):
+            pass
+        raise InputError(f"store: {path} is no manifest of an ensemble; give another folder")
+
+    def _write_manifest(self, manifest: dict[str, Any]) -> None:
+        with _clear(self.folder):
+            (self.folder / "shards").mkdir(exist_ok=True)
+            with whole_file(self.folder / _MANIFEST) as file:
+                file.write(json.dumps(manifest, indent=1).encode())
+
+    @contextmanager
+    def locked(self, part: tuple[int, int]) -> Iterator[None]:
+        """Keep other processes from the same part while the block lasts.
+
+        The lock ends with the process, however that ends.
+
+        Raises
+        ------
+        InputError
+            If another process has the lock.
+        """
+        path = self.folder / f"part-{part[0]}-of-{part[1]}.lock"
+        with _clear(self.folder), path.open("ab") as file:
+            if fcntl is not None:
+                try:
+                    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                except OSError as error:
+                    if error.errno not in (errno.EAGAIN, errno.EACCES):
+                        raise
+                    raise InputError(
+                        f"store: another process is at work on part {part[0]} of {part[1]} of "
+                        f"{self.folder}; wait for it, or give another folder"
+                    ) from None
+            self._sweep(part)
+            yield
+
+    def part(self, part: tuple[int, int]) -> list[Piece]:
+        """Return the pieces of part i of n: every n-th, from the i-th on."""
+        return list(self.shards)[part[0] - 1 :: part[1]]
+
+    def _sweep(self, part: tuple[int, int]) -> None:
+        """Remove what an earlier process of this part has begun and not finished."""
+        own = {self.shards[piece] for piece in self.part(part)}
+        for path in (self.folder / "shards").glob("*.partial"):
+            if path.name.partition(".")[0] in own:
+                with suppress(OSError):
+                    path.unlink()
+
+    def read(self, piece: Piece) -> TaskResult | None:
+        """Return the result of a shard; None if it is not there, or cannot be read."""
+        parquet = need_parquet()
+        path = self._path(piece)
+        if not path.is_file():
+            return None
+        try:
+            table = parquet.read_table(path).to_pydict()
+            statuses = [STATUSES.index(status) for status in table["status"]]
+            fates = np.array(statuses, dtype=np.int8)
+            values = np.array([table[name] for name in core_measures()], dtype=np.float64)
+            extra = {name: np.array(table[name], dtype=np.float64) for name in self._plan.functions}
+        except (OSError, KeyError, ValueError):  # Those of pyarrow are ValueErrors.
+            return None
+        if fates.size != piece[1] - piece[0]:
+            return None
+        errors = {run: text for run, text in enumerate(table["error"]) if text}
+        return TaskResult(fates, values, extra, errors)
+
+    def write(self, piece: Piece, result: TaskResult) -> None:
+        """Write a shard, if all of its runs are done.
+
+        Raises
+        ------
+        OSError
+            If the disk does not take it; what was there before stays.
+        """
+        if not result.fates.all():
+            return
+        parquet = need_parquet()
+        import pyarrow as pa  # noqa: PLC0415
+
+        first, last = piece
+        columns, motions = ([str(name) for name in names] for names in self._names)
+        rows = slice(first, last)
+        data: dict[str, Any] = {
+            "run": pa.array(np.arange(first, last)),
+            "column": pa.array([columns[i] for i in self._plan.column[rows]]).dictionary_encode(),
+            "motion": pa.array([motions[j] for j in self._plan.motion[rows]]).dictionary_encode(),
+            "scale": pa.array(self._plan.scale[rows]),
+            "status": pa.array([STATUSES[fate] for fate in result.fates]).dictionary_encode(),
+        }
+        data |= {
+            name: pa.array(values)
+            for name, values in zip(core_measures(), result.values, strict=True)
+        }
+        data |= {name: pa.array(values) for name, values in result.extra.items()}
+        data["error"] = pa.array([result.errors.get(run, "") for run in range(last - first)])
+        with _clear(self.folder), whole_file(self._path(piece)) as file:
+            parquet.write_table(pa.table(data), file)
+
+    def _path(self, piece: Piece) -> Path:
+        return self.folder / "shards" / f"{self.shards[piece]}.parquet"
+
+
+@contextmanager
+def _clear(folder: Path) -> Iterator[None]:
+    """Say what an error of the disk means."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno is None:
+            raise
+        raise OSError(
+            error.errno,
+            f"store: {folder}: {os.strerror(error.errno)}; the shards that were written are kept, "
+            "and a new start goes on from there",
+        ) from error
+
+
+def _compare(folder: Path, known: dict[str, Any], wanted: dict[str, Any]) -> None:
+    """Raise `InputError` if a store is not that of an ensemble."""
+    if known.get("version") != wanted["version"] or known.get("code") != wanted["code"]:
+        raise InputError(
+            f"store: {folder} was written by rbsdem {known.get('version')}, or by other code of "
+            f"it, and this is {wanted['version']}; give another folder, or remove this one"
+        )
+    other = [
+        name for name, digest in wanted["digests"].items() if known["digests"].get(name) != digest
+    ]
+    if other:
+        raise InputError(
+            f"store: {folder} holds another ensemble: its {', '.join(other)} differ; give another "
+            "folder, or remove this one"
+        )
+
+
+def _version() -> str:
+    return _core.version()
+
+
+def _digest(parts: Any) -> str:
+    digest = hashlib.sha256()
+    for part in parts:
+        raw = part.encode() if isinstance(part, str) else np.ascontiguousarray(part).tobytes()
+        digest.update(hashlib.sha256(raw).digest())
+    return digest.hexdigest()
+
+
+def _motion_bytes(plan: Plan, j: int) -> Any:
+    return np.concatenate([plan.motions[j].time, plan.motions[j].acceleration])
+
+
+def _given(plan: Plan) -> bytes:
+    """Return the digest of what all shards follow from."""
+    digest = hashlib.sha256(code_digest())
+    digest.update(json.dumps(plan.settings, sort_keys=True).encode())
+    for name, function in plan.functions.items():
+        digest.update(f"{name}\0{_source(function)}\0".encode())
+    return digest.digest()
+
+
+def _source(function: Measure) -> str:
+    """Return the source of a measure, by which it is known again."""
+    try:
+        return inspect.getsource(function)
+    except (OSError, TypeError):
+        raise InputError(
+            f"measures: the function {function.__name__} has no source, so a store cannot know "
+            "whether it has changed; write it into a file, or give no store"
+        ) from None
+
+
+def _shard_name(task: Task, given: bytes) -> str:
+    digest = hashlib.sha256(given)
+    for column in task.columns:
+        statement = column._statement
+        digest.update(f"{statement.text}\0{statement.numbers!r}\0".encode())
+    for motion in task.motions:
+        digest.update(motion.time.tobytes() + motion.acceleration.tobytes())
+    digest.update(task.column.tobytes() + task.motion.tobytes() + task.scale.tobytes())
+    return digest.hexdigest()[:_LETTERS]

@@ -1,0 +1,74 @@
+"""Ensembles on a Dask cluster: the bits of threads, and nothing lost with a worker that dies."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+from test_ensembles import column, motion
+
+import rbsdem
+from rbsdem import InputError
+from rbsdem.ensembles import engine
+
+distributed = pytest.importorskip("distributed", reason="the extra 'cluster' brings distributed")
+
+pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning")
+
+GIVEN = {"scales": np.linspace(0.1, 3.0, 60), "method": "rk4", "dt": 1e-4}
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[Any]:
+    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+    with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster):
+        yield cluster
+
+
+@pytest.fixture
+def client(cluster: Any, monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
+    monkeypatch.setattr(engine, "_LONGEST", 0.2)
+    with distributed.Client(cluster) as client:
+        yield client
+
+
+def test_the_bits_are_those_of_threads_although_a_worker_dies(client: Any) -> None:
+    columns, motions = [column(), column(15e3)], [motion(1, 2000), motion(2, 2000)]
+    pids = list(client.run(os.getpid).values())
+
+    def kill() -> None:
+        time.sleep(0.3)
+        os.kill(pids[0], signal.SIGKILL)
+
+    killer = threading.Thread(target=kill)
+    killer.start()
+    found = rbsdem.ensemble(columns, motions, client=client, **GIVEN)
+    killer.join()
+    expected = rbsdem.ensemble(columns, motions, **GIVEN)
+    assert list(found.status) == list(expected.status)
+    for name in found.measures:
+        np.testing.assert_array_equal(found.measures[name], expected.measures[name])
+    assert set(client.run(os.getpid).values()) != set(pids)
+
+
+def test_runs_at_which_workers_die_are_failed(cluster: Any, client: Any) -> None:
+    """At the first death already, to save time: as a rule the cluster tries again three times."""
+    cluster.scheduler.allowed_failures = 0
+
+    def deadly(result: rbsdem.Result) -> float:
+        os._exit(1)
+
+    found = rbsdem.ensemble(column(), motion(1), measures=[deadly], method="newmark", client=client)
+    assert list(found.status) == ["failed"]
+    assert "worker processes died" in found.errors[0]
+
+
+def test_what_is_no_client() -> None:
+    with pytest.raises(InputError, match=r"client = 7 must be a dask\.distributed\.Client"):
+        rbsdem.ensemble(column(), motion(1), client=7)

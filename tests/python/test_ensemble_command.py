@@ -1,0 +1,139 @@
+"""The command `rbsdem ensemble`: records in, one row a run out, parts that come together."""
+
+from __future__ import annotations
+
+import csv
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_ensembles import column, motion
+
+import rbsdem
+from rbsdem.__main__ import main
+
+pytest.importorskip("pyarrow", reason="the extra 'ensembles' brings pyarrow")
+
+ANALYSIS = "&analysis method = 'newmark', collapse_drift = 0.05 /\n"
+
+
+def command(monkeypatch: pytest.MonkeyPatch, *words: object) -> int:
+    monkeypatch.setattr(sys, "argv", ["rbsdem", "ensemble", *map(str, words)])
+    return main()
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> Path:
+    """Write a case with a motion of its own, and two records."""
+    time_, acceleration = motion(1)
+    for name, factor in (("one", 1.0), ("two", -0.5)):
+        rows = np.column_stack((time_, factor * acceleration))
+        header = "time_s,acceleration_m/s2"
+        np.savetxt(tmp_path / f"{name}.csv", rows, delimiter=",", header=header, comments="")
+    values = ", ".join(map(str, acceleration[:50]))
+    times = ", ".join(map(str, time_[:50]))
+    loading = f"&loading drive = 'ground_acceleration', values = {values}, time = {times} /\n"
+    path = tmp_path / "pier.nml"
+    path.write_text(column().to_namelist() + loading + ANALYSIS)
+    return path
+
+
+def test_records_and_scales(
+    case: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    records = [case.with_name(f"{name}.csv") for name in ("one", "two")]
+    out = case.parent / "out"
+    given = (case, *records, "--scales", "0.5,1,8", "--out", out)
+    assert command(monkeypatch, *given) == 0
+    told = capsys.readouterr()
+    assert told.out.startswith("6 runs: ")
+    assert told.err == ""
+    with (out / "runs.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["motion"] for row in rows] == ["one"] * 3 + ["two"] * 3
+    assert [row["scale"] for row in rows] == ["0.5", "1", "8"] * 2
+    expected = rbsdem.ensemble(
+        column(),
+        rbsdem.motions.read_motion(records[1]),
+        method="newmark",
+        collapse_drift=0.05,
+    )
+    assert float(rows[4]["peak_drift"]) == pytest.approx(expected.measures["peak_drift"][0], 1e-5)
+    assert command(monkeypatch, *given) == 0
+    assert "6 runs, 6 of them from the store" in capsys.readouterr().out
+
+
+def test_the_motion_of_the_case(case: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert command(monkeypatch, case, "--out", case.parent / "out", "--quiet") == 0
+    assert len((case.parent / "out" / "runs.csv").read_text().splitlines()) == 2
+
+
+def test_parts(
+    case: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(rbsdem.ensembles.engine, "_LONGEST", 1e-4)
+    out = case.parent / "out"
+    scales = ",".join(map(str, range(1, 30)))
+    for part in ("2/2", "1/2"):
+        assert not (out / "runs.csv").exists()
+        assert command(monkeypatch, case, "--scales", scales, "--out", out, "--shard", part) == 0
+    assert "runs.csv is written when all parts are in" in capsys.readouterr().out
+    assert len((out / "runs.csv").read_text().splitlines()) == 30
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--scales", "1;2"], "--scales 1;2: give numbers"),
+        (["--shard", "2"], "--shard 2: give part"),
+        (["--shard", "3/2"], "shard = (3, 2)"),
+        (["--jobs", "0"], "jobs = 0"),
+        (["missing.csv"], "missing.csv"),
+    ],
+)
+def test_wrong_input(
+    case: Path,
+    words: list[str],
+    message: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert command(monkeypatch, case, *words, "--out", case.parent / "out") == 2
+    assert message in capsys.readouterr().err
+    assert not (case.parent / "out" / "runs.csv").exists()
+
+
+def test_cases_without_motion(
+    case: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    loading = "&loading drive = 'displacement', values = 0.001 /\n&analysis method = 'static' /\n"
+    case.write_text(column().to_namelist() + loading)
+    assert command(monkeypatch, case, "--out", case.parent / "out") == 2
+    assert "takes no records" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
+def test_ctrl_c_keeps_what_is_done(case: Path) -> None:
+    """Whole shards are kept, the exit code tells, and a second start goes on."""
+    text = case.read_text().replace("'newmark'", "'rk4', dt = 1e-5")
+    case.write_text(text)
+    out = case.parent / "out"
+    scales = ",".join(f"{0.1 + 0.001 * k:.4g}" for k in range(1500))
+    code = "from rbsdem.ensembles import engine; engine._LONGEST = 0.05\n"
+    code += "import sys; from rbsdem.__main__ import main; sys.exit(main())"
+    words = ["ensemble", case, "--scales", scales, "--out", out, "--jobs", "1"]
+    with subprocess.Popen([sys.executable, "-c", code, *words], stdout=subprocess.PIPE) as process:
+        shards = out / "store" / "shards"
+        while process.poll() is None and (not shards.is_dir() or len(list(shards.iterdir())) < 2):
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        told, _ = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert b"not started" in told
+    assert not (out / "runs.csv").exists()
+    assert all(path.suffix == ".parquet" for path in shards.iterdir())
