@@ -131,3 +131,18 @@ def test_a_spring_in_equilibrium_on_its_yield_line_does_not_chatter() -> None:
     )
     assert found.summary["status"] == "completed"
     assert found.summary["cut_steps"] < 200
+
+
+@pytest.mark.parametrize("method", [{"method": "rk4", "events": "located"}, {"method": "rk45"}])
+def test_a_layered_joint_at_rest_begins_to_move(method: dict[str, str]) -> None:
+    """A ground motion that begins at zero: the moment at rest is round-off, as is its sign."""
+    bars = rbsdem.Layout(12, 0.016, rbsdem.Steel(446e6, 702e6))
+    ties = rbsdem.Ties(0.007, 0.085, rbsdem.Steel(364e6), legs=4)
+    section = rbsdem.RectangularSection(
+        0.4, 0.4, rbsdem.Concrete(46.5e6), layout=bars, ties=ties, cover=0.013
+    )
+    about = section.column(1.6, axial_load=744e3, top_mass=75.9e3)
+    time = np.linspace(0, 0.06, 4)
+    found = rbsdem.time_history(about, time, ground_acceleration=[0, 2e-5, 2e-4, 6e-4], **method)
+    assert found.summary["status"] == "completed"
+    assert found.displacement[-1] < 0

@@ -4,13 +4,17 @@ module rbs_solve_time_event
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_layer_events, only: first_layer_exit, layer_end, layer_motion
    use rbs_hysteresis_line_exit, only: line_exit, find_exit
+   use rbs_solve_time_loads, only: lateral, horizontal, vertical, axial
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type
    implicit none
    private
 
-   public :: event_type, find_event, same_event, distance_to, standing_rotation
+   public :: event_type, find_event, same_event, distance_to, standing_rotation, round_off_of, felt
+
+   !> An acceleration below this share of those of the single forces is round-off.
+   real(wp), parameter :: least_share = 32.0_wp*epsilon(1.0_wp)
 
    !> How a spring leaves its line, and when in the step that is expected.
    type, extends(line_exit) :: event_type
@@ -39,7 +43,9 @@ contains
                 state%v(i)*scheme%v(i) > 0.0_wp) cycle
             call find_exit([springs%end_toward(i, -1), springs%end_toward(i, 1)], springs%one_way(i), &
                            [state%q(i), scheme%q(i)], [state%v(i), scheme%v(i)], h, 0.0_wp, one)
-            if (one%way /= 0 .and. one%estimate < event%estimate) then
+            if (one%way == 0) cycle
+            if (one%turns .and. keeps_still(state, scheme, i, h)) cycle
+            if (one%estimate < event%estimate) then
                event = event_type(one%way, one%turns, one%estimate, one%latest, i, 0)
             end if
          end do
@@ -49,12 +55,61 @@ contains
             joint = i - motion%column%n
             call first_layer_exit(springs, i, scheme%q(i), motion%axial_force(joint, scheme%load), &
                                   [state%v(i), scheme%v(i)], motion%press_rate(joint, slope), h, layer, one)
-            if (layer > 0 .and. one%estimate < event%estimate) then
+            if (layer == 0) cycle
+            if (one%turns .and. .not. abs(motion%press_rate(joint, slope)) > 0.0_wp) then
+               if (keeps_still(state, scheme, i, h)) cycle
+            end if
+            if (one%estimate < event%estimate) then
                event = event_type(one%way, one%turns, one%estimate, one%latest, i, layer)
             end if
          end do
       end associate
    end subroutine find_event
+
+   !> Whether a spring moves by no more in a step than round-off moves it: its velocity then tells no
+   !> direction. The round-off of the forces has another sign on either side of an end, and a spring at rest
+   !> would turn from line to line for ever.
+   pure logical function keeps_still(state, scheme, i, h)
+      type(state_type), intent(in) :: state
+      class(scheme_type), intent(in) :: scheme
+      integer, intent(in) :: i
+      real(wp), intent(in) :: h
+
+      keeps_still = max(abs(state%v(i)), abs(scheme%v(i))) <= round_off_of(state, i)*h
+   end function keeps_still
+
+   !> Acceleration of an unknown that is the round-off of the forces [m/s2, rad/s2].
+   pure real(wp) function round_off_of(state, i) result(least)
+      type(state_type), intent(in) :: state
+      integer, intent(in) :: i
+      real(wp) :: along, about, reach
+      integer :: j, n
+
+      associate (column => state%motion%column, springs => state%springs)
+         n = column%n
+         along = max(abs(state%load(lateral)), abs(column%axial_load + state%load(axial)))
+         about = 0.0_wp
+         do j = 1, springs%count
+            if ((j - 1)/n == 1) then
+               about = max(about, abs(springs%force(j)))
+            else
+               along = max(along, abs(springs%force(j)))
+            end if
+         end do
+         reach = maxval(column%length)
+         about = (about + along*reach)/minval(column%inertia)
+         along = along/minval(column%mass) + abs(state%load(horizontal)) + abs(state%load(vertical)) &
+                 + column%gravity + about*reach
+         least = least_share*merge(about, along, (i - 1)/n == 1)
+      end associate
+   end function round_off_of
+
+   !> A number, zero where it is not above its round-off.
+   elemental real(wp) function felt(x, least)
+      real(wp), intent(in) :: x, least
+
+      felt = merge(x, 0.0_wp, abs(x) > least)
+   end function felt
 
    !> Whether two events are of the same spring or layer and of the same kind.
    pure logical function same_event(one, other)

@@ -9,8 +9,8 @@ module rbs_solve_time_located
    use rbs_column_chain, only: kinetic_of
    use rbs_column_column, only: joint_name
    use rbs_hysteresis_layer_events, only: turn_layer
-   use rbs_solve_time_event, only: event_type, find_event, same_event, distance_to, standing_rotation
-   use rbs_solve_time_loads, only: lateral, horizontal, vertical, axial
+   use rbs_solve_time_event, only: event_type, find_event, same_event, distance_to, standing_rotation, &
+                                   round_off_of, felt
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type, stepper_type, in_bounds
@@ -21,9 +21,6 @@ module rbs_solve_time_located
 
    !> Error that stands for an attempt that is not finite.
    real(wp), parameter :: not_finite = 1.0e10_wp
-
-   !> An acceleration below this share of those of the single forces is round-off.
-   real(wp), parameter :: felt = 32.0_wp*epsilon(1.0_wp)
 
    type, extends(stepper_type) :: located_stepper
       class(scheme_type), allocatable :: scheme
@@ -82,7 +79,7 @@ contains
             call choose_planes(self, state)
             if (state%springs%lost_joint() > 0) return
          end if
-         call leave_at_once(self, state, error)
+         call leave_at_once(self, state, part, error)
          if (allocated(error)) return
          do tries = 1, 200
             call self%scheme%attempt(state, part)
@@ -145,7 +142,7 @@ contains
                call state%motion%acceleration(state%springs, state%q, state%v, state%load, self%now)
                known = .true.
             end if
-            turn = felt_acceleration(self, state, i)
+            turn = felt(self%now%a(i), round_off_of(state, i))
          end if
          if (abs(turn) + abs(press) > 0.0_wp) call state%springs%choose_lines(i, turn, press)
       end do
@@ -248,9 +245,11 @@ contains
 
    !> Springs that stand at an end of their line and go on, or have turned back already, change their line
    !> before the step.
-   subroutine leave_at_once(self, state, error)
-      type(located_stepper), intent(inout) :: self
+   subroutine leave_at_once(self, state, part, error)
+      class(located_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
+      !> Length of the step [s]
+      real(wp), intent(in) :: part
       type(error_type), allocatable, intent(inout) :: error
       integer :: changes, i, way
       logical :: known
@@ -262,17 +261,20 @@ contains
                if (springs%one_way(i) == 0 .and. springs%d(i) > springs%first(i) .and. &
                    springs%d(i) < springs%last(i)) cycle
                way = direction_of(state%v(i))
+               if (way /= 0) then
+                  if (.not. goes_on(i, way)) cycle
+                  ! A velocity that round-off could have brought about in one step tells no direction.
+                  way = direction_of(felt(state%v(i), round_off_of(state, i)*part))
+               end if
                if (way == 0) then
                   if (.not. known) then
                      call state%motion%acceleration(springs, state%q, state%v, state%load, self%now)
                      known = .true.
                   end if
-                  way = direction_of(felt_acceleration(self, state, i))
+                  way = direction_of(felt(self%now%a(i), round_off_of(state, i)))
                end if
                if (way == 0) cycle
-               if (springs%one_way(i) == -way) exit
-               if (way > 0 .and. springs%d(i) >= springs%end_toward(i, 1)) exit
-               if (way < 0 .and. springs%d(i) <= springs%end_toward(i, -1)) exit
+               if (goes_on(i, way)) exit
             end do
             if (i > springs%count) return
             call springs%leave(i, way)
@@ -281,29 +283,18 @@ contains
          end do
       end associate
       call report_standstill(state, i, error)
+
+   contains
+
+      !> Whether a spring leaves its line if it moves in a direction.
+      pure logical function goes_on(i, way)
+         integer, intent(in) :: i, way
+
+         goes_on = state%springs%one_way(i) == -way
+         if (.not. goes_on) goes_on = way*(state%springs%d(i) - state%springs%end_toward(i, way)) >= 0.0_wp
+      end function goes_on
+
    end subroutine leave_at_once
-
-   !> Acceleration of an unknown, zero where it is the round-off of the forces: on either side of the end of a
-   !> line that has another sign.
-   pure real(wp) function felt_acceleration(self, state, i) result(a)
-      type(located_stepper), intent(in) :: self
-      type(state_type), intent(in) :: state
-      integer, intent(in) :: i
-      real(wp) :: along, about, reach
-      integer :: n
-
-      associate (column => state%motion%column, f => self%now%f, m => size(self%now%f))
-         n = column%n
-         reach = maxval(column%length)
-         along = max(maxval(abs(f(:n))), maxval(abs(f(2*n + 1:m))), abs(state%load(lateral)), &
-                     abs(column%axial_load + state%load(axial)))
-         about = (maxval(abs(f(n + 1:2*n))) + along*reach)/minval(column%inertia)
-         along = along/minval(column%mass) + abs(state%load(horizontal)) + abs(state%load(vertical)) &
-                 + column%gravity + about*reach
-         a = self%now%a(i)
-         if (abs(a) <= felt*merge(about, along, (i - 1)/n == 1)) a = 0.0_wp
-      end associate
-   end function felt_acceleration
 
    !> Report a spring that changes its lines in a circle.
    subroutine report_standstill(state, i, error)
