@@ -66,7 +66,7 @@ contains
       integer, intent(in) :: i
 
       select type (rule => self%slot(i)%rule)
-      class is (layered_rule)
+      type is (layered_rule)
          call rule%plane(self%d0(i), self%press_at(i), self%f0(i), self%k(i), self%centre(i))
       end select
       self%first(i) = -unbounded
@@ -87,7 +87,7 @@ contains
          if (.not. abs(d(i) - self%d(i)) + abs(self%press_to(i) - self%press_at(i)) > 0.0_wp) cycle
          if (self%journal%open) call self%journal%keep(i, self%line_of(i), self%slot(i))
          select type (rule => self%slot(i)%rule)
-         class is (layered_rule)
+         type is (layered_rule)
             call rule%go(d(i), self%press_to(i), self%work(i))
          end select
          self%events = self%events + 1
@@ -104,8 +104,8 @@ contains
       do j = 1, size(self%layered)
          lost = self%layered(j)
          select type (rule => self%slot(lost)%rule)
-         class is (layered_rule)
-            if (rule%failed()) return
+         type is (layered_rule)
+            if (rule%layers%failed) return
          end select
       end do
       lost = 0
@@ -126,7 +126,7 @@ contains
       do j = 1, size(self%layered)
          i = self%layered(j)
          select type (rule => self%slot(i)%rule)
-         class is (layered_rule)
+         type is (layered_rule)
             if (self%pressed) then
                values(i - n) = rule%opening_at(self%d(i), self%press_at(i))
             else
@@ -145,7 +145,7 @@ contains
       real(wp), intent(in) :: turn, press
 
       select type (rule => self%slot(i)%rule)
-      class is (layered_rule)
+      type is (layered_rule)
          call rule%choose(turn, press)
       end select
       call read_plane(self, i)
@@ -165,7 +165,7 @@ contains
       way = unbounded
       first = 0
       select type (rule => self%slot(i)%rule)
-      class is (layered_rule)
+      type is (layered_rule)
          call rule%way_to_event(rotation, axial_load, turn, press, way, first)
       end select
    end subroutine way_on_plane
@@ -179,7 +179,7 @@ contains
 
       turns_on_plane = .false.
       select type (rule => self%slot(i)%rule)
-      class is (layered_rule)
+      type is (layered_rule)
          turns_on_plane = rule%turns(turn, press)
       end select
    end function turns_on_plane
@@ -193,7 +193,7 @@ contains
       integer, intent(in) :: first
 
       select type (rule => self%slot(i)%rule)
-      class is (layered_rule)
+      type is (layered_rule)
          call rule%pass_event(rotation, axial_load, turn, press, first)
       end select
       call read_plane(self, i)

@@ -15,6 +15,8 @@ module rbs_hysteresis_springs
       procedure :: move_all
       procedure :: carry_to
       procedure :: stay_on_lines
+      procedure :: nearest_end
+      procedure :: go_along
    end type spring_array
 
 contains
@@ -108,6 +110,65 @@ contains
       call walk_all(self%count, d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, &
                     self%last)
    end subroutine carry_to
+
+   !> The first end of a line that springs reach from given deformations at constant rates.
+   pure subroutine nearest_end(self, q, rate, way, ends)
+      class(spring_array), intent(in) :: self
+      !> Deformations and rates of the first springs
+      real(wp), intent(in), contiguous :: q(:), rate(:)
+      !> In units of the rates; `huge` if there is none
+      real(wp), intent(out) :: way
+      !> The spring, 0 for none
+      integer, intent(out) :: ends
+      real(wp) :: room
+      integer :: i
+
+      way = huge(1.0_wp)
+      ends = 0
+      do i = 1, size(q)
+         room = huge(1.0_wp)
+         if (rate(i) > 0.0_wp) room = distance(self%last(i) - q(i), rate(i))
+         if (rate(i) < 0.0_wp) room = distance(q(i) - self%first(i), -rate(i))
+         if (room < way) then
+            way = room
+            ends = i
+         end if
+      end do
+      if (ends == 0) return
+      ! The end itself may lie beyond the last deformation of the line.
+      if (rate(ends) > 0.0_wp) then
+         way = distance(self%end_toward(ends, 1) - q(ends), rate(ends))
+      else
+         way = distance(q(ends) - self%end_toward(ends, -1), -rate(ends))
+      end if
+   end subroutine nearest_end
+
+   !> How long a spring needs for a distance; `huge` on a line without end.
+   elemental real(wp) function distance(way, rate)
+      real(wp), intent(in) :: way, rate
+
+      distance = huge(1.0_wp)
+      if (way < 0.5_wp*huge(1.0_wp)*min(rate, 1.0_wp)) distance = max(way, 0.0_wp)/rate
+   end function distance
+
+   !> Springs go at constant rates from given deformations, each on its own line and not beyond its end.
+   pure subroutine go_along(self, q, rate, way)
+      class(spring_array), intent(inout) :: self
+      !> Deformations and rates of the first springs; in units of the rates
+      real(wp), intent(in), contiguous :: q(:), rate(:)
+      real(wp), intent(in) :: way
+      integer :: i
+
+      do i = 1, size(q)
+         associate (to => min(max(q(i) + rate(i)*way, self%first(i)), self%last(i)))
+            self%work(i) = self%work(i) + (self%f0(i) + self%k(i)*(0.5_wp*(to + self%d(i)) - self%d0(i))) &
+                           *(to - self%d(i))
+            self%d(i) = to
+         end associate
+         if (self%one_way(i) > 0) self%first(i) = self%d(i)
+         if (self%one_way(i) < 0) self%last(i) = self%d(i)
+      end do
+   end subroutine go_along
 
    !> Forces of one virgin spring along a path.
    subroutine follow_path(spec, d, f)

@@ -3,7 +3,7 @@ module test_linalg
    use check, only: unit_test, check_close, check_failed, check_passed, check_true
    use rbs_base_error, only: error_type, analysis_failed
    use rbs_base_kinds, only: wp
-   use rbs_base_linalg, only: factor_positive, solve_positive, invert_positive, solve_general, &
+   use rbs_base_linalg, only: factor_positive, solve_positive, invert_positive, solve_general, solve_rows, row_length, &
                               solve_eigen, factor_band, solve_band, solve_tridiagonal, &
                               solve_general_band, singular_values, solve_upper, is_dominated
    implicit none
@@ -26,6 +26,7 @@ contains
                unit_test('inverse of a 6 by 6 Hilbert matrix, exact integers', hilbert), &
                unit_test('the inverse of an indefinite matrix is refused', no_inverse), &
                unit_test('elimination with pivots, two right-hand sides', general), &
+               unit_test('elimination equation by equation', rows), &
                unit_test('elimination refuses a singular matrix', singular), &
                unit_test('eigenvalues ascend, vectors have unit mass', eigen), &
                unit_test('eigenproblem names a mass matrix that is not positive', bad_mass), &
@@ -126,6 +127,26 @@ contains
       call check_close(error, b(:, 1), [1.0_wp, 2.0_wp, 3.0_wp], 1.0e-14_wp, 0.0_wp, 'first')
       call check_close(error, b(:, 2), [-1.0_wp, 0.0_wp, 0.5_wp], 1.0e-14_wp, 1.0e-15_wp, 'second')
    end subroutine general
+
+   !> The same system equation by equation, with three right-hand sides; and one without an inverse.
+   subroutine rows(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: a(3, 3), x(3, 3), row(row_length, 3)
+      logical :: regular
+
+      a = reshape([0.0_wp, 1.0_wp, 2.0_wp, 1.0_wp, 0.0_wp, 1.0_wp, 3.0_wp, -1.0_wp, 0.0_wp], [3, 3])
+      x = reshape([1.0_wp, 2.0_wp, 3.0_wp, -1.0_wp, 0.0_wp, 0.5_wp, 4.0_wp, -5.0_wp, 6.0_wp], [3, 3])
+      row = 0.0_wp
+      row(:3, :) = transpose(a)
+      row(row_length - 2:, :) = transpose(matmul(a, x))
+      call solve_rows(3, row, regular)
+      call check_true(error, regular, 'regular')
+      call check_close(error, reshape(transpose(row(row_length - 2:, :)), [9]), reshape(x, [9]), 1.0e-14_wp, &
+                       1.0e-15_wp, 'solutions')
+      row(:3, :) = 1.0_wp
+      call solve_rows(3, row, regular)
+      call check_true(error, .not. regular, 'equal rows')
+   end subroutine rows
 
    subroutine singular(error)
       type(error_type), allocatable, intent(inout) :: error

@@ -58,6 +58,7 @@ contains
                unit_test('a recorder that fails ends the path', failing), &
                unit_test('a target that is not a number is refused', not_a_number), &
                unit_test('bands and full matrices give the same line', bands), &
+               unit_test('rates that are updated are those that are solved for', updated_rates), &
                unit_test('pdelta: a long chain, beyond its peak', long_chain), &
                unit_test('a mechanism in a band', band_mechanism), &
                unit_test('openings do not move and have no other effect', openings), &
@@ -578,6 +579,41 @@ contains
       call run(column_1('small'), .true., [0.0_wp, -1.0e60_wp], rows, outcome)
       call check_failed(error, outcome, bad_input, 'force: value 2 of 2 is -1e+60')
    end subroutine not_a_number
+
+   !> One spring after the other changes its stiffness, most of them several times in a row.
+   subroutine updated_rates(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(equilibrium_type) :: solved, updated
+      type(random_type) :: random
+      type(column_type) :: column
+      type(column_record) :: spec
+      real(wp), dimension(4) :: k, none, rate, correction, rate_updated
+      real(wp) :: force(2), force_updated(2)
+      integer :: change, spring, updates
+      logical :: regular, done
+
+      spec = chain(2, 'pdelta')
+      spec%axial_load = 2.0e6_wp
+      column = made(spec)
+      call updated%create(column)
+      k = column%initial_stiffness
+      none = 0.0_wp
+      updates = 0
+      do change = 1, 400
+         spring = 1 + modulo(change/30, 4)
+         k(spring) = column%initial_stiffness(spring)*10.0_wp**random%uniform(-3.0_wp, 0.0_wp)
+         call solved%create(column)
+         call solved%follow_displacement(k, none, 0.0_wp, rate, force(1), correction, force(2), regular)
+         call check_true(error, regular, 'the column has a line')
+         call updated%update(k, rate_updated, force_updated(1), done)
+         if (done) updates = updates + 1
+         if (.not. done) call updated%follow_displacement(k, none, 0.0_wp, rate_updated, force_updated(1), &
+                                                          correction, force_updated(2), regular)
+         call check_close(error, rate_updated, rate, 1.0e-11_wp, 1.0e-11_wp*maxval(abs(rate)), 'rates')
+         call check_close(error, force_updated(1), force(1), 1.0e-11_wp, 0.0_wp, 'rate of the force')
+      end do
+      call check_true(error, updates > 100, 'many updates')
+   end subroutine updated_rates
 
    !> Random stiffness on both sides of the loss of stability, residuals, gap; few bodies.
    subroutine bands(error)

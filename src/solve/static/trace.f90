@@ -19,6 +19,9 @@ module rbs_solve_static_trace
 
    public :: trace, kept_rows
 
+   !> Farther from its ends than this, relative to them, a spring need not be asked whether it is on one.
+   real(wp), parameter :: nearly = 2.0_wp*on_the_end
+
    !> The state of a path and the line it is on.
    type, extends(static_path) :: straight_path
       type(equilibrium_type) :: equilibrium
@@ -109,6 +112,16 @@ contains
       integer :: m, weakest
 
       m = self%moving
+      if (.not. self%by_force) then
+         call self%equilibrium%update(self%springs%k(:m), self%rate(:m), self%force_rate, found)
+         if (found) then
+            self%displacement_rate = 1.0_wp
+            self%correction = 0.0_wp
+            self%force_start = self%force
+            if (direction < 0) self%rate = -self%rate
+            return
+         end if
+      end if
       associate (springs => self%springs, equilibrium => self%equilibrium)
          self%f = springs%f0(:m) + springs%k(:m)*(springs%d(:m) - springs%d0(:m))
          call equilibrium%residual(springs%d(:m), self%f, self%force, self%residual)
@@ -134,37 +147,16 @@ contains
    subroutine begin_line(self, direction)
       class(straight_path), intent(inout) :: self
       integer, intent(in) :: direction
-      real(wp) :: way, room
-      integer :: i
+      real(wp) :: way
 
       self%start = self%control
       self%displacement_start = self%displacement
-      self%q = self%springs%d(:self%moving) + self%correction
+      self%q(:) = self%springs%d(:self%moving) + self%correction
       if (self%by_force) self%displacement_start = sum(self%equilibrium%arm*self%q)
-      way = huge(1.0_wp)
-      self%ends = 0
-      do i = 1, self%moving
-         associate (springs => self%springs, rate => self%rate(i))
-            room = huge(1.0_wp)
-            if (rate > 0.0_wp) room = distance(springs%end_toward(i, 1) - self%q(i), rate)
-            if (rate < 0.0_wp) room = distance(self%q(i) - springs%end_toward(i, -1), -rate)
-            if (room < way) then
-               way = room
-               self%ends = i
-            end if
-         end associate
-      end do
+      call self%springs%nearest_end(self%q, self%rate, way, self%ends)
       self%finish = direction*huge(1.0_wp)
       if (self%ends > 0) self%finish = self%start + direction*way
    end subroutine begin_line
-
-   !> Change of what is driven until a spring has covered a distance; `huge` on a line without end.
-   pure real(wp) function distance(way, rate)
-      real(wp), intent(in) :: way, rate
-
-      distance = huge(1.0_wp)
-      if (way < 0.5_wp*huge(1.0_wp)*min(rate, 1.0_wp)) distance = max(way, 0.0_wp)/rate
-   end function distance
 
    !> Go along the line; each spring moves on its own line.
    subroutine go(self, control)
@@ -175,9 +167,12 @@ contains
 
       change = control - self%start
       associate (springs => self%springs)
+         call springs%go_along(self%q, self%rate, abs(change))
          do i = 1, self%moving
             d = self%q(i) + self%rate(i)*abs(change)
-            call springs%walk(i, min(max(d, springs%first(i)), springs%last(i)))
+            ! Most springs are far from the ends of their lines.
+            if (springs%last(i) - d > nearly*abs(springs%last(i)) .and. &
+                d - springs%first(i) > nearly*abs(springs%first(i))) cycle
             if (is_on_end(springs, i, d, self%rate(i))) then
                call springs%arrive(i, merge(1, -1, self%rate(i) > 0.0_wp))
                self%direction = 0
