@@ -6,6 +6,7 @@ module rbs_base_linalg
    use, intrinsic :: ieee_exceptions, only: ieee_all, ieee_get_status, ieee_set_halting_mode, &
                                             ieee_set_status, ieee_status_type
    use rbs_base_kinds, only: wp
+   use rbs_base_small_systems, only: eliminate
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_text, only: to_text
    implicit none
@@ -13,10 +14,7 @@ module rbs_base_linalg
 
    public :: factor_positive, solve_positive, invert_positive, solve_general, solve_eigen
    public :: factor_band, solve_band, solve_tridiagonal, solve_general_band
-   public :: solve_rows, row_length, singular_values, solve_upper, is_dominated
-
-   !> Length of an equation in `solve_rows`: up to five unknowns and three right-hand sides.
-   integer, parameter :: row_length = 8
+   public :: singular_values, solve_upper, is_dominated
 
    interface
       subroutine dpotrf(uplo, n, a, lda, info)
@@ -186,96 +184,6 @@ contains
       call dgesv(size(a, 1), size(b, 2), a, size(a, 1), pivot, b, size(b, 1), info)
       regular = info == 0
    end subroutine solve_general
-
-   !> Elimination with partial pivoting for a system so small that the calls of LAPACK cost more than its
-   !> arithmetic.
-   pure subroutine eliminate(n, m, a, b, regular)
-      integer, intent(in) :: n, m
-      real(wp), intent(inout) :: a(n, n), b(n, m)
-      logical, intent(out) :: regular
-      real(wp) :: factor, swap
-      integer :: i, j, k, p
-
-      regular = .false.
-      do k = 1, n
-         p = k
-         do i = k + 1, n
-            if (abs(a(i, k)) > abs(a(p, k))) p = i
-         end do
-         if (.not. abs(a(p, k)) > 0.0_wp) return
-         if (p /= k) then
-            do j = k, n
-               swap = a(k, j)
-               a(k, j) = a(p, j)
-               a(p, j) = swap
-            end do
-            do j = 1, m
-               swap = b(k, j)
-               b(k, j) = b(p, j)
-               b(p, j) = swap
-            end do
-         end if
-         do i = k + 1, n
-            factor = a(i, k)/a(k, k)
-            do j = k + 1, n
-               a(i, j) = a(i, j) - factor*a(k, j)
-            end do
-            do j = 1, m
-               b(i, j) = b(i, j) - factor*b(k, j)
-            end do
-         end do
-      end do
-      do j = 1, m
-         do i = n, 1, -1
-            do k = i + 1, n
-               b(i, j) = b(i, j) - a(i, k)*b(k, j)
-            end do
-            b(i, j) = b(i, j)/a(i, i)
-         end do
-      end do
-      regular = .true.
-   end subroutine eliminate
-
-   !> Solve a very small system for three right-hand sides by elimination with partial pivoting. All equations
-   !> have the same length, known when this is compiled: they are added without loops.
-   pure subroutine solve_rows(n, row, regular)
-      !> Number of unknowns, at the most `row_length` - 3
-      integer, intent(in) :: n
-      !> Each column an equation: its coefficients, and in the last three places the right-hand sides, which
-      !> the solutions replace
-      real(wp), intent(inout) :: row(row_length, n)
-      !> Whether the matrix has an inverse
-      logical, intent(out) :: regular
-      integer, parameter :: right = row_length - 2
-      real(wp) :: factor, pivot(row_length)
-      integer :: i, k, p
-
-      regular = .false.
-      do k = 1, n
-         p = k
-         do i = k + 1, n
-            if (abs(row(k, i)) > abs(row(k, p))) p = i
-         end do
-         if (.not. abs(row(k, p)) > 0.0_wp) return
-         pivot = row(:, p)
-         if (p /= k) then
-            row(:, p) = row(:, k)
-            row(:, k) = pivot
-         end if
-         do i = k + 1, n
-            if (.not. abs(row(k, i)) > 0.0_wp) cycle
-            factor = row(k, i)/pivot(k)
-            row(:, i) = row(:, i) - factor*pivot
-         end do
-      end do
-      do i = n, 1, -1
-         do k = n, i + 1, -1
-            row(right:, i) = row(right:, i) - row(k, i)*row(right:, k)
-         end do
-         row(right:, i) = row(right:, i)/row(i, i)
-      end do
-      regular = .true.
-   end subroutine solve_rows
 
    !> Cholesky factor of a symmetric band matrix, in place, in time and memory proportional to n.
    subroutine factor_band(band, positive)

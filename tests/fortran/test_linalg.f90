@@ -3,9 +3,10 @@ module test_linalg
    use check, only: unit_test, check_close, check_failed, check_passed, check_true
    use rbs_base_error, only: error_type, analysis_failed
    use rbs_base_kinds, only: wp
-   use rbs_base_linalg, only: factor_positive, solve_positive, invert_positive, solve_general, solve_rows, row_length, &
+   use rbs_base_linalg, only: factor_positive, solve_positive, invert_positive, solve_general, &
                               solve_eigen, factor_band, solve_band, solve_tridiagonal, &
                               solve_general_band, singular_values, solve_upper, is_dominated
+   use rbs_base_small_systems, only: solve_rows, row_length
    implicit none
    private
 

@@ -605,7 +605,7 @@ contains
          call solved%create(column)
          call solved%follow_displacement(k, none, 0.0_wp, rate, force(1), correction, force(2), regular)
          call check_true(error, regular, 'the column has a line')
-         call updated%update(k, rate_updated, force_updated(1), done)
+         call updated%few%update(k, rate_updated, force_updated(1), done)
          if (done) updates = updates + 1
          if (.not. done) call updated%follow_displacement(k, none, 0.0_wp, rate_updated, force_updated(1), &
                                                           correction, force_updated(2), regular)

@@ -107,7 +107,7 @@ contains
 
       barred = 0
       associate (springs => path%springs)
-         ! A spring is beyond the last deformation of its line only where the end itself does not belong to it.
+         ! A spring is beyond the last deformation of its line where the end itself does not belong to it.
          if (path%rate(i) > 0.0_wp) then
             if (springs%one_way(i) < 0 .or. springs%d(i) > springs%last(i) .or. &
                 (springs%hi_closed(i) .and. springs%d(i) >= springs%last(i))) barred = 1

@@ -10,11 +10,12 @@
 !> rotations, the axial load only the slip of a joint and the rotation below it.
 module rbs_solve_static_equilibrium
    use rbs_base_kinds, only: wp
-   use rbs_base_linalg, only: factor_positive, solve_positive, solve_general, solve_rows, row_length
+   use rbs_base_linalg, only: factor_positive, solve_positive, solve_general
    use rbs_column_axial, only: geometric_stiffness, geometric_forces
    use rbs_column_column, only: column_type
    use rbs_column_dead_loads, only: to_joints
    use rbs_solve_static_bordered, only: bordered_band
+   use rbs_solve_static_few_bodies, only: few_bodies
    implicit none
    private
 
@@ -28,10 +29,7 @@ module rbs_solve_static_equilibrium
    integer, parameter :: refinements = 1
 
    !> Most bodies for which full matrices are faster than bands.
-   integer, parameter :: few = 2
-
-   !> Most lines in a row whose rates are updated and not solved for.
-   integer, parameter :: most_updates = 8
+   integer, parameter :: few_are = 2
 
    type :: equilibrium_type
       !> Number of unknowns, 2 n: openings keep still
@@ -43,13 +41,9 @@ module rbs_solve_static_equilibrium
       logical :: coupled = .false.
       !> Initial stiffness (2 n): shares the motion between joints that have none left
       real(wp), allocatable :: initial_stiffness(:)
-      !> Full matrices: geometric stiffness with the border of the arms (2 n + 1, 2 n + 1); for few bodies as
-      !> equations, before and after they are solved (row_length, 2 n + 1)
-      real(wp), allocatable, private :: geometric(:, :), row(:, :), solved(:, :)
-      !> The stiffness of that solution (2 n), the spring that is expected to change next, and how often the
-      !> solution has been updated since
-      real(wp), allocatable, private :: k(:)
-      integer, private :: changing = 1, updates = most_updates
+      !> Full matrices: geometric stiffness with the border of the arms (2 n + 1, 2 n + 1)
+      real(wp), allocatable, private :: geometric(:, :)
+      type(few_bodies) :: few
       !> Many bodies: the tangent, and the arms joint by joint (2 n)
       logical, private :: banded = .false.
       type(bordered_band), private :: tangent
@@ -63,7 +57,6 @@ module rbs_solve_static_equilibrium
       procedure :: residual
       procedure :: follow_force
       procedure :: follow_displacement
-      procedure :: update
    end type equilibrium_type
 
 contains
@@ -83,7 +76,7 @@ contains
       allocate (self%wanted(self%unknowns, 2), self%found(self%unknowns, 2), &
                 self%missing(self%unknowns, 2), self%along(self%unknowns, 2), self%more(self%unknowns, 2), &
                 self%g(self%unknowns))
-      self%banded = column%n > few
+      self%banded = column%n > few_are
       if (present(full)) self%banded = .not. full
       if (self%banded) then
          call create_band(self, column)
@@ -102,13 +95,7 @@ contains
       call geometric_stiffness(column, self%geometric(:m, :m))
       self%geometric(:m, m + 1) = -self%arm
       self%geometric(m + 1, :m) = self%arm
-      if (m + 4 > row_length) return
-      allocate (self%row(row_length, m + 1), source=0.0_wp)
-      self%row(:m + 1, :) = transpose(self%geometric)
-      self%row(row_length - 2, m + 1) = 1.0_wp
-      self%solved = self%row
-      self%k = self%initial_stiffness
-      self%changing = m
+      call self%few%create(self%geometric)
    end subroutine create_full
 
    subroutine create_band(self, column)
@@ -292,8 +279,8 @@ contains
       integer :: i, m
 
       m = self%unknowns
-      if (allocated(self%row)) then
-         call solve_few(self, k, r, gap, rate, force_rate, correction, force_correction, regular)
+      if (self%few%fits) then
+         call self%few%solve(k, r, gap, rate, force_rate, correction, force_correction, regular)
          return
       end if
       a = self%geometric
@@ -309,86 +296,6 @@ contains
       force_rate = b(m + 1, 1)
       force_correction = b(m + 1, 2)
    end subroutine solve_full
-
-   !> The same for few bodies, without a new allocation.
-   subroutine solve_few(self, k, r, gap, rate, force_rate, correction, force_correction, regular)
-      type(equilibrium_type), intent(inout) :: self
-      real(wp), intent(in) :: k(:), r(:), gap
-      real(wp), intent(out) :: rate(:), force_rate, correction(:), force_correction
-      logical, intent(out) :: regular
-      integer, parameter :: right = row_length - 2
-      integer :: i, m
-
-      m = self%unknowns
-      associate (solved => self%solved)
-         solved = self%row
-         do i = 1, m
-            solved(i, i) = solved(i, i) + k(i)
-            solved(right + 1, i) = r(i)
-         end do
-         solved(right + 1, m + 1) = gap
-         solved(right + 2, self%changing) = 1.0_wp
-         call solve_rows(m + 1, solved, regular)
-         self%updates = 0
-         if (.not. regular) self%updates = most_updates
-         do i = 1, m
-            rate(i) = solved(right, i)
-            correction(i) = solved(right + 1, i)
-            self%k(i) = k(i)
-         end do
-         force_rate = solved(right, m + 1)
-         force_correction = solved(right + 1, m + 1)
-      end associate
-   end subroutine solve_few
-
-   !> The rates after one spring has changed its line, driven by the displacement, where the last solution is
-   !> good enough to be updated. With the change e of the stiffness of spring i and the solution z for a unit
-   !> force on it (Sherman and Morrison):
-   !>
-   !>     rate := rate - e rate_i/(1 + e z_i) z,     z := z/(1 + e z_i)
-   !>
-   !> What is missing from equilibrium, round-off of a few lines, waits for the next solution.
-   subroutine update(self, k, rate, force_rate, done)
-      class(equilibrium_type), intent(inout) :: self
-      !> Stiffness of the springs (2 n)
-      real(wp), intent(in), contiguous :: k(:)
-      !> Change of the deformations (2 n) and of the force [N/m] per metre
-      real(wp), intent(inout), contiguous :: rate(:)
-      real(wp), intent(inout) :: force_rate
-      logical, intent(out) :: done
-      integer, parameter :: right = row_length - 2
-      real(wp) :: change, growth
-      integer :: i, j, m
-
-      done = .false.
-      if (self%updates >= most_updates) return
-      m = self%unknowns
-      i = self%changing
-      do j = 1, m
-         if (j == i .or. .not. abs(k(j) - self%k(j)) > 0.0_wp) cycle
-         ! Another spring has changed, and will probably be the next one too.
-         self%changing = j
-         self%updates = most_updates
-         return
-      end do
-      associate (solved => self%solved)
-         change = k(i) - self%k(i)
-         growth = 1.0_wp + change*solved(right + 2, i)
-         if (growth > 2.0_wp .or. growth < 0.5_wp) return
-         change = change*solved(right, i)/growth
-         do j = 1, m + 1
-            solved(right, j) = solved(right, j) - change*solved(right + 2, j)
-            solved(right + 2, j) = solved(right + 2, j)/growth
-         end do
-         do j = 1, m
-            rate(j) = solved(right, j)
-         end do
-         force_rate = solved(right, m + 1)
-      end associate
-      self%k(i) = k(i)
-      self%updates = self%updates + 1
-      done = .true.
-   end subroutine update
 
    !> The same system as a band with its border.
    subroutine solve_banded(self, k, g, y, regular)

@@ -113,7 +113,7 @@ contains
 
       m = self%moving
       if (.not. self%by_force) then
-         call self%equilibrium%update(self%springs%k(:m), self%rate(:m), self%force_rate, found)
+         call self%equilibrium%few%update(self%springs%k(:m), self%rate(:m), self%force_rate, found)
          if (found) then
             self%displacement_rate = 1.0_wp
             self%correction = 0.0_wp

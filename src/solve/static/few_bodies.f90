@@ -1,0 +1,134 @@
+!> Few bodies driven by the displacement of the top, with full matrices: the rates of the column on the lines of
+!> its springs, and their update where one spring has changed its line.
+!>
+!>     K rate = a dF,   a rate = 1        K = diag(k) + K_G
+module rbs_solve_static_few_bodies
+   use rbs_base_kinds, only: wp
+   use rbs_base_small_systems, only: solve_rows, row_length
+   implicit none
+   private
+
+   public :: few_bodies
+
+   !> Most lines in a row whose rates are updated and not solved for.
+   integer, parameter :: most_updates = 8
+
+   type :: few_bodies
+      integer :: unknowns = 0
+      !> Whether the equations are as few as `solve_rows` takes
+      logical :: fits = .false.
+      !> The equations without springs, and the last solution (row_length, unknowns + 1)
+      real(wp), allocatable, private :: row(:, :), solved(:, :)
+      !> The stiffness of that solution (unknowns), the spring that is expected to change next, and how often
+      !> the solution has been updated since
+      real(wp), allocatable, private :: k(:)
+      integer, private :: changing = 1, updates = most_updates
+   contains
+      procedure :: create
+      procedure :: solve
+      procedure :: update
+   end type few_bodies
+
+contains
+
+   subroutine create(self, geometric)
+      class(few_bodies), intent(out) :: self
+      !> Geometric stiffness, bordered by the arms of the lateral force (unknowns + 1, unknowns + 1)
+      real(wp), intent(in) :: geometric(:, :)
+      integer :: m
+
+      m = size(geometric, 1) - 1
+      self%unknowns = m
+      self%fits = m + 4 <= row_length
+      if (.not. self%fits) return
+      allocate (self%row(row_length, m + 1), source=0.0_wp)
+      allocate (self%k(m), source=0.0_wp)
+      self%row(:m + 1, :) = transpose(geometric)
+      self%row(row_length - 2, m + 1) = 1.0_wp
+      self%solved = self%row
+      self%changing = m
+   end subroutine create
+
+   !> Change of deformations and force per metre, and what takes the residuals away.
+   subroutine solve(self, k, r, gap, rate, force_rate, correction, force_correction, regular)
+      class(few_bodies), intent(inout) :: self
+      !> Stiffness of the springs, residual (unknowns), and what is missing from the displacement [m]
+      real(wp), intent(in) :: k(:), r(:), gap
+      real(wp), intent(out) :: rate(:), force_rate, correction(:), force_correction
+      !> Whether there is a unique solution
+      logical, intent(out) :: regular
+      integer, parameter :: right = row_length - 2
+      integer :: i, m
+
+      m = self%unknowns
+      associate (solved => self%solved)
+         solved = self%row
+         do i = 1, m
+            solved(i, i) = solved(i, i) + k(i)
+            solved(right + 1, i) = r(i)
+         end do
+         solved(right + 1, m + 1) = gap
+         solved(right + 2, self%changing) = 1.0_wp
+         call solve_rows(m + 1, solved, regular)
+         self%updates = 0
+         if (.not. regular) self%updates = most_updates
+         do i = 1, m
+            rate(i) = solved(right, i)
+            correction(i) = solved(right + 1, i)
+            self%k(i) = k(i)
+         end do
+         force_rate = solved(right, m + 1)
+         force_correction = solved(right + 1, m + 1)
+      end associate
+   end subroutine solve
+
+   !> The rates after one spring has changed its line, driven by the displacement, where the last solution is
+   !> good enough to be updated. With the change e of the stiffness of spring i and the solution z for a unit
+   !> force on it (Sherman and Morrison):
+   !>
+   !>     rate := rate - e rate_i/(1 + e z_i) z,     z := z/(1 + e z_i)
+   !>
+   !> What is missing from equilibrium, round-off of a few lines, waits for the next solution.
+   subroutine update(self, k, rate, force_rate, done)
+      class(few_bodies), intent(inout) :: self
+      !> Stiffness of the springs (unknowns)
+      real(wp), intent(in), contiguous :: k(:)
+      !> Change of the deformations (unknowns) and of the force [N/m] per metre
+      real(wp), intent(inout), contiguous :: rate(:)
+      real(wp), intent(inout) :: force_rate
+      logical, intent(out) :: done
+      integer, parameter :: right = row_length - 2
+      real(wp) :: change, growth
+      integer :: i, j, m
+
+      done = .false.
+      if (.not. self%fits .or. self%updates >= most_updates) return
+      m = self%unknowns
+      i = self%changing
+      do j = 1, m
+         if (j == i .or. .not. abs(k(j) - self%k(j)) > 0.0_wp) cycle
+         ! Another spring has changed, and will probably be the next one too.
+         self%changing = j
+         self%updates = most_updates
+         return
+      end do
+      associate (solved => self%solved)
+         change = k(i) - self%k(i)
+         growth = 1.0_wp + change*solved(right + 2, i)
+         if (growth > 2.0_wp .or. growth < 0.5_wp) return
+         change = change*solved(right, i)/growth
+         do j = 1, m + 1
+            solved(right, j) = solved(right, j) - change*solved(right + 2, j)
+            solved(right + 2, j) = solved(right + 2, j)/growth
+         end do
+         do j = 1, m
+            rate(j) = solved(right, j)
+         end do
+         force_rate = solved(right, m + 1)
+      end associate
+      self%k(i) = k(i)
+      self%updates = self%updates + 1
+      done = .true.
+   end subroutine update
+
+end module rbs_solve_static_few_bodies
