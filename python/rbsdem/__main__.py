@@ -15,6 +15,7 @@ COMMANDS = {
     "trade": "rbsdem.accuracy.command",
     "peer": "rbsdem.peer.command",
     "ensemble": "rbsdem.ensembles.command",
+    "ida": "rbsdem.ensembles.ida_command",
 }
 
 

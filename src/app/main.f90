@@ -72,7 +72,7 @@ contains
       !> The command; empty for all of them
       character(len=*), intent(in) :: topic
       type(error_type), allocatable, intent(inout) :: error
-      character(len=*), parameter :: text(29) = [character(len=84) :: &
+      character(len=*), parameter :: text(30) = [character(len=84) :: &
          'rbsdem '//version//': reinforced-concrete columns as rigid bodies and springs', &
          '', &
          'usage:', &
@@ -83,7 +83,8 @@ contains
          '  rbsdem --help | --version', &
          '', &
          'rbsdem trade CASE.nml needs the command that comes with the Python package,', &
-         'and so do rbsdem peer DIR and rbsdem ensemble CASE.nml RECORD ... --out DIR.', &
+         'and so do rbsdem peer DIR, rbsdem ensemble CASE.nml RECORD ... --out DIR and', &
+         'rbsdem ida CASE.nml RECORD ...', &
          '', &
          'CASE.nml may be -, which is standard input.', &
          '', &

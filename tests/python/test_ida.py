@@ -168,6 +168,19 @@ def test_the_scale_of_the_records_does_not_matter(column, records, hunted):
     assert found.upper == pytest.approx(hunted.upper[:, :2], rel=1e-12)
 
 
+def test_a_hunt_goes_on_from_its_store(column, records, tmp_path, monkeypatch):
+    """The second start asks for the same runs, and the store has them all."""
+    pytest.importorskip("pyarrow")
+    options = {"levels": Hunt(points=2), "collapse_drift": 0.05, "store": tmp_path / "store"}
+    first = rbsdem.ida(column, records[:2], **options, **SETTINGS)
+    stored = sorted(path.name for path in (tmp_path / "store").iterdir())
+    assert stored[0] == "round_001"
+    monkeypatch.setattr("rbsdem.ensembles.threads.compute", None)
+    again = rbsdem.ida(column, records[:2], **options, **SETTINGS)
+    assert np.array_equal(again.upper, first.upper)
+    assert np.array_equal(again.runs.measures["peak_drift"], first.runs.measures["peak_drift"])
+
+
 # ---- stripes -------------------------------------------------------------------------------------
 
 

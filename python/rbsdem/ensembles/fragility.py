@@ -255,6 +255,11 @@ def fit_fragility(name: str, data: Counts | Capacities, intensity_name: str = ""
         raise InputError(
             f"{who}no record reached the limit state; raise the highest level of intensity"
         )
+    elif not data.known and data.lower.max() < data.upper.min():
+        raise InputError(
+            f"{who}all records reach the limit state between the same two levels, "
+            f"{data.lower.max():.4g} and {data.upper.min():.4g}; add levels between them"
+        )
     mu, beta = (float(value) for value in data.fit())
     if not np.isfinite(mu):
         raise InputError(f"{who}the data do not determine a curve; add levels of intensity")

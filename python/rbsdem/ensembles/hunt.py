@@ -10,14 +10,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rbsdem import _core
 from rbsdem._core import Array
-from rbsdem.ensembles.runs import Collector
+from rbsdem.ensembles.runs import LOST, Collector
 from rbsdem.errors import InputError
 
 _SMALLEST = 1e-4
 _MOST_REPAIRS = 5
+_YIELD = "measure first_yield"
+#: Ratio of the bounds of the first yield; closer, they count as known (`fragility.NARROW`).
+_YIELD_WIDTH = 1.05
 
 
 @dataclass(frozen=True)
@@ -36,6 +40,9 @@ class Hunt:
         Runs without collapse on each curve, at least.
     highest : float, optional
         Intensity at which the search ends without a collapse [m/s2].
+    yielding : bool, optional
+        Whether to search for the first yield of a spring too, to within 5 %, if the measure
+        "first_yield" is kept.
 
     Raises
     ------
@@ -48,6 +55,7 @@ class Hunt:
     resolution: float = 0.02
     points: int = 10
     highest: float = 200.0
+    yielding: bool = True
 
     def __post_init__(self) -> None:
         faults = []
@@ -94,6 +102,8 @@ def hunt_and_fill(work: Collector, hunt: Hunt) -> tuple[Array, Array]:
             break
         # A gap that was filled held a collapse at a lower intensity.
         _narrow(work, hunt, low, high)
+    if _core.switch(hunt.yielding, "hunt: yielding") and _YIELD in work.parts[0]:
+        _narrow_yield(work, low)
     return low, high
 
 
@@ -128,6 +138,33 @@ def _narrow(work: Collector, hunt: Hunt, low: Array, high: Array) -> None:
         collapsed = work.run(level[:, :, None])[:, :, 0]
         high[wide & collapsed] = level[wide & collapsed]
         low[wide & ~collapsed] = level[wide & ~collapsed]
+
+
+def _narrow_yield(work: Collector, low: Array) -> None:
+    """Halve the intervals in which a spring yields first, below the collapses."""
+    while True:
+        level = np.full(low.shape, np.nan)
+        for column, motion in np.ndindex(low.shape):
+            tried, yielded = _yields(work, column, motion)
+            if not yielded.any():
+                continue
+            first = tried[yielded].min()
+            last = max([0.0, *tried[tried < first]])
+            if first > _YIELD_WIDTH * last and first > _SMALLEST:
+                level[column, motion] = np.sqrt(last * first) if last > 0 else 0.5 * first
+        if np.isnan(level).all():
+            return
+        work.run(level[:, :, None])
+
+
+def _yields(work: Collector, column: int, motion: int) -> tuple[Array, NDArray[np.bool_]]:
+    """Return the intensities of the runs of a column under a motion, and which of them yielded."""
+    tried, yielded = [], []
+    for part in work.parts:
+        own = (part["column"] == column) & (part["motion"] == motion)
+        tried.append(part["intensity"][own])
+        yielded.append(np.isfinite(part[_YIELD][own]) | np.isin(part["status"][own], LOST))
+    return np.concatenate(tried), np.concatenate(yielded)
 
 
 def _fill(work: Collector, hunt: Hunt, low: Array, high: Array) -> bool:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -26,6 +28,8 @@ from rbsdem.motions.motion import GroundMotion
 if TYPE_CHECKING:
     import pandas as pd
 
+#: Settings that change nothing in the answer.
+_OF_THE_RUN = ("jobs", "progress", "store")
 #: Percentages of the fractile curves.
 FRACTILES = (16.0, 50.0, 84.0)
 
@@ -199,8 +203,10 @@ def ida(
     measures: Sequence[str | Measure] = MEASURES,
     method: Method = "auto",
     dt: float | None = None,
+    tolerance: float | None = None,
     jobs: int | None = None,
     progress: bool = False,
+    store: str | os.PathLike[str] | None = None,
 ) -> IDA:
     """Run an incremental dynamic analysis: every motion at growing intensity.
 
@@ -224,9 +230,12 @@ def ida(
         Displacement of the top over the height that counts as a collapse.
     measures : sequence, optional
         What is kept of each run, as for `rbsdem.ensemble`.
-    method, dt, jobs, progress : optional
+    method, dt, tolerance, jobs, progress : optional
         As for `rbsdem.ensemble`. A run that fails is tried again with "rk45"; one that fails
         twice counts as a collapse, with a warning.
+    store : path, optional
+        Folder in which every round of runs keeps what it has computed; a second start with the same
+        input goes on from there.
 
     Returns
     -------
@@ -245,9 +254,11 @@ def ida(
     settings: dict[str, Any] = {
         "method": method,
         "dt": dt,
+        "tolerance": tolerance,
         "collapse_drift": checked_drift(collapse_drift),
         "jobs": jobs,
         "progress": progress,
+        "store": None if store is None else Path(store),
     }
     names = _with_drift(measures)
     hunt = _hunt(levels)
@@ -259,7 +270,7 @@ def ida(
         at = checked_levels(levels)
         collapsed = work.run(np.broadcast_to(at, (*shape, at.size)).copy())
         lower, upper = _first(at, collapsed)
-    about = {name: value for name, value in settings.items() if value is not None}
+    about = {n: v for n, v in settings.items() if v is not None and n not in _OF_THE_RUN}
     about["levels"] = "hunt" if hunt is not None else "given"
     return IDA(work.finish(), lower, upper, about, time.perf_counter() - begin)
 

@@ -102,17 +102,18 @@ def fit_brackets(lower: Array, upper: Array) -> tuple[Array, Array]:
     -------
     tuple of ndarray, shape (...)
         Mean and standard deviation of the logarithm by maximum likelihood. NaN where no value was
-        reached.
+        reached, or where one value lies within all bounds, so that there is no spread to be found.
     """
     special = need_scipy("special")
     with np.errstate(divide="ignore"):
         low, high = np.log(lower), np.log(upper)
     exact = high - low <= 1e-12
     able = np.isfinite(high).any(axis=-1)
+    able &= exact.all(axis=-1) | (low.max(axis=-1) >= high.min(axis=-1))
     # Expectation and maximisation: each bracket has the moments of the normal between its ends.
     start = np.where(np.isfinite(high), np.where(np.isfinite(low), 0.5 * (low + high), high), low)
     mu, sigma = start.mean(axis=-1), np.maximum(start.std(axis=-1), 0.1)
-    for _ in range(50 * _MOST_STEPS):
+    for _ in range(5 * _MOST_STEPS):
         first, second = _moments(special, low, high, exact, mu[..., None], sigma[..., None])
         new = first.mean(axis=-1)
         spread = np.sqrt(

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 MEASURES = ("peak_drift", "residual_drift", "peak_base_shear", "peak_rotation", "first_yield")
 #: Fates that are a collapse.
 COLLAPSES = ("collapsed", "axial_failure")
+#: Fates that count as one.
+LOST = (*COLLAPSES, "failed")
 _AGAIN = "rk45"
 
 
@@ -68,7 +70,7 @@ class Runs:
     @property
     def collapsed(self) -> NDArray[np.bool_]:
         """Whether a run ended in a collapse, or could not be continued, shape (runs,)."""
-        return np.isin(self.status, (*COLLAPSES, "failed"))
+        return np.isin(self.status, LOST)
 
     def response(self, edp: str) -> Array:
         """Return a measure of the response, infinite where the column collapsed, shape (runs,).
@@ -126,6 +128,7 @@ class Collector:
     settings: dict[str, Any]
     parts: list[dict[str, Any]] = field(default_factory=list)
     unit: Array = field(init=False)
+    rounds: int = 0
 
     def __post_init__(self) -> None:
         self.unit = np.array([self.measure.of(motion) for motion in self.motions.values()])
@@ -166,12 +169,15 @@ class Collector:
             }
         )
         collapsed = np.zeros(levels.shape, dtype=bool)
-        collapsed.ravel()[np.flatnonzero(~np.isnan(scales).ravel())] = np.isin(
-            status, (*COLLAPSES, "failed")
-        )
+        collapsed.ravel()[np.flatnonzero(~np.isnan(scales).ravel())] = np.isin(status, LOST)
         return collapsed
 
     def _ensemble(self, scales: Array, settings: dict[str, Any]) -> Any:
+        self.rounds += 1
+        store = settings.get("store")
+        if store is not None:
+            # The runs of a round follow from those before: the same input asks for the same ones.
+            settings = settings | {"store": store / f"round_{self.rounds:03d}"}
         found = ensemble(
             dict(self.columns),
             dict(self.motions),
@@ -211,7 +217,7 @@ class Collector:
 
 
 #: Settings that a second attempt by another method keeps.
-_KEPT = ("collapse_drift", "jobs", "progress")
+_KEPT = ("collapse_drift", "jobs", "progress", "store")
 
 
 def columns_by_name(columns: Any, who: str) -> dict[str | int, Column]:

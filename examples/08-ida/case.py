@@ -1,0 +1,33 @@
+"""Incremental dynamic analysis of a column, and its fragility curves.
+
+    python examples/08-ida/case.py [--no-plot]
+
+Ten synthetic records; the same by the command: rbsdem ida case.nml synthetic:10
+"""
+
+import sys
+from pathlib import Path
+
+import rbsdem
+from rbsdem import ensembles, motions
+
+case = rbsdem.read_case(Path(__file__).with_name("case.nml"))
+records = motions.synthetic(10)
+found = rbsdem.ida(case.column, records, intensity="sa_t1", method="newmark")
+
+print(f"{found.runs.measure.label}, {len(found.runs)} runs")
+for record, value in zip(records, found.collapse_intensity[0], strict=True):
+    print(f"{record.name}  collapse at {value:6.2f} m/s2")
+
+limits = {"yield": ("first_yield", None), "1 % drift": 0.01, "collapse": ("collapse", None)}
+curves = found.fragilities(limits)
+hazard = ensembles.Hazard([0.5, 1, 2, 5, 10, 20], [0.1, 0.04, 0.012, 2e-3, 3e-4, 2e-5])
+print()
+for name, curve in curves.items():
+    rate = curve.mean_annual_frequency(hazard)
+    print(f"{name:10s} theta {curve.theta:5.2f} m/s2  beta {curve.beta:.2f}  {rate:.1e} a year")
+
+if "--no-plot" not in sys.argv:
+    found.plot().figure.savefig("ida.png", dpi=150)
+    ensembles.draw_fragilities(curves).figure.savefig("fragility.png", dpi=150)
+    print("wrote ida.png, fragility.png")

@@ -1,0 +1,70 @@
+"""A column whose strengths are not known: the spread that it adds to that of the records.
+
+    python examples/09-uncertain-column/case.py [--no-plot]
+
+The column comes from a drawing, with the springs of the paper's model; concrete strength, yield
+stress and mass on top are drawn from their distributions.
+"""
+
+import sys
+from dataclasses import replace
+
+import numpy as np
+
+import rbsdem
+from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties, ensembles, motions
+
+RECORDS, COLUMNS = 6, 8
+
+
+def make(concrete, steel, mass):
+    """Return the column for strengths [Pa] and a mass on top [kg]."""
+    section = RectangularSection(
+        0.4,
+        0.4,
+        Concrete(concrete),
+        layout=Layout(12, 0.016, Steel(steel, 1.4 * steel)),
+        ties=Ties(0.007, 0.085, Steel(364e6), legs=4),
+        cover=0.013,
+    )
+    column = section.column(1.6, axial_load=9.81 * mass, model="paper")
+    return replace(column, top_mass=mass, kinematics="pdelta", damping=0.05)
+
+
+median = make(46.5e6, 446e6, 75e3)
+period = 1 / rbsdem.modes(median).frequency[0]
+uncertain = ensembles.Uncertain(
+    make,
+    {
+        "concrete": ensembles.lognormal(46.5e6, 0.15),
+        "steel": ensembles.lognormal(446e6, 0.07),
+        "mass": ensembles.lognormal(75e3, 0.10),
+    },
+)
+sample = uncertain.sample(COLUMNS, method="sobol", seed=1)
+records = motions.synthetic(RECORDS)
+settings = {"method": "newmark", "period": period, "collapse_drift": 0.05}
+
+hunt = ensembles.Hunt(points=2)
+found = rbsdem.ida(sample.columns, records, levels=hunt, **settings)
+alone = rbsdem.ida(median, records, levels=hunt, **settings)
+split = ensembles.variance_split(found.collapse_intensity)
+print(f"{COLUMNS} columns, {RECORDS} records, {len(found.runs)} runs, Sa({period:.2f} s)")
+for name in ("record", "model", "residual", "total"):
+    print(f"beta of {name:9s} {split.beta[name]:.2f}")
+print(f"median drift of 5 %: {np.median(alone.collapse_intensity):.1f} m/s2 for the median column,")
+print(f"{np.median(found.collapse_intensity):.1f} m/s2 for all")
+
+# Stripes: all columns and records at four intensities.
+levels = np.median(found.collapse_intensity) * np.array([0.4, 0.7, 1.0, 1.4])
+stripes = rbsdem.stripes(sample.columns, records, levels, **settings)
+curve = stripes.fragility()
+print(f"stripes: {curve.data.failures.tolist()} of {curve.data.number.tolist()} runs collapse")
+print(f"theta {curve.theta:.1f} m/s2, beta {curve.beta:.2f}")
+
+if "--no-plot" not in sys.argv:
+    ax = alone.fragility().plot(label="median column, records only")
+    curve.plot(ax, color="#c0392b", label="uncertain columns")
+    ax.legend()
+    ax.figure.savefig("uncertain.png", dpi=150)
+    print("wrote uncertain.png")

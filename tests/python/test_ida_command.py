@@ -1,0 +1,119 @@
+"""The command `rbsdem ida`: files, report, exit codes, and all that is wrong before the work."""
+
+from __future__ import annotations
+
+import csv
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import REPOSITORY
+
+import rbsdem
+from rbsdem import motions
+from rbsdem.ensembles.ida_command import main
+
+CASE = REPOSITORY / "examples" / "08-ida" / "case.nml"
+FEW = ["--method", "newmark", "--levels", "2,6,30"]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    """Four records as csv files."""
+    place = tmp_path_factory.mktemp("records")
+    for record in motions.synthetic(4):
+        record.to_csv(place / f"{record.name}.csv")
+    return place
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    return list(csv.DictReader(path.read_text("utf-8").splitlines()))
+
+
+def test_files_and_report(folder, tmp_path, capsys):
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("pyarrow")
+    out = tmp_path / "new" / "ida"
+    words = [str(CASE), str(folder), *FEW, "--limit", "repair=0.01", "--parquet"]
+    assert main([*words, "--out", str(out)]) == 0
+    names = ["fractiles.csv", "fragility.csv", "fragility.png", "ida.csv", "ida.parquet", "ida.png"]
+    assert sorted(path.name for path in out.iterdir()) == names
+    runs = rows(out / "ida.csv")
+    assert len(runs) == 12
+    assert {row["motion"] for row in runs} == {f"synthetic_0{i}" for i in range(1, 5)}
+    found = rbsdem.ida(
+        rbsdem.read_case(CASE).column, motions.synthetic(4), method="newmark", levels=[2, 6, 30]
+    )
+    curves = {row["limit_state"]: row for row in rows(out / "fragility.csv")}
+    repair = found.fragility("peak_drift", 0.01)
+    assert float(curves["repair"]["theta_m/s2"]) == pytest.approx(repair.theta, rel=1e-5)
+    assert float(curves["repair"]["beta"]) == pytest.approx(repair.beta, rel=1e-5)
+    assert len(rows(out / "fractiles.csv")) == 50
+    printed = capsys.readouterr().out
+    assert "Sa(0.61 s, 5 %) (m/s²): 4 records, 12 runs" in printed
+    assert "repair" in printed
+    assert f"wrote {out / 'ida.csv'}" in printed
+
+
+def test_hazard_adds_frequencies(folder, tmp_path, capsys):
+    hazard = tmp_path / "hazard.csv"
+    hazard.write_text("# a site\nsa,frequency\n0.1,1\n1,0.03\n10,0.0003\n100,1e-7\n")
+    words = [str(CASE), str(folder), *FEW, "--limit", "repair=0.01", "--hazard", str(hazard)]
+    assert main(words) == 0
+    printed = capsys.readouterr().out
+    assert "1/a" in printed
+    line = next(line for line in printed.splitlines() if "repair" in line)
+    assert 1e-4 < float(line.split()[-1]) < 1e-1
+
+
+def test_limit_states_that_are_not_reached_are_told(folder, capsys):
+    words = [str(CASE), str(folder / "synthetic_01.csv"), str(folder / "synthetic_02.csv")]
+    assert main([*words, "--method", "newmark", "--levels", "0.5,1,2"]) == 0
+    assert "collapse: no record reached the limit state" in capsys.readouterr().out
+
+
+def test_mended_records_are_told(folder, tmp_path, capsys):
+    short = tmp_path / "short.AT2"
+    values = "\n".join(f"{value:.5E}" for value in motions.synthetic(1)[0].acceleration)
+    count = len(values.splitlines()) + 3
+    head = f"PEER\nevent\nACCELERATION IN UNITS OF M/S/S\nNPTS= {count}, DT= .0100 SEC"
+    short.write_text(f"{head}\n{values}\n")
+    assert main([str(CASE), str(short), "synthetic:2", *FEW, "--quiet"]) == 0
+    assert "rbsdem: ida: " in (told := capsys.readouterr().err)
+    assert "the last 3 of NPTS" in told
+
+
+def test_the_command_starts_from_the_shell(folder, tmp_path):
+    """Quiet in a pipe: nothing but what was asked for; no figure without being told where."""
+    words = [sys.executable, "-m", "rbsdem", "ida", CASE, "synthetic:2", *FEW, "--quiet"]
+    result = subprocess.run(
+        words, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["missing.nml", "synthetic"], "missing.nml"),
+        ([str(CASE), "nowhere.AT2"], "nowhere.AT2: cannot be read"),
+        ([str(CASE), "a.AT2", "b.AT2"], "b.AT2: cannot be read"),
+        ([str(CASE), "synthetic", "--levels", "1,x"], "--levels 1,x: give intensities"),
+        ([str(CASE), "synthetic", "--levels", "-1"], "levels must be intensities above 0"),
+        ([str(CASE), "synthetic", "--limit", "0.01"], "--limit 0.01: give a name and a drift"),
+        ([str(CASE), "synthetic", "--intensity", "sa"], "intensity = 'sa' is not one of"),
+        ([str(CASE), "synthetic", "--jobs", "0"], "jobs = 0 must be 1 or more"),
+        ([str(CASE), "synthetic", "--parquet"], "say where with --out"),
+        ([str(CASE), "synthetic", "--hazard", "no.csv"], "no.csv: cannot be read"),
+        ([str(CASE), "synthetic", "--method", "euler"], "euler"),
+    ],
+)
+def test_bad_input_of_the_command(words, told, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(words) == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert all(line.startswith("rbsdem: ida: ") for line in error.splitlines())
+    assert not list(tmp_path.iterdir())
