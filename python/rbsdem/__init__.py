@@ -50,6 +50,7 @@ from rbsdem.springs import (
     SteelSpring,
     Takeda,
 )
+from rbsdem.strains import Gauge, Strains
 
 __version__ = _version()
 _moved.install()
@@ -69,6 +70,7 @@ __all__ = [
     "Elastic",
     "Ensemble",
     "Envelope",
+    "Gauge",
     "GroundMotion",
     "Idealisation",
     "InputError",
@@ -88,6 +90,7 @@ __all__ = [
     "Spiral",
     "Steel",
     "SteelSpring",
+    "Strains",
     "Takeda",
     "Ties",
     "Trade",

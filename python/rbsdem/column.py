@@ -17,6 +17,7 @@ from rbsdem._renamed import renamed
 from rbsdem.damping import Damping
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.springs import Layered, Spring, classes_for, layer_springs, whole_column
+from rbsdem.strains import Gauge
 
 #: Standard acceleration of gravity [m/s2].
 STANDARD_GRAVITY = 9.80665
@@ -207,6 +208,18 @@ class Column:
         if springs is None:
             return ()
         return (springs,) * self.n if isinstance(springs, Spring) else tuple(springs)
+
+    def gauge(self, joint: int) -> Gauge | None:
+        """Return what the layers of a joint stand for, and over which lengths; None if not known.
+
+        It is known of the hinge of a column that was made from its drawing.
+
+        Parameters
+        ----------
+        joint : int
+            The joint, from 1 at the ground to n.
+        """
+        return None
 
     def to_namelist(self) -> str:
         """Return the column as groups of a case file, from which the same column comes back."""

@@ -15,6 +15,7 @@ from rbsdem.column import Column
 from rbsdem.errors import InputError
 from rbsdem.methods import METHODS
 from rbsdem.springs import Layered
+from rbsdem.strains import Gauge, Strains, strains_of
 
 if TYPE_CHECKING:
     from rbsdem.accuracy.answer import Errors
@@ -177,6 +178,34 @@ class Result:
         turned = self.rotation[:, joint - 1] + self.rest[:, joint - 1]
         places = np.array([y for y, _ in spring.layers])
         return np.asarray(self.opening[:, joint - 1, None] + turned[:, None] * places)
+
+    def strains(self, joint: int = 1, *, gauge: Gauge | None = None) -> Strains:
+        """Return the strains of the layers of a joint: bars, core and cover in each row.
+
+        Parameters
+        ----------
+        joint : int, optional
+            The joint, from 1 at the ground to n.
+        gauge : Gauge, optional
+            What the layers stand for and over which lengths they deform. Not needed for the hinge
+            of a column that was made from its drawing.
+
+        Raises
+        ------
+        InputError
+            If the joint has no layers, the openings were not kept (``openings=True``), or nothing
+            is known of the lengths of the layers.
+        """
+        deformation = self.layer_deformation(joint)
+        known = gauge or self.column.gauge(joint)
+        if known is None:
+            raise InputError(
+                f"joint {joint} was not made from a section, and over which lengths its layers "
+                "deform is not known; give gauge=rbsdem.Gauge(part=..., length=...)"
+            )
+        spring = self.column.joints("flexure")[joint - 1]
+        assert isinstance(spring, Layered)
+        return strains_of(joint, self.time, [y for y, _ in spring.layers], known, deformation)
 
     def _check_openings(self) -> None:
         layered = any(isinstance(spring, Layered) for spring in self.column.joints("flexure"))

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from rbsdem.errors import InputError
 from rbsdem.section.materials import Steel
 from rbsdem.springs import ConcreteSpring, Layered, SteelSpring
+from rbsdem.strains import Gauge
 
 if TYPE_CHECKING:
     from rbsdem.section.parameters import HingeParameters
@@ -53,6 +54,8 @@ class HingeJoint:
         Moment at yield, about, times the rotation of the hinge there [J].
     confinement : float
         Confining stress over the cylinder strength.
+    gauge : Gauge
+        What the layers stand for, and over which lengths they deform.
     limits : dict of str to (float, float)
         Least and largest values of the parameters that have them for this column: beyond them they
         would change nothing.
@@ -64,6 +67,7 @@ class HingeJoint:
     shear_stiffness: float
     yield_work: float
     confinement: float
+    gauge: Gauge
     limits: dict[str, tuple[float, float]]
 
 
@@ -196,6 +200,13 @@ def hinge_joint(
         hinge.shear_stiffness * modulus / 2.4 * strips.shear_area,
         _yield_work(section, axial_load, ratio, yield_stress, steel_length + slip),
         strips.confining_stress / cylinder,
+        Gauge(
+            ("core",) * len(strips.core)
+            + ("cover",) * len(strips.cover)
+            + ("bar",) * len(section.bars),
+            (concrete_length,) * (len(strips.core) + len(strips.cover))
+            + (steel_length + slip,) * len(section.bars),
+        ),
         {
             "hinge_length": (
                 0.0,

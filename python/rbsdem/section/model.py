@@ -23,6 +23,7 @@ from rbsdem.section.ranges import axial_load_note, column_length
 from rbsdem.section.shear_model import shear_limits, shear_spring
 from rbsdem.section.spring_fit import fit_springs
 from rbsdem.springs import Elastic, Spring
+from rbsdem.strains import Gauge
 
 if TYPE_CHECKING:
     from rbsdem.section.section import Section
@@ -395,6 +396,13 @@ class LayeredColumn(Column):
         recipe.check(values)
         made = {name: value for name, value in recipe.made.items() if not self._kept(name)}
         return replace(self, recipe=recipe, **made)
+
+    def gauge(self, joint: int) -> Gauge | None:
+        """Return what the layers of a joint stand for; None unless it is the hinge of the model."""
+        hinge = self._recipe.joint
+        if joint != 1 or self.joints("flexure")[0] != hinge.spring:
+            return None
+        return hinge.gauge
 
     def _kept(self, field: str) -> bool:
         """Whether what the model made was replaced by something else."""
