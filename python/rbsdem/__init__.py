@@ -33,6 +33,8 @@ from rbsdem.result import Result
 from rbsdem.section import (
     CircularSection,
     Concrete,
+    HollowCircularSection,
+    HollowRectangularSection,
     Layout,
     RectangularSection,
     Spiral,
@@ -72,6 +74,8 @@ __all__ = [
     "Envelope",
     "Gauge",
     "GroundMotion",
+    "HollowCircularSection",
+    "HollowRectangularSection",
     "Idealisation",
     "InputError",
     "Layered",

@@ -365,10 +365,10 @@ def settings(given: Mapping[str, Any]) -> Statement:
     """Return the settings of an analysis as a statement."""
     values: dict[str, Any] = {}
     for name, value in given.items():
-        if name in ("method", "events"):
-            values[name] = str(value)
-        elif name == "allow_unstable":
-            values[name] = int(switch(value, name))
+        if isinstance(value, str):
+            values[name] = value
+        elif isinstance(value, bool | np.bool_):
+            values[name] = int(value)
         else:
             values[name] = number(value, name)
     return group("analysis", values)

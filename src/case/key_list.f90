@@ -17,7 +17,7 @@ module rbs_case_key_list
    public :: keys_as_json, keys_as_table
 
    !> Groups of a section, and the shapes with their sizes.
-   character(len=9), parameter :: section_parts(*) = [character(len=9) :: section_groups, shape_names]
+   character(len=16), parameter :: section_parts(*) = [character(len=16) :: section_groups, shape_names]
 
 contains
 

@@ -99,9 +99,8 @@ contains
       call v%key('axial_load', self%axial_load, 'N', any_number, &
                  'axial load at the top, compression positive')
       call v%key('axial_force_ratio', self%axial_force_ratio, '', any_number, &
-                 'change of the axial load per lateral force on a static path, &
-                     as in the exterior column of '// &
-                 'a frame')
+                 'change of the axial load per lateral force on a static path, '// &
+                 'as in the exterior column of a frame')
       call v%key('axial_height', self%axial_height, 'm', above_zero, &
                  'height at which the axial load acts and leans with the column (pdelta); by default '// &
                  'the top', optional=.true.)

@@ -153,9 +153,8 @@ contains
       if (drive > 0) call check_unit(self, messages)
       if (count([allocated(self%file), allocated(self%amplitudes), self%protocol /= '', &
                  allocated(self%values)]) > 1) then
-         call messages%add('loading: more than one of file, amplitudes, &
-                           protocol and values are given; keep '// &
-                           'the one that is meant')
+         call messages%add('loading: more than one of file, amplitudes, '// &
+                           'protocol and values are given; keep the one that is meant')
       end if
       select case (self%source)
       case ('file')
@@ -194,8 +193,8 @@ contains
       if (self%protocol /= '') then
          call validate_named(self, messages)
       else if (.not. allocated(self%amplitudes)) then
-         call messages%add('loading: amplitudes are missing; give one for each step, &
-                           or the name of a protocol')
+         call messages%add('loading: amplitudes are missing; give one for each step, '// &
+                           'or the name of a protocol')
          return
       else
          call validate_amplitudes(self, messages)

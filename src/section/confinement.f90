@@ -14,7 +14,8 @@ module rbs_section_confinement
 
 contains
 
-   !> Set the laws of core and cover, the lateral stress and its effectiveness.
+   !> Set the laws of core and cover, the lateral stress and its effectiveness. Hoops around a void do not
+   !> confine the walls between them: the inner ones bow into the void.
    pure subroutine confine(section, eps_spall)
       type(section_type), intent(inout) :: section
       !> Strain at which the cover has spalled
@@ -27,7 +28,7 @@ contains
       section%effectiveness = 0.0_wp
       if (section%transverse%kind == no_ties) return
       if (.not. min(section%core_shape%width, section%core_shape%depth) > 0.0_wp) return
-      section%effectiveness = effectiveness(section)
+      if (.not. section%shape%hollow) section%effectiveness = effectiveness(section)
       ratio = volumetric_ratio(section)
       yield = section%transverse%steel%fy
       ! The ratio is the sum of both directions; half of it is their mean.

@@ -18,6 +18,8 @@ module rbs_section_shape
    type, abstract :: shape_type
       !> Sizes of the smallest rectangle around the figure: across and along the direction of loading [m]
       real(wp) :: width = 0.0_wp, depth = 0.0_wp
+      !> Whether there is a void in the middle, and whether round hoops enclose a figure of the same shape
+      logical :: hollow = .false., round = .false.
    contains
       !> Width at a distance from mid-depth [m]; zero outside
       procedure(at_depth), deferred :: width_at

@@ -3,16 +3,18 @@ module rbs_section_shapes
    use rbs_base_kinds, only: wp
    use rbs_section_shape, only: shape_type
    use rbs_section_shape_circle, only: circle_type
+   use rbs_section_shape_hollow, only: box_type, ring_type
    use rbs_section_shape_rectangle, only: rectangle_type
    implicit none
    private
 
    public :: new_shape, new_core
 
-   character(len=9), parameter, public :: shape_names(2) = ['rectangle', 'circle   ']
+   character(len=16), parameter, public :: shape_names(4) = [character(len=16) :: &
+      'rectangle', 'circle', 'hollow_rectangle', 'hollow_circle']
    !> The names as choices of a key
-   character(len=*), parameter, public :: shape_choices = 'rectangle circle'
-   integer, parameter, public :: shape_rectangle = 1, shape_circle = 2
+   character(len=*), parameter, public :: shape_choices = 'rectangle circle hollow_rectangle hollow_circle'
+   integer, parameter, public :: shape_rectangle = 1, shape_circle = 2, shape_box = 3, shape_ring = 4
 
 contains
 
@@ -27,11 +29,17 @@ contains
       select case (place)
       case (shape_circle)
          allocate (circle_type :: shape)
+      case (shape_box)
+         allocate (box_type :: shape)
+      case (shape_ring)
+         allocate (ring_type :: shape)
       case default
          allocate (rectangle_type :: shape)
       end select
       shape%width = width
       shape%depth = depth
+      shape%hollow = any(place == [shape_box, shape_ring])
+      shape%round = any(place == [shape_circle, shape_ring])
    end subroutine new_shape
 
    !> Make the shape that the hoops of an outline enclose: a round hoop encloses a circle, ties enclose a
@@ -45,7 +53,7 @@ contains
       class(shape_type), allocatable, intent(inout) :: core
 
       if (allocated(core)) deallocate (core)
-      if (round) then
+      if (round .and. .not. outline%round) then
          call new_shape(shape_circle, outline%depth, outline%depth, core)
       else
          allocate (core, source=outline)

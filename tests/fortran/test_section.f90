@@ -15,6 +15,7 @@ module test_section
    use rbs_section_cross_section, only: section_type, spiral, ties
    use rbs_section_section_build, only: build_section
    use rbs_section_shape, only: shape_type
+   use rbs_section_shape_hollow, only: hollow_type
    use rbs_section_shapes, only: new_core, new_shape, shape_circle, shape_names, shape_rectangle
    use rbs_section_steel_law, only: steel_stress, steel_tangent, steel_type
    use rbs_section_strips, only: cut_strips, strip_centroids, strips_type
@@ -210,6 +211,11 @@ contains
 
       do place = 1, size(shape_names)
          call new_shape(place, 0.6_wp, 0.6_wp, shape)
+         select type (shape)
+         class is (hollow_type)
+            shape%wall = 0.12_wp
+            shape%side_wall = 0.09_wp
+         end select
          dy = shape%depth/many
          y = [(-0.5_wp*shape%depth + (i - 0.5_wp)*dy, i=1, many)]
          width = shape%width_at(y)
@@ -231,6 +237,7 @@ contains
          call check_close(error, shape%leg_share(0.0_wp), 1.0_wp, 1.0e-14_wp, 0.0_wp, &
                           trim(shape_names(place))//': legs at mid-depth')
       end do
+      call new_shape(shape_circle, 0.6_wp, 0.6_wp, shape)
       call check_close(error, shape%shear_area(), 0.9_wp*0.25_wp*pi*0.36_wp, 1.0e-14_wp, 0.0_wp, &
                        'circle: shear area')
       call check_close(error, shape%leg_share([0.18_wp, -0.24_wp, 0.4_wp]), [0.8_wp, 0.6_wp, 0.0_wp], &

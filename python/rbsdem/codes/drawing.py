@@ -110,12 +110,14 @@ def quantities(section: Section, height: float, axial_load: float) -> Quantities
     Raises
     ------
     InputError
-        If a number is refused, or the section has no bars in tension and in compression.
+        If a number is refused, or the section is hollow or has no bars near both faces.
     """
     load = _core.number(axial_load, "axial_load")
     if not math.isfinite(load):
         raise InputError(f"axial_load = {load} N must be a finite number")
     span = column_length(height, "height")
+    if section.hollow:
+        raise InputError("code values: the formulas are for solid sections; this one is hollow")
     if not section.bars:
         raise InputError("code values: the section has no bars; give it some")
     depth = section.depth

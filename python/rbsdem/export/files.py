@@ -191,5 +191,6 @@ def _case(text: str) -> Case:
     """Return the case of a text; the reader of the program reads files."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "case.nml"
-        path.write_text(text, encoding="utf-8")
+        with whole_file(path) as file:
+            file.write(text.encode())
         return read_case(path)

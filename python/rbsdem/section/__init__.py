@@ -10,6 +10,7 @@ from rbsdem.section import interaction_figure as interaction_figure
 from rbsdem.section import shear_figure as shear_figure
 from rbsdem.section.circular import CircularSection
 from rbsdem.section.diagram import Confinement, Diagram, Events, Point
+from rbsdem.section.hollow import HollowCircularSection, HollowRectangularSection
 from rbsdem.section.interaction import InteractionDiagram
 from rbsdem.section.materials import Concrete, Steel
 from rbsdem.section.model import MODELS, LayeredColumn, LayeredModel
@@ -36,6 +37,8 @@ __all__ = [
     "Diagram",
     "Events",
     "HingeParameters",
+    "HollowCircularSection",
+    "HollowRectangularSection",
     "InteractionDiagram",
     "LayeredColumn",
     "LayeredModel",

@@ -8,6 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar
 
+import numpy as np
+
 from rbsdem import _core
 from rbsdem._core import Array
 from rbsdem.errors import InputError
@@ -46,6 +48,8 @@ class DrawnSection(ABC):
 
     #: Whether the width falls towards the extreme fibres.
     narrows: ClassVar[bool] = False
+    #: Whether there is a void in the middle.
+    hollow: ClassVar[bool] = False
 
     @abstractmethod
     def part(self, depth: float) -> tuple[float, float]:
@@ -125,6 +129,16 @@ class DrawnSection(ABC):
             area = max(self.bars, key=lambda bar: bar[0])[1]
             if area > 0.0:
                 self._put("bar_diameter", math.sqrt(4.0 * area / math.pi))
+
+    @property
+    def web_width(self) -> float:
+        """Width that carries shear [m]."""
+        return self.width
+
+    def void(self, distance: float = 0.0) -> Array:
+        """Return a line around the void at a distance [m]; without points in a solid section."""
+        del distance
+        return np.empty((0, 2))
 
     @property
     def gross_area(self) -> float:

@@ -123,6 +123,8 @@ def draw_section(section: Section, ax: Axes | None = None) -> Axes:
         drawn.add_patch(Polygon(1e3 * section.outline(), **_CONCRETE))
         if section.ties is not None:
             _draw_ties(section, section.ties.diameter, drawn)
+        if section.hollow:
+            _draw_void(section, drawn)
         for x, y, diameter in section.place_bars(_single_bars(section)):
             drawn.add_patch(Circle((1e3 * x, -1e3 * y), 0.5e3 * diameter, zorder=3, **_BAR))
         reach_x, reach_y = 0.54 * w, 0.54 * h
@@ -150,6 +152,18 @@ def _draw_ties(section: Section, thickness: float, ax: Axes) -> None:
         ax.add_patch(Polygon(1e3 * line, zorder=2, **look))
     for leg in section.inner_legs():
         ax.add_patch(Polygon(1e3 * leg, zorder=2, **_TIE))
+
+
+def _draw_void(section: Section, ax: Axes) -> None:
+    """Draw the void with the hoop around it."""
+    from matplotlib.patches import Polygon  # noqa: PLC0415
+
+    if section.ties is not None:
+        for inset, look in ((section.ties.diameter, _TIE), (0.0, _INSIDE)):
+            around = section.void(section.cover + inset)
+            ax.add_patch(Polygon(1e3 * around, zorder=2.2, **look))
+    empty = {**_CONCRETE, "facecolor": "white"}
+    ax.add_patch(Polygon(1e3 * section.void(), zorder=2.4, **empty))
 
 
 def _single_bars(section: Section) -> list[tuple[float, float]]:

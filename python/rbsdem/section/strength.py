@@ -40,7 +40,7 @@ class ShearSizes:
     fc : float
         Cylinder strength [Pa].
     width, depth, d : float
-        Width, whole depth and effective depth [m].
+        Width, that of the webs of a hollow section, whole depth and effective depth [m].
     gross_area : float
         Of the concrete [m2].
     tension_steel : float
@@ -101,7 +101,7 @@ def shear_sizes(section: Section) -> ShearSizes:
     spacing = ties.spacing if ties is not None else math.inf
     return ShearSizes(
         section.concrete_law["fc"],
-        section.width,
+        section.web_width,
         section.depth,
         section.effective_depth,
         section.gross_area,

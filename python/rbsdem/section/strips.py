@@ -83,6 +83,9 @@ def cut(section: Section, number: int, restrained: int | None, round_core: bool)
         confinement = _spiral(section, section.depth - less[1])
     else:
         confinement = _hoops(section, section.width - less[0], section.depth - less[1], restrained)
+    if section.hollow:
+        # The inner hoops bow into the void.
+        confinement = 0.0, confinement[1]
     figures = section._figures
     # Slivers along the rim of the core are round-off.
     least = 1e-9 * figures["area"]
