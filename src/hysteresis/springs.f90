@@ -107,6 +107,10 @@ contains
       real(wp), intent(in), contiguous :: d(:)
 
       if (self%pressed) call self%press_joints(d)
+      if (self%count == 2) then
+         call walk_pair(d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, self%last)
+         return
+      end if
       call walk_all(self%count, d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, &
                     self%last)
    end subroutine carry_to

@@ -1,4 +1,4 @@
-!> Few bodies driven by the displacement of the top, with full matrices: the rates of the column on the lines of
+!> Few bodies driven by the displacement of the top, with full matrices: rates of the column on the lines of
 !> its springs, and their update where one spring has changed its line.
 !>
 !>     K rate = a dF,   a rate = 1        K = diag(k) + K_G

@@ -51,13 +51,22 @@ contains
       type(state_type), intent(inout) :: state
       real(wp), intent(in) :: h
       type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: finish
+      real(wp) :: finish, load(4)
+      integer :: busiest
+      logical :: converged
 
       if (allocated(error)) return
       if (.not. self%ready) call self%prepare(state)
       self%ready = .true.
       finish = state%time + h
-      call move_on(self, state, h, 0, error)
+      ! Most steps converge.
+      call state%loads%at_time(finish, load)
+      call self%take_step(state, h, load, converged, busiest)
+      if (converged) then
+         self%steps = self%steps + 1
+      else
+         call halve(self, state, h, 0, busiest, error)
+      end if
       if (.not. allocated(error)) state%time = finish
    end subroutine advance
 
@@ -77,8 +86,20 @@ contains
       call self%take_step(state, h, load, converged, busiest)
       if (converged) then
          self%steps = self%steps + 1
-         return
+      else
+         call halve(self, state, h, cuts, busiest, error)
       end if
+   end subroutine move_on
+
+   !> Take the halves of a step that has not converged.
+   recursive subroutine halve(self, state, h, cuts, busiest, error)
+      class(halving_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      real(wp), intent(in) :: h
+      !> How often the step has been cut before, and the spring that changed its line last
+      integer, intent(in) :: cuts, busiest
+      type(error_type), allocatable, intent(inout) :: error
+
       self%cut_steps = self%cut_steps + 1
       if (cuts == most_cuts) then
          call fatal_error(error, analysis_failed, 'the step of '//to_text(h)//' s at time '// &
@@ -92,6 +113,6 @@ contains
       end if
       call move_on(self, state, 0.5_wp*h, cuts + 1, error)
       if (.not. allocated(error)) call move_on(self, state, 0.5_wp*h, cuts + 1, error)
-   end subroutine move_on
+   end subroutine halve
 
 end module rbs_solve_time_halving
