@@ -68,6 +68,14 @@ assert springs.shear is not None
 made = rbsdem.Column(1.6, 614.4, springs.shear, springs.flexure)
 print(pushed(made).summary["status"], pushed(section.column(1.6, axial_load=744e3)).force[-1])
 
+record = rbsdem.motions.synthetic(2)[0]
+quake = rbsdem.GroundMotion(record.acceleration[:500], record.dt, "part").scaled(pga=2.0)
+print(quake.time[-1], quake.pgv, quake.spectrum([0.5]).pseudo_acceleration[0] + 1.0)
+swayed = rbsdem.time_history(pier, ground_acceleration=quake)
+found = rbsdem.ida(pier, [quake, record], levels=[2.0, 40.0], method="newmark", dt=0.01)
+light = found.fragility("peak_drift", 0.005)
+print(swayed.displacement[-1], light.theta * 2, light.probability([1.0])[0], found.upper.min())
+
 Path("column.nml").write_text(column.to_namelist() + "&loading drive = 'force', amplitudes = 1e3 /")
 case = rbsdem.read_case("column.nml")
 print(case.run(every=2).displacement[-1], case.column == column, case.to_namelist())
@@ -90,6 +98,7 @@ SLIPS = [
     ("rbsdem.Column(1.6, 1.0, s, s, axial=s)", "call-arg"),
     ("rbsdem.cyclic(c, displacement=[0.1]).forces", "attr-defined"),
     ('rbsdem.mass_matrix(c, "papers")', "arg-type"),
+    ('rbsdem.ida(c, rbsdem.motions.synthetic(), intensity="sa")', "arg-type"),
 ]
 
 

@@ -97,7 +97,7 @@ class CloudFragility(Fragility):
         """Return the probability of the limit state at intensities."""
         with np.errstate(divide="ignore"):
             u = np.log(np.asarray(intensity, dtype=float))
-        return self.data.curve(self.data.parts(), u)
+        return np.asarray(self.data.curve(self.data.parts(), u))
 
     def samples(self, n: int = 1000, seed: int = 1) -> tuple[Array, Array]:
         """Return theta and beta of bootstrap samples of the runs, each of shape (n,)."""

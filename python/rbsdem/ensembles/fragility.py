@@ -67,7 +67,7 @@ class Counts:
     @property
     def size(self) -> int:
         """Number of records."""
-        return self.failed.shape[1]
+        return int(self.failed.shape[1])
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from rbsdem._files import write_csv, write_figure
 from rbsdem._optional import console, need_pyarrow, need_rich, need_scipy, plain
 from rbsdem._parser import CommandParser, run_command
@@ -191,7 +193,7 @@ def _read_hazard(path: Path) -> Hazard:
         text = path.read_text("utf-8-sig")
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); check the path") from None
-    rows = []
+    rows: list[tuple[float, float]] = []
     for number, row in enumerate(csv.reader(text.splitlines()), 1):
         if not row or row[0].startswith("#"):
             continue
@@ -212,7 +214,8 @@ def _read_hazard(path: Path) -> Hazard:
 
 def _curves(found: IDA, limits: dict[str, Any]) -> tuple[dict[str, Fragility], list[str]]:
     """Return the curves, and why some limit states have none."""
-    curves, notes = {}, []
+    curves: dict[str, Fragility] = {}
+    notes: list[str] = []
     for name, limit in limits.items():
         try:
             curves |= found.fragilities({name: limit})
@@ -226,7 +229,8 @@ def _write(found: IDA, curves: dict[str, Fragility], folder: Path, parquet: bool
     found.runs.to_csv(written[0])
     level, fractiles = found.fractiles()
     head = ("intensity_m/s2", "peak_drift_16", "peak_drift_50", "peak_drift_84")
-    write_csv(written[1], [head, *(map(float, row) for row in zip(level, *fractiles, strict=True))])
+    points = np.vstack([level, fractiles]).T.tolist()
+    write_csv(written[1], [head, *points])
     names = ("limit_state", "theta_m/s2", "beta", "se_theta_m/s2", "se_beta", "records")
     rows = [
         (name, one.theta, one.beta, *_errors(one), one.data.size) for name, one in curves.items()

@@ -38,7 +38,7 @@ def fit_points(values: Array) -> tuple[Array, Array]:
     return logs.mean(axis=-1), np.maximum(logs.std(axis=-1, ddof=1), LEAST_BETA)
 
 
-def fit_counts(level: Array, number: Array, failures: Array) -> tuple[Array, Array]:
+def fit_counts(level: Array, number: NDArray[Any], failures: NDArray[Any]) -> tuple[Array, Array]:
     """Return the parameters of a fragility curve from counts at levels (Baker 2015, eq 11).
 
     Parameters

@@ -114,14 +114,14 @@ def _count_and_step(head: str, path: str) -> tuple[int, float]:
     if old:
         count, step = old[1], old[2]
     else:
-        found = _COUNT.search(head), _STEP.search(head)
-        missing = [key for key, match in zip(("NPTS", "DT"), found, strict=True) if not match]
-        if missing:
+        several, one = _COUNT.search(head), _STEP.search(head)
+        if not (several and one):
+            missing = [key for key, at in (("NPTS", several), ("DT", one)) if not at]
             raise InputError(
                 f"{path}: the lines above the values give no {' and no '.join(missing)}; they end "
                 "with NPTS= 4000, DT= .0050 SEC"
             )
-        count, step = (match[1] for match in found if match)
+        count, step = several[1], one[1]
     if not (1 < int(count) < 10**8 and 0 < _float(step) <= 1):
         raise InputError(
             f"{path}: NPTS = {count} must be 2 or more and DT = {step} above 0 and at most 1 s; "

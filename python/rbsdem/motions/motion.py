@@ -76,7 +76,7 @@ class GroundMotion:
     @property
     def time(self) -> Array:
         """Times of the accelerations [s], shape (m,)."""
-        return self.dt * np.arange(self.acceleration.size)
+        return np.asarray(self.dt * np.arange(self.acceleration.size), dtype=np.float64)
 
     @property
     def length(self) -> float:

@@ -1,0 +1,231 @@
+"""Oscillators under twenty motions, against the textbook and against another implementation.
+
+A column with a mass on top, a stiff hinge and a shear spring is an oscillator of one degree of
+freedom. The other implementation marches all motions side by side in numpy, with straight lines of
+force written down again, in steps so short that their error is below the tolerances here.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import rbsdem
+from rbsdem import motions
+from rbsdem.ensembles import Hunt
+
+MASS, HEIGHT, DAMPING = 1e4, 3.0, 0.05
+RECORDS = motions.synthetic(20)
+
+
+def oscillator(period: float, yield_force: float, hardening: float = 0.0) -> rbsdem.Column:
+    """Elastic and perfectly plastic, unless it hardens; damped in proportion to the mass."""
+    omega = 2 * np.pi / period
+    k = MASS * omega**2
+    shear = rbsdem.Bilinear(k=k, d_y=yield_force / k, k_post=hardening * k)
+    return rbsdem.Column(
+        HEIGHT,
+        1e-3 * MASS,
+        shear,
+        rbsdem.Elastic(1e6 * k),
+        top_mass=MASS * (1 - 5e-4),
+        gravity=0.0,
+        damping=rbsdem.Damping(mass=2 * DAMPING * omega),
+    )
+
+
+def strengths(period: float, reduction: float) -> np.ndarray:
+    """Yield forces: the elastic force of each motion over the reduction factor."""
+    return np.array([MASS * motion.sa(period, DAMPING) / reduction for motion in RECORDS])
+
+
+def peaks(period: float, force: np.ndarray) -> np.ndarray:
+    """Peak displacements of the columns with these strengths, each under its own motion."""
+    columns = [oscillator(period, value) for value in force]
+    scales = np.where(np.eye(20, dtype=bool), 1.0, np.nan)[:, :, None]
+    found = rbsdem.ensemble(
+        columns, RECORDS, scales=scales, measures=["peak_drift"], method="newmark", dt=0.0025
+    )
+    assert set(found.status) == {"completed"}
+    return HEIGHT * found.measures["peak_drift"]
+
+
+def peaks_again(period: float, force: np.ndarray) -> np.ndarray:
+    """The same by central differences with ten steps to a point of the record."""
+    omega, parts = 2 * np.pi / period, 10
+    k, dt = MASS * omega**2, RECORDS[0].dt / parts
+    size = max(motion.acceleration.size for motion in RECORDS)
+    ground = np.array([np.pad(m.acceleration, (0, size - m.acceleration.size)) for m in RECORDS])
+    ends = np.array([m.length for m in RECORDS])
+    u = np.zeros(20)
+    old, plastic, peak = np.zeros(20), np.zeros(20), np.zeros(20)
+    c = 2 * DAMPING * omega
+    for i in range((size - 1) * parts):
+        place, part = divmod(i, parts)
+        a = ground[:, place] + (ground[:, place + 1] - ground[:, place]) * part / parts
+        trial = k * (u - plastic)
+        f = np.clip(trial, -force, force)
+        plastic = u - f / k
+        # (u+ - 2 u + u-)/dt^2 + c (u+ - u-)/(2 dt) + f/m = -a
+        new = (2 * u - (1 - 0.5 * c * dt) * old - dt**2 * (f / MASS + a)) / (1 + 0.5 * c * dt)
+        old, u = u, new
+        peak = np.where(i * dt < ends, np.maximum(peak, np.abs(u)), peak)
+    return peak
+
+
+@pytest.mark.parametrize(("period", "reduction"), [(0.3, 3.0), (1.0, 4.0)])
+def test_elastoplastic_peaks_against_another_implementation(period, reduction):
+    force = strengths(period, reduction)
+    ours, other = peaks(period, force), peaks_again(period, force)
+    assert ours == pytest.approx(other, rel=0.01)
+    assert np.median(np.abs(ours / other - 1)) < 2e-3
+
+
+def test_displacements_of_long_periods_are_equal():
+    """Veletsos and Newmark 1960: beyond about 1 s the plastic peak is the elastic one, on average.
+
+    The mean of twenty motions is known to its standard error, of which three are allowed.
+    """
+    for period in (1.0, 2.0):
+        elastic = np.array([m.spectrum([period], DAMPING).displacement[0] for m in RECORDS])
+        for reduction in (2.0, 4.0):
+            ratio = peaks(period, strengths(period, reduction)) / elastic
+            error = ratio.std(ddof=1) / np.sqrt(20)
+            assert error < 0.15
+            assert ratio.mean() == pytest.approx(1.0, abs=3 * error)
+
+
+def test_short_periods_need_more_ductility():
+    """Newmark and Hall 1982: equal energy, R = sqrt(2 mu - 1), between 0.12 and 0.5 s.
+
+    The ductility of R = 2 is 2 where displacements are equal, 2.5 where energies are, and beyond
+    any bound for very short periods. The ground of these motions has its frequency at 2.5 Hz, so
+    that 0.25 s lies in that range and 0.1 s below it.
+    """
+    ductility = {}
+    for period in (0.1, 0.25, 2.0):
+        force = strengths(period, 2.0)
+        k = MASS * (2 * np.pi / period) ** 2
+        ductility[period] = float(np.median(peaks(period, force) * k / force))
+    assert ductility[2.0] == pytest.approx(2.0, rel=0.2)
+    assert ductility[0.25] == pytest.approx(2.5, rel=0.3)
+    assert ductility[0.1] > ductility[0.25] > ductility[2.0]
+
+
+def test_spectra_of_constant_ductility():
+    """The strength that holds the ductility at 4 (Newmark and Hall: R = mu, sqrt(2 mu - 1), 1).
+
+    By bisection on the strength of each motion; R is the elastic strength over it.
+    """
+    ductility = 4.0
+    found = {}
+    for period in (0.01, 0.25, 1.5):
+        k = MASS * (2 * np.pi / period) ** 2
+        low, high = np.full(20, 1.0), np.full(20, 40.0)
+        for _ in range(7):
+            middle = np.sqrt(low * high)
+            force = strengths(period, 1.0) / middle
+            over = peaks(period, force) * k / force > ductility
+            high, low = np.where(over, middle, high), np.where(over, low, middle)
+        found[period] = float(np.median(np.sqrt(low * high)))
+    assert found[1.5] == pytest.approx(4.0, rel=0.25)
+    assert found[0.25] == pytest.approx(np.sqrt(2 * ductility - 1), rel=0.25)
+    assert found[0.01] == pytest.approx(1.0, abs=0.2)
+
+
+# ---- collapse ------------------------------------------------------------------------------------
+
+HINGE = {"k": 5e7, "d_y": 0.004, "k_post": 2e5}
+WEIGHT = 4.9e5
+TOP = 5e4
+
+
+def softening() -> rbsdem.Column:
+    """A bilinear hinge that the axial load makes soften: N h = 1.5e6 N m against 2e5 N m."""
+    return rbsdem.Column(
+        HEIGHT,
+        1e-3,
+        rbsdem.Elastic(1e12),
+        rbsdem.Bilinear(**HINGE),
+        top_mass=TOP,
+        axial_load=WEIGHT,
+        kinematics="pdelta",
+        damping=rbsdem.Damping(mass=0.5),
+    )
+
+
+def collapses_again(motion: rbsdem.GroundMotion, scale: float, drift: float) -> bool:
+    """Whether the rotation reaches a drift: scipy, from one event of the hinge to the next.
+
+    m h^2 r'' + 0.5 m h^2 r' + M(r) - N h r = -m h a, M on a line with two ends.
+    """
+    k, post = HINGE["k"], HINGE["k_post"]
+    width = (k - post) * HINGE["d_y"]
+    inertia = TOP * HEIGHT**2
+
+    def moment(line, r):
+        kind, shift = line
+        return k * (r - shift) if kind == 0 else post * r + kind * width
+
+    def right(t, y, line):
+        a = scale * np.interp(t, motion.time, motion.acceleration)
+        force = moment(line, y[0]) - WEIGHT * HEIGHT * y[0] + TOP * HEIGHT * a
+        return [y[1], -force / inertia - 0.5 * y[1]]
+
+    def yields(side):
+        # The elastic line meets the plastic one of a side.
+        def event(t, y, line):
+            return k * (y[0] - line[1]) - post * y[0] - side * width
+
+        event.terminal, event.direction = True, side
+        return event
+
+    def turns(t, y, line):
+        return y[1]
+
+    def falls(t, y, line):
+        return abs(y[0]) - drift
+
+    falls.terminal = True
+    turns.terminal = True
+    line, t, y = (0, 0.0), 0.0, np.zeros(2)
+    while t < motion.length:
+        turns.direction = -line[0]
+        events = [falls, yields(1), yields(-1)] if line[0] == 0 else [falls, turns]
+        run = solve_ivp(
+            right,
+            (t, motion.length),
+            y,
+            args=(line,),
+            events=events,
+            rtol=1e-6,
+            atol=1e-9,
+            max_step=2 * motion.dt,
+        )
+        t, y = run.t[-1], run.y[:, -1]
+        if len(run.t_events[0]):
+            return True
+        if line[0] == 0:
+            line = (1 if len(run.t_events[1]) else -1, 0.0)
+        else:
+            line = (0, y[0] - moment(line, y[0]) / k)
+    return False
+
+
+def test_collapse_intensity_against_scipy():
+    """Below the bracket the column stands by scipy too, above it it falls; 1 % apart from it."""
+    chosen = RECORDS[:2]
+    found = rbsdem.ida(
+        softening(),
+        chosen,
+        intensity="pga",
+        levels=Hunt(resolution=0.005, points=1, yielding=False),
+        method="newmark",
+        dt=0.001,
+    )
+    for place, motion in enumerate(chosen):
+        below = 0.99 * found.lower[0, place] / motion.pga
+        above = 1.01 * found.upper[0, place] / motion.pga
+        assert not collapses_again(motion, below, 0.1)
+        assert collapses_again(motion, above, 0.1)
