@@ -25,6 +25,7 @@ from rbsdem.errors import (
     SolveError,
 )
 from rbsdem.export import load
+from rbsdem.limit_states import LimitState, LimitStates
 from rbsdem.motions import GroundMotion
 from rbsdem.paper import paper_columns, paper_sections
 from rbsdem.peer import PeerTest, read_peer, read_test
@@ -80,6 +81,8 @@ __all__ = [
     "InputError",
     "Layered",
     "Layout",
+    "LimitState",
+    "LimitStates",
     "LongRunWarning",
     "Modes",
     "Parameter",

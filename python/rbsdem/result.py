@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from rbsdem.comparison.cycles import HalfCycles
     from rbsdem.envelopes.envelope import Envelope
     from rbsdem.envelopes.idealise import Idealisation, Method
+    from rbsdem.limit_states.record import LimitStates
 
 #: Names of the energies.
 ENERGIES = ("input", "kinetic", "spring", "damping", "axial", "residual")
@@ -308,6 +309,23 @@ class Result:
         See `rbsdem.comparison.strength_loss`.
         """
         return float(_views.view(self, "strength_loss", share))
+
+    def limit_states(self) -> LimitStates:
+        """Return the limit states that the response reaches, with row, drift and source.
+
+        A layered hinge that knows its drawing: cracking, first yield, nominal moment, spalling,
+        the tensile strain before bars buckle, fracture of hoops and bars, by the strains of its
+        layers (the analysis needs ``openings=True``). Other springs: where they leave the lines of
+        cracking, yield and cap. All: yield and cap of shear springs, loss of 20 % of the strength,
+        collapse, loss of the axial load. Nothing of the response is changed.
+
+        Raises
+        ------
+        InputError
+            If the openings of a layered hinge were not kept.
+        """
+        found: LimitStates = _views.view(self, "limit_states")
+        return found
 
     def to_pandas(self) -> Any:
         """Return a DataFrame, a row for each of the result, with units in the names; needs pandas.

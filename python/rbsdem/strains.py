@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from rbsdem._core import Array
+from rbsdem._files import whole_file
 from rbsdem.errors import InputError
 
 #: What a layer stands for: a bar, concrete inside the ties, concrete outside.
@@ -122,7 +124,7 @@ class Strains:
         Parameters
         ----------
         path : path
-            The file; it is written over.
+            The file; it is written whole or not at all.
         layers : bool, optional
             Whether to write a column for each layer, as ``bar_-0.16``.
         """
@@ -132,10 +134,12 @@ class Strains:
                 f"{number}_{part}_{y:g}": self.value[:, number - 1]
                 for number, (part, y) in enumerate(zip(self.part, self.position, strict=True), 1)
             }
-        with open(path, "w", encoding="utf-8", newline="") as file:
-            writer = csv.writer(file)
-            writer.writerow(found)
-            writer.writerows(zip(*(column.tolist() for column in found.values()), strict=True))
+        text = io.StringIO(newline="")
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(found)
+        writer.writerows(zip(*(column.tolist() for column in found.values()), strict=True))
+        with whole_file(path) as file:
+            file.write(text.getvalue().encode())
 
     def __repr__(self) -> str:
         return (

@@ -1,0 +1,8 @@
+"""Limit states along a response: where it cracks, yields, spalls, loses its strength."""
+
+from rbsdem.limit_states import figure as figure
+from rbsdem.limit_states import find as find
+from rbsdem.limit_states import table as table
+from rbsdem.limit_states.record import LimitState, LimitStates
+
+__all__ = ["LimitState", "LimitStates"]
