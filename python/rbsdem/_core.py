@@ -714,6 +714,9 @@ def _finish(
     if lost_joint:
         status = "axial_failure"
         named["lost_joint"] = lost_joint
+    else:
+        for name in ("lost_axial_load", "axial_capacity", "fall", "fall_energy"):
+            del named[name]
     named["method"] = _text(method[:_METHOD_LENGTH])
     named["reason"] = _text(method[_METHOD_LENGTH:])
     named["status"] = "failed" if error else status

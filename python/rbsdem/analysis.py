@@ -132,7 +132,9 @@ def cyclic(
     Result
         A row for each point kept. Where the layers of a joint can no longer carry the axial load,
         the path ends with the state there as its last row; `summary["status"]` is "axial_failure"
-        and `summary["lost_joint"]` is the number of the joint.
+        and `summary["lost_joint"]` is the number of the joint. `summary` has then also the
+        load that was lost, `axial_capacity` at that rotation [N], and the `fall` of the joint until
+        it would rest [m; NaN: it does not] with its `fall_energy` [J].
 
     Raises
     ------

@@ -108,13 +108,19 @@ contains
       type(csv_recorder), intent(in) :: recorder
       type(summary_type), intent(in) :: summary
       type(error_type), allocatable, intent(out) :: error
-      character(len=:), allocatable :: place
+      character(len=:), allocatable :: place, fate
 
       place = 'step '//to_text(nint(recorder%last_time))
       if (case%analysis%dynamic()) place = 'time '//to_text(recorder%last_time)//' s'
+      fate = ', and the joint would fall without end'
+      if (summary%fall%rests) then
+         fate = ', and the joint would rest after '//to_text(abs(summary%fall%drop))//' m'
+      end if
       call fatal_error(error, column_collapsed, 'axial failure at '//place//': the layers of joint '// &
-                       to_text(summary%lost_joint)//' no longer carry the axial load; the rows up to '// &
-                       'there are in '//recorder%file%path)
+                       to_text(summary%lost_joint)//' no longer carry the axial load of '// &
+                       to_text(summary%fall%axial_load)//' N; at that rotation they carry at most '// &
+                       to_text(summary%fall%capacity)//' N'//fate//'. The rows up to there are in '// &
+                       recorder%file%path)
    end subroutine report_axial_failure
 
    !> rbsdem check: report all errors of the input without solving the case.
@@ -354,6 +360,7 @@ contains
             ! reported apart.
             if (summary_units(i) == 's' .and. .not. values(i) > 0.0_wp) cycle
             if (summary_names(i) == 'collapsed' .or. summary_names(i) == 'lost_joint') cycle
+            if (i > findloc(summary_names, 'lost_joint', dim=1)) exit
             ! Without inertia it is the peak force.
             if (summary_names(i) == 'peak_base_shear' .and. .not. case%analysis%dynamic()) cycle
             name = summary_names(i)

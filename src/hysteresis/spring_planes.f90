@@ -3,6 +3,7 @@
 module rbs_hysteresis_spring_planes
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unbounded
+   use rbs_hysteresis_layer_fall, only: layer_fall, find_fall
    use rbs_hysteresis_layered, only: layered_rule
    use rbs_hysteresis_spring_lines, only: spring_lines
    use rbs_hysteresis_spring_record, only: spring_record
@@ -24,6 +25,7 @@ module rbs_hysteresis_spring_planes
       procedure :: press_joints
       procedure :: vary_axial_loads
       procedure :: lost_joint
+      procedure :: fall_of
       procedure :: fill_openings
       procedure :: choose_lines
       procedure :: way_on_plane
@@ -110,6 +112,18 @@ contains
       end do
       lost = 0
    end function lost_joint
+
+   !> What becomes of a joint that has lost its axial load.
+   subroutine fall_of(self, i, fall)
+      class(spring_planes), intent(in) :: self
+      integer, intent(in) :: i
+      type(layer_fall), intent(out) :: fall
+
+      select type (rule => self%slot(i)%rule)
+      class is (layered_rule)
+         call find_fall(rule%layers, fall)
+      end select
+   end subroutine fall_of
 
    !> Openings of n joints at the middle of their sections [m], then the rotations from which they count
    !> theirs [rad]; zero for a joint that is not layered. Without room nothing is filled.

@@ -1,22 +1,25 @@
 !> What is reported of a run besides its rows.
 module rbs_output_summary
+   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use rbs_base_kinds, only: wp
+   use rbs_hysteresis_layer_fall, only: layer_fall
    use rbs_output_row, only: row_input, row_kinetic, row_spring, row_damping, row_residual
    implicit none
    private
 
    public :: summary_type, summary_size, summary_names, summary_units, figure_names
 
-   integer, parameter :: summary_size = 18
+   integer, parameter :: summary_size = 22
 
    !> Names of the figures of `as_array`, and their SI units.
    character(len=26), parameter :: summary_names(summary_size) = [character(len=26) :: &
       'steps', 'rows', 'events', 'time_step', 'stable_step', 'peak_displacement', 'peak_force', &
       'displacement_at_peak_force', 'peak_base_shear', 'input_energy', 'spring_energy', 'damping_energy', &
       'energy_residual', 'relative_energy_residual', 'peak_rotation', 'cut_steps', 'collapsed', &
-      'lost_joint']
+      'lost_joint', 'lost_axial_load', 'axial_capacity', 'fall', 'fall_energy']
    character(len=4), parameter :: summary_units(summary_size) = [character(len=4) :: &
-      '', '', '', 's', 's', 'm', 'N', 'm', 'N', 'J', 'J', 'J', 'J', '', 'rad', '', '', '']
+      '', '', '', 's', 's', 'm', 'N', 'm', 'N', 'J', 'J', 'J', 'J', '', 'rad', '', '', '', &
+                                                             'N', 'N', 'm', 'J']
 
    type :: summary_type
       !> Steps or increments taken, rows offered to the recorder, lines that springs have left
@@ -39,6 +42,9 @@ module rbs_output_summary
       logical :: collapsed = .false.
       !> Joint whose layers could not carry the axial load any more, where the analysis ended; 0: none
       integer :: lost_joint = 0
+      !> The axial load that it lost and what its layers can carry at that rotation, compression positive [N];
+      !> how far it falls before it rests, elongation positive [m], and the energy set free [J]
+      type(layer_fall) :: fall
       !> Method that was used and, if the program chose it, why
       character(len=20) :: method = ''
       character(len=200) :: reason = ''
@@ -47,6 +53,7 @@ module rbs_output_summary
    contains
       procedure :: see_peak
       procedure :: see_base
+      procedure :: see_fall
       procedure :: see
       procedure :: as_array
    end type summary_type
@@ -75,6 +82,14 @@ contains
       if (abs(shear) > abs(self%peak_base_shear)) self%peak_base_shear = shear
    end subroutine see_base
 
+   !> Take the fall of the joint that lost its axial load into account.
+   pure subroutine see_fall(self, fall)
+      class(summary_type), intent(inout) :: self
+      type(layer_fall), intent(in) :: fall
+
+      self%fall = fall
+   end subroutine see_fall
+
    !> Take the energies of a kept row into account.
    pure subroutine see(self, row)
       class(summary_type), intent(inout) :: self
@@ -99,7 +114,9 @@ contains
                 self%peak_base_shear, self%input, self%spring, self%damping, self%residual, &
                 self%residual/max(self%largest, tiny(1.0_wp)), self%peak_rotation, &
                 real(self%cut_steps, wp), merge(1.0_wp, 0.0_wp, self%collapsed), &
-                real(self%lost_joint, wp)]
+                real(self%lost_joint, wp), self%fall%axial_load, self%fall%capacity, &
+                self%fall%drop, self%fall%freed]
+      if (.not. self%fall%rests) values(summary_size - 1:) = ieee_value(1.0_wp, ieee_quiet_nan)
    end function as_array
 
    !> Names of the figures in their order, separated by blanks.

@@ -6,6 +6,7 @@ module rbs_solve_static_path
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, joint_name, small
+   use rbs_hysteresis_layer_fall, only: layer_fall
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_observer, only: observer_type
    use rbs_output_recorder, only: recorder_type
@@ -159,6 +160,7 @@ contains
       !> Told now and then how far the path is
       class(observer_type), intent(inout), optional :: progress
       type(error_type), allocatable :: failure
+      type(layer_fall) :: fall
       real(wp), allocatable :: row(:)
       real(wp) :: height
       logical :: may_collapse
@@ -172,6 +174,10 @@ contains
       do i = 1, size(target)
          call self%advance(target(i), failure)
          summary%lost_joint = max(self%springs%lost_joint() - self%column%n, 0)
+         if (summary%lost_joint > 0) then
+            call self%springs%fall_of(self%column%n + summary%lost_joint, fall)
+            call summary%see_fall(fall)
+         end if
          ! Where a joint has lost its axial load, that is what ends the path.
          if (summary%lost_joint > 0 .and. allocated(failure)) deallocate (failure)
          if (allocated(failure)) failure%message = 'row '//to_text(i)//': '//failure%message

@@ -7,6 +7,7 @@ module rbs_solve_time_march
    use rbs_column_column, only: column_type, joint_name
    use rbs_column_energy, only: kinetic_energy, potential_energy
    use rbs_column_top, only: top_position, top_displacement
+   use rbs_hysteresis_layer_fall, only: layer_fall
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_output_observer, only: observer_type
    use rbs_output_recorder, only: recorder_type
@@ -58,6 +59,7 @@ contains
       !> Told now and then how far the run is
       class(observer_type), intent(inout), optional :: progress
       type(state_type) :: state
+      type(layer_fall) :: fall
       real(wp), allocatable :: row(:)
       real(wp) :: begin, finish, displacement, furthest, h
       integer :: interval, part, parts, step, next_row
@@ -105,6 +107,10 @@ contains
             call summary%see_peak(displacement, state%load(lateral))
             summary%collapsed = abs(displacement) >= furthest
             ends = summary%collapsed .or. summary%lost_joint > 0
+            if (summary%lost_joint > 0) then
+               call state%springs%fall_of(column%n + summary%lost_joint, fall)
+               call summary%see_fall(fall)
+            end if
             if (ends .or. step == next_row .or. &
                 (every == unset_integer .and. part == parts)) then
                summary%steps = stepper%steps

@@ -1,0 +1,110 @@
+!> What becomes of a joint whose layers can no longer carry its axial load: the load that they can carry at
+!> that rotation, and where the joint comes to rest if it falls, if it does.
+!>
+!> At a fixed rotation the joint closes (or opens, where tension is lost) from end to end of the lines of its
+!> layers. It rests at the first point at which the layers carry the load again and their stiffness ahead is
+!> positive; what the load does on the way beyond the work of the layers is set free.
+module rbs_hysteresis_layer_fall
+   use rbs_base_kinds, only: wp
+   use rbs_hysteresis_layers, only: layer_bank
+   implicit none
+   private
+
+   public :: layer_fall, find_fall
+
+   !> A step beyond this is none, and lines without length that one layer may pass at one point.
+   real(wp), parameter :: no_step = 1.0e100_wp
+   integer, parameter :: most_lines = 8
+   !> A load that is missing by less than this share is carried.
+   real(wp), parameter :: carried = 1.0e-12_wp
+
+   type :: layer_fall
+      !> Axial load that was lost, and the largest that the layers carry at the rotation, compression positive
+      !> [N]
+      real(wp) :: axial_load = 0.0_wp, capacity = 0.0_wp
+      !> Whether the joint comes to rest; its change of opening then [m], and the energy set free [J]
+      logical :: rests = .false.
+      real(wp) :: drop = 0.0_wp, freed = 0.0_wp
+      !> Moment there [N m]
+      real(wp) :: moment = 0.0_wp
+   end type layer_fall
+
+contains
+
+   !> Let a copy of a joint fall from where it stands.
+   subroutine find_fall(bank, fall)
+      type(layer_bank), intent(in) :: bank
+      type(layer_fall), intent(out) :: fall
+      type(layer_bank) :: copy
+      real(wp) :: begin, gain, most, work, step, next, scale
+      integer :: event, i, way
+
+      copy = bank
+      way = bank%failure_way
+      if (way == 0) way = merge(-1, 1, bank%axial_load >= 0.0_wp)
+      fall%axial_load = bank%axial_load
+      begin = copy%opening
+      scale = carried*(abs(bank%axial_load) + bank%stiffness*bank%largest)
+      most = 0.0_wp
+      work = 0.0_wp
+      do event = 1, 1000 + 1000*copy%count
+         call go_on(copy, way)
+         ! What the layers carry beyond the load; it grows with their stiffness.
+         gain = beyond_load(copy, way)
+         step = no_step
+         do i = 1, copy%count
+            associate (d => copy%deformation(i))
+               step = min(step, merge(copy%hi(i) - d, d - copy%lo(i), way > 0))
+            end associate
+         end do
+         if (.not. fall%rests .and. abs(copy%opening - begin) > 0.0_wp .and. copy%a > 0.0_wp) then
+            next = max(-gain, 0.0_wp)/copy%a
+            if (-gain <= scale) next = 0.0_wp
+            if (next <= step) then
+               fall%rests = .true.
+               fall%drop = copy%opening + way*next - begin
+               fall%moment = copy%moment_0 + copy%s*(begin + fall%drop) + copy%q*copy%rotation
+               fall%freed = -fall%axial_load*fall%drop - (work + way*next*tension(copy, 0.5_wp*way*next))
+            end if
+         end if
+         most = max(most, gain)
+         if (.not. step < no_step) exit
+         work = work + way*step*tension(copy, 0.5_wp*way*step)
+         copy%opening = copy%opening + way*step
+         copy%largest = max(copy%largest, abs(copy%opening) + copy%reach*abs(copy%rotation))
+      end do
+      fall%capacity = fall%axial_load - way*most
+   end subroutine find_fall
+
+   !> Put every layer on the line on which it goes on in a direction.
+   subroutine go_on(copy, way)
+      type(layer_bank), intent(inout) :: copy
+      integer, intent(in) :: way
+      integer :: i, lines
+
+      do i = 1, copy%count
+         do lines = 1, most_lines
+            if (.not. (copy%line(i)%one_way == -way .or. copy%has_no_room(i, way))) exit
+            call copy%leave(i, way)
+         end do
+      end do
+      call copy%sum_up()
+   end subroutine go_on
+
+   !> Force of the layers, tension positive, a way beyond the present opening [N].
+   pure real(wp) function tension(copy, further)
+      type(layer_bank), intent(in) :: copy
+      real(wp), intent(in) :: further
+
+      tension = copy%force_0 + copy%a*(copy%opening + further) + copy%s*copy%rotation
+   end function tension
+
+   !> What the layers carry beyond the axial load, in the direction of the fall [N].
+   pure real(wp) function beyond_load(copy, way)
+      type(layer_bank), intent(in) :: copy
+      integer, intent(in) :: way
+
+      beyond_load = way*(tension(copy, 0.0_wp) + copy%axial_load)
+   end function beyond_load
+
+end module rbs_hysteresis_layer_fall
