@@ -50,6 +50,7 @@ module rbs_hysteresis_inner_peaks
       type(inner_peak), allocatable :: peak(:)
    contains
       procedure :: push
+      procedure :: take
       procedure :: newest_of_side
       procedure :: place_of
    end type inner_peaks
@@ -81,6 +82,24 @@ contains
       self%last_serial = self%last_serial + 1_int64
       self%peak(self%count) = inner_peak(side, self%last_serial, at, left)
    end subroutine push
+
+   !> Become a copy of another, in the room that is there if it is enough.
+   pure subroutine take(self, other)
+      class(inner_peaks), intent(inout) :: self
+      type(inner_peaks), intent(in) :: other
+      integer :: i
+
+      self%count = other%count
+      self%last_serial = other%last_serial
+      if (other%count == 0) return
+      if (allocated(self%peak)) then
+         if (size(self%peak) < other%count) deallocate (self%peak)
+      end if
+      if (.not. allocated(self%peak)) allocate (self%peak(size(other%peak)))
+      do i = 1, other%count
+         self%peak(i) = other%peak(i)
+      end do
+   end subroutine take
 
    !> Place of the newest peak on a side, 0 if there is none.
    pure integer function newest_of_side(self, side) result(place)

@@ -84,6 +84,7 @@ module rbs_hysteresis_takeda
       procedure :: check
       procedure :: start
       procedure :: next
+      procedure :: copy_memory
    end type takeda_rule
 
 contains
@@ -439,5 +440,25 @@ contains
                              one_way=.true.)
       end associate
    end subroutine reload
+
+   !> Copy the memory of another spring of this rule and its parameters.
+   pure subroutine copy_memory(self, other, done)
+      class(takeda_rule), intent(inout) :: self
+      class(rule_type), intent(in) :: other
+      logical, intent(out) :: done
+
+      done = .false.
+      select type (other)
+      type is (takeda_rule)
+         self%branch = other%branch
+         self%side = other%side
+         self%cracked = other%cracked
+         self%peak = other%peak
+         self%k_r = other%k_r
+         self%aim = other%aim
+         call self%open%take(other%open)
+         done = .true.
+      end select
+   end subroutine copy_memory
 
 end module rbs_hysteresis_takeda

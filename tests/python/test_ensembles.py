@@ -218,13 +218,17 @@ def test_lanes_have_the_bits_of_a_run_alone(settings: dict) -> None:
     columns = [column(mass) for mass in (2e3, 10e3, 30e3, 80e3)]
     stiff = rbsdem.Elastic(7e9)
     columns.append(rbsdem.Column(1.6, 600.0, stiff, columns[0].flexure))
+    capped = rbsdem.PeakOriented(
+        d_y=1.3e-3, f_y=9.1e4, d_cap=5e-3, f_cap=9.4e4, d_pc=0.05, f_res=2e4, lambda_h=20, s_min=0.3
+    )
+    columns.append(rbsdem.Column(1.6, 3e3, capped, columns[0].flexure))
     motions = [
         Motion(0, *motion(1)),
         Motion(1, *motion(2, 150, 0.02)),
         Motion(2, np.array([0.0, 1.0]), np.array([0.0, 2.0])),
     ]
     scales = np.array([0.0, 0.1, 0.5, 1.0, 3.0, 10.0, 100.0])
-    grid = np.meshgrid(np.arange(5), np.arange(3), np.arange(7), indexing="ij")
+    grid = np.meshgrid(np.arange(6), np.arange(3), np.arange(7), indexing="ij")
     place = [axis.ravel().astype(np.int32) for axis in grid]
     task = Task(columns, motions, settings, place[0], place[1], scales[place[2]])
     alone = compute(task, kernel=-1)

@@ -407,7 +407,7 @@ contains
       class(implicit_stepper), intent(inout) :: stepper
       integer :: i
 
-      call stepper%one_body%fit(stepper%step, stepper%tangent, state, x%h(l))
+      call stepper%one_body%fit(stepper%step, state, x%h(l))
       do i = 1, 2
          x%v0(l, i) = stepper%step%v0(i)
          x%a0(l, i) = stepper%step%a0(i)
