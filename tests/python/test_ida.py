@@ -162,6 +162,26 @@ def test_several_columns_split_the_variance(records):
     assert split.total > 0
 
 
+def test_a_column_that_cannot_tell_when_it_yields(column, records, hunted):
+    """An elastic column never does; the yield is no collapse either."""
+    with pytest.raises(InputError, match="no spring yielded in any run"):
+        hunted.fragility("first_yield")
+
+
+def test_the_first_yield_is_bracketed(records):
+    """The base yields where its elastic moment is that of the spring, within 5 % of intensity."""
+    found = rbsdem.ida(softening(), records, method="newmark", levels=Hunt(points=3))
+    data = found.capacities("first_yield")
+    assert data.known
+    assert (data.upper < found.lower[0]).all()
+    for place, record in enumerate(records):
+        at = data.values[place] / record.sa(found.runs.measure.period)
+        result = rbsdem.time_history(
+            softening(), ground_acceleration=record.scaled(at), method="newmark"
+        )
+        assert np.abs(result.rotation).max() == pytest.approx(0.004, rel=0.05)
+
+
 def test_the_scale_of_the_records_does_not_matter(column, records, hunted):
     strong = [record.scaled(7.0) for record in records[:2]]
     found = rbsdem.ida(column, strong, collapse_drift=0.05, **SETTINGS)

@@ -69,6 +69,7 @@ class Hunt:
             value = _core.number(getattr(self, name), f"hunt: {name}")
             if not least < value <= most:
                 faults.append(f"hunt: {name} = {value:g} must be above {least:g}, at most {most:g}")
+        _core.switch(self.yielding, "hunt: yielding")
         if _core.whole(self.points, "hunt: points") < 1 or self.points > 1000:
             faults.append(f"hunt: points = {self.points} must be from 1 to 1000")
         if not faults and self.first > self.highest:
@@ -102,7 +103,9 @@ def hunt_and_fill(work: Collector, hunt: Hunt) -> tuple[Array, Array]:
             break
         # A gap that was filled held a collapse at a lower intensity.
         _narrow(work, hunt, low, high)
-    if _core.switch(hunt.yielding, "hunt: yielding") and _YIELD in work.parts[0]:
+    # Layered joints have no one yield point.
+    known = any(_YIELD in part and np.isfinite(part[_YIELD]).any() for part in work.parts)
+    if hunt.yielding and known:
         _narrow_yield(work, low)
     return low, high
 

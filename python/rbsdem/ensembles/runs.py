@@ -90,6 +90,11 @@ class Runs:
             )
         values = self.measures[edp]
         if edp == "first_yield":
+            if not np.isfinite(values).any():
+                raise InputError(
+                    "edp = 'first_yield': no spring yielded in any run, or its joints have no one "
+                    "yield point, as layered ones; give a drift as the limit state"
+                )
             values = np.isfinite(values).astype(float)
         return np.where(self.collapsed, np.inf, np.abs(values))
 
