@@ -2,7 +2,7 @@
 module rbs_hysteresis_layer_choice
    use rbs_base_constants, only: unbounded
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_layer_kernels, only: look_along
+   use rbs_hysteresis_layer_kernels, only: look_along, look_back
    use rbs_hysteresis_layer_lines, only: layer_lines, no_rate
    implicit none
    private
@@ -115,7 +115,7 @@ contains
          call look_along(self%count, self%y, self%k, self%lo, self%hi, self%slack, self%one_way, &
                          self%both_ways, self%opening, self%rotation, self%open, self%turn, &
                          self%least_rate(self%open, self%turn), self%room_in_digits(), self%ahead, &
-                         self%behind, ends%ahead, ends%behind, least_room, ends%one_way, ends%stiffness)
+                         ends%ahead, least_room, ends%one_way, ends%stiffness)
       end associate
    end subroutine look_ahead
 
@@ -127,6 +127,7 @@ contains
       associate (ends => self%ends)
          ends%first_ahead = 0
          ends%first_behind = 0
+         ends%behind = 0.0_wp
          if (ends%ahead < beyond) then
             do i = 1, self%count
                if (self%ahead(i) <= ends%ahead) exit
@@ -136,14 +137,15 @@ contains
          else
             ends%ahead = unbounded
          end if
-         if (ends%one_way) then
-            ends%behind = 0.0_wp
-         else if (-ends%behind < beyond) then
+         if (ends%one_way) return
+         call look_back(self%count, self%y, self%lo, self%hi, self%opening, self%rotation, self%open, &
+                        self%turn, self%least_rate(self%open, self%turn), self%behind, ends%behind)
+         if (ends%behind < beyond) then
             do i = 1, self%count
-               if (self%behind(i) >= ends%behind) exit
+               if (self%behind(i) <= ends%behind) exit
             end do
             ends%first_behind = i
-            ends%behind = max(-ends%behind, 0.0_wp)
+            ends%behind = max(ends%behind, 0.0_wp)
          else
             ends%behind = unbounded
          end if

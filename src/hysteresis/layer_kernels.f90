@@ -5,7 +5,7 @@ module rbs_hysteresis_layer_kernels
    implicit none
    private
 
-   public :: add_lines, look_along
+   public :: add_lines, look_along, look_back
 
    !> Added to what must not count as nearest
    real(wp), parameter :: far_away = 1.0e120_wp
@@ -37,12 +37,11 @@ contains
    end subroutine add_lines
 
    !> Look along a straight path, on which layer i is at  w + y_i phi  and moves with  v_i = open + y_i turn:
-   !> when it comes to the end of its line ahead, and when it was at the one behind.
+   !> when it comes to the end of its line ahead.
    !>
-   !> Written without branches. Of both ends divided by the rate, one lies ahead (the larger quotient) and one
-   !> behind (the smaller).
+   !> Written without branches. Of the ways to both ends divided by the rate, the larger one leads ahead.
    pure subroutine look_along(n, y, k, lo, hi, slack, one_way, both_ways, w, phi, open, turn, least_rate, &
-                              room, ahead, behind, nearest, last, least_room, any_one_way, stiffness)
+                              room, ahead, nearest, least_room, any_one_way, stiffness)
       integer, intent(in) :: n
       !> Distances, slopes and ends of the lines; finite, so that quotients do not overflow
       real(wp), intent(in) :: y(n), k(n), lo(n), hi(n)
@@ -53,10 +52,8 @@ contains
       real(wp), intent(in) :: w, phi, open, turn
       !> Rates up to this count as zero; what is added to `slack` [m]
       real(wp), intent(in) :: least_rate, room
-      !> Ways to the ends ahead, and back to those behind (negative), in units of the rates
-      real(wp), intent(out) :: ahead(n), behind(n)
-      !> The least way ahead, and the one behind that is nearest to zero
-      real(wp), intent(out) :: nearest, last
+      !> Ways to the ends, in units of the rates, and the least of them
+      real(wp), intent(out) :: ahead(n), nearest
       !> Not above zero if a layer is on the end that it goes to, or goes back on a one-way line
       real(wp), intent(out) :: least_room
       !> Whether any layer is on a one-way line
@@ -67,12 +64,11 @@ contains
       integer :: i
 
       nearest = huge(1.0_wp)
-      last = -huge(1.0_wp)
       least_room = huge(1.0_wp)
       least_both = 1.0_wp
       stiffness = 0.0_wp
       per_least = far_away/(epsilon(1.0_wp)*least_rate)
-      !$omp simd reduction(min:nearest, least_room, least_both) reduction(max:last) reduction(+:stiffness) &
+      !$omp simd reduction(min:nearest, least_room, least_both) reduction(+:stiffness) &
       !$omp private(v, size_v, d, per_v, to_lo, to_hi, still)
       do i = 1, n
          v = open + y(i)*turn
@@ -85,14 +81,34 @@ contains
          to_lo = (lo(i) - d)*per_v
          to_hi = (hi(i) - d)*per_v
          ahead(i) = max(to_lo, to_hi) + still
-         behind(i) = min(to_lo, to_hi) - still
          nearest = min(nearest, ahead(i))
-         last = max(last, behind(i))
          least_room = min(least_room, min(ahead(i) - (room + slack(i))*abs(per_v), &
                                           one_way(i)*v + both_ways(i) + still))
          least_both = min(least_both, both_ways(i))
       end do
       any_one_way = least_both < 0.5_wp
    end subroutine look_along
+
+   !> When a layer was last at the end of its line behind: the ways back, as in `look_along`.
+   pure subroutine look_back(n, y, lo, hi, w, phi, open, turn, least_rate, behind, nearest)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: y(n), lo(n), hi(n), w, phi, open, turn, least_rate
+      !> Ways back, in units of the rates, and the least of them
+      real(wp), intent(out) :: behind(n), nearest
+      real(wp) :: v, size_v, d, per_v, per_least
+      integer :: i
+
+      nearest = huge(1.0_wp)
+      per_least = far_away/(epsilon(1.0_wp)*least_rate)
+      !$omp simd reduction(min:nearest) private(v, size_v, d, per_v)
+      do i = 1, n
+         v = open + y(i)*turn
+         d = w + y(i)*phi
+         size_v = abs(v)
+         per_v = 1.0_wp/sign(max(size_v, least_rate), v)
+         behind(i) = max((d - lo(i))*per_v, (d - hi(i))*per_v) + max(0.0_wp, least_rate - size_v)*per_least
+         nearest = min(nearest, behind(i))
+      end do
+   end subroutine look_back
 
 end module rbs_hysteresis_layer_kernels

@@ -103,7 +103,7 @@ contains
       real(wp), intent(out) :: way
       !> The layer, 0 for none
       integer, intent(out) :: first
-      real(wp) :: ahead(block), behind(block), opening, open, nearest, last, least_room, stiffness
+      real(wp) :: ahead(block), opening, open, nearest, least_room, stiffness
       integer :: i, begin, n
       logical :: one_way
 
@@ -118,7 +118,7 @@ contains
             call look_along(n, self%y(begin:finish), self%k(begin:finish), self%lo(begin:finish), &
                             self%hi(begin:finish), self%slack(begin:finish), self%one_way(begin:finish), &
                             self%both_ways(begin:finish), opening, rotation, open, turn, &
-                            self%least_rate(open, turn), 0.0_wp, ahead, behind, nearest, last, least_room, &
+                            self%least_rate(open, turn), 0.0_wp, ahead, nearest, least_room, &
                             one_way, stiffness)
          end associate
          if (.not. nearest < min(way, beyond)) cycle

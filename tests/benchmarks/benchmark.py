@@ -191,6 +191,8 @@ def crossing(repeats: int) -> list[Row]:
 
 
 INSIDE = (
+    ("joint_event", "joint of 30 layers, an event", "ns", 300),
+    ("joint_step", "joint of 30 layers, a step without event", "ns", 60),
     ("static", "static, N = 1", "ns/increment", None),
     ("rk4_small", "RK4, N = 1, small", "ns/step", 250),
     ("rk4_pdelta", "RK4, N = 1, pdelta", "ns/step", 250),

@@ -16,7 +16,7 @@ program time_solver
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
-   use rbs_hysteresis_springs, only: follow_path
+   use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_output_recorder, only: array_recorder
    use rbs_output_row, only: row_size
    use rbs_output_summary, only: summary_type
@@ -58,6 +58,7 @@ contains
 
       call time_spring('spring_smooth', .true.)
       call time_spring('spring_random', .false.)
+      call time_joint()
       call time_static()
       call time_rk4('rk4_small', 'small', 1)
       call time_rk4('rk4_pdelta', 'pdelta', 1)
@@ -171,6 +172,68 @@ contains
       call follow_path(paper_flexure(), d, f)
       call tell(what, begin, m)
    end subroutine time_spring
+
+   !> A joint of 28 strips of concrete and two rows of bars under growing cycles: per event, and per step of a
+   !> motion so small that nothing happens.
+   subroutine time_joint()
+      integer, parameter :: strips = 28, cycles = 40
+      type(spring_record) :: joint(1), layer(strips + 2)
+      type(spring_array) :: spring
+      real(wp) :: y(strips + 2), begin, turning
+      integer :: i, m, events, run, runs
+
+      do i = 1, strips
+         y(i) = 0.4_wp*((i - 0.5_wp)/strips - 0.5_wp)
+         layer(i)%rule = 'concrete'
+         call layer(i)%set('k', 1.6e10_wp/strips)
+         call layer(i)%set('f_peak', 4.8e6_wp/strips)
+         call layer(i)%set('d_peak', 6.0e-4_wp)
+         call layer(i)%set('k_soft', 3.0e8_wp/strips)
+         call layer(i)%set('f_res', 1.5e6_wp/strips)
+         call layer(i)%set('contact', 0.35_wp)
+         call layer(i)%set('misfit', 0.4_wp)
+         call layer(i)%set('wear', 0.03_wp)
+      end do
+      y(strips + 1:) = [-0.16_wp, 0.16_wp]
+      do i = strips + 1, strips + 2
+         layer(i)%rule = 'steel'
+         call layer(i)%set('k', 8.0e8_wp)
+         call layer(i)%set('f_y', 7.2e5_wp)
+         call layer(i)%set('k_post', 8.0e6_wp)
+      end do
+      joint(1)%rule = 'layered'
+      joint(1)%axial_load = 7.0e5_wp
+      call joint(1)%set_layers(y, layer)
+
+      runs = max(50/divisor, 2)
+      call spring%create(joint)
+      events = 0
+      turning = 0.0_wp
+      do run = 1, runs
+         call spring%create(joint)
+         call cpu_time(begin)
+         turning = turning - begin
+         do i = 1, cycles
+            call spring%move(1, 0.03_wp*i/cycles)
+            call spring%move(1, -0.03_wp*i/cycles)
+         end do
+         call cpu_time(begin)
+         turning = turning + begin
+         events = events + spring%events
+      end do
+      write (output_unit, '(a, 1x, f0.3)') 'joint_event', 1.0e9_wp*turning/events
+
+      ! From the last turn a little way back, and to and fro there.
+      m = max(1000000/divisor, 1000)
+      call spring%move(1, -0.0299_wp)
+      events = spring%events
+      call cpu_time(begin)
+      do i = 1, m
+         call spring%move_all([-0.0299_wp + 1.0e-9_wp*modulo(i, 100)])
+      end do
+      call tell('joint_step', begin, m)
+      write (output_unit, '(a, 1x, f0.3)') 'joint_step_lines', 1000.0_wp*(spring%events - events)/m
+   end subroutine time_joint
 
    !> Static cyclic path of one body, driven by displacement, per increment.
    subroutine time_static()
