@@ -27,7 +27,7 @@ VIEWS = {
     "table",
     "tables",
 }
-VIEWS |= {"interaction_figure", "view"}
+VIEWS |= {"interaction_figure", "state_figure", "view"}
 MAY_IMPORT_VIEWS = {"__init__", "__main__", "command"} | VIEWS
 
 

@@ -9,10 +9,11 @@ from dataclasses import replace
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from matplotlib.patches import Circle
 from rich.console import Console
 
 import rbsdem
-from rbsdem import InputError
+from rbsdem import InputError, plot
 
 SECTION = rbsdem.paper_sections()["zahn_7"].section
 COLUMN = SECTION.column(1.6, axial_load=1.01e6)
@@ -118,3 +119,21 @@ def test_tables_and_figure():
     plt.close(ax.figure)
     with pytest.raises(KeyError, match="not reached"):
         states["axial_failure"]
+
+
+def test_state_of_the_section():
+    """At the largest drift the bars in tension are beyond buckling, those in compression yield."""
+    row = int(np.argmax(RESULT.displacement))
+    section, strains = plot.section_state(RESULT, float(RESULT.time[row]))
+    value = RESULT.strains(1).value[row]
+    bars = RESULT.strains(1).part == "bar"
+    assert strains.get_lines()[1].get_xdata() == pytest.approx(100 * value[bars])
+    faces = [patch.get_facecolor()[0] for patch in section.patches if isinstance(patch, Circle)]
+    assert len(faces) == len(SECTION.bars)
+    assert faces.count(0.0) == 4
+    plt.close(section.figure)
+    with pytest.raises(InputError, match="outside"):
+        plot.section_state(RESULT, 1e9)
+    spring = rbsdem.cyclic(rbsdem.paper_columns()["zahn_7"], displacement=[0.0, 0.01])
+    with pytest.raises(InputError, match="not made from a section"):
+        plot.section_state(spring, 0.0)

@@ -2,6 +2,7 @@
 
 from rbsdem.limit_states import figure as figure
 from rbsdem.limit_states import find as find
+from rbsdem.limit_states import state_figure as state_figure
 from rbsdem.limit_states import table as table
 from rbsdem.limit_states.record import LimitState, LimitStates
 

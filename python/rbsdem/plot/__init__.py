@@ -6,7 +6,7 @@ style, the dictionary `RC`; axes that are given keep the style of the caller.
 """
 
 from rbsdem.plot.loops import Panel, four_panels, loop, loops_over_test
-from rbsdem.plot.response import energy, history, profile
+from rbsdem.plot.response import energy, history, profile, section_state
 from rbsdem.plot.style import (
     MODEL_LINE,
     RC,
@@ -38,6 +38,7 @@ __all__ = [
     "new_axes",
     "profile",
     "save",
+    "section_state",
     "style",
     "style_of",
 ]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _core
+from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem.errors import InputError
 from rbsdem.plot.style import MODEL_LINE, ZERO_LINE, axes_or_new, line_of, new_axes, style_of
@@ -17,7 +17,7 @@ from rbsdem.result import ENERGIES, Result
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["energy", "history", "profile"]
+__all__ = ["energy", "history", "profile", "section_state"]
 
 Over = Literal["displacement", "drift", "force", "base_shear", "base_moment"]
 
@@ -187,6 +187,35 @@ def profile(
         axes[0].set_ylabel("Height (m)")
         axes[0].legend(loc="best", handlelength=2.0)
     return list(axes)
+
+
+def section_state(result: Result, time: float, *, axes: Sequence[Axes] | None = None) -> list[Axes]:
+    """Draw the hinge's section with its layers by state, and the strains over its depth.
+
+    Parameters
+    ----------
+    result : Result
+        Of a column that was made from a section, with its openings (``openings=True``).
+    time : float
+        The moment [s], or point of a static path; the nearest row is drawn.
+    axes : sequence of 2 matplotlib Axes, optional
+        Where to draw; a new figure without it.
+
+    Returns
+    -------
+    list of matplotlib.axes.Axes
+        For the section and the strains.
+
+    Raises
+    ------
+    InputError
+        If the column was not made from a section, the openings were not kept, or the moment is
+        outside of the rows.
+    ImportError
+        If matplotlib is not installed.
+    """
+    found: list[Axes] = _views.view(result, "section_state", time, axes)
+    return found
 
 
 def _lengths(result: Result) -> Array:
