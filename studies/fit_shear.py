@@ -61,7 +61,7 @@ class Case:
         force = self.force(rbsdem.Elastic(foot.f_c / foot.d_c))
         self.without = rms(self.target.error(force))
         self.failed = specimen.failure_mode != "Flexure"
-        strength = foot.f_y / parameters().shear.strength
+        strength = foot.f_y / parameters("2026.2").shear.strength
         self.near = float(np.max(np.abs(force), initial=0.0)) > NEAR * strength
 
     def force(self, foot: rbsdem.springs.Spring) -> np.ndarray:
@@ -79,7 +79,7 @@ class Case:
 def parameters_at(place: np.ndarray) -> ShearParameters:
     """Return the parameters of a place from -inf to inf in each direction."""
     values = np.exp(LOW + (HIGH - LOW) / (1 + np.exp(-place)))
-    return replace(parameters().shear, **dict(zip(BOUNDS, values.tolist(), strict=True)))
+    return replace(parameters("2026.2").shear, **dict(zip(BOUNDS, values.tolist(), strict=True)))
 
 
 def place_of(given: ShearParameters) -> np.ndarray:
@@ -99,7 +99,7 @@ def fit(cases: list[Case], evaluations: int) -> ShearParameters:
         harm = [max(0.0, case.score(given) - case.without) for case in other]
         return float(np.mean([case.score(given) for case in shear]) + HARM * np.mean(harm or [0.0]))
 
-    start = place_of(parameters().shear)
+    start = place_of(parameters("2026.2").shear)
     simplex = np.vstack([start, start - 0.8 * np.diag(np.sign(start))])
     options = {"initial_simplex": simplex, "maxfev": evaluations, "adaptive": True}
     return parameters_at(minimize(loss, start, method="Nelder-Mead", options=options).x)

@@ -11,6 +11,7 @@ from rbsdem import _moved
 from rbsdem.peer import contact_sheet as contact_sheet
 from rbsdem.peer import gallery as gallery
 from rbsdem.peer import tables as tables
+from rbsdem.peer.bands import Neighbour, band, nearest
 from rbsdem.peer.batch import predict, predict_one
 from rbsdem.peer.columns import column
 from rbsdem.peer.doubts import Checked, Doubt, check
@@ -42,6 +43,7 @@ __all__ = [
     "Group",
     "Indicators",
     "MeasuredTest",
+    "Neighbour",
     "Observed",
     "PeerTest",
     "Prediction",
@@ -50,12 +52,14 @@ __all__ = [
     "Reversals",
     "Specimen",
     "Specimens",
+    "band",
     "check",
     "column",
     "draw",
     "find_history",
     "indicators",
     "measured_loops",
+    "nearest",
     "net_force",
     "predict",
     "predict_one",

@@ -8,6 +8,7 @@ positive in compression, y is positive to the face that a positive curvature put
 from rbsdem.section import figure as figure
 from rbsdem.section import interaction_figure as interaction_figure
 from rbsdem.section import shear_figure as shear_figure
+from rbsdem.section import spread_figure as spread_figure
 from rbsdem.section.circular import CircularSection
 from rbsdem.section.diagram import Confinement, Diagram, Events, Point
 from rbsdem.section.hollow import HollowCircularSection, HollowRectangularSection
@@ -23,9 +24,11 @@ from rbsdem.section.parameters import (
 )
 from rbsdem.section.rectangular import RectangularSection
 from rbsdem.section.reinforcement import Bar, Layout, Spiral, Ties
+from rbsdem.section.scatter import Scatter
 from rbsdem.section.section import Section
 from rbsdem.section.shear_diagram import ShearDiagram
 from rbsdem.section.shear_spring import ShearSpring
+from rbsdem.section.spread import Interval, Spread
 from rbsdem.section.spring_fit import SectionSprings
 
 __all__ = [
@@ -40,18 +43,21 @@ __all__ = [
     "HollowCircularSection",
     "HollowRectangularSection",
     "InteractionDiagram",
+    "Interval",
     "LayeredColumn",
     "LayeredModel",
     "Layout",
     "ModelParameters",
     "Point",
     "RectangularSection",
+    "Scatter",
     "Section",
     "SectionSprings",
     "ShearDiagram",
     "ShearParameters",
     "ShearSpring",
     "Spiral",
+    "Spread",
     "Steel",
     "Ties",
     "parameters",

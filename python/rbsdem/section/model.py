@@ -13,6 +13,8 @@ from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
+from numpy.typing import ArrayLike
+
 from rbsdem import _core
 from rbsdem.column import Column
 from rbsdem.errors import AccuracyWarning, InputError
@@ -20,7 +22,9 @@ from rbsdem.parameter import Parameter
 from rbsdem.section.hinge import HingeJoint, hinge_joint
 from rbsdem.section.parameters import ModelParameters, parameters
 from rbsdem.section.ranges import axial_load_note, column_length
+from rbsdem.section.scatter import RANGE, Scatter
 from rbsdem.section.shear_model import shear_limits, shear_spring
+from rbsdem.section.spread import Spread, spread
 from rbsdem.section.spring_fit import fit_springs
 from rbsdem.springs import Elastic, Spring
 from rbsdem.strains import Gauge
@@ -403,6 +407,57 @@ class LayeredColumn(Column):
         if joint != 1 or self.joints("flexure")[0] != hinge.spring:
             return None
         return hinge.gauge
+
+    @property
+    def outside(self) -> tuple[str, ...]:
+        """Where the column is outside the range of the tests that the model was fitted to."""
+        recipe = self._recipe
+        section = recipe.section
+        values = {
+            "axial load ratio": recipe.axial_load / (section.gross_area * section.concrete.fc),
+            "concrete strength": section.concrete.fc,
+            "shear span over depth": self.height / section.depth,
+        }
+        if section.ties is not None and section.bar_diameter:
+            values["tie spacing over bar diameter"] = section.ties.spacing / section.bar_diameter
+        return tuple(
+            f"{name} = {value:.3g} is outside {RANGE[name][0]:g} to {RANGE[name][1]:g}, the range "
+            "of the tests that the model was fitted to"
+            for name, value in values.items()
+            if not RANGE[name][0] <= value <= RANGE[name][1]
+        )
+
+    def spread(
+        self, displacement: ArrayLike, *, samples: int = 16, scatter: Scatter | None = None
+    ) -> Spread:
+        """Predict the force along a path, with the band that holds 80 % of left-out tests.
+
+        Parameters
+        ----------
+        displacement : array_like, shape (m,)
+            Displacement of the top [m].
+        samples : int, optional
+            How many samples of strength, stiffness and degradation go through the model; 8 or more,
+            best a power of 2.
+        scatter : Scatter, optional
+            Another scatter than that of the version.
+
+        Returns
+        -------
+        Spread
+            Prediction, band, intervals of largest force, work and drift at 20 % loss, remarks.
+
+        Raises
+        ------
+        InputError
+            If the path does not change, or nobody knows the scatter of the version.
+
+        Warns
+        -----
+        AccuracyWarning
+            Where the column is outside the range of the tests.
+        """
+        return spread(self, displacement, samples=samples, scatter=scatter)
 
     def _kept(self, field: str) -> bool:
         """Whether what the model made was replaced by something else."""

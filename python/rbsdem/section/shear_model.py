@@ -132,10 +132,6 @@ def _shear(
     sizes = shear_sizes(section)
     # A section without bars in tension, which has no strength, still needs a spring with one.
     by_theory = shear_strength_mcft(section, length, axial_load)
-    # Near the foot a strut carries part of the force straight into it.
-    by_theory *= max(1.0, 2.5 * sizes.d / length) ** given.squat
-    if section.ties is not None and section.ties.is_round:
-        by_theory *= given.round
     least = 1e-4 * sizes.fc * sizes.gross_area
     f_y = max(given.strength * by_theory, least)
     f_cap = max(given.hardening, 1.0) * f_y
@@ -148,16 +144,17 @@ def _shear(
     d_y = d_c + (f_y - f_c) / cracked
     # Behind yield it may not go up steeper than before.
     least_rise = 1.01 * (f_cap - f_y) / cracked
-    # With few ties the force falls at once, and steeply.
-    ties = max(by_ties / (0.35 * f_y), 0.01)
-    cap = given.cap * min(max(ties**given.cap_ties, 0.1), 2.5)
-    rise = max(cap * length, least_rise)
-    fall = given.softening * length * min(max(ties**given.softening_ties, 0.25), 2.5)
+    rise = max(given.cap * length, least_rise)
+    fall = given.softening * length
     if given.snap_back > 0.0:
         # What falls faster than the column above springs back has no equilibrium.
         above = 3 * section.concrete_law["ec"] * section._figures["inertia"] / length**3
         fall = max(fall, f_cap / (given.snap_back * above))
-    lambda_h, s_min = _decay(section, f_y, by_ties, given, joint)
+    is_round = section.ties is not None and section.ties.is_round
+    ties = (_ROUND if is_round else 1.0) * by_ties / f_y
+    # Few ties do not hold a crack together: what the concrete carried is soon gone.
+    lasts = min(1.0, max(2.0 * ties, 0.1) ** given.endurance_ties)
+    lambda_h, s_min = _decay(section, f_y, ties, given, joint)
     limits = {
         "strength": (least / by_theory if by_theory > 0.0 else 0.0, math.inf),
         "hardening": (1.0, math.inf),
@@ -174,7 +171,7 @@ def _shear(
         f_cap=f_cap,
         d_pc=fall,
         f_res=min(given.residual * f_cap, 0.9 * f_y),
-        lambda_s=given.endurance,
+        lambda_s=given.endurance * lasts,
         kappa_f=given.pinch_force,
         kappa_d=given.pinch_slip,
         lambda_h=lambda_h / (f_y * d_y),
@@ -186,7 +183,7 @@ def _shear(
 def _decay(
     section: Section,
     f_y: float,
-    by_ties: float,
+    ties: float,
     given: ShearParameters,
     joint: HingeJoint | None,
 ) -> tuple[float, float]:
@@ -194,10 +191,9 @@ def _decay(
     if joint is None or not given.decay > 0.0:
         return 0.0, 0.0
     sizes = shear_sizes(section)
-    is_round = section.ties is not None and section.ties.is_round
     stays = min(
         0.95,
-        given.decay_ties * (_ROUND if is_round else 1.0) * by_ties / f_y,
+        given.decay_ties * ties,
         given.decay_strut * sizes.fc * sizes.width * sizes.d / f_y,
     )
     # What is confined keeps the interlock of its cracks.

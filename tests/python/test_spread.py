@@ -1,0 +1,171 @@
+"""Bands of a prediction: their samples, their width, and what is said of columns far from tests."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from statistics import NormalDist
+
+import numpy as np
+import pytest
+
+from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties, peer
+from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.protocol import protocol
+from rbsdem.section import Scatter, parameters
+from rbsdem.section.scatter import SCATTER
+from rbsdem.section.spread import near_shear, sobol
+
+SECTION = RectangularSection(
+    0.4,
+    0.4,
+    Concrete(40e6),
+    layout=Layout(8, 0.02, Steel(450e6, 650e6)),
+    ties=Ties(0.01, 0.08, Steel(400e6), legs=3),
+    cover=0.02,
+)
+PATH = 1.6 * protocol([0.005, 0.01, 0.02], cycles=2)
+NONE = Scatter(
+    strength=0.0,
+    stiffness=0.0,
+    degradation=0.0,
+    twins=0.05,
+    force=(2.0, 4.0),
+    peak=((0.9, 1.2), (0.8, 1.6)),
+    energy=((0.5, 1.5), (0.4, 3.0)),
+    drift=((0.7, 1.4), (0.6, 2.0)),
+)
+
+
+def column(**changes: float):
+    return SECTION.column(1.6, axial_load=1.2e6).with_parameters(**changes)
+
+
+@pytest.mark.parametrize("number", [8, 16, 64])
+def test_sobol_points_are_spread_evenly(number: int) -> None:
+    """Each of n equal slices of every axis has one point, each of n equal boxes of two axes too."""
+    normal = NormalDist()
+    share = np.vectorize(normal.cdf)(sobol(number))
+    for place in range(3):
+        assert sorted(np.floor(number * share[:, place]).astype(int)) == list(range(number))
+    bits = number.bit_length() - 1
+    for first in range(bits + 1):
+        boxes = {
+            (int(a * 2**first), int(b * 2 ** (bits - first))) for a, b in share[:, :2].tolist()
+        }
+        assert len(boxes) == number
+
+
+def test_without_scatter_the_band_is_that_of_twins() -> None:
+    found = column().spread(PATH, scatter=NONE)
+    peak = np.max(np.abs(found.force))
+    np.testing.assert_allclose(found.upper - found.force, 2 * 0.05 * peak, rtol=1e-9)
+    np.testing.assert_allclose(found.force - found.lower, 2 * 0.05 * peak, rtol=1e-9)
+    np.testing.assert_array_equal(found.samples, np.tile(found.force, (16, 1)))
+    assert found.width == pytest.approx(0.2)
+
+
+def test_scatter_of_strength_is_a_factor() -> None:
+    found = column().spread(PATH, scatter=replace(NONE, strength=0.1))
+    factors = np.exp(0.1 * sobol(16)[:, 0])
+    np.testing.assert_allclose(found.samples, np.outer(factors, found.force), rtol=1e-12)
+    at = int(np.argmax(found.force))
+    top, peak = found.force[at], np.max(np.abs(found.force))
+    rise = (np.quantile(factors, 0.9) - 1) * top + 0.05 * peak
+    assert found.upper[at] - top == pytest.approx(2 * rise)
+
+
+def test_a_softer_column_is_where_the_other_is_at_a_smaller_displacement() -> None:
+    found = column().spread(PATH[:2], scatter=replace(NONE, stiffness=0.3))
+    path = PATH[:2, None] * np.exp(0.3 * sobol(16)[:, 1])
+    again = [column().spread(row, scatter=NONE).force for row in path.T]
+    np.testing.assert_allclose(found.samples, again, rtol=1e-12)
+
+
+def test_degradation_changes_late_cycles_only() -> None:
+    found = column().spread(PATH, scatter=replace(NONE, degradation=0.7))
+    range_of = np.ptp(found.samples, axis=0) / np.max(np.abs(found.force))
+    assert range_of[: PATH.size // 6].max() < 0.02 < range_of[PATH.size // 2 :].max()
+
+
+def test_intervals() -> None:
+    found = column().spread(PATH, scatter=NONE)
+    assert found.peak_force.value == np.max(np.abs(found.force))
+    assert found.peak_force.upper == pytest.approx(1.2 * found.peak_force.value)
+    assert found.energy.lower == pytest.approx(0.5 * found.energy.value)
+    # No strength is lost at this drift.
+    assert math.isnan(found.drift_at_loss.value)
+    assert str(found.peak_force).startswith(f"{found.peak_force.value:.4g} (")
+
+
+def test_outside_the_range_of_the_tests_it_says_so() -> None:
+    assert column().outside == ()
+    far = RectangularSection(
+        0.4,
+        0.4,
+        Concrete(140e6),
+        layout=Layout(8, 0.01, Steel(450e6, 650e6)),
+        ties=Ties(0.01, 0.3, Steel(400e6), legs=3),
+        cover=0.02,
+    ).column(4.0, axial_load=1.2e6)
+    assert [text.split(" =")[0] for text in far.outside] == [
+        "concrete strength",
+        "shear span over depth",
+        "tie spacing over bar diameter",
+    ]
+    with pytest.warns(AccuracyWarning, match="concrete strength = .* is outside"):
+        found = far.spread(PATH, scatter=NONE)
+    assert found.remarks == far.outside
+
+
+def test_wrong_arguments() -> None:
+    with pytest.raises(InputError, match="at least 8"):
+        column().spread(PATH, samples=4)
+    with pytest.raises(InputError, match="does not change"):
+        column().spread([0.0, 0.0])
+    older = SECTION.column(1.6, axial_load=1.2e6, version="2026.2")
+    with pytest.raises(InputError, match="nobody has left tests out of version"):
+        older.spread(PATH)
+
+
+def test_the_newest_version_has_bands() -> None:
+    assert parameters().version in SCATTER
+    found = column().spread(PATH)
+    assert np.all(found.lower < found.force)
+    assert np.all(found.force < found.upper)
+    assert 0.1 < found.width < 0.6
+
+
+def test_figure() -> None:
+    found = column().spread(PATH, scatter=NONE)
+    ax = found.plot(test=found)
+    assert (len(ax.lines), len(ax.collections)) == (2, 1)
+
+
+def test_near_the_shear_strength_the_band_is_wider() -> None:
+    """Halfway from 0.7 to 0.95 of it the widening is halfway between its two numbers."""
+    peak = np.max(np.abs(column().spread(PATH, scatter=NONE).force))
+    strength = column().shear[0].f_y
+    assert near_shear(column(), 0.7 * strength) == pytest.approx(0.0)
+    assert near_shear(column(), 0.825 * strength) == pytest.approx(0.5)
+    assert near_shear(column(), 2.0 * strength) == 1.0
+    weak = column(shear_strength=parameters().shear.strength * peak / strength / 0.825)
+    found = weak.spread(PATH, scatter=NONE)
+    share = near_shear(weak, np.max(np.abs(found.force)))
+    assert 0.3 < share < 0.6
+    assert found.width == pytest.approx(2 * 0.05 * (2 + 2 * share))
+    assert found.peak_force.upper == pytest.approx((1.2 + 0.4 * share) * found.peak_force.value)
+
+
+def test_band_and_neighbours_of_a_test(peer_folder: Path) -> None:
+    tests = peer.read_specimens(peer_folder).where(author="Tanaka and Park").with_history()
+    found = peer.predict(tests)
+    near = peer.nearest(tests[0], found, n=4)
+    # Its twins of the same series come first; it is not its own neighbour.
+    assert {one.prediction.specimen.name[-1] for one in near[:3]} == {"2", "3", "4"}
+    assert near[2].distance < 0.1 < near[3].distance
+    band = peer.band(tests[0])
+    test = tests[0].test()
+    inside = np.mean((band.lower <= test.force) & (test.force <= band.upper))
+    assert inside > 0.7
