@@ -322,6 +322,7 @@ contains
          springs(i) = list%entry(j)%spring
       end do
       call spring%set_layers(layers%y, springs)
+      spring%places_line = layers%spring%line
    end subroutine set_layers
 
 end module rbs_case_spring_entry

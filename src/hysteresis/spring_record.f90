@@ -37,6 +37,9 @@ module rbs_hysteresis_spring_record
       !> Rules of the layers, by their place among `rule_names` (layers), and parameters (most_parameters,
       !> layers)
       integer, allocatable :: layer_rule(:)
+      !> Lines of the input where the springs of the layers are (layers), and their places; 0: not from a file
+      integer, allocatable :: layer_line(:)
+      integer :: places_line = 0
       real(wp), allocatable :: layer_value(:, :)
    contains
       procedure :: set
@@ -98,11 +101,13 @@ contains
       integer :: i
 
       self%y = y
-      if (allocated(self%layer_rule)) deallocate (self%layer_rule, self%layer_value)
-      allocate (self%layer_rule(size(y)), self%layer_value(most_parameters, size(y)))
+      if (allocated(self%layer_rule)) deallocate (self%layer_rule, self%layer_value, self%layer_line)
+      allocate (self%layer_rule(size(y)), self%layer_line(size(y)))
+      allocate (self%layer_value(most_parameters, size(y)))
       do i = 1, size(y)
          self%layer_rule(i) = max(findloc(rule_names == spring(i)%rule, .true., dim=1), no_rule)
          self%layer_value(:, i) = spring(i)%value
+         self%layer_line(i) = spring(i)%line
       end do
    end subroutine set_layers
 
@@ -114,6 +119,7 @@ contains
 
       if (self%layer_rule(i) /= no_rule) layer%rule = rule_names(self%layer_rule(i))
       layer%value = self%layer_value(:, i)
+      layer%line = self%layer_line(i)
    end function layer
 
    !> The parameters; those that are not given have the defaults of the rule.
@@ -176,6 +182,7 @@ contains
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
       type(spring_record) :: layer
+      character(len=:), allocatable :: place
       logical :: ok
       integer :: i
 
@@ -187,20 +194,37 @@ contains
          call messages%add(name//': one layer has no stiffness against rotation; give at least two')
       end if
       do i = 1, size(self%y)
-         call check_finite(self%y(i), name//': y of layer '//to_text(i), 'm', messages, ok)
+         call move_to_line(self%line, self%places_line, name, place)
+         call check_finite(self%y(i), place//': y of layer '//to_text(i), 'm', messages, ok)
          layer = self%layer(i)
+         call move_to_line(self%line, layer%line, name, place)
          if (.not. suits(layer%rule, in_layer)) then
-            call messages%add(name//': layer '//to_text(i)//" has the rule '"//trim(layer%rule)// &
+            call messages%add(place//': layer '//to_text(i)//" has the rule '"//trim(layer%rule)// &
                               "'; it is one of "//list_of(pack(rule_names, suits(rule_names, in_layer))))
          else if (same_as_before(self, i)) then
             cycle                                   ! its errors have been reported
          else
-            call layer%validate(name//': layer '//to_text(i), messages)
+            call layer%validate(place//': layer '//to_text(i), messages)
          end if
          ! All layers may have the same error: a few messages are enough.
          if (messages%count > 20) return
       end do
    end subroutine validate_layers
+
+   !> The name of a spring with the line of another group, in which the fault is.
+   pure subroutine move_to_line(from, to, name, moved)
+      !> Lines of the input; 0: not from a file
+      integer, intent(in) :: from, to
+      !> The name with the first line, and with the second
+      character(len=*), intent(in) :: name
+      character(len=:), allocatable, intent(out) :: moved
+
+      moved = name
+      if (from == 0 .or. to == 0) return
+      associate (first => 'line '//to_text(from)//': ')
+         if (index(name, first) == 1) moved = 'line '//to_text(to)//': '//name(len(first) + 1:)
+      end associate
+   end subroutine move_to_line
 
    !> Whether the layer before has the same spring.
    pure logical function same_as_before(self, i)

@@ -105,7 +105,7 @@ THIRD = {
     "unknown rule": ("id = 3, rule = 'concret', k = 1", "did you mean 'concrete'?"),
     "rule of another kind": (
         "id = 3, rule = 'takeda', k_c = 2, d_c = 1, k_y = 1, d_y = 2, k_u = 0",
-        "it is one of",
+        "line 8: flexure spring: layer 1 has the rule 'takeda'; it is one of",
     ),
     "no rule": ("id = 3, k = 1e9", "rule is missing; it is one of"),
     "unknown name": (
@@ -119,7 +119,8 @@ THIRD = {
     ),
     "value": (
         "id = 3, " + STEEL.replace("k_post = 6e6", "k_post = 6e9"),
-        "k_post = 6e+09 must be below k = 6e+08",
+        # The line is that of the group of the spring, not that of the joint.
+        "line 8: flexure spring: layer 1: k_post = 6e+09 must be below k = 6e+08",
     ),
     "id in words": ("id = 'three', " + STEEL, "id = 'three' must be a whole number"),
 }
