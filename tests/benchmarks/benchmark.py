@@ -16,6 +16,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import importlib.util
+import os
 import subprocess
 import sys
 import tempfile
@@ -31,7 +32,7 @@ from compare import against_rows, take_turns, yardstick_rows
 from rows import ROOT, Row, newest, show
 
 import rbsdem
-from rbsdem import _core
+from rbsdem import _core, peer
 from rbsdem.__main__ import executable as installed_executable
 
 try:
@@ -188,6 +189,28 @@ def crossing(repeats: int) -> list[Row]:
             rows.append(Row(name, "ms", goal, [10.0 * t for t in times]))
     rows[1].note = f"{len(predicted._statement.numbers)} numbers"
     return rows
+
+
+def whole_folder(quick: bool) -> list[Row]:
+    """Time the predictions of all tests of the folder, without pictures, in two processes.
+
+    Wall time, so other work of the machine counts; the note says what one process computes.
+    """
+    row = Row("predictions of the whole folder", "s", 1.5)
+    folder = Path(os.environ.get("RBSDEM_PEER_DIR") or ROOT.parent / "shared" / "peer")
+    if not folder.is_dir():
+        row.note = "RBSDEM_PEER_DIR is not set"
+        return [row]
+    tests = peer.read_specimens(folder)
+    for _ in range(1 if quick else 3):
+        start = time.perf_counter()
+        found = peer.predict(tests, jobs=2, progress=False)
+        row.values.append(time.perf_counter() - start)
+    start = time.process_time()
+    peer.predict(tests, jobs=1, progress=False)
+    alone = time.process_time() - start
+    row.note = f"{len(found)} columns, {alone:.2g} s of the processor in one process"
+    return [row]
 
 
 INSIDE = (
@@ -347,6 +370,7 @@ def main() -> None:
             *through_python(repeats),
             *predicted_column(repeats),
             *crossing(repeats),
+            *whole_folder(given.quick),
             *four_columns(repeats),
         ]
     if "fortran" in parts:
