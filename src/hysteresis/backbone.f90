@@ -29,7 +29,7 @@ module rbs_hysteresis_backbone
       procedure :: draw
       procedure :: force
       procedure :: line_from
-      procedure :: is_exhausted
+      procedure :: meeting
       procedure :: add_corner
       procedure :: end_at_rupture
    end type backbone_side
@@ -41,16 +41,18 @@ contains
       class(backbone_side), intent(inout) :: self
       real(wp) :: hardening, softening, f_zero, d_res, d_x, d, f, slope
 
+      self%last = 0
+      self%d_y = 0.0_wp
       associate (b => self%given)
          ! Residual strength does not deteriorate.
          self%strength = max(self%strength, b%f_res/b%f_y)
+         if (.not. self%strength > 0.0_wp) return
          hardening = 0.0_wp
          if (b%d_cap > b%d_y) hardening = self%strength*(b%f_cap - b%f_y)/(b%d_cap - b%d_y)
          softening = -b%f_cap/b%d_pc
          f_zero = self%softening*(b%f_cap - softening*b%d_cap)
          d_res = (b%f_res - f_zero)/softening
          self%d_y = self%strength*b%d_y
-         self%last = 0
 
          ! Up along the lines of hardening, until they meet the softening or the residual one.
          d = self%strength*b%d_c
@@ -164,17 +166,27 @@ contains
          far = self%d(i + 1)
          slope = slope_after(self, i)
       end if
-      line = segment(d0=s*self%d(i), f0=s*self%f(i), k=slope)
+      line = segment(d0=s*self%d(i), f0=0.0_wp + s*self%f(i), k=slope)
       line = line%outward(s, near=d, far=s*far, near_closed=.true., one_way=.true.)
    end function line_from
 
-   !> Whether the backbone has no force at a deformation and beyond.
-   elemental logical function is_exhausted(self, d)
+   !> The first deformation where a line that rises steeply from zero force meets the backbone [m or rad].
+   elemental real(wp) function meeting(self, k, start)
       class(backbone_side), intent(in) :: self
-      !> Deformation, positive [m or rad]
-      real(wp), intent(in) :: d
+      !> Slope, not below the elastic one, and deformation without force
+      real(wp), intent(in) :: k, start
+      real(wp) :: slope
+      integer :: i
 
-      is_exhausted = d >= self%d(self%last) .and. .not. self%f(self%last) > 0.0_wp
-   end function is_exhausted
+      do i = corner_before(self, start), self%last - 1
+         if (self%f(i + 1) > k*(self%d(i + 1) - start)) cycle
+         slope = slope_after(self, i)
+         meeting = self%d(i + 1)
+         if (slope < k) meeting = min(meeting, (self%f(i) - slope*self%d(i) + k*start)/(k - slope))
+         meeting = max(meeting, start)
+         return
+      end do
+      meeting = max(start + self%f(self%last)/k, self%d(self%last))
+   end function meeting
 
 end module rbs_hysteresis_backbone

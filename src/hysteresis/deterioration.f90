@@ -1,12 +1,13 @@
-!> Cyclic deterioration by energy: Rahnama and Krawinkler 1993 (Blume Center report 108), as in Ibarra,
-!> Medina, Krawinkler 2005 (Earthquake Eng. Struct. Dyn. 34, section 3.2).
+!> Cyclic deterioration by energy, after Rahnama and Krawinkler 1993 (Blume Center report 108) and Ibarra,
+!> Medina, Krawinkler 2005 (Earthquake Eng. Struct. Dyn. 34, section 3.2), as a function of the path that does
+!> not depend on where excursions are cut:
 !>
-!> An excursion, from one crossing of zero force to the next, that dissipates E reduces strength or
-!> stiffness by the share
+!>     left = 1 - (E/E_t)^c,   E_t = lambda f_y d_y,   E = energy dissipated so far
 !>
-!>     beta = (E/(E_t - spent))^c,   E_t = lambda f_y d_y,   spent = energy so far, E included
-!>
-!> of its present value. Each kind of deterioration has its own lambda; at beta >= 1 its E_t is used up.
+!> For strength, softening line and target of a side, E is what all excursions to the other side have
+!> dissipated, for the unloading stiffness that of both sides. In the source each excursion takes the share
+!> (E/(E_t - sum E))^c of what is left. For c = 1 and small excursions in one direction both are the same; but
+!> there an excursion and its two halves differ, so that a reversal of any size changes the response.
 module rbs_hysteresis_deterioration
    use rbs_base_kinds, only: wp
    implicit none
@@ -19,28 +20,32 @@ module rbs_hysteresis_deterioration
       real(wp) :: strength = 0.0_wp, softening = 0.0_wp, unloading = 0.0_wp, target = 0.0_wp
       !> Exponent
       real(wp) :: c = 1.0_wp
-      !> Energy dissipated by the completed excursions [J]
-      real(wp) :: spent = 0.0_wp
    contains
-      procedure :: share
+      procedure :: left
+      procedure :: acts
    end type deterioration_type
 
 contains
 
-   !> Beta of an excursion, from 0 to 1.
-   elemental real(wp) function share(self, capacity, energy)
+   !> Share that is left of the virgin value, from 1 to 0.
+   elemental real(wp) function left(self, capacity, energy)
       class(deterioration_type), intent(in) :: self
       !> E_t [J], 0: none
       real(wp), intent(in) :: capacity
-      !> Energy that the excursion has dissipated, not yet in `spent` [J]
+      !> Energy dissipated [J]
       real(wp), intent(in) :: energy
-      real(wp) :: left
 
-      share = 0.0_wp
+      left = 1.0_wp
       if (.not. (capacity > 0.0_wp .and. energy > 0.0_wp)) return
-      left = capacity - (self%spent + energy)
-      share = 1.0_wp
-      if (energy < left) share = (energy/left)**self%c
-   end function share
+      left = 0.0_wp
+      if (energy < capacity) left = 1.0_wp - (energy/capacity)**self%c
+   end function left
+
+   !> Whether there is any deterioration.
+   elemental logical function acts(self)
+      class(deterioration_type), intent(in) :: self
+
+      acts = max(self%strength, self%softening, self%unloading, self%target) > 0.0_wp
+   end function acts
 
 end module rbs_hysteresis_deterioration

@@ -1,14 +1,18 @@
 !> The peak-oriented spring with pinched reloading, for columns with open shear cracks or slip of bars:
 !> Ibarra, Medina, Krawinkler 2005 (Earthquake Eng. Struct. Dyn. 34, section 2.3).
 !>
-!> Reloading breaks at the deformation (1 - kappa_d) d_per, with kappa_f times the force that the straight
-!> line to the peak has there. Unloading from the largest peak would end at d_per (zero for a side that
-!> has not yielded).
+!> Two parts with the same backbone act in parallel (`rbs_hysteresis_capped`). One has the share kappa_f of
+!> the force and is peak-oriented. The other slips: it has no force before the deformation
+!> (1 - kappa_d) d_per, where unloading from the peak ends at d_per, and goes to the peak from there. So the
+!> line from zero force to the peak has its break there, with kappa_f times the force of the straight line,
+!> as in the source, and what holds for each part holds for both.
 module rbs_hysteresis_pinching
    use rbs_base_keys, only: key_type, share_above_zero
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_inner_peaks, only: point
+   use rbs_hysteresis_capped, only: capped_part
    use rbs_hysteresis_peak_oriented, only: peak_oriented_rule, capped_keys
+   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_segment, only: segment
    implicit none
    private
 
@@ -21,13 +25,20 @@ module rbs_hysteresis_pinching
                meaning='share of the permanent deformation that is missing at the break')]
    integer, parameter :: before = size(capped_keys)
 
+   !> `part` is the peak-oriented one.
    type, extends(peak_oriented_rule) :: pinching_rule
-      !> At the break: share of the force, and share of the permanent deformation that is missing
-      real(wp) :: kappa_f = 1.0_wp, kappa_d = 0.0_wp
+      !> Share of the peak-oriented part in the force
+      real(wp) :: kappa_f = 1.0_wp
+      type(capped_part) :: slipping
+      !> Present lines of the two parts
+      type(segment) :: line, slipping_line
    contains
       procedure, nopass :: keys
       procedure :: set
-      procedure :: break_point
+      procedure :: start
+      procedure :: next
+      procedure :: copy_memory
+      procedure :: hear
    end type pinching_rule
 
 contains
@@ -44,21 +55,93 @@ contains
 
       call self%peak_oriented_rule%set(value)
       self%kappa_f = value(before + 1)
-      self%kappa_d = value(before + 2)
+      self%slipping = self%part
+      self%slipping%slips = .true.
+      self%slipping%slip = 1.0_wp - value(before + 2)
    end subroutine set
 
-   !> The break, positive; the peak if reloading starts beyond the break. The last turning point is ignored.
-   elemental type(point) function break_point(self, s, zero, peak)
-      class(pinching_rule), intent(in) :: self
-      integer, intent(in) :: s
-      real(wp), intent(in) :: zero
-      type(point), intent(in) :: peak
-      real(wp) :: permanent, d
+   subroutine start(self, line)
+      class(pinching_rule), intent(inout) :: self
+      type(segment), intent(out) :: line
 
-      break_point = peak
-      permanent = peak%d - peak%f/self%unloading_stiffness(s)
-      d = (1.0_wp - self%kappa_d)*max(permanent, 0.0_wp)
-      if (d > zero) break_point = point(d, self%kappa_f*peak%f*((d - zero)/(peak%d - zero)))
-   end function break_point
+      call self%part%start(self%line)
+      call self%slipping%start(self%slipping_line)
+      line = sum_of(self, 0.0_wp)
+   end subroutine start
+
+   subroutine next(self, line, direction)
+      class(pinching_rule), intent(inout) :: self
+      type(segment), intent(inout) :: line
+      integer, intent(in) :: direction
+      real(wp) :: here
+
+      here = line%end_toward(direction)
+      call follow(self%part, self%line, here, direction)
+      call follow(self%slipping, self%slipping_line, here, direction)
+      line = sum_of(self, here)
+   end subroutine next
+
+   !> A part goes on to its next line if the present one ends here, or if it turns back on a one-way line.
+   subroutine follow(part, line, here, direction)
+      type(capped_part), intent(inout) :: part
+      type(segment), intent(inout) :: line
+      real(wp), intent(in) :: here
+      integer, intent(in) :: direction
+
+      if (line%one_way == -direction) then
+         if (direction > 0) then
+            line%hi = here
+         else
+            line%lo = here
+         end if
+      else if (direction*(line%end_toward(direction) - here) > 0.0_wp) then
+         return
+      end if
+      call part%next(line, direction)
+   end subroutine follow
+
+   !> The line of both parts together from a deformation on.
+   pure type(segment) function sum_of(self, here) result(line)
+      class(pinching_rule), intent(in) :: self
+      real(wp), intent(in) :: here
+
+      associate (a => self%line, b => self%slipping_line, share => self%kappa_f)
+         line%d0 = here
+         ! Equal lines give the same line to the last bit.
+         line%f0 = b%force(here) + share*(a%force(here) - b%force(here))
+         line%k = b%k + share*(a%k - b%k)
+         line%lo = max(a%lo, b%lo)
+         line%hi = min(a%hi, b%hi)
+         line%lo_closed = (a%lo_closed .or. a%lo < line%lo) .and. (b%lo_closed .or. b%lo < line%lo)
+         line%hi_closed = (a%hi_closed .or. a%hi > line%hi) .and. (b%hi_closed .or. b%hi > line%hi)
+         line%one_way = a%one_way
+         if (a%one_way == 0) line%one_way = b%one_way
+      end associate
+   end function sum_of
+
+   pure subroutine copy_memory(self, other, done)
+      class(pinching_rule), intent(inout) :: self
+      class(rule_type), intent(in) :: other
+      logical, intent(out) :: done
+
+      done = .false.
+      select type (other)
+      class is (pinching_rule)
+         call self%part%copy_memory(other%part)
+         call self%slipping%copy_memory(other%slipping)
+         self%line = other%line
+         self%slipping_line = other%slipping_line
+         done = .true.
+      end select
+   end subroutine copy_memory
+
+   !> Take the work of the flexural spring so far [J].
+   pure subroutine hear(self, work)
+      class(pinching_rule), intent(inout) :: self
+      real(wp), intent(in) :: work
+
+      self%part%heard = work
+      self%slipping%heard = work
+   end subroutine hear
 
 end module rbs_hysteresis_pinching

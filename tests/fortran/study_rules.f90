@@ -30,7 +30,7 @@ program study_rules
       flush (output_unit)
       if (only_rule == '') cycle
       call show(changed%spec)
-      print '(a, i0, a, es12.4)', 'at ', changed%at, ' length ', changed%length
+      print '(a, i0, a, es24.16)', 'at ', changed%at, ' length ', changed%length
       print '(4es24.16)', changed%d
       if (.not. allocated(given%d)) cycle
       print '(a, 2es10.2, i8)', 'loops', given%virgin, given%closed, given%loops

@@ -36,7 +36,7 @@ contains
                unit_test('property 6: the mirror path with swapped sides, to the last bit', mirror), &
                unit_test('property 9: the work from the virgin state is never negative', work_positive), &
                unit_test('property 13: copies, marks and restores', copies), &
-               unit_test('a spring whose energy is used up has no force and is not stuck', exhausted), &
+               unit_test('a side whose energy is used up has no force and is not stuck', exhausted), &
                unit_test('no line is steeper than the virgin one', steepest)]
    end subroutine collect_capped
 
@@ -117,7 +117,11 @@ contains
       call expect(error, spec, 'f_c / d_c = 80 must be above f_y / d_y = 100 (cracking softens)')
       spec = hand()
       call spec%set('c', 0.5_wp)
-      call expect(error, spec, 'c = 0.5 must be 1 or more (small excursions would count too much)')
+      call expect(error, spec, 'c = 0.5 must')
+      call spec%set('c', 1.0_wp)
+      call spec%set('lambda_a', 1.7_wp)
+      call expect(error, spec, 'lambda_a = 1.7 must be 0 (it is off) or at least '// &
+                  'f_cap**2 (1 + d_cap/d_pc)/(k f_y d_y) = 1.8')
       call axial(error)
    end subroutine validation
 
@@ -174,7 +178,11 @@ contains
       call check_same(error, side%f(:side%last), [0.0_wp, 100.0_wp, 120.0_wp, 20.0_wp], 'forces')
       call check_same(error, side%force([0.5_wp, 2.0_wp, 8.0_wp, 99.0_wp]), &
                       [50.0_wp, 110.0_wp, 70.0_wp, 20.0_wp], 'between')
-      call check_true(error, .not. side%is_exhausted(1.0e6_wp), 'a residual lasts')
+      call check_same(error, side%force(1.0e6_wp), 20.0_wp, 'a residual lasts')
+      call check_close(error, side%meeting(100.0_wp, 0.5_wp), 140.0_wp/90.0_wp, 1.0e-14_wp, 0.0_wp, &
+                       'a steep line from 0.5 meets 90 + 10 d')
+      call check_close(error, side%meeting(50.0_wp, 6.0_wp), 7.5_wp, 1.0e-14_wp, 0.0_wp, &
+                       'one from 6 meets 150 - 10 d')
       call spec%set('d_c', 0.25_wp)
       call spec%set('f_c', 40.0_wp)
       call spec%set('d_cap', 1.0_wp)
@@ -185,7 +193,11 @@ contains
       call check_close(error, side%d(:side%last), [0.0_wp, 0.25_wp, 1.0_wp, 13.0_wp], 1.0e-15_wp, 0.0_wp, &
                        'cracking, no hardening')
       call check_same(error, side%f(:side%last), [0.0_wp, 40.0_wp, 100.0_wp, 0.0_wp], 'their forces')
-      call check_true(error, side%is_exhausted(13.1_wp) .and. .not. side%is_exhausted(12.9_wp), 'exhausted')
+      call check_same(error, side%force(13.1_wp), 0.0_wp, 'no force left')
+      side%strength = 0.0_wp
+      call side%draw()
+      call check_same(error, side%force([0.1_wp, 1.0_wp, 99.0_wp]), [0.0_wp, 0.0_wp, 0.0_wp], &
+                      'no strength left')
    end subroutine corners
 
    !> Half the strength: 5 d + 45 beyond (0.5, 50). Less softening line: (150 C - 10 d).
@@ -236,14 +248,13 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(deterioration_type) :: deterioration
 
-      deterioration%spent = 10.0_wp
-      call check_same(error, deterioration%share(100.0_wp, 30.0_wp), 0.5_wp, 'E/(E_t - spent - E)')
-      call check_same(error, deterioration%share(100.0_wp, 45.0_wp), 1.0_wp, 'used up')
-      call check_same(error, deterioration%share(100.0_wp, 99.0_wp), 1.0_wp, 'more than there is')
-      call check_same(error, deterioration%share(0.0_wp, 30.0_wp), 0.0_wp, 'does not act')
-      call check_same(error, deterioration%share(100.0_wp, -1.0_wp), 0.0_wp, 'round-off of no energy')
+      call check_close(error, deterioration%left(100.0_wp, 30.0_wp), 0.7_wp, 1.0e-15_wp, 0.0_wp, '1 - E/E_t')
+      call check_same(error, deterioration%left(100.0_wp, 100.0_wp), 0.0_wp, 'used up')
+      call check_same(error, deterioration%left(100.0_wp, 199.0_wp), 0.0_wp, 'more than there is')
+      call check_same(error, deterioration%left(0.0_wp, 30.0_wp), 1.0_wp, 'does not act')
+      call check_same(error, deterioration%left(100.0_wp, -1.0_wp), 1.0_wp, 'round-off of no energy')
       deterioration%c = 2.0_wp
-      call check_same(error, deterioration%share(100.0_wp, 30.0_wp), 0.25_wp, 'squared')
+      call check_close(error, deterioration%left(100.0_wp, 30.0_wp), 0.91_wp, 1.0e-15_wp, 0.0_wp, 'squared')
    end subroutine shares
 
    !> A random spring with all features, and a path for it.
@@ -270,10 +281,10 @@ contains
          call spec%set('d_u_neg', random%uniform(5.0_wp, 15.0_wp))
       end if
       call spec%set('b0', random%uniform(0.0_wp, 0.8_wp))
-      call spec%set('lambda_s', random%uniform(0.0_wp, 200.0_wp))
-      call spec%set('lambda_c', random%uniform(2.0_wp, 200.0_wp))
-      call spec%set('lambda_k', random%uniform(2.0_wp, 200.0_wp))
-      call spec%set('lambda_a', random%uniform(2.0_wp, 200.0_wp))
+      call spec%set('lambda_s', random%uniform(25.0_wp, 200.0_wp))
+      call spec%set('lambda_c', random%uniform(25.0_wp, 200.0_wp))
+      call spec%set('lambda_k', random%uniform(25.0_wp, 200.0_wp))
+      call spec%set('lambda_a', random%uniform(25.0_wp, 200.0_wp))
       call spec%set('c', random%uniform(1.0_wp, 2.0_wp))
       if (random%uniform(0.0_wp, 1.0_wp) > 0.5_wp) then
          spec%rule = 'pinching'
@@ -361,7 +372,7 @@ contains
       end do
    end subroutine copies
 
-   !> lambda = 1.8: the first excursion to 2 dissipates 94.5 of 180.
+   !> lambda = 1.8: the excursion to 4 dissipates 50 + 220 + 115 - 110**2/200 = 324.5 of 180.
    subroutine exhausted(error)
       type(error_type), allocatable, intent(inout) :: error
       type(spring_record) :: spec
@@ -369,15 +380,18 @@ contains
       integer :: i
 
       spec = hand()
-      call spec%set('lambda_a', 1.8_wp)
+      call spec%set('f_res', 0.0_wp)
+      call spec%set('lambda_s', 1.8_wp)
       call spring%create([spec])
-      call spring%move(1, 2.0_wp)
-      call check_close(error, spring%force(1), 110.0_wp, 1.0e-14_wp, 0.0_wp, 'at 2')
+      call spring%move(1, 4.0_wp)
+      call check_close(error, spring%force(1), 110.0_wp, 1.0e-14_wp, 0.0_wp, 'at 4')
       do i = 1, 50
-         call spring%move(1, 20.0_wp*(-1.0_wp)**i)
-         call check_same(error, spring%force(1), 0.0_wp, 'nothing left')
+         call spring%move(1, -20.0_wp - i)
+         call check_same(error, spring%force(1), 0.0_wp, 'nothing left on the other side')
+         call check_close(error, spring%work(1), 324.5_wp, 1.0e-12_wp, 0.0_wp, 'work')
       end do
-      call check_close(error, spring%work(1), 94.5_wp, 1.0e-12_wp, 0.0_wp, 'work')
+      call spring%move(1, 4.0_wp)
+      call check_close(error, spring%force(1), 110.0_wp, 1.0e-12_wp, 0.0_wp, 'by itself')
       call check_true(error, .not. spring%stuck, 'not stuck')
    end subroutine exhausted
 

@@ -24,7 +24,7 @@ contains
       tests = [unit_test('backbone, residual and rupture', backbone), &
                unit_test('cracking: unloading leads to the cracking point of the other side', cracking), &
                unit_test('unloading, reloading to yield, to the peaks, past the cap', sequence), &
-               unit_test('reloading takes the steeper line over the last turn', last_turn), &
+               unit_test('inner loops close at the turn where they began', inner_loops), &
                unit_test('pinching: the break, with and without a permanent deformation', pinching), &
                unit_test('strength deteriorates', strength), &
                unit_test('the softening line deteriorates', softening), &
@@ -69,8 +69,9 @@ contains
       call expect(error, spec, d, f, 'positive side')
       call expect(error, spec, -d, -f, 'negative side')
       call spec%set('d_u', 15.0_wp)
-      call expect(error, spec, [13.0_wp, 20.0_wp, 15.0_wp, 15.1_wp, 0.0_wp], &
-                  [20.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], 'torn')
+      ! The other side is whole: from 20 straight to its cap, which is steeper than to its yield point.
+      call expect(error, spec, [13.0_wp, 20.0_wp, 15.0_wp, 17.0_wp, 15.0_wp, -1.0_wp], &
+                  [20.0_wp, 0.0_wp, -600.0_wp/23.0_wp, 0.0_wp, -600.0_wp/23.0_wp, -2520.0_wp/23.0_wp], 'torn')
       call expect(error, spec, [15.0_wp, 15.1_wp, 15.15_wp, 15.1_wp, 15.15_wp], &
                   [20.0_wp, 10.0_wp, 5.0_wp, 0.0_wp, 5.0_wp], 'tearing')
    end subroutine backbone
@@ -100,10 +101,11 @@ contains
                    110.0_wp*0.9_wp/2.9_wp, 110.0_wp, 70.0_wp, 0.0_wp, -110.0_wp], 'forces')
    end subroutine sequence
 
-   !> After an inner cycle reloading goes first to where it turned back, then to the peak.
-   subroutine last_turn(error)
+   !> After an inner cycle reloading goes first to where it turned back, then to the peak; after two of them
+   !> to both. A turn whose line started farther in is forgotten.
+   subroutine inner_loops(error)
       type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: turn, zero, back, again
+      real(wp) :: turn, zero, back, again, inner, third
 
       turn = 110.0_wp/2.9_wp*1.9_wp
       zero = 1.0_wp - turn/100.0_wp
@@ -112,8 +114,21 @@ contains
       call expect(error, hand('peak_oriented'), &
                   [2.0_wp, -2.0_wp, 1.0_wp, -0.5_wp, 0.5_wp, 1.0_wp, 1.5_wp, 2.0_wp], &
                   [110.0_wp, -110.0_wp, turn, back, turn*(0.5_wp - again)/(1.0_wp - again), turn, &
-                   0.5_wp*(turn + 110.0_wp), 110.0_wp], 'forces')
-   end subroutine last_turn
+                   0.5_wp*(turn + 110.0_wp), 110.0_wp], 'one')
+      ! From 0.5 to zero force, a little to the other side on the line to its turn, and back over 0.5 and 1.
+      inner = turn*(0.5_wp - again)/(1.0_wp - again)
+      zero = 0.5_wp - inner/100.0_wp
+      third = back*(zero + 0.1_wp)/(zero + 0.5_wp)
+      again = -0.1_wp - third/100.0_wp
+      call expect(error, hand('peak_oriented'), &
+                  [2.0_wp, -2.0_wp, 1.0_wp, -0.5_wp, 0.5_wp, -0.1_wp, 0.3_wp, 0.5_wp, 0.75_wp, 1.0_wp, &
+                   1.5_wp], &
+                  [110.0_wp, -110.0_wp, turn, back, inner, third, inner*(0.3_wp - again)/(0.5_wp - again), &
+                   inner, 0.5_wp*(inner + turn), turn, 0.5_wp*(turn + 110.0_wp)], 'two')
+      ! Unloading from -2 again ends at -0.9, where the line to the turn at 1 started: straight to the peak.
+      call expect(error, hand('peak_oriented'), [2.0_wp, -2.0_wp, 1.0_wp, -2.5_wp, 1.0_wp], &
+                  [110.0_wp, -110.0_wp, turn, -115.0_wp, 110.0_wp*2.35_wp/3.35_wp], 'forgotten')
+   end subroutine inner_loops
 
    !> Peak (2, 110) on both sides: permanent 0.9, break at 0.45 with 0.4 of the straight line.
    subroutine pinching(error)
@@ -137,7 +152,7 @@ contains
                   [110.0_wp, -break_force, -0.5_wp*(break_force + 100.0_wp), -100.0_wp], 'one side loaded')
    end subroutine pinching
 
-   !> lambda = 10: the other side has 1 - beta of its strength, hardening 10 (1 - beta).
+   !> lambda = 10: the other side has the share S of its strength, hardening 10 S.
    subroutine strength(error)
       type(error_type), allocatable, intent(inout) :: error
       type(spring_record) :: spec
@@ -149,7 +164,7 @@ contains
          spec = hand('peak_oriented')
          call spec%set('lambda_s', 10.0_wp)
          call spec%set('c', c)
-         left = 1.0_wp - (energy/(1000.0_wp - energy))**c
+         left = 1.0_wp - (energy/1000.0_wp)**c
          call expect(error, spec, [2.0_wp, -2.0_wp, -2.5_wp], &
                      [110.0_wp, -left*(100.0_wp + 10.0_wp*(2.0_wp - left)), &
                       -left*(100.0_wp + 10.0_wp*(2.5_wp - left))], 'forces')
@@ -163,7 +178,7 @@ contains
 
       spec = hand('peak_oriented')
       call spec%set('lambda_c', 10.0_wp)
-      left = 1.0_wp - energy/(1000.0_wp - energy)
+      left = 1.0_wp - energy/1000.0_wp
       call expect(error, spec, [2.0_wp, -8.0_wp], [110.0_wp, -(150.0_wp*left - 80.0_wp)], 'forces')
    end subroutine softening
 
@@ -175,23 +190,25 @@ contains
 
       spec = hand('peak_oriented')
       call spec%set('lambda_k', 10.0_wp)
-      k = 100.0_wp*(1.0_wp - energy/(1000.0_wp - energy))
+      k = 100.0_wp*(1.0_wp - energy/1000.0_wp)
       call expect(error, spec, [2.0_wp, 1.5_wp, 1.0_wp, 1.8_wp, 2.0_wp, 2.1_wp], &
                   [110.0_wp, 110.0_wp - 0.5_wp*k, 110.0_wp - k, 110.0_wp - 0.2_wp*k, 110.0_wp, 111.0_wp], &
                   'forces')
    end subroutine unloading
 
-   !> Target of the side that is entered: from 2 to 2 (1 + beta), on the backbone.
+   !> Target of the side that is entered: from 2 outward, on the backbone.
    subroutine target(error)
       type(error_type), allocatable, intent(inout) :: error
       type(spring_record) :: spec
-      real(wp) :: second, reached, slope
+      real(wp) :: yield, force, second, reached, slope
 
       spec = hand('peak_oriented')
       call spec%set('lambda_a', 10.0_wp)
-      ! The second excursion, from 0.9 over (-1, -100) to (-2, -110), and back to zero force.
-      second = 0.5_wp*1.9_wp*100.0_wp + 105.0_wp - 0.5_wp*110.0_wp**2/100.0_wp
-      reached = 2.0_wp*(1.0_wp + second/(1000.0_wp - energy - second))
+      ! The second excursion, from 0.9 to the moved yield of the other side, to (-2, -110), back to zero.
+      yield = 1.0_wp/(1.0_wp - energy/1000.0_wp)
+      force = 100.0_wp + 10.0_wp*(yield - 1.0_wp)
+      second = 0.5_wp*(yield + 0.9_wp)*force + 0.5_wp*(force + 110.0_wp)*(2.0_wp - yield) - 60.5_wp
+      reached = 2.0_wp/(1.0_wp - second/1000.0_wp)
       slope = (100.0_wp + 10.0_wp*(reached - 1.0_wp))/(reached + 0.9_wp)
       call expect(error, spec, [2.0_wp, -2.0_wp, 1.0_wp], &
                   [110.0_wp, -110.0_wp, slope*1.9_wp], 'forces')
@@ -221,8 +238,8 @@ contains
       call check_same(error, springs%force(1), 110.0_wp, 'not yet')
       call springs%move(2, 7.0_wp)
       call check_same(error, springs%work(2), 650.0_wp, 'work of the hinge')
-      call springs%move(1, -0.6_wp)
-      call check_close(error, springs%force(1), -60.0_wp, close, 0.0_wp, 'yield of the other side')
+      call springs%move(1, -1.0_wp)
+      call check_close(error, springs%force(1), -62.4_wp, close, 0.0_wp, '0.6 (100 + 10 (1 - 0.6))')
       call springs%move(1, -1.6_wp)
       call check_close(error, springs%force(1), -66.0_wp, close, 0.0_wp, 'its hardening, 0.6 times 10')
       ! Alone there is no hinge to hear of.

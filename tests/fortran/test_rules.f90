@@ -11,10 +11,8 @@ module test_rules
    public :: collect_rules
 
    !> Rules that depend on their path discontinuously: Takeda's at a former peak and where the force is zero
-   !> (docs/takeda.md), those with a peak to which they reload for the same reason, and a joint whose layers
-   !> soften.
-   character(len=*), parameter :: exceptions(*) = [character(len=16) :: &
-      'takeda', 'peak_oriented', 'pinching', 'layered']
+   !> (docs/takeda.md), and a joint whose layers soften.
+   character(len=*), parameter :: exceptions(*) = [character(len=16) :: 'takeda', 'layered']
 
 contains
 

@@ -1,11 +1,10 @@
 """The capped rules once more: an independent method for the tests of ``rbsdem``.
 
-Written from ``docs/rules.md``, not from the Fortran, and built another way: a spring has a polyline
-*ahead* of it, the points that loading will pass from here to the end of the backbone, and while it
-unloads it has that polyline waiting. The backbone is a function, the least of what hardening and
-softening allow; its corners are found by asking the function at all places where lines meet.
-
-Work is summed move by move. Nothing is tuned for speed.
+Written from ``docs/rules.md``, not from the Fortran, and built another way, for full cycles of
+growing amplitude: each half-cycle is one polyline. The backbone is a function, the least of what
+hardening and softening allow; its corners are found by asking the function at all places where
+lines meet.
+Inner loops are proved in the Fortran suites.
 """
 
 from __future__ import annotations
@@ -13,6 +12,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+
+import numpy as np
 
 FAR = 1e30
 SIDE = ("d_c", "f_c", "d_y", "f_y", "d_cap", "f_cap", "d_pc", "f_res", "d_u")
@@ -75,10 +76,112 @@ class Backbone:
         return torn, [*bends, self.d_u, self.d_u + top / rupture]
 
 
+class Part:
+    """One of the two parts of a spring, along full cycles of growing amplitude.
+
+    Each half-cycle is one polyline: from the turn to zero force, to where reloading starts, to its
+    goal, along the backbone to the next turn.
+    """
+
+    def __init__(
+        self, given: dict[int, Backbone], b0: float, c: float, capacity: dict, slip: float | None
+    ) -> None:
+        self.given, self.b0, self.c, self.capacity, self.slip = given, b0, c, capacity, slip
+        self.k_0 = max(side.slope for side in given.values())
+        self.d = self.f = 0.0
+        self.peak = {s: side.d_c or side.d_y for s, side in given.items()}
+        self.start = {1: 0.0, -1: 0.0}
+        self.target = {1: 1.0, -1: 1.0}
+        self.spent = {1: 0.0, -1: 0.0}
+        self.worn, self.has_yielded = 0.0, False
+
+    def left(self, kind: str, energy: float) -> float:
+        """Return what an energy leaves."""
+        if not self.capacity[kind]:
+            return 1.0
+        return 1 - min(1.0, max(energy, 0.0) / self.capacity[kind]) ** self.c
+
+    def unloading(self, s: int, d: float) -> float:
+        """Return the stiffness of unloading without deterioration."""
+        own, other = self.given[s], self.given[-s]
+        if d <= own.d_c or (d < own.d_y and not own.d_c):
+            return own.slope
+        beyond = other.f_c / own.slope
+        if d < own.d_y:
+            f = float(np.interp(d, [own.d_c, own.d_y], [own.f_c, own.f_y]))
+            return (f + other.f_c) / (d + beyond)
+        return (own.f_y + other.f_c) / (own.d_y + beyond) * (d / own.d_y) ** -self.b0
+
+    def turn_stiffness(self, s: int) -> float:
+        """Return the stiffness of unloading from the present turn on side s."""
+        d, f = s * self.d, s * self.f
+        k = self.unloading(s, self.peak[s]) * max(self.left("k", self.worn), 1e-6)
+        return min(max(k, f / (d - self.start[s])), self.k_0)
+
+    def half_cycle(self, s: int, to: float) -> tuple[list[float], list[float]]:
+        """Go to a deformation on side s; return the polyline."""
+        points = [(self.d, self.f)]
+        zero = s * self.d
+        if self.f:
+            zero = s * (self.d - self.f / self.turn_stiffness(-s))
+            points.append((s * zero, 0.0))
+        if self.has_yielded:
+            self.spent[-s] += self.now - 0.5 * self.f * (self.d - s * zero)
+        strength = max(self.left("s", self.spent[-s]), self.given[s].f_res / self.given[s].f_y)
+        function, bends = self.given[s].function(strength, self.left("c", self.spent[-s]))
+        bends = sorted({x for x in bends if x > 0})
+        left = self.left("a", self.spent[-s])
+        if left < self.target[s]:
+            moved = self.peak[s] * self.target[s] / left if left else FAR
+            self.peak[s] = min(moved, max(self.peak[s], self.given[s].d_u))
+            self.target[s] = left
+        start = zero
+        if self.slip is not None:
+            k = self.unloading(s, self.peak[s]) * max(self.left("k", self.worn), 1e-6)
+            start = max(start, self.slip * (self.peak[s] - function(self.peak[s]) / k))
+            start = max(start, 0.0) if zero < 0 else start
+            points.append((s * start, 0.0))
+        goals = [x for x in (self.peak[s], *bends) if x >= self.peak[s] and x > start]
+        goal = max(goals, key=lambda x: function(x) / (x - start))
+        way = [x for x in (goal, *bends) if goal <= x < to]
+        end = function(to) if to >= goal else function(goal) * (to - start) / (goal - start)
+        points += [(s * x, s * function(x)) for x in sorted(set(way))] + [(s * to, s * end)]
+        self.account(s, points, strength * self.given[s].d_y)
+        self.start[s], self.peak[s] = start, max(self.peak[s], to)
+        self.d, self.f = points[-1]
+        self.worn = max(self.worn, self.dissipated(s))
+        d, f = zip(*(points if s > 0 else points[::-1]), strict=True)
+        return list(d), list(f)
+
+    def account(self, s: int, points: list, d_y: float) -> None:
+        """Find the work of the excursion that counts: without what was dissipated before yield."""
+        d = np.array([s * x for x, _ in points])
+        f = np.array([s * y for _, y in points])
+        first = int(np.argmax(f > 0)) - 1
+        d, f = d[first:], f[first:]
+        self.now = float(np.sum(0.5 * np.diff(d) * (f[1:] + f[:-1])))
+        if self.has_yielded or d[-1] < d_y:
+            return
+        self.has_yielded = True
+        inside = d <= d_y
+        before = float(np.sum(0.5 * np.diff(d[inside]) * (f[inside][1:] + f[inside][:-1])))
+        top = float(f[inside][-1])
+        k = self.unloading(s, d_y)
+        self.start[s] = float(d[0])
+        k = min(max(k, top / (d_y - self.start[s])), self.k_0)
+        self.now -= before - 0.5 * top**2 / k
+
+    def dissipated(self, s: int) -> float:
+        """Return the energy that counts for the stiffness at a turn."""
+        if not self.has_yielded:
+            return 0.0
+        return sum(self.spent.values()) + self.now - 0.5 * self.f**2 / self.k_0
+
+
 class Capped:
     """A spring of the rules ``peak_oriented`` and ``pinching`` (with `kappa_f` and `kappa_d`)."""
 
-    def __init__(self, kappa_f: float | None = None, kappa_d: float | None = None, **given) -> None:
+    def __init__(self, kappa_f: float = 1.0, kappa_d: float = 1.0, **given) -> None:
         sides = {+1: {}, -1: {}}
         for name in SIDE:
             value = given.pop(name, None)
@@ -88,221 +191,28 @@ class Capped:
             if other is not None:
                 sides[-1][name] = other
         self.given = {s: Backbone(**numbers) for s, numbers in sides.items()}
-        self.kappa = None if kappa_f is None else (kappa_f, kappa_d)
-        self.b0 = given.pop("b0", 0.0)
-        self.c = given.pop("c", 1.0)
+        b0, c = given.pop("b0", 0.0), given.pop("c", 1.0)
         size = sum(0.5 * b.f_y * b.d_y for b in self.given.values())
-        self.capacity = {x: given.pop(f"lambda_{x}", 0.0) * size for x in "scka"}
+        capacity = {x: given.pop(f"lambda_{x}", 0.0) * size for x in "scka"}
         assert not given, given
-
-        self.d = self.f = self.work = 0.0
-        self.left = {s: dict.fromkeys("sc", 1.0) for s in (1, -1)}
-        self.peak = {s: b.d_c for s, b in self.given.items()}
-        self.last: dict[int, tuple[float, float] | None] = {1: None, -1: None}
-        self.loaded: set[int] = set()
-        self.k_left, self.k_next = 1.0, 1.0
-        self.spent = 0.0
-        self.is_virgin, self.is_dead, self.has_yielded = True, False, False
-        self.s = 0
-        self.zero, self.at_zero = 0.0, 0.0  # the crossing, and the work there
-        self.ahead: list[tuple[float, float]] = []
-        self.unloads: tuple[float, float, float] | None = (
-            None  # from where, and the zero it goes to
-        )
-        self.loads_backbone = False
-        self.corners: list[float] = [0.0]
-        self.spent_at: list[float] = []
-
-    # ---- the backbone ----
-
-    def force_of(self, s: int) -> tuple[Callable[[float], float], list[float]]:
-        """Return the present backbone of a side and its bends in order."""
-        b = self.given[s]
-        self.left[s]["s"] = max(self.left[s]["s"], b.f_res / b.f_y)
-        function, bends = b.function(self.left[s]["s"], self.left[s]["c"])
-        return function, sorted({x for x in bends if x > 0})
-
-    def beyond(self, s: int, d: float) -> list[tuple[float, float]]:
-        """Return the points of the backbone beyond a deformation."""
-        function, bends = self.force_of(s)
-        points = [(x, function(x)) for x in bends if x > d]
-        far = points[-1][1] if points else function(d)
-        return [*points, (FAR, far)]
-
-    # ---- deterioration ----
-
-    def share(self, kind: str, energy: float) -> float:
-        """Return beta of an excursion."""
-        if not self.capacity[kind] or energy <= 0:
-            return 0.0
-        rest = self.capacity[kind] - self.spent - energy
-        return min(1.0, (energy / rest) ** self.c) if rest > 0 else 1.0
-
-    def stiffness(self, s: int) -> float:
-        """Return the unloading stiffness of a side."""
-        own, other = self.given[s], self.given[-s]
-        d = max(self.peak[s], own.d_c)
-        if d >= own.d_y:
-            k = (own.f_y + other.f_c) / (own.d_y + other.d_c) * (d / own.d_y) ** -self.b0
-        elif d > 0:
-            f = own.f_c + (d - own.d_c) * (own.f_y - own.f_c) / (own.d_y - own.d_c)
-            k = (f + other.f_c) / (d + other.d_c)
-        else:
-            k = own.slope
-        return k * self.k_left
-
-    # ---- the path ----
-
-    def go(self, d: float, f: float) -> None:
-        """Move along a straight line."""
-        self.work += 0.5 * (f + self.f) * (d - self.d)
-        self.d, self.f = d, f
-        if d != self.corners[-1]:
-            self.corners.append(d)
-
-    def move(self, to: float) -> float:
-        """Go to a deformation and return the force there."""
-        while self.d != to:
-            if self.is_dead:
-                self.f = 0.0
-                self.go(to, 0.0)
-            elif self.is_virgin:
-                self.move_virgin(to)
-            elif self.unloads:
-                self.move_unloading(to)
-            elif (to - self.d) * self.s > 0:
-                self.move_loading(to)
-            else:
-                self.turn_back()
-        return self.f
-
-    def move_virgin(self, to: float) -> None:
-        s = 1 if to > self.d else -1
-        if self.d * s < 0:
-            end = 0.0 if to * s > 0 else to
-            self.go(end, self.given[-s].slope * end)
-            return
-        function, _ = self.force_of(s)
-        first = self.given[s].d_c or self.given[s].d_y
-        if to * s < first:
-            self.go(to, self.given[s].slope * to)
-            return
-        self.go(s * first, s * function(first))
-        self.is_virgin = False
-        self.s = s
-        self.ahead = self.beyond(s, first)
-        self.loads_backbone = True
-
-    def move_loading(self, to: float) -> None:
-        s = self.s
-        d, f = self.ahead[0]
-        if to * s < d:
-            part = (to * s - self.d * s) / (d - self.d * s)
-            self.go(to, self.f + part * (s * f - self.f))
-            return
-        self.go(s * d, s * f)
-        self.ahead.pop(0)
-        if d == self.peak[s] or self.loads_backbone:
-            self.loads_backbone = True
-            if f <= 1e-14 * self.given[s].f_y:
-                self.is_dead = True
-
-    def turn_back(self) -> None:
-        s, d, f = self.s, self.d * self.s, self.f * self.s
-        if f <= 1e-12 * self.given[s].f_y:
-            self.aim(-s)
-            return
-        if self.loads_backbone:
-            self.peak[s] = d
-            self.loaded.add(s)
-            self.has_yielded |= d > self.given[s].d_y
-        self.last[s] = None if self.loads_backbone else (d, f)
-        k, put_in = self.stiffness(s), self.work - self.at_zero
-        self.k_next = self.k_left
-        if self.has_yielded:
-            keep = 1 - self.share("k", put_in - f * f / (2 * k))
-            keep = max(keep, 1e-6 / self.k_left)
-            self.k_next, k = self.k_left * keep, k * keep
-        k = max(k, f / (d - self.zero * s), f * f / (2 * put_in))
-        k = min(k, max(b.slope for b in self.given.values()))
-        self.unloads = (self.d, self.f, self.d - self.f / k)
-
-    def move_unloading(self, to: float) -> None:
-        d, f, zero = self.unloads
-        s = self.s
-        if to * s >= d * s:
-            self.go(d, f)
-            self.unloads = None
-        elif to * s >= zero * s:
-            self.go(to, f * (to - zero) / (d - zero))
-        else:
-            self.go(zero, 0.0)
-            self.unloads = None
-            self.k_left = self.k_next
-            if self.has_yielded and self.pay(-s):
-                self.is_dead = True
-            else:
-                self.aim(-s)
-
-    def pay(self, s: int) -> bool:
-        """Charge a side for the excursion that is over; return whether nothing is left."""
-        energy = max(self.work - self.at_zero, 0.0)
-        shares = {x: self.share(x, energy) for x in "sca"}
-        self.spent += energy
-        self.spent_at.append(self.spent)
-        if max(shares.values()) >= 1:
-            return True
-        for x in "sc":
-            self.left[s][x] *= 1 - shares[x]
-        self.force_of(s)  # the strength is not below the residual
-        peak, b = self.peak[s], self.given[s]
-        if s in self.loaded:
-            self.peak[s] = min(peak * (1 + shares["a"]), max(peak, b.d_u))
-        else:
-            self.peak[s] = self.left[s]["s"] * b.d_c
-        return False
-
-    def aim(self, s: int) -> None:
-        """Lay the way to the largest peak of a side, and beyond it."""
-        self.s, self.zero, self.at_zero, self.loads_backbone = s, self.d, self.work, False
-        z = self.d * s
-        function, _ = self.force_of(s)
-        d, f = self.peak[s], function(self.peak[s])
-        d_y = self.left[s]["s"] * self.given[s].d_y
-        if d < d_y and (d <= z or function(d_y) / (d_y - z) >= f / (d - z)):
-            d, f = d_y, function(d_y)
-        if self.peak[s] < d_y:
-            d, f = self.not_steeper(s, z, d, f)
-        self.peak[s] = d
-        if f <= 0:
-            self.is_dead = True
-            return
-        self.ahead = [(d, f), *self.beyond(s, d)]
-        if self.kappa:
-            permanent = d - f / self.stiffness(s)
-            at = (1 - self.kappa[1]) * max(permanent, 0.0)
-            if at > z:
-                self.ahead.insert(0, (at, self.kappa[0] * f * (at - z) / (d - z)))
-        elif self.last[s]:
-            d_last, f_last = self.last[s]
-            if z < d_last < d and f_last < f and f_last / (d_last - z) > f / (d - z):
-                self.ahead.insert(0, (d_last, f_last))
-
-    def not_steeper(self, s: int, z: float, d: float, f: float) -> tuple[float, float]:
-        """Return the target, or where the stiffest line meets the backbone beyond it."""
-        k = max(b.slope for b in self.given.values())
-        function, _ = self.force_of(s)
-        above = f - k * (d - z)
-        if above <= 0:
-            return d, f
-        for d_next, f_next in self.beyond(s, d):
-            left = f_next - k * (d_next - z)
-            if left < 0:
-                d += (d_next - d) * above / (above - left)
-                return d, function(d)
-            d, above = d_next, left
-        return d, function(d)
+        self.parts = [
+            (kappa_f, Part(self.given, b0, c, capacity, None)),
+            (1 - kappa_f, Part(self.given, b0, c, capacity, 1 - kappa_d)),
+        ]
 
     def response(self, path: Iterable[float]) -> list[float]:
-        """Return the forces along a path."""
-        return [self.move(float(d)) for d in path]
+        """Return the forces along full cycles; the last half-cycle may be broken off."""
+        points = np.array([0.0, *path])
+        way = np.sign(np.diff(points))
+        turns = [i + 1 for i in range(len(way) - 1) if way[i + 1] != way[i]]
+        begin, forces = 0, []
+        for end in [*turns, len(points) - 1]:
+            s = int(way[end - 1])
+            to = s * points[end] if end in turns else max(s * points[end], 1e6)
+            run = sum(
+                share * np.interp(points[begin + 1 : end + 1], *part.half_cycle(s, float(to)))
+                for share, part in self.parts
+            )
+            forces += np.asarray(run).tolist()
+            begin = end
+        return forces

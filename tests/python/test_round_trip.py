@@ -35,7 +35,12 @@ def capped(rng: Rng) -> dict[str, Any]:
     given: dict[str, Any] = {"d_y": d_y, "f_y": f_y, "d_cap": 5 * d_y, "f_cap": 1.1 * f_y}
     given["d_pc"] = near(rng, 0.1)
     if rng.random() < 0.5:
-        given |= {"f_res": 0.2 * f_y, "d_u": 40 * d_y, "b0": near(rng, 0.4), "c": near(rng, 2.0)}
+        given |= {
+            "f_res": 0.2 * f_y,
+            "d_u": 40 * d_y,
+            "b0": near(rng, 0.4),
+            "c": float(rng.uniform(1, 2)),
+        }
         given |= {f"lambda_{kind}": near(rng, 60.0) for kind in "scka"}
     if rng.random() < 0.5:
         given |= {"d_c": 0.1 * d_y, "f_c": 0.3 * f_y}

@@ -1,8 +1,8 @@
 """The rules with a capped backbone: by their properties, against an independent method.
 
 ``docs/rules.md`` states the rules; its sequences by hand are proved in the Fortran suites `capped`
-and `peak_oriented`. ``reference_capped`` is a second implementation, which also supplies the
-corners of a path. Properties are numbered as in section 3 of ``docs/takeda.md`` where they are the
+and `peak_oriented`, continuity and energy in the suite `rules`. ``reference_capped`` is a second
+implementation. Properties are numbered as in section 3 of ``docs/takeda.md`` where they are the
 same.
 """
 
@@ -74,9 +74,12 @@ def random_numbers(rng: np.random.Generator, kind: str, deteriorates: bool = Tru
         numbers |= {f"{name}_neg": value for name, value in other.items()}
     numbers["b0"] = rng.choice([0.0, rng.uniform(0, 1)])
     numbers["c"] = rng.choice([1.0, rng.uniform(1, 2)])
+    sides = reference(numbers).given.values()
+    unit = sum(0.5 * side.f_y * side.d_y for side in sides) * max(side.slope for side in sides)
+    least = max(side.f_cap**2 * (1 + side.d_cap / side.d_pc) for side in sides) / unit
     for x in "scka":
         if deteriorates and rng.random() < 0.5:
-            numbers[f"lambda_{x}"] = 10 ** rng.uniform(0.3, 3)
+            numbers[f"lambda_{x}"] = least * 10 ** rng.uniform(0.01, 2)
     if kind == "pinching":
         numbers |= {"kappa_f": rng.uniform(0.05, 1), "kappa_d": rng.uniform(0.01, 1)}
     return {name: float(value) for name, value in numbers.items()}
@@ -123,31 +126,20 @@ def refined(path: ArrayLike, n: int) -> Array:
     return np.array(points)
 
 
-def with_corners(numbers: Numbers, path: Array) -> tuple[Array, Array, reference_capped.Capped]:
-    """Path with all its corners, the forces there, and the spring that found them."""
-    spring = reference(numbers)
-    spring.response(path)
-    corners = np.array(spring.corners[1:])
-    return corners, make(numbers).response(corners), spring
-
-
-def work(path: Array, force: Array) -> Array:
-    d, f = np.concatenate(([0.0], path)), np.concatenate(([0.0], force))
-    return np.cumsum(0.5 * np.diff(d) * (f[1:] + f[:-1]))
-
-
-# ---- by hand (docs/rules.md) -----------------------------------------------------------------
-
-
 # ---- the independent method ------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_reference_agrees(kind):
     rng = np.random.default_rng(70 + KINDS.index(kind))
-    long = [random_numbers(rng, kind) for _ in range(20)]
-    more = [(numbers, random_path(rng, numbers["d_y"], 600)) for numbers in long]
-    for numbers, path in [*cases(kind), *more]:
+    for _ in range(CASES):
+        numbers = random_numbers(rng, kind)
+        # At the end of its life a side is told by inner loops, which the reference does not know.
+        numbers = {
+            name: value * 100 ** name.startswith("lambda") for name, value in numbers.items()
+        }
+        peaks = growing_cycles(rng, numbers["d_y"])
+        path = refined(peaks, 9)
         expected = reference(numbers).response(path)
         found = make(numbers).response(path)
         np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9 * scale(numbers))
@@ -196,18 +188,6 @@ def test_property_05_elastic_before_the_first_corner(kind):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_property_09_work(kind):
-    """The work from the virgin state is never negative, nor that of an excursion."""
-    for numbers, path in cases(kind):
-        points, force, _ = with_corners(numbers, path)
-        total = work(points, force)
-        slack = 1e-12 * scale(numbers) * np.max(np.abs(path)) * len(points)
-        assert np.min(total) >= -slack
-        at_zero = total[np.abs(force) <= 1e-13 * scale(numbers)]
-        assert np.all(np.diff(np.concatenate(([0.0], at_zero))) >= -slack)
-
-
-@pytest.mark.parametrize("kind", KINDS)
 def test_property_10_cycles_repeat_without_deterioration(kind):
     """lambda = 0: peaks stay on the backbone, cycles repeat from the third on."""
     rng = np.random.default_rng(10)
@@ -222,11 +202,13 @@ def test_property_10_cycles_repeat_without_deterioration(kind):
             )
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_property_11_partial_unloading_leaves_no_trace(kind):
-    """Down toward zero force and up again, on one line: nothing deteriorates."""
+def test_property_11_partial_unloading_leaves_no_trace():
+    """Down toward zero force and up again, on one line: nothing deteriorates.
+
+    With pinching one of the two parts may pass zero force before the other.
+    """
     rng = np.random.default_rng(11)
-    for numbers, path in cases(kind):
+    for numbers, path in cases("peak_oriented"):
         spring = make(numbers)
         force = spring.response(path)
         way = np.sign(np.diff(np.concatenate(([0.0], path))))
@@ -247,27 +229,6 @@ def test_property_14_scaling_by_powers_of_two(kind):
         factor = {"d": a, "f": b}
         scaled = {name: value * factor.get(name[0], 1.0) for name, value in numbers.items()}
         assert np.array_equal(make(scaled).response(a * path), b * make(numbers).response(path))
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_energy_is_bounded_by_its_capacity(kind):
-    """Excursions that are over have dissipated less than every E_t but the one that kills."""
-    died = 0
-    for numbers, path in cases(kind):
-        spring = reference(numbers)
-        spring.response(path)
-        found = work(*with_corners(numbers, path)[:2])[-1]
-        acting = [spring.capacity[x] for x in "sca" if spring.capacity[x]]
-        if not acting or not spring.spent_at:
-            continue
-        before = spring.spent_at[:-1] if spring.is_dead else spring.spent_at
-        assert all(spent <= min(acting) for spent in before)
-        if spring.is_dead:
-            died += 1
-            assert found == pytest.approx(spring.work, rel=1e-9)
-            far = make(numbers).response(np.concatenate((path, [99.0, -99.0])))
-            assert np.all(far[-2:] == 0.0)
-    assert died > 50
 
 
 @pytest.mark.parametrize("kind", KINDS)

