@@ -784,7 +784,7 @@ def run_static_layered() -> rbsdem.Result:
         1.6, 614.4, rbsdem.Elastic(4e8), LAYERED, kinematics="pdelta", axial_load=700e3
     )
     drifts = np.array([0.0025, 0.005, 0.01, 0.02, 0.03])
-    return rbsdem.cyclic(column, displacement=rbsdem.protocol(drifts * 1.6, cycles=1, points=4))
+    return rbsdem.cyclic(column, displacement=rbsdem.protocol(drifts * 1.6, cycles=2, points=4))
 
 
 def reason_static_layered(rows: Rows) -> None:
