@@ -142,3 +142,15 @@ def test_a_column_with_a_spiral(specimen):
     assert np.max(
         column.joints("flexure")[0].response(rotation, specimen.axial_load)
     ) == pytest.approx(np.max(moment), rel=0.2)
+
+
+@ALL
+def test_the_strain_at_the_peak_of_the_core(specimen):
+    """Mander, Priestley and Park (1988), equation 5: eps_cc/eps_co = 1 + 5 (f_cc/f_co - 1)."""
+    springs = [spring for _, spring in peer.column(specimen).joints("flexure")[0].layers]
+    concrete = [spring for spring in springs if isinstance(spring, rbsdem.ConcreteSpring)]
+    strips = cut(specimen, 14)
+    core, cover = concrete[0], concrete[-1]
+    gain = core.f_peak / strips.core[0].area / (cover.f_peak / strips.cover[-1].area)
+    assert gain > 1.02
+    assert core.d_peak / cover.d_peak == pytest.approx(1 + 5 * (gain - 1), rel=1e-7)
