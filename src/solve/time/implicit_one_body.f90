@@ -15,6 +15,9 @@ module rbs_solve_time_implicit_one_body
    !> Most trials of Newton's method, which mostly needs two.
    integer, parameter :: most_trials = 8
 
+   !> Most lines within one step here.
+   integer, parameter :: most_lines = 100
+
    type :: one_body_step
       !> Inverse of the tangent, and what it belongs to; 1/(beta h^2)
       real(wp) :: inverse(2, 2) = 0.0_wp, per_h = 0.0_wp
@@ -167,25 +170,33 @@ contains
       logical, intent(out) :: taken
       real(wp) :: before(2), moved(2), dx(2), q(2), r(2), a1(2), v1(2), g(2), scale(2)
       real(wp) :: lower, left, work
-      integer :: trial
+      integer :: trial, way(2)
+      logical :: changed
 
       taken = .false.
+      changed = .false.
+      way = 0
       lower = state%motion%column%lower(1)
-      before = h*step%v0 + (h**2*(0.5_wp - step%beta))*step%a0
+      before(1) = h*step%v0(1) + (h**2*(0.5_wp - step%beta))*step%a0(1)
+      before(2) = h*step%v0(2) + (h**2*(0.5_wp - step%beta))*step%a0(2)
       moved = 0.0_wp
       call state%springs%mark()
       call find_residual(self, step, state, h, load, before, moved, state%q, r, a1, v1, g, scale)
       do trial = 1, most_trials
          call self%fit(step, state, h)
-         dx = [self%inverse(1, 1)*r(1) + self%inverse(1, 2)*r(2), &
-               self%inverse(2, 1)*r(1) + self%inverse(2, 2)*r(2)]
+         dx(1) = self%inverse(1, 1)*r(1) + self%inverse(1, 2)*r(2)
+         dx(2) = self%inverse(2, 1)*r(1) + self%inverse(2, 2)*r(2)
          work = r(1)*dx(1) + r(2)*dx(2)
          moved = moved + dx
-         q = [state%q(1) + (moved(1) - lower*moved(2)), state%q(2) + moved(2)]
+         q(1) = state%q(1) + (moved(1) - lower*moved(2))
+         q(2) = state%q(2) + moved(2)
          if (.not. (abs(q(1)) < out_of_bounds .and. abs(q(2)) < out_of_bounds)) exit
-         if (trial > 1) call state%springs%restore()
-         call state%springs%move_all(q)
-         if (state%springs%stuck) exit
+         if (.not. are_on_lines(q, way, state%springs%d, state%springs%first, state%springs%last)) then
+            if (changed) call state%springs%restore()
+            changed = .true.
+            call find_lines(state, q, way)
+            if (state%springs%stuck) exit
+         end if
          call find_residual(self, step, state, h, load, before, moved, q, r, a1, v1, g, scale)
          taken = abs(r(1)) <= wanted*scale(1) .and. abs(r(2)) <= wanted*scale(2)
          if (taken) exit
@@ -194,12 +205,51 @@ contains
          if (.not. left >= -0.9_wp*work) exit
       end do
       if (taken) then
+         state%q(1) = q(1)
+         state%q(2) = q(2)
+         call state%springs%carry_to(state%q)
          call end_step(step, state, h, load, moved, q, v1, a1, g, scale)
       else
          call state%springs%restore()
       end if
       call state%springs%forget_mark()
    end subroutine try_step
+
+   !> Whether springs that go to q are on the present lines there: those that have come to them by the end of
+   !> another are beyond that end.
+   pure logical function are_on_lines(q, way, d, first, last)
+      real(wp), intent(in) :: q(2), d(2), first(2), last(2)
+      !> How each spring has come to its line: +1 or -1 by the end of another, at d; 0 it was on it before
+      integer, intent(in) :: way(2)
+
+      are_on_lines = q(1) <= last(1) .and. q(1) >= first(1) .and. way(1)*(q(1) - d(1)) >= 0.0_wp .and. &
+                     q(2) <= last(2) .and. q(2) >= first(2) .and. way(2)*(q(2) - d(2)) >= 0.0_wp
+   end function are_on_lines
+
+   !> Put the springs, which are at the start of the step, on the lines that they are on at q. They stay where
+   !> these lines begin.
+   subroutine find_lines(state, q, way)
+      type(state_type), intent(inout) :: state
+      real(wp), intent(in) :: q(2)
+      !> See `are_on_lines`
+      integer, intent(out) :: way(2)
+      integer :: i, lines
+
+      way = 0
+      do i = 1, 2
+         do lines = 1, most_lines
+            if (q(i) > state%springs%last(i)) then
+               way(i) = 1
+            else if (q(i) < state%springs%first(i)) then
+               way(i) = -1
+            else
+               exit
+            end if
+            call state%springs%leave(i, way(i))
+         end do
+         state%springs%stuck = state%springs%stuck .or. lines > most_lines
+      end do
+   end subroutine find_lines
 
    !> What is left of the balance where the body has moved so far.
    pure subroutine find_residual(self, step, state, h, load, before, moved, q, r, a1, v1, g, scale)

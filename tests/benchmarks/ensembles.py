@@ -1,0 +1,193 @@
+"""Times of ensembles on this machine, goal and measured side by side. Nothing is asserted.
+
+    python tests/benchmarks/ensembles.py [--quick] [--dask] [--build DIR]
+
+Processor time of one thread where nothing else is said, so that another load of the machine
+disturbs little; what takes two threads is wall time, on a machine that does nothing else. The
+yardstick is C by hand, of the same 64 columns without any event: meson setup build/fortran, then
+meson compile -C build/fortran yardstick_lanes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import resource
+import subprocess
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from benchmark import record_20_s
+from rows import Row, newest, show
+
+import rbsdem
+from rbsdem.ensembles.inputs import Motion
+from rbsdem.ensembles.measures import core_measures
+from rbsdem.ensembles.tasks import Task, compute
+
+#: Runs of the largest ensemble.
+MANY = 1_000_000
+
+
+def pier() -> rbsdem.Column:
+    """Return the paper's column with the mass that its axial load has."""
+    column = rbsdem.paper_columns()["soesianawati_1"]
+    return dataclasses.replace(column, top_mass=744e3 / 9.81, axial_load=744e3, kinematics="pdelta")
+
+
+def predicted() -> rbsdem.Column:
+    """Return the layered column that is predicted from its drawing, with its mass."""
+    paper = rbsdem.paper_sections()["soesianawati_1"]
+    column = paper.section.column(paper.length, axial_load=paper.axial_load)
+    return dataclasses.replace(column, top_mass=paper.axial_load / 9.81)
+
+
+def processor(action: Callable[[], Any], repeats: int) -> tuple[list[float], Any]:
+    """Return processor times of some calls, and the last answer."""
+    times, answer = [], None
+    for _ in range(repeats):
+        start = time.process_time()
+        answer = action()
+        times.append(time.process_time() - start)
+    return times, answer
+
+
+def yardstick(program: Path | None, method: str, repeats: int) -> list[float]:
+    """Return nanoseconds per column and step of the loop in C."""
+    if program is None:
+        return []
+    command = [program, method, "200000"]
+    return [
+        float(subprocess.run(command, check=True, capture_output=True).stdout.split()[0])
+        for _ in range(repeats)
+    ]
+
+
+def lanes(program: Path | None, repeats: int, runs: int) -> list[Row]:
+    """Time lanes with and without events, and one run after the other."""
+    time_, motion = record_20_s()
+    place = np.zeros(runs, dtype=np.int32)
+    rows = []
+    for method, settings in (("rk4", {}), ("newmark", {"dt": 0.005})):
+        by_hand = yardstick(program, method, repeats)
+        rows.append(Row(f"{method}, 64 columns in C, no events", "ns/column-step", None, by_hand))
+        goal = 15.0 if method == "newmark" else 2 * float(np.median(by_hand)) if by_hand else None
+        for scale in (0.01, 0.25, 1.0):
+            scales = scale * np.linspace(0.95, 1.05, runs)
+            motions = [Motion("made up", time_, motion)]
+            task = Task([pier()], motions, {"method": method, **settings}, place, place, scales)
+            few = dataclasses.replace(task, column=place[:8], motion=place[:8], scale=scales[:8])
+            alone, _ = processor(lambda few=few: compute(few, kernel=-1), 1)
+            times, answer = processor(lambda task=task: compute(task), repeats)
+            numbers = dict(zip(core_measures(), answer.values.sum(axis=1), strict=True))
+            row = Row(f"{method}, 64 lanes, record x {scale:g}", "ns/column-step", goal)
+            row.values = [1e9 * t / numbers["steps"] for t in times]
+            steps = numbers["steps"] * 8 / runs
+            row.note = (
+                f"{100 * numbers['events'] / numbers['steps']:.1f} % events; alone "
+                f"{1e9 * alone[0] / steps:.0f} ns"
+            )
+            rows.append(row)
+    return rows
+
+
+def layered(repeats: int) -> Row:
+    """Time an ensemble of the predicted column over single runs."""
+    column = predicted()
+    time_, motion = record_20_s()
+    scales = np.linspace(0.2, 2.0, 10)
+    given = {"method": "newmark"}
+
+    def single() -> None:
+        for scale in scales:
+            rbsdem.time_history(column, time_, ground_acceleration=scale * motion, **given)
+
+    def together() -> None:
+        rbsdem.ensemble(column, (time_, motion), scales=scales, jobs=1, **given)
+
+    pairs = [(processor(together, 1)[0][0], processor(single, 1)[0][0]) for _ in range(repeats)]
+    row = Row("predicted column, ensemble over single runs", "x", 1.05, [a / b for a, b in pairs])
+    row.note = f"{1e3 * min(b for _, b in pairs) / scales.size:.1f} ms a run"
+    return row
+
+
+def twenty_by_ten(repeats: int) -> Row:
+    """Time an incremental dynamic analysis of the predicted column, by two threads."""
+    column = predicted()
+    motions = {f"motion {seed}": rotated(seed) for seed in range(20)}
+    row = Row("predicted column, 20 records x 10 scales, two threads", "s", 1.5)
+    for _ in range(repeats):
+        found = rbsdem.ensemble(
+            column,
+            motions,
+            scales=np.linspace(0.2, 2.0, 10),
+            method="newmark",
+            collapse_drift=0.1,
+            jobs=2,
+        )
+        row.values.append(found.seconds)
+    return row
+
+
+def rotated(seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the made-up record with other phases."""
+    time_, motion = record_20_s()
+    spectrum = np.fft.rfft(motion)
+    phases = np.random.default_rng(seed).uniform(0.0, 2 * np.pi, spectrum.size)
+    envelope = np.minimum(time_ / 3, 1) * np.exp(-np.maximum(time_ - 8, 0) / 6)
+    values = envelope * np.fft.irfft(np.abs(spectrum) * np.exp(1j * phases), motion.size)
+    return time_, 0.4 * 9.81 * values / np.abs(values).max()
+
+
+def threads(runs: int, with_dask: bool) -> list[Row]:
+    """Time many runs by one and two threads, and by two workers of Dask."""
+    motion = record_20_s()
+    given = {"method": "newmark", "dt": 0.005, "collapse_drift": 0.1}
+
+    def run(number: int, **how: Any) -> float:
+        scales = np.linspace(0.01, 1.0, number)
+        return rbsdem.ensemble(pier(), motion, scales=scales, **given, **how).seconds
+
+    run(64, jobs=1)
+    one, two = run(runs // 10, jobs=1), run(runs // 10, jobs=2)
+    rows = [Row("two threads over one", "x", (1.9, 2.1), [one / two])]
+    seconds = run(runs, jobs=2)
+    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    many = Row("1e6 runs of one body, two threads", "s", 60, [seconds * MANY / runs])
+    many.note = f"{runs} were run; largest memory {most:.0f} MB (goal 500)"
+    rows.append(many)
+    if with_dask:
+        from distributed import Client, LocalCluster  # noqa: PLC0415
+
+        options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+        with LocalCluster(**options) as cluster, Client(cluster) as client:
+            run(640, client=client)
+            pairs = [(run(runs // 10, client=client), run(runs // 10, jobs=2)) for _ in range(3)]
+        rows.append(
+            Row("two workers of Dask over two threads", "x", 1.05, [a / b for a, b in pairs])
+        )
+    return rows
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="fewer repeats, fewer runs")
+    parser.add_argument("--dask", action="store_true", help="a Dask cluster too")
+    parser.add_argument("--build", type=Path, metavar="DIR", help="build folder of the yardstick")
+    given = parser.parse_args()
+    repeats = 2 if given.quick else 5
+    show(
+        {
+            "Lanes, one thread": lanes(newest("yardstick_lanes", given.build), repeats, 320),
+            "Layered columns": [layered(repeats), twenty_by_ten(1 if given.quick else 3)],
+            "Many runs": threads(20_000 if given.quick else MANY, given.dask),
+        }
+    )
+
+
+if __name__ == "__main__":
+    main()
