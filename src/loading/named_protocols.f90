@@ -170,6 +170,8 @@ contains
          step = step + 1
          if (step <= last) then
             amplitude = ladder%amplitude(step)
+         else if (.not. ladder%rise > 0.0_wp) then
+            exit
          else
             amplitude = top + (step - last)*ladder%rise
          end if

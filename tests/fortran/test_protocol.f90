@@ -158,6 +158,11 @@ contains
       call check_failed(error, outcome, bad_input, 'largest')
       call named_protocol('fema_461', -1.0_wp, -1.0_wp, amplitudes, cycles, outcome)
       call check_failed(error, outcome, bad_input, 'reference')
+      ! Up to its own end, which it does not go beyond.
+      call named_protocol('aci_374_1', -1.0_wp, 0.035_wp, amplitudes, cycles, outcome)
+      call check_passed(error, outcome, 'aci_374_1 to its end')
+      if (allocated(error)) return
+      call check_equal(error, size(amplitudes), 10, 'steps of aci_374_1')
       call named_protocol('aci_374_1', -1.0_wp, 0.05_wp, amplitudes, cycles, outcome)
       call check_failed(error, outcome, bad_input, 'ends at')
       ! Drift times height, through the record.
