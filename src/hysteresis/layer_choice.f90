@@ -258,29 +258,23 @@ contains
 
    end subroutine weigh_both_ways
 
-   !> Slope of the line on which a layer would go on in a direction. A copy of its rule is asked.
+   !> Slope of the line on which a layer would go on in a direction. It goes there and back again.
    real(wp) function slope_ahead(self, i, way) result(k)
-      type(choosing_layers), intent(in) :: self
+      type(choosing_layers), intent(inout) :: self
       integer, intent(in) :: i, way
-      type(choosing_layers) :: copy
-      integer :: lines
+      integer :: lines, on_end
 
       k = self%k(i)
       if (.not. (self%line(i)%one_way == -way .or. self%has_no_room(i, way))) return
-      copy%y = [self%y(i)]
-      copy%weight = [self%weight(i)]
-      allocate (copy%slot(1))
-      allocate (copy%slot(1)%rule, source=self%slot(i)%rule)
-      copy%line = [self%line(i)]
-      allocate (copy%k(1), copy%c(1), copy%lo(1), copy%hi(1), copy%slack(1), copy%one_way(1), &
-                copy%both_ways(1))
-      copy%bank_state = self%bank_state
-      copy%reach = self%reach
+      on_end = self%on_end
+      call self%remember(i)
       do lines = 1, most_lines
-         if (.not. (copy%line(1)%one_way == -way .or. copy%has_no_room(1, way))) exit
-         call copy%leave(1, way)
+         if (.not. (self%line(i)%one_way == -way .or. self%has_no_room(i, way))) exit
+         call self%leave(i, way)
       end do
-      k = copy%k(1)
+      k = self%k(i)
+      call self%go_back(i)
+      self%on_end = on_end
    end function slope_ahead
 
    !> Sort indices by values, by insertion: there are few.

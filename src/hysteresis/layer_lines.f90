@@ -81,6 +81,9 @@ module rbs_hysteresis_layer_lines
       type(bank_state), private :: kept_state
       type(layer_slot), allocatable, private :: kept_slot(:)
       type(segment), allocatable, private :: kept_line(:)
+      !> What `remember` has saved of each layer (count)
+      type(layer_slot), allocatable, private :: tried_slot(:)
+      type(segment), allocatable, private :: tried_line(:)
       integer, allocatable, private :: kept(:)
       logical, allocatable, private :: is_kept(:)
       integer, private :: number_kept = 0
@@ -95,6 +98,8 @@ module rbs_hysteresis_layer_lines
       procedure :: mark
       procedure :: restore
       procedure :: forget
+      procedure :: remember
+      procedure :: go_back
    end type layer_lines
 
 contains
@@ -108,7 +113,8 @@ contains
       self%count = n
       if (.not. allocated(self%line)) then
          if (.not. allocated(self%weight)) allocate (self%weight(n), source=1.0_wp)
-         allocate (self%line(n), self%kept_slot(n), self%kept_line(n), self%kept(n))
+         allocate (self%line(n), self%kept_slot(n), self%kept_line(n), self%kept(n), self%tried_slot(n), &
+                   self%tried_line(n))
          allocate (self%k(n), self%c(n), self%lo(n), self%hi(n), self%slack(n), self%one_way(n), &
                    self%both_ways(n), self%ahead(n), self%behind(n))
          allocate (self%is_kept(n), source=.false.)
@@ -235,6 +241,25 @@ contains
       self%kept_line(self%number_kept) = self%line(i)
       call copy_rule(self%slot(i), self%kept_slot(i))
    end subroutine keep
+
+   !> Save a layer before it tries a way.
+   subroutine remember(self, i)
+      class(layer_lines), intent(inout) :: self
+      integer, intent(in) :: i
+
+      self%tried_line(i) = self%line(i)
+      call copy_rule(self%slot(i), self%tried_slot(i))
+   end subroutine remember
+
+   !> A layer comes back from its trial.
+   subroutine go_back(self, i)
+      class(layer_lines), intent(inout) :: self
+      integer, intent(in) :: i
+
+      self%line(i) = self%tried_line(i)
+      call copy_rule(self%tried_slot(i), self%slot(i))
+      call put_line(self, i)
+   end subroutine go_back
 
    !> Copy a rule with its memory.
    subroutine copy_rule(from, to)
