@@ -46,18 +46,18 @@ module rbs_case_methods
       method_type('static', in_time=.false., dt=.false.), &
       method_type('auto', tolerance=.true.), &
       method_type('rk4', order=4, explicit=.true., events=.true., allow_unstable=.true., &
-                  limit_share=0.2_wp, usual_error=1.0e-4_wp, largest_error=2.0e-3_wp, &
+                  limit_share=0.2_wp, usual_error=1.0e-4_wp, largest_error=3.0e-3_wp, &
                   body_step=1.0e-7_wp), &
       method_type('rk45', order=5, explicit=.true., adaptive=.true., tolerance=.true., &
                   limit_share=0.35_wp, usual_error=2.0e-5_wp, largest_error=4.0e-4_wp, &
                   body_step=4.0e-7_wp), &
       method_type('newmark', order=2, implicit=.true., period_share=0.02_wp, &
-                  usual_error=8.0e-3_wp, largest_error=0.3_wp, body_step=5.0e-7_wp), &
+                  usual_error=6.0e-3_wp, largest_error=0.3_wp, body_step=5.0e-7_wp), &
       method_type('hht', order=2, implicit=.true., rho_infinity=.true., &
                   period_share=0.02_wp, least_rho_infinity=0.5_wp, usual_error=5.0e-3_wp, &
                   largest_error=0.3_wp, body_step=5.0e-7_wp), &
       method_type('generalised_alpha', order=2, implicit=.true., rho_infinity=.true., &
-                  period_share=0.02_wp, usual_error=6.0e-3_wp, largest_error=0.1_wp, body_step=5.0e-7_wp)]
+                  period_share=0.02_wp, usual_error=6.0e-3_wp, largest_error=0.3_wp, body_step=5.0e-7_wp)]
 
    !> Names of the columns of `method_rows`.
    character(len=*), parameter :: methods_columns = 'method order kind adaptive dt events tolerance '// &

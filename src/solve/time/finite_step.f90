@@ -27,6 +27,8 @@ module rbs_solve_time_finite_step
 
    !> Below this share of the forces a change of a spring's force is round-off.
    real(wp), parameter :: no_change = 1.0e-6_wp
+   !> A change below this share of a deformation has few digits in it.
+   real(wp), parameter :: no_digits = 1.0e-8_wp
 
    type, extends(finite_chain) :: finite_step
       !> Whether the forces are those of the mean-value derivatives; else the parameters of generalised-alpha
@@ -141,7 +143,7 @@ contains
       type(state_type), intent(in) :: state
       real(wp), intent(in) :: h
       logical, intent(in) :: there
-      real(wp) :: finish, mean
+      real(wp) :: finish, mean, moved
       integer :: i
 
       call find_damping(self, state)
@@ -150,10 +152,13 @@ contains
             finish = springs%f0(i) + springs%k(i)*(self%q1(i) - springs%d0(i))
             mean = springs%f0(i) + springs%k(i)*(0.5_wp*(self%q1(i) + state%q(i)) - springs%d0(i))
             self%k(i) = 0.5_wp*springs%k(i)
-            if (there .and. abs(self%change(i)) > 0.0_wp) then
-               mean = springs%work(i)/self%change(i)
+            ! A change that its deformation has no digits for is the one that the spring has made.
+            moved = self%change(i)
+            if (abs(moved) < no_digits*abs(state%q(i))) moved = self%q1(i) - state%q(i)
+            if (there .and. abs(moved) > 0.0_wp) then
+               mean = springs%work(i)/moved
                if (abs(finish - mean) > no_change*(abs(finish) + abs(mean))) then
-                  self%k(i) = (finish - mean)/self%change(i)
+                  self%k(i) = (finish - mean)/moved
                end if
             end if
             self%f(i) = mean + self%viscous(i)*self%change(i)/h
