@@ -452,7 +452,8 @@ contains
       spec%file = 'history.txt'
       call expect_loading(error, spec, .false., '')
       spec%amplitudes = [1.0_wp]
-      call expect_loading(error, spec, .false., 'more than one of file, amplitudes and values are given')
+      call expect_loading(error, spec, .false., &
+                          'more than one of file, amplitudes, protocol and values are given')
       deallocate (spec%amplitudes)
       spec%format = 'xls'
       call expect_loading(error, spec, .false., "loading: format = 'xls' is not known")
