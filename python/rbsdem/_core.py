@@ -362,15 +362,14 @@ def time_history(
 
 
 def settings(given: Mapping[str, Any]) -> Statement:
-    """Return the settings of an analysis as a statement."""
+    """Return the settings of an analysis as a statement, each as its key takes it."""
+    kinds = {key["name"]: key["kind"] for key in keys()["groups"]["analysis"]}
     values: dict[str, Any] = {}
     for name, value in given.items():
-        if isinstance(value, str):
-            values[name] = value
-        elif isinstance(value, bool | np.bool_):
-            values[name] = int(value)
+        if kinds[name] == "logical":
+            values[name] = int(switch(value, name))
         else:
-            values[name] = number(value, name)
+            values[name] = str(value) if kinds[name] == "word" else number(value, name)
     return group("analysis", values)
 
 

@@ -227,16 +227,20 @@ class Result:
 
     @property
     def residual_drift(self) -> float:
-        """Drift ratio that is left.
+        """Drift ratio that is left at the end.
 
-        In time it is the one about which the column swings in the end: a quarter, a half and a
-        quarter of the last three extremes of the displacement (the mean of two if there are only
-        two, the last value if it does not swing). Of a static path it is the one at the last zero
-        of the force, NaN if the force never returns to zero.
+        In time that of the last row, as in the table of an ensemble: let the motion end with rest,
+        so that the swing has died away. Of a static path the one at the last zero of the force, NaN
+        if the force never returns to zero.
         """
-        return _residual(self.displacement, None if self.dynamic else self.force) / (
-            self.column.height
+        if not self.displacement.size:
+            return math.nan
+        left = (
+            float(self.displacement[-1])
+            if self.dynamic
+            else _last_zero(self.displacement, self.force)
         )
+        return left / self.column.height
 
     def at(self, time: float) -> dict[str, Any]:
         """Return the state at a time, or at a point of a static path, linear between rows.
@@ -430,13 +434,6 @@ def _same(one: Any, other: Any) -> bool:
     return bool(one == other)
 
 
-def _residual(displacement: Array, force: Array | None) -> float:
-    """Return what is left of a displacement [m]; see `Result.residual_drift`."""
-    if displacement.size == 0:
-        return math.nan
-    return _rest_of_swing(displacement) if force is None else _last_zero(displacement, force)
-
-
 def _last_zero(displacement: Array, force: Array) -> float:
     """Return the displacement at the last zero of the force [m], NaN if it never returns to it."""
     if force[-1] == 0:
@@ -449,15 +446,6 @@ def _last_zero(displacement: Array, force: Array) -> float:
     row = int(changes[-1])
     share = force[row] / (force[row] - force[row + 1])
     return float(displacement[row] + share * (displacement[row + 1] - displacement[row]))
-
-
-def _rest_of_swing(displacement: Array) -> float:
-    """Return about what a displacement swings in the end [m]."""
-    moves = np.diff(displacement)
-    turns = np.flatnonzero(moves[1:] * moves[:-1] < 0) + 1
-    extremes = displacement[turns[-3:]]
-    weights = {0: (), 1: (), 2: (0.5, 0.5), 3: (0.25, 0.5, 0.25)}[extremes.size]
-    return float(np.dot(weights, extremes)) if weights else float(displacement[-1])
 
 
 def _width(column: Column, with_base: bool) -> int:

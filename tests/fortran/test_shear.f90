@@ -13,6 +13,7 @@ module test_shear
    use rbs_section_cross_section, only: section_type, slice, spiral, ties
    use rbs_section_section_build, only: build_section
    use rbs_section_section_setter, only: section_setter
+   use rbs_section_shape_hollow, only: hollow_type
    use rbs_section_shapes, only: new_shape, shape_circle, shape_names, shape_rectangle
    use rbs_section_shear_diagram, only: check_curvatures, follow_shear, shear_diagram_type
    use rbs_section_shear_coupling, only: couple
@@ -406,6 +407,11 @@ contains
       do shape = 1, size(shape_names)
          section = sample_section()
          call new_shape(shape, 0.55_wp, 0.55_wp, section%shape)
+         select type (outline => section%shape)
+         class is (hollow_type)
+            outline%wall = 0.15_wp
+            outline%side_wall = 0.15_wp
+         end select
          section%bar_area = 1.0e-12_wp*section%bar_area
          call build_section(section, 0.006_wp, 400)
          call follow_shear(section, tension_ts, .false., .false., 1.0e3_wp, span, 80, 0.48_wp, [1.0e-7_wp], &

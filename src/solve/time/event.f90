@@ -83,11 +83,15 @@ contains
       type(state_type), intent(in) :: state
       integer, intent(in) :: i
       real(wp) :: along, about, reach
+      logical :: upright
       integer :: j, n
 
       associate (column => state%motion%column, springs => state%springs)
          n = column%n
-         along = max(abs(state%load(lateral)), abs(column%axial_load + state%load(axial)))
+         along = abs(state%load(lateral))
+         ! Vertical loads leave round-off only where joints balance them, not where they lean.
+         upright = column%opens .or. size(springs%layered) > 0
+         if (upright) along = max(along, abs(column%axial_load + state%load(axial)))
          about = 0.0_wp
          do j = 1, springs%count
             if ((j - 1)/n == 1) then
@@ -98,8 +102,8 @@ contains
          end do
          reach = maxval(column%length)
          about = (about + along*reach)/minval(column%inertia)
-         along = along/minval(column%mass) + abs(state%load(horizontal)) + abs(state%load(vertical)) &
-                 + column%gravity + about*reach
+         along = along/minval(column%mass) + abs(state%load(horizontal)) + about*reach
+         if (upright) along = along + abs(state%load(vertical)) + column%gravity
          least = least_share*merge(about, along, (i - 1)/n == 1)
       end associate
    end function round_off_of
