@@ -354,6 +354,9 @@ contains
       if (f + self%k*(c_closed - c) < share*f_closed) then
          c_0 = c_closed
          f_0 = share*f_closed
+         meeting = c_0
+         ! The path ends where it closes.
+         if (.not. self%c_u > c_0) return
          slope = (share*self%strength*self%f_u - f_0)/(self%c_u - c_0)
       else
          c_0 = self%c_p - self%gap
