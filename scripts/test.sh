@@ -42,7 +42,7 @@ say "what calls Fortran once more, with bounds checks and floating-point traps"
 crossing=(tests/regression)
 for name in fuzz extremes_columns extremes_input extremes_rotations extremes_scales extremes_springs \
     extremes_steps extremes_time static dynamics springs springs_capped layered layered_input interaction \
-    physics column doors base_forces section; do
+    physics column ensembles motions strains doors base_forces section; do
     crossing+=("tests/python/test_$name.py")
 done
 python -m pip install -q --disable-pip-version-check --no-build-isolation --no-deps --upgrade \
