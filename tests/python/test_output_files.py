@@ -188,7 +188,7 @@ def test_lack_of_memory_is_told(run_cli, case_text, folder):
     (folder / "case.nml").write_text(case_text(column="n = 10000, height = 1.6, mass = 614.4"))
     assert run_cli(["check", "case.nml"], folder).returncode == 0
     told = 0
-    for megabytes in range(8, 56, 4):
+    for megabytes in range(8, 56, 8):
         result = run_cli(
             ["run", "case.nml", "-o", "out.csv"],
             folder,
