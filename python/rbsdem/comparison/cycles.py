@@ -28,6 +28,7 @@ __all__ = [
     "half_cycle_numbers",
     "half_cycles",
     "strength_loss",
+    "strength_loss_point",
     "tip_rows",
     "turning_points",
 ]
@@ -286,10 +287,35 @@ def strength_loss(displacement: ArrayLike, force: ArrayLike, *, share: float = 0
     InputError
         If the arrays differ in length or a number is not finite, or if `share` is out of its range.
     """
+    return strength_loss_point(displacement, force, share=share)[1]
+
+
+def strength_loss_point(
+    displacement: ArrayLike, force: ArrayLike, *, share: float = 0.2
+) -> tuple[int | None, float]:
+    """Find the row at which a share of the strength is lost, and the displacement there.
+
+    Parameters
+    ----------
+    displacement, force, share
+        As for `strength_loss`.
+
+    Returns
+    -------
+    row : int or None
+        First row of the envelope at or below (1 - share) of the peak; None if there is none.
+    displacement : float
+        That of `strength_loss`.
+
+    Raises
+    ------
+    InputError
+        As `strength_loss`.
+    """
     if not 0 < share < 1:
         raise InputError(f"share = {share} must be above 0 and below 1")
     d, f = _columns(displacement, force)
-    found = (math.inf, math.nan)
+    found: tuple[int | None, float] = (None, math.nan)
     for side in (1, -1):
         rows = envelope(d, f, side)
         x, y = side * d[rows], side * f[rows]
@@ -298,10 +324,13 @@ def strength_loss(displacement: ArrayLike, force: ArrayLike, *, share: float = 0
         peak = int(np.argmax(y))
         left = (1 - share) * y[peak]
         lost = np.flatnonzero(y[peak:] <= left)
-        if lost.size and rows[at := peak + int(lost[0])] < found[0]:
+        if not lost.size:
+            continue
+        at = peak + int(lost[0])
+        if found[0] is None or rows[at] < found[0]:
             part = (y[at - 1] - left) / (y[at - 1] - y[at])
-            found = float(rows[at]), float(x[at - 1] + part * (x[at] - x[at - 1]))
-    return found[1]
+            found = int(rows[at]), float(x[at - 1] + part * (x[at] - x[at - 1]))
+    return found
 
 
 def _columns(displacement: ArrayLike, force: ArrayLike) -> tuple[Array, Array]:

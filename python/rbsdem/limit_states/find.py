@@ -12,7 +12,8 @@ from rbsdem._core import Array
 from rbsdem._views import view_of
 from rbsdem.codes.drawing import quantities
 from rbsdem.codes.regressions import goodnight_buckling_strain
-from rbsdem.comparison.cycles import envelope, strength_loss
+from rbsdem.column import Column
+from rbsdem.comparison.cycles import strength_loss_point
 from rbsdem.limit_states.record import LimitState, LimitStates
 from rbsdem.result import Result
 from rbsdem.section.model import LayeredColumn
@@ -49,7 +50,7 @@ def _criteria(result: Result) -> Iterator[Criterion]:
     """Yield what is watched: strains of a hinge that knows its drawing, lines of springs."""
     column = result.column
     if isinstance(column, LayeredColumn) and column.recipe is not None:
-        yield from _of_strains(column.recipe.section, result, column.axial_load)
+        yield from _of_strains(column.recipe.section, result)
     for joint, spring in enumerate(column.joints("flexure")):
         if isinstance(spring, Layered):
             continue
@@ -70,7 +71,7 @@ def _criteria(result: Result) -> Iterator[Criterion]:
                 yield from ((name, side * slipped, at, source) for side in (1, -1))
 
 
-def _of_strains(section: Section, result: Result, axial_load: float) -> Iterator[Criterion]:
+def _of_strains(section: Section, result: Result) -> Iterator[Criterion]:
     strains = result.strains(1)
     law, depth = section.concrete_law, section.depth
     for side in (-1, 1):
@@ -104,10 +105,19 @@ def _of_strains(section: Section, result: Result, axial_load: float) -> Iterator
     for side in (-1, 1):
         edge = _fibre(strains, side * 0.5 * core.depth)
         yield "hoop_fracture", -edge, core.eps_cu, source
-    if not section.hollow:
-        at = goodnight_buckling_strain(quantities(section, result.column.height, axial_load))
-        source = "tensile strain before bars buckle on reversal (Goodnight, Kowalsky, Nau 2016)"
-        yield "bar_buckling", bars.max(axis=1), max(at, 0.01), source
+    source = "tensile strain before bars buckle on reversal (Goodnight, Kowalsky, Nau 2016)"
+    yield "bar_buckling", bars.max(axis=1), buckling_strain(section, result.column), source
+
+
+def buckling_strain(section: Section, column: Column) -> float:
+    """Return the tensile strain beyond which bars buckle on reversal; infinite if not known.
+
+    It is known of solid sections with hoops.
+    """
+    if section.hollow or section.ties is None:
+        return math.inf
+    given = quantities(section, column.height, column.axial_load)
+    return max(goodnight_buckling_strain(given), 0.01)
 
 
 def _fibre(strains: Strains, y: float) -> Array:
@@ -136,24 +146,15 @@ def _reached(
 
 
 def _losses(result: Result) -> list[LimitState]:
-    """Return where a fifth of the strength of a side is lost first, on its envelope."""
+    """Return where a fifth of the strength of a side is lost first, as the comparison has it."""
     force = result.base_shear if result.dynamic else result.force
-    found = []
-    for side in (1, -1):
-        rows = envelope(result.displacement, force, side)
-        forces = side * force[rows]
-        if rows.size == 0 or not 2 * forces.max() >= np.abs(force).max() > 0:
-            continue
-        peak = int(np.argmax(forces))
-        lost = np.flatnonzero(forces[peak:] <= (1 - _LOSS) * forces[peak])
-        if lost.size:
-            found.append(int(rows[peak + int(lost[0])]))
-    if not found:
+    row, loss = strength_loss_point(result.displacement, force, share=_LOSS)
+    if row is None:
         return []
     source = "20 % of the largest force of a side, on its envelope"
-    state = _state(result, "strength_loss", min(found), 1.0, _LOSS, source)
-    # The displacement is that of the comparison, interpolated on the envelope.
-    at = math.copysign(strength_loss(result.displacement, force, share=_LOSS), state.displacement)
+    state = _state(result, "strength_loss", row, 1.0, _LOSS, source)
+    # Interpolated on the envelope.
+    at = math.copysign(loss, state.displacement)
     return [replace(state, displacement=at, drift=at / result.column.height)]
 
 

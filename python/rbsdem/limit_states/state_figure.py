@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rbsdem._core import Array
 from rbsdem._views import view_of
-from rbsdem.codes.drawing import quantities
-from rbsdem.codes.regressions import goodnight_buckling_strain
 from rbsdem.errors import InputError
+from rbsdem.limit_states.find import buckling_strain
 from rbsdem.plot import MODEL_LINE, ZERO_LINE, new_axes, style_of
 from rbsdem.result import Result
 from rbsdem.section.model import LayeredColumn
@@ -59,7 +57,7 @@ def draw(result: Result, time: float, axes: Sequence[Axes] | None) -> list[Axes]
     value = strains.value[row]
     concrete = strains.part != "bar"
     with style_of(axes[0]):
-        buckles = _buckling_strain(section, column)
+        buckles = buckling_strain(section, column)
         _draw_layers(section, (strains.position, strains.part, value), buckles, axes[0])
         axes[1].plot(100 * value[concrete], 1e3 * strains.position[concrete], **MODEL_LINE)
         axes[1].plot(
@@ -79,15 +77,6 @@ def draw(result: Result, time: float, axes: Sequence[Axes] | None) -> list[Axes]
         drift = 100 * result.displacement[row] / column.height
         axes[0].set_title(f"drift {drift:.2f} %", fontsize=8)
     return list(axes)
-
-
-def _buckling_strain(section: Section, column: LayeredColumn) -> float:
-    """Return the tensile strain beyond which bars buckle on reversal, as the limit state has it."""
-    if section.hollow or section.ties is None:
-        return math.inf
-    return max(
-        0.01, goodnight_buckling_strain(quantities(section, column.height, column.axial_load))
-    )
 
 
 def _draw_layers(

@@ -107,10 +107,7 @@ class CircularSection(Section):
         depth : float
             From that face [m].
         """
-        radius = 0.5 * self.diameter
-        angle = math.acos(min(max(1.0 - depth / radius, -1.0), 1.0))
-        area = radius**2 * (angle - math.sin(angle) * math.cos(angle))
-        return area, -2.0 / 3.0 * (radius * math.sin(angle)) ** 3
+        return segment(0.5 * self.diameter, depth)
 
     # ---- geometry for the figure -----------------------------------------------------------------
 
@@ -173,6 +170,21 @@ class CircularSection(Section):
             seen[level] += 1
             placed.append((side * math.sqrt(max(0.0, radius**2 - y**2)), y, d))
         return placed
+
+
+def segment(radius: float, depth: float) -> tuple[float, float]:
+    """Return area and first moment about the centre of the segment of a circle.
+
+    Parameters
+    ----------
+    radius : float
+        Of the circle [m].
+    depth : float
+        Of the segment, from the circle at y = -radius [m]; none below 0, all beyond the diameter.
+    """
+    angle = math.acos(min(max(1.0 - depth / radius, -1.0), 1.0))
+    area = radius**2 * (angle - math.sin(angle) * math.cos(angle))
+    return area, -2.0 / 3.0 * (radius * math.sin(angle)) ** 3
 
 
 def _ring(radius: float) -> Array:

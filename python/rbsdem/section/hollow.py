@@ -6,7 +6,6 @@ between them count as core, but not as confined: the inner hoops bow into the vo
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
@@ -14,7 +13,7 @@ from typing import ClassVar
 from rbsdem import _core
 from rbsdem._core import Array
 from rbsdem.errors import InputError
-from rbsdem.section.circular import CircularSection, _ring
+from rbsdem.section.circular import CircularSection, _ring, segment
 from rbsdem.section.rectangular import RectangularSection, _box
 from rbsdem.section.reinforcement import Bar, Layout
 
@@ -104,9 +103,9 @@ class HollowRectangularSection(RectangularSection):
         """
         area, first = super().part(depth)
         high = self.depth - 2.0 * self.wall
-        void = min(max(depth - self.wall, 0.0), high) * (self.width - self.web_width)
-        place = 0.5 * (min(max(depth - self.wall, 0.0), high) - high)
-        return area - void, first - void * place
+        reached = min(max(depth - self.wall, 0.0), high)
+        void = reached * (self.width - self.web_width)
+        return area - void, first - 0.5 * void * (reached - high)
 
     # ---- geometry for the figure -----------------------------------------------------------------
 
@@ -237,10 +236,8 @@ class HollowCircularSection(CircularSection):
             From that face [m].
         """
         area, first = super().part(depth)
-        radius = 0.5 * self.diameter - self.wall
-        angle = math.acos(min(max((0.5 * self.diameter - depth) / radius, -1.0), 1.0))
-        void = radius**2 * (angle - math.sin(angle) * math.cos(angle))
-        return area - void, first + 2.0 / 3.0 * (radius * math.sin(angle)) ** 3
+        void, of_void = segment(0.5 * self.diameter - self.wall, depth - self.wall)
+        return area - void, first - of_void
 
     # ---- geometry for the figure -----------------------------------------------------------------
 
