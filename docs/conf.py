@@ -1,7 +1,6 @@
 """Sphinx configuration.
 
-python -m pip install ".[docs]" myst-parser
-python -m sphinx -W -b html docs docs/_build/html
+bash scripts/docs.sh
 """
 
 import re

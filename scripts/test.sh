@@ -14,6 +14,7 @@ say "linters"
 ruff check .
 ruff format --check -q .
 fortitude check -q
+check-jsonschema -q --builtin-schema vendor.github-workflows .github/workflows/*.yml
 
 say "the Fortran part alone can be set up"
 [ -e build/fortran/build.ninja ] || meson setup build/fortran >/dev/null

@@ -16,6 +16,7 @@ COMMANDS = {
     "peer": "rbsdem.peer.command",
     "ensemble": "rbsdem.ensembles.command",
     "ida": "rbsdem.ensembles.ida_command",
+    "completion": "rbsdem.completion",
 }
 
 

@@ -45,6 +45,11 @@ def need_parquet() -> Any:
     return import_module("pyarrow.parquet")
 
 
+def need_shtab() -> Any:
+    """Return shtab, or raise `ImportError` with the installation command."""
+    return _need("shtab", "scripts of completion need", "completion")
+
+
 def need_scipy(part: str) -> Any:
     """Return a part of scipy, or raise `ImportError` with the installation command."""
     _need("scipy", "the statistics of ensembles need", "ensembles")

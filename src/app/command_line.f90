@@ -14,7 +14,7 @@ module rbs_app_command_line
    type :: command_type
       !> run, check, modes, keys, help or version
       character(len=:), allocatable :: name
-      !> The command that help is asked for; empty: all of them
+      !> The command that help is asked for, or the group or rule whose keys are; empty: all of them
       character(len=:), allocatable :: topic
       !> Path of the case
       character(len=:), allocatable :: case
@@ -105,6 +105,8 @@ contains
          else
             command%name = word
          end if
+      else if (command%name == 'keys' .and. .not. allocated(command%topic)) then
+         command%topic = word
       else if (.not. allocated(command%case)) then
          if (word == '') then
             call complain('the path of the case is empty', error)
@@ -136,7 +138,11 @@ contains
       else if (command%as_json .and. command%name /= 'keys') then
          call complain('--json is for keys only', error)
       else if (command%name == 'keys') then
-         if (allocated(command%case)) call complain("one argument too many: '"//command%case//"'", error)
+         if (allocated(command%case)) then
+            call complain("one argument too many: '"//command%case//"'", error)
+         else if (command%as_json .and. command%topic /= '') then
+            call complain('--json prints all keys; leave '//command%topic//' away', error)
+         end if
       else if (.not. allocated(command%case)) then
          call complain(command%name//' needs the path of a case after it', error)
       else if (allocated(command%output)) then

@@ -183,8 +183,10 @@ contains
       call say(trim(line), error)
    end subroutine show_modes
 
-   !> rbsdem keys: all keys of a case.
-   subroutine show_keys(as_json, error)
+   !> rbsdem keys: the keys of a case.
+   subroutine show_keys(name, as_json, error)
+      !> A group or a rule; empty for all of them
+      character(len=*), intent(in) :: name
       logical, intent(in) :: as_json
       type(error_type), allocatable, intent(inout) :: error
       type(text_buffer) :: buffer
@@ -192,7 +194,8 @@ contains
       if (as_json) then
          call keys_as_json(buffer)
       else
-         call keys_as_table(buffer)
+         call keys_as_table(name, buffer, error)
+         if (allocated(error)) return
       end if
       call say(buffer%text(:buffer%length - 1), error)
    end subroutine show_keys

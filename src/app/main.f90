@@ -34,7 +34,7 @@ program rbsdem
       case ('modes')
          call show_modes(command%case, error)
       case ('keys')
-         call show_keys(command%as_json, error)
+         call show_keys(command%topic, command%as_json, error)
       case ('version')
          call say('rbsdem '//version, error)
       case default
@@ -79,7 +79,7 @@ contains
          '  rbsdem run CASE.nml [--output FILE] [--quiet]   solve a case, write a csv', &
          '  rbsdem check CASE.nml [--quiet]                 find all errors of the input', &
          '  rbsdem modes CASE.nml                           natural frequencies, stable step', &
-         '  rbsdem keys [--json]                            groups, rules and all their keys', &
+         '  rbsdem keys [NAME] [--json]                     keys of a group or rule, or all', &
          '  rbsdem --help | --version', &
          '', &
          'rbsdem trade CASE.nml needs the command that comes with the Python package,', &

@@ -1,11 +1,11 @@
 !> The list of all keys, as JSON for other programs and as a table for readers.
 module rbs_case_key_list
    use rbs_base_check, only: is_given
-   use rbs_base_error, only: message_list
+   use rbs_base_error, only: bad_input, error_type, fatal_error, message_list
    use rbs_base_keys, only: key_type, bound_text, choice_name, choice_length, real_kind, integer_kind, &
                             logical_kind, word_kind
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: exact_text, to_text
+   use rbs_base_text, only: exact_text, nearest_name, to_text
    use rbs_case_setter, only: group_names, setter_type
    use rbs_case_text_buffer, only: text_buffer
    use rbs_hysteresis_registry, only: rule_names, keys_of, places_of
@@ -155,17 +155,27 @@ contains
    end function default_of
 
    !> Groups and rules, a line for each key: name, kind, unit, bounds, default, meaning.
-   subroutine keys_as_table(buffer)
+   subroutine keys_as_table(name, buffer, error)
+      !> A group or a rule; empty for all of them
+      character(len=*), intent(in) :: name
       type(text_buffer), intent(inout) :: buffer
+      type(error_type), allocatable, intent(inout) :: error
       type(key_type), allocatable :: keys(:)
       integer :: i
 
+      if (name /= '' .and. all(group_names /= name) .and. all(rule_names /= name)) then
+         call fatal_error(error, bad_input, "there is no group or rule '"//name//"'; did you mean '"// &
+                          nearest_name(name, [character(len=24) :: group_names, rule_names])//"'?")
+         return
+      end if
       do i = 1, size(group_names)
+         if (name /= '' .and. name /= group_names(i)) cycle
          call group_keys(group_names(i), keys)
          call buffer%append('&'//trim(group_names(i))//new_line('a'))
          call append_rows(buffer, keys)
       end do
       do i = 1, size(rule_names)
+         if (name /= '' .and. name /= rule_names(i)) cycle
          call keys_of(rule_names(i), keys)
          call buffer%append("rule = '"//trim(rule_names(i))//"' ("//trim(places_of(rule_names(i)))//')'// &
                             new_line('a'))

@@ -24,7 +24,8 @@ needs matplotlib). Exit codes: 0 all went well, 1 the analysis failed, 2 the inp
 """
 
 
-def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
+def parser() -> CommandParser:
+    """Return the parser of the arguments."""
     parser = CommandParser("trade", DESCRIPTION, EPILOG)
     parser.add_argument("case", type=Path, metavar="CASE.nml", help="case of the executable")
     parser.add_argument(
@@ -45,12 +46,12 @@ def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
     parser.add_argument(
         "--quiet", action="store_true", help="write the files, print nothing but errors"
     )
-    return parser.parse_args(arguments)
+    return parser
 
 
 def main(arguments: Sequence[str]) -> int:
     """Run the command; return its exit code."""
-    given = _arguments(arguments)
+    given = parser().parse_args(arguments)
     return run_command("rbsdem", lambda: _run(given))
 
 

@@ -42,7 +42,8 @@ _SETTINGS = (
 )
 
 
-def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
+def parser() -> CommandParser:
+    """Return the parser of the arguments."""
     parser = CommandParser("ensemble", DESCRIPTION, EPILOG)
     parser.add_argument("case", type=Path, metavar="CASE.nml", help="case of the executable")
     parser.add_argument(
@@ -58,12 +59,12 @@ def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("--jobs", type=int, metavar="N", help="threads, default one per processor")
     parser.add_argument("--shard", metavar="I/N", help="do part I of N, from 1 to N")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
-    return parser.parse_args(arguments)
+    return parser
 
 
 def main(arguments: Sequence[str]) -> int:
     """Run the command; return its exit code."""
-    given = _arguments(arguments)
+    given = parser().parse_args(arguments)
     return run_command("rbsdem", lambda: _run(given))
 
 

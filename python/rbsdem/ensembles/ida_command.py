@@ -43,7 +43,8 @@ _DRIFT = 0.1
 _WORD = "synthetic"
 
 
-def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
+def parser() -> CommandParser:
+    """Return the parser of the arguments."""
     parser = CommandParser("ida", DESCRIPTION, EPILOG)
     parser.add_argument("case", type=Path, metavar="CASE.nml", help="case with the column")
     parser.add_argument("records", nargs="+", metavar="RECORDS", help="folder, files, synthetic")
@@ -76,12 +77,12 @@ def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("--out", type=Path, metavar="DIR", help="folder of the files")
     parser.add_argument("--parquet", action="store_true", help="write the runs as Parquet too")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
-    return parser.parse_args(arguments)
+    return parser
 
 
 def main(arguments: Sequence[str]) -> int:
     """Run the command; return its exit code."""
-    given = _arguments(arguments)
+    given = parser().parse_args(arguments)
     return run_command("rbsdem: ida", lambda: _run(given))
 
 

@@ -39,7 +39,8 @@ Exit codes: 0 every test was analysed to its end, 1 some were not, 2 the input i
 UNFINISHED = "unfinished.jsonl"
 
 
-def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
+def parser() -> CommandParser:
+    """Return the parser of the arguments."""
     parser = CommandParser("peer", DESCRIPTION, EPILOG)
     parser.add_argument("folder", type=Path, metavar="DIR", help="folder of the tests")
     parser.add_argument("--model", default=DEFAULT, help=f"{', '.join(MODELS)}; default {DEFAULT}")
@@ -84,12 +85,12 @@ def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
         "--loops", action="store_true", help="with --out, write the loops of every test as csv"
     )
     parser.add_argument("--quiet", action="store_true", help="print the summary only")
-    return parser.parse_args(arguments)
+    return parser
 
 
 def main(arguments: Sequence[str]) -> int:
     """Run the command; return its exit code."""
-    given = _arguments(arguments)
+    given = parser().parse_args(arguments)
     return run_command("rbsdem: peer", lambda: _run(given))
 
 
