@@ -83,23 +83,38 @@ contains
       self%peak(self%count) = inner_peak(side, self%last_serial, at, left)
    end subroutine push
 
-   !> Become a copy of another, in the room that is there if it is enough.
+   !> Become a copy of another, in the room that is there if it is enough. Peaks do not change once they are
+   !> there, so that where both have the same one, those below it are the same too.
    pure subroutine take(self, other)
       class(inner_peaks), intent(inout) :: self
       type(inner_peaks), intent(in) :: other
-      integer :: i
+      integer :: i, known
 
+      known = min(self%count, other%count)
       self%count = other%count
       self%last_serial = other%last_serial
       if (other%count == 0) return
       if (allocated(self%peak)) then
-         if (size(self%peak) < other%count) deallocate (self%peak)
+         if (size(self%peak) < other%count) then
+            deallocate (self%peak)
+            known = 0
+         end if
       end if
       if (.not. allocated(self%peak)) allocate (self%peak(size(other%peak)))
-      do i = 1, other%count
+      do i = other%count, 1, -1
+         if (i <= known) then
+            if (same_peak(self%peak(i), other%peak(i))) exit
+         end if
          self%peak(i) = other%peak(i)
       end do
    end subroutine take
+
+   pure logical function same_peak(one, other)
+      type(inner_peak), intent(in) :: one, other
+
+      same_peak = one%serial == other%serial .and. one%side == other%side .and. &
+                  .not. (abs(one%at%d - other%at%d) > 0.0_wp .or. abs(one%at%f - other%at%f) > 0.0_wp)
+   end function same_peak
 
    !> Place of the newest peak on a side, 0 if there is none.
    pure integer function newest_of_side(self, side) result(place)

@@ -7,7 +7,7 @@ module rbs_hysteresis_journal
    implicit none
    private
 
-   public :: journal_type, rule_slot
+   public :: journal_type, rule_slot, save_rule, return_rule
 
    !> Holds one rule. The program uses arrays of this type in place of polymorphic arrays.
    type :: rule_slot
@@ -43,19 +43,21 @@ contains
    subroutine start(self, d, work, events)
       class(journal_type), intent(inout) :: self
       !> Present deformations and works (count)
-      real(wp), intent(in) :: d(:), work(:)
+      real(wp), intent(in), contiguous :: d(:), work(:)
       integer, intent(in) :: events
-      integer :: n
+      integer :: i, n
 
       n = size(d)
       if (.not. allocated(self%is_kept)) then
          allocate (self%is_kept(n), source=.false.)
          allocate (self%spring(n), self%line(n), self%slot(n), self%d(n), self%work(n))
       end if
-      call self%forget()
+      if (self%changed > 0) call self%forget()
       self%open = .true.
-      self%d(:) = d
-      self%work(:) = work
+      do i = 1, n
+         self%d(i) = d(i)
+         self%work(i) = work(i)
+      end do
       self%events = events
    end subroutine start
 
@@ -65,21 +67,13 @@ contains
       integer, intent(in) :: i
       type(segment), intent(in) :: line
       type(rule_slot), intent(inout) :: slot
-      logical :: done
 
       if (self%is_kept(i)) return
       self%is_kept(i) = .true.
       self%changed = self%changed + 1
       self%spring(self%changed) = i
       self%line(self%changed) = line
-      select type (rule => slot%rule)
-      class is (layered_rule)
-         call rule%mark()
-      class default
-         done = .false.
-         if (allocated(self%slot(i)%rule)) call self%slot(i)%rule%copy_memory(rule, done)
-         if (.not. done) self%slot(i) = slot
-      end select
+      call save_rule(slot, self%slot(i))
    end subroutine keep
 
    !> Give spring i the rule back that it had at the start.
@@ -87,24 +81,53 @@ contains
       class(journal_type), intent(inout) :: self
       integer, intent(in) :: i
       type(rule_slot), intent(inout) :: slot
-      logical :: done
 
       self%is_kept(i) = .false.
-      select type (rule => slot%rule)
-      class is (layered_rule)
-         call rule%restore()
-         done = .true.
-      class default
-         call rule%copy_memory(self%slot(i)%rule, done)
-      end select
-      if (.not. done) slot = self%slot(i)
+      call return_rule(slot, self%slot(i))
    end subroutine give_back
+
+   !> Save a rule with its memory; a layered joint marks itself.
+   subroutine save_rule(slot, kept)
+      type(rule_slot), intent(inout) :: slot
+      !> Where it is saved; what is there from earlier is of the same spring
+      type(rule_slot), intent(inout) :: kept
+      logical :: done
+
+      select type (rule => slot%rule)
+      type is (layered_rule)
+         call rule%mark()
+      class default
+         done = .false.
+         if (allocated(kept%rule)) call kept%rule%copy_memory(rule, done)
+         if (.not. done) kept = slot
+      end select
+   end subroutine save_rule
+
+   !> Give a spring the rule back that was saved.
+   subroutine return_rule(slot, kept)
+      type(rule_slot), intent(inout) :: slot
+      type(rule_slot), intent(in) :: kept
+      logical :: done
+
+      select type (rule => slot%rule)
+      type is (layered_rule)
+         call rule%restore()
+      class default
+         call rule%copy_memory(kept%rule, done)
+         if (.not. done) slot = kept
+      end select
+   end subroutine return_rule
 
    !> Discard what has been saved, and stop saving.
    subroutine forget(self)
       class(journal_type), intent(inout) :: self
 
-      self%is_kept(self%spring(:self%changed)) = .false.
+      integer :: j
+
+      ! As an assignment to elements of a list it would allocate a copy of the list.
+      do j = 1, self%changed
+         self%is_kept(self%spring(j)) = .false.
+      end do
       self%changed = 0
       self%open = .false.
    end subroutine forget

@@ -9,7 +9,7 @@ module rbs_hysteresis_spring_lines
    implicit none
    private
 
-   public :: spring_lines
+   public :: spring_lines, first_on, last_on
 
    !> Most lines within one move. More mean that a rule goes round in lines without length, which is an error
    !> of the rule. The longest correct move closes all open inner loops that a rule remembers.
@@ -56,6 +56,7 @@ module rbs_hysteresis_spring_lines
       procedure :: arrive
       procedure :: load_to
       procedure :: line_of
+      procedure :: put
       procedure :: mark
       procedure :: restore
       procedure :: forget_mark
@@ -266,8 +267,10 @@ contains
       integer :: i, j
 
       associate (journal => self%journal)
-         self%d = journal%d
-         self%work = journal%work
+         do i = 1, self%count
+            self%d(i) = journal%d(i)
+            self%work(i) = journal%work(i)
+         end do
          self%events = journal%events
          self%stuck = .false.
          if (journal%changed > 0) self%version = modulo(self%version + 1, huge(1))
@@ -277,8 +280,10 @@ contains
             call put_line(self, i, journal%line(j))
          end do
          journal%changed = 0
-         where (self%one_way > 0) self%first = self%d
-         where (self%one_way < 0) self%last = self%d
+         do i = 1, self%count
+            if (self%one_way(i) > 0) self%first(i) = self%d(i)
+            if (self%one_way(i) < 0) self%last(i) = self%d(i)
+         end do
       end associate
    end subroutine restore
 
@@ -299,7 +304,7 @@ contains
       line%one_way = self%one_way(i)
    end function line_of
 
-   !> Store the line of a spring. At an open end the last deformation is the number next to the end.
+   !> Store the line of a spring.
    pure subroutine put_line(self, i, line)
       class(spring_lines), intent(inout) :: self
       integer, intent(in) :: i
@@ -311,11 +316,40 @@ contains
       self%lo_closed(i) = line%lo_closed
       self%hi_closed(i) = line%hi_closed
       self%one_way(i) = line%one_way
-      self%first(i) = line%lo
-      self%last(i) = line%hi
-      if (.not. line%lo_closed .and. line%lo > -unbounded) self%first(i) = next_above(line%lo)
-      if (.not. line%hi_closed .and. line%hi < unbounded) self%last(i) = -next_above(-line%hi)
+      self%first(i) = first_on(line)
+      self%last(i) = last_on(line)
    end subroutine put_line
+
+   !> Put a spring on a line that was found elsewhere, at d.
+   pure subroutine put(self, i, line, d, work)
+      class(spring_lines), intent(inout) :: self
+      integer, intent(in) :: i
+      type(segment), intent(in) :: line
+      !> Deformation [m or rad], and work done so far [J]
+      real(wp), intent(in) :: d, work
+
+      call put_line(self, i, line)
+      self%d(i) = d
+      self%work(i) = work
+      if (line%one_way > 0) self%first(i) = d
+      if (line%one_way < 0) self%last(i) = d
+      self%version = modulo(self%version + 1, huge(1))
+   end subroutine put
+
+   !> The first and the last deformation that belong to a line. At an open end it is the number next to it.
+   pure real(wp) function first_on(line)
+      type(segment), intent(in) :: line
+
+      first_on = line%lo
+      if (.not. line%lo_closed .and. line%lo > -unbounded) first_on = next_above(line%lo)
+   end function first_on
+
+   pure real(wp) function last_on(line)
+      type(segment), intent(in) :: line
+
+      last_on = line%hi
+      if (.not. line%hi_closed .and. line%hi < unbounded) last_on = -next_above(-line%hi)
+   end function last_on
 
    !> The next larger number, as `nearest(x, 1.0)` for finite numbers. The latter is a call of the C library,
    !> and an event needs up to five of them.

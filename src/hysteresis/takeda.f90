@@ -15,8 +15,7 @@
 module rbs_hysteresis_takeda
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_error, only: message_list
-   use rbs_base_keys, only: key_type, word_kind, above_zero, not_negative, choice_name, &
-                            choice_length, deformation, stiffness
+   use rbs_base_keys, only: key_type, word_kind, above_zero, not_negative, deformation, stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_base_constants, only: unbounded
@@ -30,6 +29,9 @@ module rbs_hysteresis_takeda
 
    integer, parameter :: uncracked = 0, cracked_backbone = 1, yielded_backbone = 2
    integer, parameter :: outer_unloading = 3, reloading = 4, inner_unloading = 5
+
+   !> What B1 multiplies: the uncracked or the outer unloading stiffness; nothing is the third choice.
+   integer, parameter :: of_uncracked = 1, of_outer = 2
 
    !> Below this share of the yield force a reversal counts as one at zero force.
    real(wp), parameter :: no_force = 1.0e-12_wp
@@ -63,8 +65,8 @@ module rbs_hysteresis_takeda
       real(wp) :: d_c = 0.0_wp, d_y = 0.0_wp
       !> Degradation factors
       real(wp) :: b0 = 0.0_wp, b1 = 0.0_wp
-      !> What B1 multiplies: 'kc', 'kr' or 'one'
-      character(len=3) :: inner = 'kc'
+      !> What B1 multiplies, the place of its name among the choices
+      integer :: inner = of_uncracked
       !> Cracking and yield force [N or N m]
       real(wp), private :: f_c = 0.0_wp, f_y = 0.0_wp
       !> Present branch and its side
@@ -104,7 +106,6 @@ contains
    pure subroutine set(self, value)
       class(takeda_rule), intent(inout) :: self
       real(wp), intent(in) :: value(:)
-      character(len=choice_length) :: inner
 
       self%k_c = value(1)
       self%d_c = value(2)
@@ -113,8 +114,7 @@ contains
       self%k_u = value(5)
       self%b0 = value(6)
       self%b1 = value(7)
-      inner = choice_name(parameters(8), nint(value(8)))
-      self%inner = inner(:3)
+      self%inner = nint(value(8))
    end subroutine set
 
    pure real(wp) function initial_stiffness(self)
@@ -360,9 +360,9 @@ contains
       k_r = self%k_r(self%side)
       if (.not. k_r > 0.0_wp) k_r = self%k_r(-self%side)
       select case (self%inner)
-      case ('kc')
+      case (of_uncracked)
          k_in = self%b1*self%k_c
-      case ('kr')
+      case (of_outer)
          k_in = self%b1*k_r
       case default
          k_in = k_r

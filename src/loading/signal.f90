@@ -20,6 +20,7 @@ module rbs_loading_signal
       procedure :: corner_after
       procedure :: slope_after
       procedure :: acts
+      procedure :: replace
       procedure, private :: find
    end type signal_type
 
@@ -65,6 +66,18 @@ contains
       if (after < self%begin .or. after >= self%finish) call self%find(after)
       slope = self%slope
    end function slope_after
+
+   !> Take other points, as many as there are.
+   pure subroutine replace(self, time, value)
+      class(signal_type), intent(inout) :: self
+      real(wp), intent(in) :: time(:), value(:)
+
+      self%time(:) = time
+      self%value(:) = value
+      self%at = 1
+      self%begin = 1.0_wp
+      self%finish = -1.0_wp
+   end subroutine replace
 
    !> Find the interval that holds t, and keep its line.
    subroutine find(self, t)

@@ -4,7 +4,8 @@ module rbs_solve_ensemble_block
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_output_summary, only: summary_type
-   use rbs_solve_ensemble_lane_runs, only: lane_task, takes_lanes, run_in_lanes
+   use rbs_solve_ensemble_lane_entry, only: lane_task, takes_lanes
+   use rbs_solve_ensemble_lane_runs, only: run_in_lanes
    use rbs_solve_ensemble_outcome, only: outcome_type
    use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, run_type
    use rbs_solve_ensemble_tally, only: tally_recorder, settle

@@ -31,6 +31,13 @@ module rbs_solve_ensemble_lane_fields
       real(wp) :: d0(lanes, 2) = 0.0_wp, f0(lanes, 2) = 0.0_wp, k(lanes, 2) = 0.0_wp, &
                   first(lanes, 2) = 0.0_wp, last(lanes, 2) = 0.0_wp, way(lanes, 2) = 0.0_wp, &
                   work(lanes, 2) = 0.0_wp
+      !> Ends of the lines and whether they belong to them, as in `segment`; lines left
+      real(wp) :: lo(lanes, 2) = 0.0_wp, hi(lanes, 2) = 0.0_wp, events(lanes) = 0.0_wp
+      logical :: lo_closed(lanes, 2) = .false., hi_closed(lanes, 2) = .false.
+      !> What the last step leaves for lanes whose springs leave their lines: whether it was tried, 1 or 0; of
+      !> RK4 the deformations at its start, of implicit methods what the body moves on its lines, the work of
+      !> the residual on that, and the acceleration of the ground at the end
+      real(wp) :: tried(lanes) = 0.0_wp, from(lanes, 2) = 0.0_wp, trial(lanes, 4) = 0.0_wp
       !> Inverse of the tangent of an implicit step (11, 12, 21, 22), and 1/(beta h**2)
       real(wp) :: inverse(lanes, 4) = 0.0_wp, per_h(lanes) = 0.0_wp
       !> Inverse of the mass in slip and rotation; moment of the axial force per rotation

@@ -110,9 +110,7 @@ contains
 
       if (state%motion%plain .and. state%motion%single) then
          busiest = 0
-         call self%one_body%try_linear_step(self%step, state, h, load, self%wanted, converged)
-         if (converged) return
-         call self%one_body%try_step(self%step, state, h, load, self%wanted, converged)
+         call self%one_body%take_step(self%step, state, h, load, self%wanted, converged)
          if (converged) return
       end if
       call solve_step(self, state, h, load, converged, busiest)
