@@ -51,6 +51,13 @@ if [ "${#missing[@]}" -gt 0 ]; then
         "${missing[@]}" >/dev/null || fail "apt-get install ${missing[*]} failed"
 fi
 
+# A browser is wanted by some tests and not needed; it comes while the rest goes on. Wait for $browser.
+browser=
+if [ "${RBSDEM_WITH_BROWSER:-0}" != 0 ]; then
+    bash "$root/scripts/browser.sh" &
+    browser=$!
+fi
+
 if [ ! -x "$venv/bin/python" ]; then
     say "making the virtual environment ${venv#"$root"/}"
     "$python" -m venv "$venv" || fail "$python -m venv failed; apt-get install python3-venv"

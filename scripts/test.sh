@@ -7,6 +7,7 @@
 # them it is skipped with a reason.
 RBSDEM_EXTRA=test
 RBSDEM_WITH_VALGRIND=1
+RBSDEM_WITH_BROWSER=1
 . "$(dirname "${BASH_SOURCE[0]}")/build.sh"
 
 cd "$root"
@@ -28,6 +29,7 @@ bash scripts/memory.sh build/python
 
 say "Python tests, fuzzing, regression; examples of the documentation"
 export MPLBACKEND=Agg
+wait "$browser"
 python -m pytest -q -n 2 --dist worksteal
 python scripts/check_docs.py
 

@@ -17,6 +17,8 @@ COMMANDS = {
     "ensemble": "rbsdem.ensembles.command",
     "ida": "rbsdem.ensembles.ida_command",
     "completion": "rbsdem.completion",
+    "explore": "rbsdem.explore.command",
+    "report": "rbsdem.explore.report_command",
 }
 
 

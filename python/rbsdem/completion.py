@@ -62,14 +62,13 @@ def _print(shell: str) -> int:
 
 def whole_parser() -> argparse.ArgumentParser:
     """Return one parser of all commands, those of the executable among them."""
-    # Imported here, as that module imports the commands by their names.
-    from rbsdem.__main__ import COMMANDS  # noqa: PLC0415
-
+    # By its name, as that module imports the commands by theirs.
+    commands_of_python = import_module("rbsdem.__main__").COMMANDS
     whole = argparse.ArgumentParser(prog="rbsdem")
     whole.add_argument("--version", action="store_true", help="number of the version")
     commands = whole.add_subparsers()
     _add_executable(commands)
-    for name, module in COMMANDS.items():
+    for name, module in commands_of_python.items():
         source = import_module(module)
         commands.add_parser(
             name,

@@ -84,7 +84,7 @@ contains
          '', &
          'rbsdem trade CASE.nml needs the command that comes with the Python package,', &
          'and so do rbsdem peer DIR, rbsdem ensemble CASE.nml RECORD ... --out DIR and', &
-         'rbsdem ida CASE.nml RECORD ...', &
+         'rbsdem ida CASE.nml RECORD ..., rbsdem explore and rbsdem report CASE.nml', &
          '', &
          'CASE.nml may be -, which is standard input.', &
          '', &

@@ -1,0 +1,163 @@
+"""The tests of a folder that are most like a drawn column, with their loops and errors."""
+
+from __future__ import annotations
+
+import threading
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rbsdem.comparison import Comparison
+from rbsdem.errors import InputError, RbsdemError
+from rbsdem.peer.bands import nearest
+from rbsdem.peer.batch import predict_one
+from rbsdem.peer.pictures import picture
+from rbsdem.peer.predictions import Prediction
+from rbsdem.peer.specimen import Specimen
+from rbsdem.peer.specimens import read_specimens
+
+__all__ = ["Near", "specimen_of"]
+
+#: Scores that are shown.
+_SCORES = ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio")
+
+
+class Near:
+    """The predicted tests of a folder.
+
+    Parameters
+    ----------
+    folder : path
+        With the table and the histories, as of `rbsdem peer`.
+    number : int, optional
+        How many tests an answer has.
+
+    Raises
+    ------
+    InputError
+        If the folder has no table, or no history.
+    """
+
+    def __init__(self, folder: Path, number: int = 4) -> None:
+        self._tests = read_specimens(folder).with_history()
+        if not self._tests:
+            raise InputError(f"{folder} has no history of any test of its table")
+        self._number = number
+        self._found: list[Prediction] = []
+        self._stop = threading.Event()
+
+    def begin(self, computing: threading.Lock) -> None:
+        """Predict the tests one by one in a thread, between what the page asks for."""
+        threading.Thread(target=self._predict, args=(computing,), daemon=True).start()
+
+    def end(self) -> None:
+        """Leave the tests that are not predicted yet."""
+        self._stop.set()
+
+    def _predict(self, computing: threading.Lock) -> None:
+        for test in self._tests:
+            if self._stop.wait(0.002):
+                return
+            with computing:
+                self.predict(test)
+
+    def predict(self, test: Specimen) -> None:
+        """Predict one test, and keep it."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            self._found.append(predict_one(test))
+
+    def all(self) -> Near:
+        """Predict what is left, now."""
+        for test in self._tests[len(self._found) :]:
+            self.predict(test)
+        return self
+
+    def of(self, state: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the nearest tests of each column, and how many of the folder are predicted."""
+        found = list(self._found)
+        columns: list[dict[str, Any]] = []
+        for given in state["columns"]:
+            specimen = None if "case" in given else specimen_of(given)
+            if specimen is None:
+                columns.append({"none": "the folder has no tests of such columns"})
+                continue
+            try:
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore")
+                    rows = nearest(specimen, found, self._number)
+            except (RbsdemError, ValueError) as error:
+                columns.append({"none": str(error)})
+                continue
+            columns.append({"tests": [_row(row.prediction, row.distance) for row in rows]})
+        return {"columns": columns, "predicted": len(found), "tests": len(self._tests)}
+
+
+def specimen_of(given: Mapping[str, Any]) -> Specimen | None:
+    """Return a drawn column as a specimen to compare; None for shapes that were not tested."""
+    try:
+        section, bars, ties, frame = (given[name] for name in ("section", "bars", "ties", "column"))
+        half = 0.5 if frame.get("ends") == "double" else 1.0
+        common = {
+            "name": "drawn",
+            "length": half * frame["height"],
+            "concrete_strength": given["concrete"]["fc"],
+            "axial_load": frame["axial_load"],
+            "longitudinal_number": bars["number"],
+            "corner_diameter": bars["diameter"],
+            "corner_yield_stress": bars["fy"],
+            "transverse_diameter": ties["diameter"],
+            "transverse_spacing": ties["spacing"],
+            "transverse_yield_stress": ties["fy"],
+        }
+        if section["shape"] == "circle":
+            return Specimen(
+                section="circular",
+                width=section["diameter"],
+                depth=section["diameter"],
+                cover=section["cover"] + 0.5 * ties["diameter"],
+                **common,
+            )
+        if section["shape"] != "rectangle":
+            return None
+        face = bars.get("face") or bars["number"] // 4 + 1
+        return Specimen(
+            section="rectangular",
+            width=section["width"],
+            depth=section["depth"],
+            cover=section["cover"],
+            intermediate_diameter=bars["diameter"],
+            intermediate_perpendicular=face - 2,
+            intermediate_parallel=(bars["number"] - 2 * face) // 2,
+            shear_legs=float(ties.get("legs") or 2.0),
+            **common,
+        )
+    except (KeyError, TypeError, ValueError):
+        return None
+
+
+def _row(found: Prediction, distance: float) -> dict[str, Any]:
+    specimen = found.specimen
+    assert isinstance(found.comparison, Comparison)
+    drawn = picture(found.comparison)
+    return {
+        "name": specimen.name,
+        "distance": round(distance, 3),
+        "failure": specimen.failure_mode or "not known",
+        "axial_load_ratio": round(specimen.axial_load_ratio, 3),
+        "span_depth_ratio": round(specimen.span_depth_ratio, 2),
+        "status": found.status,
+        "scores": {name: _finite(found.score(name)) for name in _SCORES},
+        "test": np.round(drawn.test, 4).tolist(),
+        "model": np.round(drawn.model, 4).tolist(),
+        "displacement": drawn.displacement,
+        "force": drawn.force,
+        "height": found.comparison.height,
+    }
+
+
+def _finite(value: float) -> float | None:
+    return round(value, 4) if np.isfinite(value) else None

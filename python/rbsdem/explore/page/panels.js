@@ -1,0 +1,175 @@
+// What the page shows of the answers: figures and tables.
+
+import { drawChart, markSign, svgElement } from "./chart.js";
+import { element } from "./fields.js";
+import { shown, unitOf } from "./units.js";
+
+const KINDS = ["a", "b"];
+const STATE_NAMES = {
+  cracking: ["cracking", "circle", false], first_yield: ["first yield", "circle", true], nominal_moment: ["nominal moment", "diamond", false],
+  spalling: ["spalling", "square", false], bar_buckling: ["bar buckling", "triangle", false], hoop_fracture: ["hoop fracture", "square", true],
+  bar_fracture: ["bar fracture", "triangle", true], cap: ["cap", "diamond", false], shear_yield: ["yield in shear", "circle", false],
+  shear_failure: ["shear failure", "cross", false], strength_loss: ["20 % of strength lost", "diamond", true], collapse: ["collapse", "cross", false],
+  axial_failure: ["axial failure", "cross", false],
+};
+export const nameOfState = name => (STATE_NAMES[name] ?? [name.replaceAll("_", " ")])[0];
+
+const scaled = (values, factor) => values.map(value => value === null ? null : value / factor);
+
+export function loopChart(host, state, loops, bands, system) {
+  const [unit, factor] = unitOf(system, "force"), lines = [], marks = [], areas = [], told = [];
+  loops.forEach((loop, i) => {
+    if (!loop?.displacement) return;
+    const drift = scaled(loop.displacement, loop.height / 100), force = scaled(loop.force, factor);
+    const name = state.columns[i].name || "AB"[i];
+    lines.push({ x: drift, y: force, kind: KINDS[i] + (loop.stale ? " stale" : ""), label: loops.filter(Boolean).length > 1 ? name : "" });
+    const band = bands?.[i];
+    if (band?.lower && !loop.stale && band.lower.length === drift.length)
+      areas.push({ x: drift, lower: scaled(band.lower, factor), upper: scaled(band.upper, factor), kind: KINDS[i] });
+    for (const at of loop.states) {
+      const [text, shape, filled] = STATE_NAMES[at.name] ?? [at.name, "circle", false];
+      marks.push({ x: 100 * at.drift, y: at.force / factor, shape, filled, kind: KINDS[i], title: `${text}, drift ${shown(100 * at.drift, 3)} %` });
+    }
+    const figures = loop.figures;
+    told.push(`column ${name}: largest force ${shown(figures.peak_force / factor)} ${unit}, largest drift ${shown(100 * figures.peak_drift, 3)} %`);
+  });
+  if (!lines.length) { host.replaceChildren(element("p", { className: "empty" }, "No loop: see the messages beside the fields.")); return null; }
+  const one = loops.length === 1 && loops[0], [length, metre] = unitOf(system, "length");
+  return drawChart(host, { lines, bands: areas, marks, symmetric: true, zero: true, xLabel: "Drift (%)", yLabel: `Lateral force (${unit})`,
+    top: one ? { factor: one.height / 100 / metre, label: `displacement (${length})` } : null, label: "Lateral force against drift; " + told.join("; ") });
+}
+
+export function timeChart(host, state, loops) {
+  const lines = loops.map((loop, i) => loop?.time ? { x: loop.time, y: scaled(loop.displacement, loop.height / 100), kind: KINDS[i], label: state.columns[i].name } : null).filter(Boolean);
+  if (lines.length) drawChart(host, { lines: lines.length > 1 ? lines : [{ ...lines[0], label: "" }], zero: true, height: 230, xLabel: "Time (s)", yLabel: "Drift (%)", label: "Drift in time" });
+}
+
+export function scaleChart(host, state, scales) {
+  const lines = [], marks = [];
+  scales.forEach((found, i) => {
+    if (!found?.scales?.length) return;
+    const rows = found.scales;
+    lines.push({ x: [0, ...rows.map(row => row.scale)], y: [0, ...rows.map(row => 100 * row.drift)], kind: KINDS[i], label: scales.length > 1 ? state.columns[i].name : "" });
+    for (const row of rows) marks.push({ x: row.scale, y: 100 * row.drift, shape: row.status === "completed" ? "circle" : "cross", kind: KINDS[i], title: row.status });
+  });
+  if (lines.length) drawChart(host, { lines, marks, fromZero: true, height: 230, xLabel: "Scale of the motion", yLabel: "Peak drift (%)", label: "Peak drift against the scale of the motion" });
+  else host.replaceChildren();
+}
+
+export function curvatureChart(host, state, sections, system) {
+  const [unit, factor] = unitOf(system, "moment"), [each, per] = unitOf(system, "curvature"), lines = [], marks = [], faults = [];
+  sections.forEach((one, i) => (one?.curvature ?? []).forEach((diagram, confined) => {
+    if (diagram.fault) { faults.push(diagram.fault); return; }
+    const name = sections.length > 1 ? state.columns[i].name + ", " : "";
+    lines.push({ x: scaled(diagram.curvature, per), y: scaled(diagram.moment, factor), kind: KINDS[i] + (confined ? "" : " thin dashed"), label: name + (confined ? "core confined" : "not confined") });
+    if (confined) for (const [event, [x, y]] of Object.entries(diagram.events))
+      marks.push({ x: x / per, y: y / factor, shape: { cracking: "circle", yielding: "square", peak: "triangle", ultimate: "diamond" }[event], filled: event !== "cracking", kind: KINDS[i], title: event });
+  }));
+  if (lines.length) drawChart(host, { lines, marks, fromZero: true, xLabel: `Curvature (${each})`, yLabel: `Moment (${unit})`, label: "Moment against curvature under the axial load", legend: true });
+  else host.replaceChildren();
+  for (const fault of faults) host.append(element("p", { className: "fault" }, fault));
+}
+
+export function interactionChart(host, state, sections, own, loops, system, code) {
+  const [unit, factor] = unitOf(system, "moment"), [newton, per] = unitOf(system, "force"), lines = [], marks = [], faults = [];
+  sections.forEach((one, i) => {
+    const name = sections.length > 1 ? state.columns[i].name + ", " : "", by = one?.code;
+    if (by?.fault) faults.push(by.fault);
+    else if (by) {
+      lines.push({ x: scaled(by.moment, factor), y: scaled(by.axial_load, per), kind: KINDS[i] + " thin", label: name + "nominal" });
+      lines.push({ x: scaled(by.design_moment, factor), y: scaled(by.design_axial_load, per), kind: KINDS[i] + " thin dashed", label: name + "design" });
+    }
+    if (own?.[i]?.moment) lines.push({ x: scaled(own[i].moment, factor), y: scaled(own[i].axial_load, per), kind: KINDS[i], label: name + "own laws" });
+    const loop = loops[i], frame = state.columns[i].column;
+    if (loop?.figures?.peak_moment && frame) marks.push({ x: loop.figures.peak_moment / factor, y: frame.axial_load / per, shape: "circle", filled: true, kind: KINDS[i], title: "largest moment of the loop" });
+  });
+  if (lines.length) drawChart(host, { lines, marks, fromZero: true, xLabel: `Moment (${unit})`, yLabel: `Axial load (${newton})`, legend: true, label: `Interaction of axial load and moment, ${code}; the dot is the largest moment of the loop` });
+  else host.replaceChildren();
+  for (const fault of faults) host.append(element("p", { className: "fault" }, fault));
+}
+
+function table(heads, rows, caption) {
+  const made = element("table", {});
+  if (caption) made.append(element("caption", {}, caption));
+  const words = i => rows.every(row => typeof row.cells[i] === "object" && row.cells[i].text !== undefined);
+  made.append(element("thead", {}, element("tr", {}, ...heads.map((head, i) => element("th", { scope: "col", className: words(i) ? "text" : "" }, head)))));
+  made.append(element("tbody", {}, ...rows.map(row => element("tr", { className: row.kind ?? "" }, ...row.cells.map((cell, i) => {
+    const made = element(i ? "td" : "th", { className: typeof cell === "object" && cell.text !== undefined ? "text" : "" }, typeof cell === "object" && cell !== null ? cell.text : cell);
+    if (!i) made.setAttribute("scope", "row");
+    if (!i && row.sign) made.prepend(row.sign);
+    if (cell?.title) made.title = cell.title;
+    return made;
+  })))));
+  return element("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: caption || heads[0] }, made);
+}
+
+function signOf(name, i) {
+  const [, shape, filled] = STATE_NAMES[name] ?? ["", "circle", false];
+  return markSign(shape, filled, KINDS[i]);
+}
+
+export function stateTables(host, below, state, loops, bands, system) {
+  const [unit, factor] = unitOf(system, "force"), [length, metre] = unitOf(system, "length"), rows = [];
+  const names = state.columns.map((one, i) => one.name || "AB"[i]), two = loops.length > 1;
+  loops.forEach((loop, i) => {
+    for (const at of loop?.states ?? [])
+      rows.push({ kind: KINDS[i], sign: signOf(at.name, i), cells: [(two ? names[i] + ": " : "") + nameOfState(at.name), shown(100 * Math.abs(at.drift), 3), shown(Math.abs(at.displacement) / metre, 3), shown(Math.abs(at.force) / factor, 4), { text: at.source }] });
+  });
+  const heads = ["First reached", "drift %", `d ${length}`, `F ${unit}`, "by"];
+  host.replaceChildren(...(rows.length ? [table(heads, rows, "")] : [element("p", { className: "empty" }, "None is reached.")]));
+  const facts = [];
+  const add = (what, key, dimension, digits = 4) => {
+    const [u, f] = unitOf(system, dimension);
+    facts.push({ cells: [`${what}${u ? ", " + u : ""}`, ...loops.map((loop, i) => {
+      const value = loop?.figures?.[key], interval = bands?.[i]?.[key];
+      if (value === undefined || value === null) return "–";
+      return shown(value / f, digits) + (interval?.[0] != null && !loop.stale ? ` (${shown(interval[0] / f, 3)} to ${shown(interval[2] / f, 3)})` : "");
+    })] });
+  };
+  add("largest force", "peak_force", "force");
+  add("largest drift", "peak_drift", "drift", 3);
+  add("drift at 20 % loss", "drift_at_loss", "drift", 3);
+  add("residual drift", "residual_drift", "drift", 3);
+  add("work of the springs", "energy", "energy");
+  below.replaceChildren(...(loops.some(loop => loop?.figures) ? [table(["Figures", ...names], facts, bands?.some(band => band?.lower) ? "In brackets: 80 % of left-out tests" : "")] : []));
+}
+
+const CODE_UNITS = { "N": "force", "N m": "moment", "m": "length", "rad": "drift", "drift": "drift", "1/m": "curvature", "": "number" };
+
+export function codeTable(host, state, sections, system) {
+  const lists = sections.map(one => Array.isArray(one?.codes) ? one.codes : []), fault = sections.find(one => one?.codes?.fault)?.codes.fault;
+  const names = [...new Set(lists.flat().map(value => value.name))];
+  const rows = names.map(name => {
+    const found = lists.map(list => list.find(value => value.name === name)), first = found.find(Boolean);
+    const [unit, factor] = unitOf(system, CODE_UNITS[first.unit] ?? "number");
+    return { cells: [name, ...found.map(value => value ? shown(value.value / factor) : "–"), { text: unit }, { text: first.meaning }, { text: first.source + (first.confirmed ? "" : " *") }] };
+  });
+  const parts = rows.length ? [table(["Value", ...(lists.length > 1 ? state.columns.map(one => one.name) : [""]), "unit", "meaning", "source"], rows, lists.flat().some(value => !value.confirmed) ? "* not confirmed by a second source" : "")] : [];
+  if (fault) parts.push(element("p", { className: "fault" }, fault));
+  host.replaceChildren(...parts);
+}
+
+// A card of a test: its loop grey, the model over it.
+export function testCard(test, system, error = "") {
+  const width = 260, height = 190, X = x => width / 2 * (1 + 0.92 * x), Y = y => height / 2 * (1 - 0.92 * y);
+  const path = line => line.map(([x, y], i) => (i ? "L" : "M") + X(x).toFixed(1) + " " + Y(y).toFixed(1)).join("");
+  const [unit, factor] = unitOf(system, "force"), scores = test.scores;
+  const svg = svgElement("svg", { viewBox: `0 0 ${width} ${height}`, class: "card", role: "img", "aria-label": `${test.name}: prediction over test, error ${shown(scores.nrmse, 3)}` },
+    svgElement("path", { class: "zero", d: `M0 ${height / 2}H${width}M${width / 2} 0V${height}` }),
+    svgElement("path", { class: "line test", d: path(test.test) }), svgElement("path", { class: "line a thin", d: test.model.length > 1 ? path(test.model) : "" }),
+    svgElement("text", { x: width - 2, y: height / 2 + 12, "text-anchor": "end" }, shown(100 * test.displacement / test.height, 2) + " %"),
+    svgElement("text", { x: width / 2 + 4, y: 11 }, `${shown(test.force / factor, 3)} ${unit}`));
+  const about = `${test.failure}, n ${shown(test.axial_load_ratio, 2)}, a/h ${shown(test.span_depth_ratio, 2)}`;
+  return element("figure", {}, element("figcaption", {}, element("b", {}, test.name), element("br"), about), svg,
+    element("p", {}, `error ${shown(scores.nrmse, 3)}  peak ${shown(scores.peak_ratio, 3)}  energy ${shown(scores.energy_ratio, 3)}  stiffness ${shown(scores.stiffness_ratio, 3)}${error}`));
+}
+
+export function nearCards(host, state, near, system) {
+  const parts = [];
+  near.columns.forEach((column, i) => {
+    if (near.columns.length > 1) parts.push(element("h3", {}, `Column ${state.columns[i].name}`));
+    if (column.none) parts.push(element("p", { className: "empty" }, column.none));
+    else parts.push(element("div", { className: "cards" }, ...column.tests.map(test => testCard(test, system, `  distance ${shown(test.distance, 2)}`))));
+  });
+  host.replaceChildren(...parts);
+}

@@ -1,0 +1,76 @@
+"""A report: the page with its results inside, one file that asks nothing of a network."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from rbsdem import _core
+from rbsdem._files import whole_file
+from rbsdem.explore import texts
+from rbsdem.explore.compute import Answers
+from rbsdem.explore.near import Near
+from rbsdem.explore.parts import one_file
+
+__all__ = ["report_data", "write_report"]
+
+
+def report_data(state: Mapping[str, Any], title: str, near: Near | None = None) -> dict[str, Any]:
+    """Return the answers to a state as a report holds them.
+
+    Parameters
+    ----------
+    state : mapping
+        Columns and loading.
+    title : str
+        Title of the report.
+    near : Near, optional
+        Tests to compare with.
+    """
+    answers = Answers()
+    columns, loading = state["columns"], state["loading"]
+    loops = answers.loops(state)
+    data: dict[str, Any] = {
+        "title": title,
+        "version": _core.version(),
+        "state": {"columns": columns, "loading": loading},
+        "loops": [{**loop, "seconds": 0} for loop in loops],
+        "sections": {code: answers.sections(state, code) for code in ("aci318", "ec2")},
+        "bands": [answers.band(given, loading) for given in columns],
+        "scales": None,
+        "own": answers.own_interaction(state),
+        "near": None if near is None else near.all().of(state),
+    }
+    if any(loop.get("dynamic") for loop in loops):
+        data["scales"] = [answers.scaled(given, loading, lambda _: None) for given in columns]
+    found = answers.solved(columns[0], loading)
+    data["exports"] = {}
+    if found.result is not None:
+        for form in ("namelist", "python"):
+            text = texts.exported(form, found, columns[0], state)
+            data["exports"][form] = {"text": text, "name": "column"}
+    return data
+
+
+def write_report(
+    path: str | os.PathLike[str],
+    state: Mapping[str, Any],
+    title: str,
+    near: Near | None = None,
+) -> Path:
+    """Write a report of a state of the page, whole or not at all.
+
+    Parameters
+    ----------
+    path : path
+        File to write.
+    state, title, near
+        As for `report_data`.
+    """
+    target = Path(path)
+    page = one_file(title, report_data(state, title, near))
+    with whole_file(target) as file:
+        file.write(page.encode("utf-8"))
+    return target

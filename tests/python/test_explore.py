@@ -1,0 +1,411 @@
+"""The page `rbsdem explore` without a browser: who is answered, with what, and what is refused."""
+
+from __future__ import annotations
+
+import base64
+import copy
+import hashlib
+import http.client
+import itertools
+import json
+import re
+import socket
+import threading
+
+import numpy as np
+import pytest
+
+import rbsdem
+from rbsdem.explore import texts
+from rbsdem.explore.command import main, start_of
+from rbsdem.explore.near import Near
+from rbsdem.explore.parts import MODULES, parts
+from rbsdem.explore.report import write_report
+from rbsdem.explore.report_command import main as report_main
+from rbsdem.explore.server import MOST_STATE, ExploreServer
+from rbsdem.explore.state import DEFAULT
+
+#: Numbers of requests; a tab counts on.
+COUNT = itertools.count(1)
+
+
+def state(**changes):
+    """The first column of the page, on a short path; changes are "group_key=value"."""
+    found = copy.deepcopy(DEFAULT)
+    found["loading"] = {"kind": "amplitudes", "amplitudes": [0.005, 0.02], "cycles": 1}
+    for name, value in changes.items():
+        group, key = name.split("_", 1)
+        place = found if group == "loading" else found["columns"][0]
+        place[group][key] = value
+    return found
+
+
+def section():
+    bars = rbsdem.Layout(12, 0.016, rbsdem.Steel(446e6, 702e6))
+    ties = rbsdem.Ties(0.007, 0.085, rbsdem.Steel(364e6), legs=4)
+    concrete = rbsdem.Concrete(46.5e6)
+    return rbsdem.RectangularSection(0.4, 0.4, concrete, layout=bars, ties=ties, cover=0.013)
+
+
+@pytest.fixture(scope="module")
+def server():
+    with ExploreServer(0, DEFAULT) as made:
+        threading.Thread(target=made.serve_forever, kwargs={"poll_interval": 0.02}).start()
+        yield made
+        made.shutdown()
+
+
+@pytest.fixture
+def send(server):
+    """send(method, path, body, headers) -> status, heads, body; the path is behind the token."""
+
+    def ask(method, path, body=None, headers=None, token=None):
+        connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=20)
+        heads = {"Content-Type": "application/json"} | (headers or {})
+        connection.request(method, f"/{token or server.token}/{path}", body, heads)
+        answer = connection.getresponse()
+        found = answer.status, answer.headers, answer.read()
+        connection.close()
+        return found
+
+    return ask
+
+
+@pytest.fixture
+def post(send):
+    """post(lane, **body) -> the answer, which must be one."""
+
+    def ask(lane, **body):
+        body = {"tab": "t", "number": next(COUNT)} | body
+        status, _, raw = send("POST", lane, json.dumps(body))
+        assert status == 200, raw
+        return json.loads(raw)
+
+    return ask
+
+
+# ---- who is answered ----------------------------------------------------------------------------
+
+
+def test_the_page_and_its_parts(send):
+    status, heads, raw = send("GET", "")
+    assert status == 200
+    assert b"main.js" in raw
+    policy = heads["Content-Security-Policy"]
+    assert "default-src 'none'" in policy
+    assert "unsafe" not in policy
+    for name in re.findall(rb'(?:src|href)="([a-z.]+)"', raw):
+        assert send("GET", name.decode())[0] == 200
+    assert json.loads(send("GET", "start")[2])["state"] == DEFAULT
+
+
+GOOD = json.dumps({"tab": "r", "number": 1, "state": state()})
+
+
+@pytest.mark.parametrize(
+    ("status", "request_"),
+    [
+        (404, {"token": "x" * 32}),
+        (404, {"token": "%C3%A9"}),
+        (403, {"headers": {"Host": "evil.example"}}),
+        (403, {"headers": {"Host": "127.0.0.1:1"}}),
+        (403, {"headers": {"Origin": "http://evil.example"}}),
+        (403, {"headers": {"Origin": "null"}}),
+        (403, {"headers": {"Sec-Fetch-Site": "cross-site"}}),
+        (415, {"headers": {"Content-Type": "text/plain"}}),
+        (404, {"path": "secret"}),
+        (404, {"path": "../../etc/passwd"}),
+        (413, {"headers": {"Content-Length": str(MOST_STATE + 1)}}),
+        (411, {"headers": {"Content-Length": "many"}}),
+        (400, {"body": "{"}),
+        (400, {"body": "[" * 100_000}),
+        (400, {"body": '{"tab": "r", "number": NaN}'}),
+        (400, {"body": "[]"}),
+        (400, {"body": '{"tab": "r", "number": 1.5, "state": {}}'}),
+        (400, {"body": '{"tab": "r", "number": 1, "state": {"columns": []}}'}),
+        (400, {"body": '{"tab": "r", "number": 1, "state": {"columns": [1], "loading": {}}}'}),
+    ],
+)
+def test_refused_requests(send, status, request_):
+    given = {"path": "loops", "body": GOOD} | request_
+    token = given.pop("token", None)
+    found = send("POST", given["path"], given["body"], given.get("headers"), token)
+    assert found[0] == status
+    assert "error" in json.loads(found[2])
+
+
+def test_a_page_file_is_not_a_path(send):
+    for path in ("../server.py", "..%2fserver.py", "/etc/passwd", "page.css/", "main.js%00"):
+        assert send("GET", path)[0] == 404
+
+
+def test_a_request_that_is_cut_off_does_no_harm(server, send):
+    with socket.create_connection(("127.0.0.1", server.port)) as raw:
+        head = f"POST /{server.token}/loops HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\n"
+        raw.sendall(
+            f"{head}Content-Type: application/json\r\nContent-Length: 99\r\n\r\n{{".encode()
+        )
+    assert send("GET", "")[0] == 200
+
+
+def test_the_newest_of_a_tab_wins(server, send):
+    def number(count, tab="n"):
+        body = {"tab": tab, "number": count, "state": state()}
+        return send("POST", "loops", json.dumps(body))[0]
+
+    with server.computing:  # something else is being computed
+        waits = []
+        thread = threading.Thread(target=lambda: waits.append(number(7)))
+        thread.start()
+        while ("n", "loops") not in server._newest:
+            pass
+        server.announce("n", "loops", 8)
+    thread.join()
+    assert waits == [409]
+    assert number(6) == 409
+    assert number(9) == 200
+    assert number(1, tab="another") == 200  # a second tab has its own numbers
+
+
+def test_a_port_that_is_taken(server, capsys):
+    assert main(["--no-browser", "--port", str(server.port)]) == 2
+    assert f"--port {server.port}: cannot be opened" in capsys.readouterr().err
+
+
+# ---- what is answered ---------------------------------------------------------------------------
+
+
+def test_loops_are_those_of_the_functions(post):
+    (answer,) = post("loops", state=state())["columns"]
+    column = section().column(1.6, axial_load=744e3)
+    path = 1.6 * rbsdem.protocol([0.005, 0.02])
+    result = rbsdem.cyclic(column, displacement=path, openings=True)
+    np.testing.assert_allclose(answer["force"], result.force, rtol=1e-5)
+    np.testing.assert_allclose(answer["displacement"], path, rtol=1e-5)
+    assert [one["name"] for one in answer["states"]] == result.limit_states().names()
+    assert len(answer["figure"]["bars"]) == 12
+
+
+def test_two_columns_and_double_curvature(post):
+    two = state()
+    two["columns"].append(copy.deepcopy(two["columns"][0]))
+    two["columns"][1]["column"] |= {"ends": "double", "height": 3.2}
+    one, other = post("loops", state=two)["columns"]
+    # Half of it is the cantilever: the same force, twice the displacement between the ends.
+    assert one["force"] == other["force"]
+    np.testing.assert_allclose(other["displacement"], 2 * np.array(one["displacement"]), rtol=1e-5)
+    assert other["height"] == 3.2
+
+
+def test_section_and_band_are_those_of_the_functions(post):
+    (answer,) = post("sections", state=state(), code="ec2")["columns"]
+    diagram = section().diagram(744e3)
+    np.testing.assert_allclose(answer["curvature"][0]["moment"], diagram.moment, rtol=1e-5)
+    strength = section().interaction("ec2", points=60)
+    np.testing.assert_allclose(answer["code"]["design_moment"], strength.design_moment, rtol=1e-5)
+    values = {one["name"]: one["value"] for one in answer["codes"]}
+    assert values["asce_41.a"] == pytest.approx(
+        section().code_values(1.6, 744e3)["asce_41.a"], rel=1e-5
+    )
+    (band,) = post("bands", state=state())["columns"]
+    spread = section().column(1.6, axial_load=744e3).spread(1.6 * rbsdem.protocol([0.005, 0.02]))
+    np.testing.assert_allclose(band["upper"], spread.upper, rtol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("changes", "field", "text"),
+    [
+        ({"bars_number": 11}, "bars.number", "layout: number = 11 does not spread"),
+        ({"bars_number": 10**9}, "bars.number", "too many here"),
+        ({"bars_number": "many"}, "bars.number", "must be a whole number"),
+        ({"bars_face": 7}, "bars.face", "leave -2 of 12"),
+        ({"section_cover": 0.3}, "section.cover", "cover"),
+        ({"section_width": None}, "section.width", "width = None must be a number"),
+        ({"section_shape": "star"}, "section.shape", "shape = 'star' is not known"),
+        ({"concrete_fc": 46.5}, "concrete.fc", "fc"),
+        ({"ties_fy": -1.0}, "ties.fy", "fy"),
+        ({"ties_spacing": 0.0}, "ties.spacing", "spacing = 0.0 m must be finite"),
+        ({"column_height": 1600.0}, "column.height", "1600 mm is 1.6"),
+        ({"column_axial_load": 1e9}, "column.axial_load", "axial"),
+        ({"column_ends": "pinned"}, "column.ends", "ends = 'pinned' is not known"),
+        ({"loading_amplitudes": []}, "loading.amplitudes", "must not be empty"),
+        ({"loading_amplitudes": [0.01, "x"]}, "loading.amplitudes", "array of numbers"),
+        ({"loading_cycles": 10**9}, "loading.cycles", "too many here"),
+        ({"loading_kind": "record"}, "loading.name", "not open here"),
+    ],
+)
+def test_errors_stand_beside_their_fields(post, changes, field, text):
+    (answer,) = post("loops", state=state(**changes))["columns"]
+    assert "force" not in answer
+    faults = {one["field"]: one["text"] for one in answer["faults"]}
+    assert re.search(text, faults[field])
+
+
+def test_all_errors_come_at_once_and_leave_the_other_column(post):
+    two = state()
+    two["columns"].append(copy.deepcopy(two["columns"][0]))
+    two["columns"][0]["concrete"]["fc"] = -1.0
+    two["columns"][0]["bars"]["fy"] = "strong"
+    two["columns"][0]["ties"]["spacing"] = None
+    wrong, right = post("loops", state=two)["columns"]
+    assert {one["field"] for one in wrong["faults"]} == {
+        "concrete.fc",
+        "bars.fy",
+        "ties.spacing",
+    }
+    assert right["force"]
+
+
+@pytest.mark.parametrize("shape", ["circle", "hollow_rectangle", "hollow_circle"])
+def test_other_shapes(post, shape):
+    given = state(section_shape=shape, section_diameter=0.5, section_wall=0.12)
+    (answer,) = post("loops", state=given)["columns"]
+    assert answer["faults"] == []
+    assert max(answer["force"]) > 50e3
+
+
+# ---- earthquakes --------------------------------------------------------------------------------
+
+
+def test_records_are_texts_and_scales_follow(post):
+    motion = rbsdem.motions.synthetic(1)[0]
+    text = "time_s,acceleration_m/s2\n" + "".join(
+        f"{0.01 * i:.2f},{value:.6e}\n" for i, value in enumerate(motion.acceleration[:400])
+    )
+    opened = post("record", name="../../x.csv", text=text)
+    given = state()
+    given["loading"] = {"kind": "record", "id": opened["id"], "name": opened["name"], "scale": 1.5}
+    (answer,) = post("loops", state=given)["columns"]
+    assert answer["dynamic"]
+    column = section().column(1.6, axial_load=744e3)
+    from dataclasses import replace  # noqa: PLC0415
+
+    result = rbsdem.time_history(
+        replace(column, top_mass=744e3 / 9.80665),
+        motion.time[:400],
+        ground_acceleration=1.5 * np.array([float(f"{v:.6e}") for v in motion.acceleration[:400]]),
+        collapse_drift=0.2,
+    )
+    np.testing.assert_allclose(answer["displacement"], result.displacement, rtol=1e-4, atol=1e-9)
+    (scales,) = post("scales", state=given)["columns"]
+    rows = {row["scale"]: row["drift"] for row in scales["scales"]}
+    assert rows[1.5] == pytest.approx(answer["figures"]["peak_drift"])
+    wrong = post("record", name="x.csv", text="a,b\n")["faults"][0]
+    assert wrong["text"].startswith("x.csv")
+
+
+# ---- files --------------------------------------------------------------------------------------
+
+
+def test_a_namelist_comes_back_and_runs(post, tmp_path, run_cli):
+    given = state()
+    saved = post("export", state=given, form="namelist")["text"]
+    assert post("open", text=saved) | {"number": 0} == {"number": 0, "state": given}
+    (tmp_path / "case.nml").write_text(saved)
+    assert start_of(tmp_path / "case.nml")["columns"] == given["columns"]
+    (answer,) = post("loops", state=given)["columns"]
+    case = rbsdem.read_case(tmp_path / "case.nml")
+    np.testing.assert_allclose(case.run().force, answer["force"], rtol=1e-5)
+    assert run_cli(["check", "case.nml"], cwd=tmp_path).returncode == 0
+    # The springs are what counts: a file that was changed is no longer that of its drawing.
+    other = post("open", text=saved.replace("axial_load = 744000", "axial_load = 700000"))
+    assert "was changed after it was drawn" in other["note"]
+    (loop,) = post("loops", state=other["state"])["columns"]
+    assert loop["faults"] == []
+    assert max(loop["force"]) != pytest.approx(max(answer["force"]), rel=1e-6)
+
+
+def test_a_case_in_the_page_names_no_file(post, case_text):
+    for loading in (
+        "drive = 'displacement', file = '/etc/passwd'",
+        "drive = 'displacement', FILE\n = 'x.csv'",
+        "drive = 'displacement', file ! a remark\n = 'x.csv'",
+        "drive = 'displacement', amplitudes = 0.01, unit = 'm\n' file = 'x.csv'",
+    ):
+        (fault,) = post("open", text=case_text(loading=loading))["faults"]
+        assert re.search(r"line \d+: (file = names a file|a text is not closed)", fault["text"])
+    assert "state" in post("open", text=case_text(case="title = 'my file'") + "! file = 'x'\n")
+    (fault,) = post("open", text="&column height = 1 /")["faults"]
+    assert "rbsdem-" not in fault["text"]  # no path of this machine
+
+
+def test_python_gives_the_same_loop(post):
+    for changes in (
+        {},
+        {"section_shape": "circle", "section_diameter": 0.5, "column_ends": "double"},
+    ):
+        given = state(**changes)
+        program = post("export", state=given, form="python")["text"]
+        names: dict = {}
+        exec(compile(program.replace("print(", "str("), "saved.py", "exec"), names)
+        (answer,) = post("loops", state=given)["columns"]
+        np.testing.assert_allclose(answer["force"], names["result"].force, rtol=1e-5)
+
+
+def test_csv_is_that_of_the_program(post, tmp_path):
+    text = post("export", state=state(), form="csv")["text"]
+    (tmp_path / "saved.csv").write_text(text)
+    rows = [line for line in text.splitlines() if not line.startswith("#")]
+    assert len(rows) == 1 + rbsdem.protocol([0.005, 0.02]).size
+    assert "force_N" in rows[0]
+    wrong = post("export", state=state(bars_number=11), form="csv")
+    assert wrong["faults"][0]["field"] == "bars.number"
+
+
+# ---- reports and the page's files ---------------------------------------------------------------
+
+
+def test_a_report_is_one_file(tmp_path, post, capsys):
+    case = tmp_path / "pier.nml"
+    case.write_text(post("export", state=state(), form="namelist")["text"])
+    assert report_main([str(case), "--title", "A </script> pier"]) == 0
+    assert capsys.readouterr().out.strip() == f"wrote {tmp_path / 'pier.html'}"
+    page = (tmp_path / "pier.html").read_text("utf-8")
+    assert 20e3 < len(page.encode()) < 2e6
+    assert set(re.findall(r"https?://[\w./]+", page)) == {"http://www.w3.org/2000/svg"}
+    assert not re.search(r"(src|href)=\"(?!data:|#)", page)
+    (script,) = re.findall(r'<script type="module">(.*?)</script>', page, re.DOTALL)
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    assert f"script-src 'sha256-{digest}'" in page
+    assert "\nimport " not in script
+    (packed,) = re.findall(r'<script type="application/json" id="report">(.*?)</script>', page)
+    data = json.loads(packed)
+    assert data["title"] == "A </script> pier"
+    assert data["loops"][0]["force"]
+    with pytest.raises(rbsdem.InputError, match="is a folder"):
+        write_report(tmp_path, state(), "x")
+
+
+def test_modules_of_the_page_can_stand_in_one_file():
+    seen: dict[str, str] = {}
+    files = parts()
+    for name in MODULES:
+        text = files[name].decode()
+        for imported in re.findall(r'^import .* from "\./(.*)";$', text, re.MULTILINE):
+            assert imported in MODULES[: MODULES.index(name)]
+        own = r"^(?:export )?(?:async )?(?:function|const|let) ([\w$]+)"
+        for word in re.findall(own, text, re.MULTILINE):
+            assert seen.setdefault(word, name) == name, word
+        assert not re.search(r"^export [{*d]|^import .* as ", text, re.MULTILINE)
+
+
+def test_nearest_tests(peer_folder):
+    near = Near(peer_folder, number=2)
+    few = [test for test in near._tests if "Soesianawati" in test.name or "Zahn" in test.name]
+    for test in few:
+        near.predict(test)
+    found = near.of(state())
+    assert found["predicted"] == len(few)
+    first = found["columns"][0]["tests"][0]
+    # The column of the page is test No 1 of Soesianawati and others.
+    assert "Soesianawati" in first["name"]
+    assert first["distance"] < 0.3
+    assert first["scores"]["nrmse"] < 0.2
+    hollow = near.of(state(section_shape="hollow_rectangle", section_wall=0.12))
+    assert "none" in hollow["columns"][0]
+
+
+def test_texts_that_are_no_drawings():
+    assert texts.drawing_in("! rbsdem explore: {\n") is None
+    assert texts.drawing_in("! rbsdem explore: [1]\n") is None
+    assert texts.drawing_in("&case /\n") is None

@@ -1,0 +1,266 @@
+"""The page `rbsdem explore` in a real browser: it draws, drags, exports and refuses bad input."""
+
+from __future__ import annotations
+
+import copy
+import shutil
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+import rbsdem
+from rbsdem.explore import write_report
+from rbsdem.explore.server import ExploreServer
+from rbsdem.explore.state import DEFAULT
+
+selenium = pytest.importorskip("selenium", reason="selenium is not installed (extra test)")
+from selenium import webdriver  # noqa: E402
+from selenium.webdriver.common.action_chains import ActionChains  # noqa: E402
+from selenium.webdriver.common.by import By  # noqa: E402
+from selenium.webdriver.common.keys import Keys  # noqa: E402
+from selenium.webdriver.support.ui import Select  # noqa: E402
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+PATIENCE = 15.0
+
+# A short path, so that an answer takes no time on a busy machine.
+START = copy.deepcopy(DEFAULT)
+START["loading"] = {"kind": "amplitudes", "amplitudes": [0.005, 0.02], "cycles": 1}
+
+
+class Page:
+    """What a test does on the page."""
+
+    def __init__(self, driver, address: str, downloads: Path) -> None:
+        self.driver, self.address, self.downloads = driver, address, downloads
+
+    def open(self, address: str | None = None) -> None:
+        self.driver.get("about:blank")
+        self.driver.get(address or self.address)
+        self.wait(lambda: self.all("#loopfigure path.line.a"))
+
+    def all(self, selector: str):
+        return self.driver.find_elements(By.CSS_SELECTOR, selector)
+
+    def one(self, selector: str):
+        return self.driver.find_element(By.CSS_SELECTOR, selector)
+
+    def value(self, selector: str) -> str:
+        return self.one(selector).get_property("value")
+
+    def text(self, selector: str) -> str:
+        return self.driver.execute_script(
+            "return document.querySelector(arguments[0]).textContent", selector
+        )
+
+    def type(self, selector: str, words: str) -> None:
+        field = self.one(selector)
+        field.send_keys(Keys.CONTROL, "a")
+        field.send_keys(words, Keys.TAB)
+
+    def wait(self, done: Callable[[], object]) -> None:
+        """Wait until something is true; an element that is drawn anew meanwhile is not yet."""
+        until = time.monotonic() + PATIENCE
+        while True:
+            try:
+                if done():
+                    return
+            except selenium.common.exceptions.StaleElementReferenceException:
+                pass
+            assert time.monotonic() < until, self.text("body")[:2000]
+            time.sleep(0.02)
+
+    def peak(self) -> float:
+        """The largest force, as the table has it [kN]."""
+        row = self.text("#figures tbody tr td")
+        return float(row.split()[0])
+
+    def saved(self, name: str) -> bytes:
+        path = self.downloads / name
+        self.wait(path.is_file)
+        return path.read_bytes()
+
+
+@pytest.fixture(scope="module")
+def driver(tmp_path_factory):
+    browser = next((found for name in BROWSERS if (found := shutil.which(name))), None)
+    if browser is None or shutil.which("chromedriver") is None:
+        pytest.skip("no chromium with its driver; apt-get install chromium chromium-driver")
+    options = webdriver.ChromeOptions()
+    options.binary_location = browser
+    for word in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"):
+        options.add_argument(word)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    service = webdriver.ChromeService(shutil.which("chromedriver"))
+    found = webdriver.Chrome(options=options, service=service)
+    folder = tmp_path_factory.mktemp("downloads")
+    found.execute_cdp_cmd(
+        "Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(folder)}
+    )
+    found.downloads = folder
+    yield found
+    found.quit()
+
+
+@pytest.fixture(scope="module")
+def address():
+    with ExploreServer(0, START) as server:
+        threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02}).start()
+        yield server.address
+        server.shutdown()
+
+
+@pytest.fixture
+def page(driver, address):
+    driver.get_log("browser")
+    size(driver, 1280, 900)
+    found = Page(driver, address, driver.downloads)
+    found.open()
+    yield found
+    # Nothing that the policy of the page forbids, and no error of a script.
+    assert driver.get_log("browser") == []
+
+
+def size(driver, width: int, height: int, scheme: str = "light") -> None:
+    driver.execute_cdp_cmd(
+        "Emulation.setDeviceMetricsOverride",
+        {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600},
+    )
+    driver.execute_cdp_cmd(
+        "Emulation.setEmulatedMedia",
+        {"features": [{"name": "prefers-color-scheme", "value": scheme}]},
+    )
+
+
+def test_a_drag_is_one_step_and_a_link(page):
+    before = page.peak()
+    handle = page.one('[data-path="section.depth"] .knob')
+    mouse = ActionChains(page.driver, duration=20)
+    mouse.click_and_hold(handle).move_by_offset(0, 8).move_by_offset(0, 8).release().perform()
+    page.wait(lambda: page.value("#f-section-depth") != "400" and page.peak() > before)
+    depth = page.value("#f-section-depth")
+    assert float(depth) > 420
+    link = page.driver.current_url
+    page.one("#undo").click()
+    page.wait(lambda: page.value("#f-section-depth") == "400" and page.peak() == before)
+    assert not page.one("#undo").is_enabled()
+    page.one("#redo").click()
+    page.wait(lambda: page.value("#f-section-depth") == depth)
+    page.open(link)
+    assert page.value("#f-section-depth") == depth
+
+
+def test_keys_move_a_handle_and_a_field(page):
+    handle = page.one('#drawings [data-path="section.width"]')
+    page.driver.execute_script("arguments[0].focus()", handle)
+    keys = ActionChains(page.driver)
+    keys.send_keys(Keys.ARROW_UP).send_keys(Keys.ARROW_UP).perform()
+    page.wait(lambda: page.value("#f-section-width") == "420")
+    focused = page.driver.switch_to.active_element
+    assert focused.get_attribute("aria-label") == "Width"
+    assert focused.get_attribute("aria-valuetext") == "420 mm"
+    page.one("#f-column-axial_load").send_keys(Keys.ARROW_UP)
+    page.wait(lambda: page.value("#f-column-axial_load") == "754")
+    # Every field has a label, every button and handle a name.
+    nameless = page.driver.execute_script(
+        "return [...document.querySelectorAll('input:not([hidden]), select, textarea')]"
+        ".filter(e => !e.labels.length).map(e => e.id)"
+    )
+    assert nameless == []
+
+
+def test_errors_are_those_of_the_program_and_go(page):
+    page.type("#f-bars-number", "11")
+    page.wait(lambda: page.one("#f-bars-number-fault").is_displayed())
+    concrete, bars = rbsdem.Concrete(46.5e6), rbsdem.Layout(11, 0.016, rbsdem.Steel(446e6))
+    with pytest.raises(rbsdem.InputError) as program:
+        rbsdem.RectangularSection(0.4, 0.4, concrete, layout=bars)
+    assert page.text("#f-bars-number-fault") == str(program.value)
+    assert page.one("#f-bars-number").get_attribute("aria-invalid") == "true"
+    assert "f-bars-number-fault" in page.one("#f-bars-number").get_attribute("aria-describedby")
+    assert "does not spread" in page.text("#live")
+    assert page.all("#loopfigure path.line.a.stale")  # the last loop stays, as an old one
+    page.type("#f-bars-number", "twelve")
+    page.wait(lambda: "'twelve' must be a whole number" in page.text("#f-bars-number-fault"))
+    page.type("#f-bars-number", "16")
+    page.wait(lambda: not page.one("#f-bars-number-fault").is_displayed())
+    page.wait(lambda: not page.all("#loopfigure path.line.a.stale"))
+
+
+def test_units_are_a_way_to_look(page):
+    before = page.driver.execute_script("return location.hash")
+    Select(page.one("#units")).select_by_value("in")
+    assert float(page.value("#f-section-width")) == pytest.approx(0.4 / 0.0254)
+    page.type("#f-section-width", "20")
+    page.wait(lambda: page.one("#undo").is_enabled())
+    Select(page.one("#units")).select_by_value("mm")
+    assert page.value("#f-section-width") == "508"
+    assert page.driver.execute_script("return location.hash") != before
+
+
+def test_two_columns_and_another_loading(page):
+    page.one("#second").click()
+    page.wait(lambda: page.all("#loopfigure path.line.b"))
+    assert len(page.all("#drawings svg")) == 2
+    page.type("#f-column-axial_load", "2000")
+    page.wait(lambda: len(page.all("#figures thead th")) == 3)
+    Select(page.one("#f-loading-kind")).select_by_value("synthetic")
+    page.wait(lambda: page.all("#timefigure path.line.a") and page.all("#scalefigure path.line.b"))
+    page.one("#second").click()
+    page.wait(lambda: not page.all("#loopfigure path.line.b"))
+
+
+def test_exports(page):
+    page.wait(lambda: page.all("#loopfigure .band path"))
+    assert "band of 80 %" in page.text("#loopstate")
+    for form in ("namelist", "python", "csv", "svg", "png"):
+        Select(page.one("#export")).select_by_value(form)
+        name = {"namelist": "column_a.nml", "python": "column_a.py", "csv": "column_a.csv"}.get(
+            form, f"loops.{form}"
+        )
+        assert page.saved(name)
+    case = rbsdem.read_case(page.downloads / "column_a.nml")
+    assert 1e-3 * abs(case.run().force).max() == pytest.approx(page.peak(), rel=1e-3)
+    ElementTree.fromstring(page.saved("loops.svg"))
+    assert page.saved("loops.png").startswith(b"\x89PNG")
+    # A file comes back as the drawing that it was.
+    page.type("#f-section-width", "450")
+    page.wait(lambda: page.one("#undo").is_enabled())
+    page.one("#file").send_keys(str(page.downloads / "column_a.nml"))
+    page.wait(lambda: page.value("#f-section-width") == "400")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_a_small_screen_and_the_dark(page, scheme):
+    size(page.driver, 390, 844, scheme)
+    page.open()
+    assert page.driver.execute_script("return document.documentElement.scrollWidth") <= 390
+    paper = page.driver.execute_script("return getComputedStyle(document.body).backgroundColor")
+    assert (sum(int(part) for part in paper[4:-1].split(",")) < 380) == (scheme == "dark")
+
+
+def test_a_report_asks_nothing(page, tmp_path):
+    path = write_report(tmp_path / "report.html", START, "A pier")
+    page.open(path.as_uri())
+    assert "A pier" in page.text("h1")
+    assert page.all("#loopfigure .band path")
+    assert page.all("#codetable tbody tr")
+    assert page.one("#f-section-width").get_property("readOnly")
+    asked = (
+        "return performance.getEntriesByType('resource').filter(e => !e.name.startsWith('data:'))"
+    )
+    assert page.driver.execute_script(asked) == []
+
+
+def test_a_server_that_has_ended(page):
+    page.driver.execute_cdp_cmd("Network.enable", {})
+    lost = {"offline": True, "latency": 0, "downloadThroughput": 0, "uploadThroughput": 0}
+    page.driver.execute_cdp_cmd("Network.emulateNetworkConditions", lost)
+    page.type("#f-section-width", "500")
+    page.wait(lambda: "the server has ended" in page.text("#loopstate"))
+    page.driver.execute_cdp_cmd("Network.disable", {})
+    page.driver.get_log("browser")  # that nothing was reached
