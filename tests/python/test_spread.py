@@ -15,7 +15,8 @@ from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.protocol import protocol
 from rbsdem.section import Scatter, parameters
 from rbsdem.section.scatter import SCATTER
-from rbsdem.section.spread import near_shear, sobol
+from rbsdem.section.sobol import sobol
+from rbsdem.section.spread import near_shear
 
 SECTION = RectangularSection(
     0.4,
@@ -27,9 +28,9 @@ SECTION = RectangularSection(
 )
 PATH = 1.6 * protocol([0.005, 0.01, 0.02], cycles=2)
 NONE = Scatter(
-    strength=0.0,
-    stiffness=0.0,
-    degradation=0.0,
+    strength=(0.0, 0.0),
+    stiffness=(0.0, 0.0),
+    degradation=(0.0, 0.0),
     twins=0.05,
     force=(2.0, 4.0),
     peak=((0.9, 1.2), (0.8, 1.6)),
@@ -67,7 +68,7 @@ def test_without_scatter_the_band_is_that_of_twins() -> None:
 
 
 def test_scatter_of_strength_is_a_factor() -> None:
-    found = column().spread(PATH, scatter=replace(NONE, strength=0.1))
+    found = column().spread(PATH, scatter=replace(NONE, strength=(0.06, 0.08)))
     factors = np.exp(0.1 * sobol(16)[:, 0])
     np.testing.assert_allclose(found.samples, np.outer(factors, found.force), rtol=1e-12)
     at = int(np.argmax(found.force))
@@ -77,14 +78,14 @@ def test_scatter_of_strength_is_a_factor() -> None:
 
 
 def test_a_softer_column_is_where_the_other_is_at_a_smaller_displacement() -> None:
-    found = column().spread(PATH[:2], scatter=replace(NONE, stiffness=0.3))
+    found = column().spread(PATH[:2], scatter=replace(NONE, stiffness=(0.0, 0.3)))
     path = PATH[:2, None] * np.exp(0.3 * sobol(16)[:, 1])
     again = [column().spread(row, scatter=NONE).force for row in path.T]
     np.testing.assert_allclose(found.samples, again, rtol=1e-12)
 
 
 def test_degradation_changes_late_cycles_only() -> None:
-    found = column().spread(PATH, scatter=replace(NONE, degradation=0.7))
+    found = column().spread(PATH, scatter=replace(NONE, degradation=(0.7, 0.0)))
     range_of = np.ptp(found.samples, axis=0) / np.max(np.abs(found.force))
     assert range_of[: PATH.size // 6].max() < 0.02 < range_of[PATH.size // 2 :].max()
 
@@ -101,29 +102,41 @@ def test_intervals() -> None:
 
 def test_outside_the_range_of_the_tests_it_says_so() -> None:
     assert column().outside == ()
-    far = RectangularSection(
+    section = RectangularSection(
         0.4,
         0.4,
         Concrete(140e6),
-        layout=Layout(8, 0.01, Steel(450e6, 650e6)),
+        layout=Layout(8, 0.01, Steel(700e6, 900e6)),
         ties=Ties(0.01, 0.3, Steel(400e6), legs=3),
         cover=0.02,
-    ).column(4.0, axial_load=1.2e6)
-    assert [text.split(" =")[0] for text in far.outside] == [
+    )
+    with pytest.warns(AccuracyWarning, match="is outside") as caught:
+        far = section.column(4.0, axial_load=-1e5)
+    names = [
+        "axial load ratio",
         "concrete strength",
+        "yield stress of the bars",
+        "reinforcement ratio",
         "shear span over depth",
         "tie spacing over bar diameter",
     ]
-    with pytest.warns(AccuracyWarning, match="concrete strength = .* is outside"):
-        found = far.spread(PATH, scatter=NONE)
+    assert [text.split(" =")[0] for text in far.outside] == names
+    assert str(caught[0].message) == "; ".join(far.outside)
+    with pytest.warns(AccuracyWarning, match="concrete strength = 140 MPa is outside"):
+        found = far.spread(PATH[:3], scatter=NONE)
     assert found.remarks == far.outside
+    with pytest.warns(AccuracyWarning, match="there are no ties"):
+        replace(SECTION, ties=None, layout=None).column(1.6, axial_load=1.2e6)
 
 
 def test_wrong_arguments() -> None:
-    with pytest.raises(InputError, match="at least 8"):
+    with pytest.raises(InputError, match="must be 8 to 4096"):
         column().spread(PATH, samples=4)
     with pytest.raises(InputError, match="does not change"):
         column().spread([0.0, 0.0])
+    other = replace(column(), flexure=column().flexure[1])
+    with pytest.raises(InputError, match="flexure of this column is not that of its model"):
+        other.spread(PATH)
     older = SECTION.column(1.6, axial_load=1.2e6, version="2026.2")
     with pytest.raises(InputError, match="nobody has left tests out of version"):
         older.spread(PATH)

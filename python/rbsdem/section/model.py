@@ -21,8 +21,8 @@ from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.parameter import Parameter
 from rbsdem.section.hinge import HingeJoint, hinge_joint
 from rbsdem.section.parameters import ModelParameters, parameters
-from rbsdem.section.ranges import axial_load_note, column_length
-from rbsdem.section.scatter import RANGE, Scatter
+from rbsdem.section.ranges import axial_load_note, column_length, outside
+from rbsdem.section.scatter import Scatter
 from rbsdem.section.shear_model import shear_limits, shear_spring
 from rbsdem.section.spread import Spread, spread
 from rbsdem.section.spring_fit import fit_springs
@@ -142,7 +142,10 @@ def make_column(
     )
     if model_parameters is not None:
         recipe.check(model_parameters.own)
-    return LayeredColumn(height, n=recipe.n, recipe=recipe, **recipe.made, **common)
+    column = LayeredColumn(height, n=recipe.n, recipe=recipe, **recipe.made, **common)
+    if column.outside:
+        warnings.warn("; ".join(column.outside), AccuracyWarning, stacklevel=3)
+    return column
 
 
 def _count(n: int, least: int) -> int:
@@ -411,21 +414,7 @@ class LayeredColumn(Column):
     @property
     def outside(self) -> tuple[str, ...]:
         """Where the column is outside the range of the tests that the model was fitted to."""
-        recipe = self._recipe
-        section = recipe.section
-        values = {
-            "axial load ratio": recipe.axial_load / (section.gross_area * section.concrete.fc),
-            "concrete strength": section.concrete.fc,
-            "shear span over depth": self.height / section.depth,
-        }
-        if section.ties is not None and section.bar_diameter:
-            values["tie spacing over bar diameter"] = section.ties.spacing / section.bar_diameter
-        return tuple(
-            f"{name} = {value:.3g} is outside {RANGE[name][0]:g} to {RANGE[name][1]:g}, the range "
-            "of the tests that the model was fitted to"
-            for name, value in values.items()
-            if not RANGE[name][0] <= value <= RANGE[name][1]
-        )
+        return outside(self._recipe.section, self.height, self.axial_load)
 
     def spread(
         self, displacement: ArrayLike, *, samples: int = 16, scatter: Scatter | None = None

@@ -1,20 +1,37 @@
-"""Plausible ranges of what a user gives beside a section, with hints for values in other units."""
+"""Ranges: of what a user plausibly gives beside a section, and of the tests that models know."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rbsdem import _core
 from rbsdem.errors import InputError
 
-__all__ = ["axial_load_note", "column_length"]
+if TYPE_CHECKING:
+    from rbsdem.section.section import Section
+
+__all__ = ["RANGE", "axial_load_note", "column_length", "outside"]
 
 #: Least and largest length of a column [m]: a number in millimetres is outside.
 _SHORTEST, _LONGEST = 0.05, 100.0
 
 #: Share of f'c A below which an axial load is hardly meant: the same number in kN is a usual load.
 _HARDLY_ANY = 4e-4
+
+RANGE: dict[str, tuple[float, float, float, str]] = {
+    "axial load ratio": (0.0, 0.75, 1.0, ""),
+    "concrete strength": (16e6, 110e6, 1e6, " MPa"),
+    "yield stress of the bars": (240e6, 590e6, 1e6, " MPa"),
+    "reinforcement ratio": (0.0045, 0.0605, 1.0, ""),
+    "depth": (0.15, 1.55, 1.0, " m"),
+    "shear span over depth": (1.0, 8.0, 1.0, ""),
+    "tie spacing over bar diameter": (1.2, 18.0, 1.0, ""),
+}
+"""Range of the tests that the layered model was fitted to, in SI; a unit to print them in."""
+
+#: A value on an end of a range may be off it by this share.
+_SLACK = 1e-9
 
 
 def column_length(value: Any, name: str) -> float:
@@ -60,3 +77,45 @@ def axial_load_note(axial_load: float, strength: float, area: float) -> str:
         f"axial_load = {axial_load:g} N is only {ratio:.1e} of f'c A; loads are in N: 744 kN is "
         "744e3"
     )
+
+
+def outside(section: Section, height: float, axial_load: float) -> tuple[str, ...]:
+    """Return where a column is outside the range of the tests that the model was fitted to.
+
+    Parameters
+    ----------
+    section : Section
+        Its section.
+    height : float
+        From the base to the lateral load [m].
+    axial_load : float
+        Compression positive [N].
+
+    Returns
+    -------
+    tuple of str
+        A remark for each property that is outside; empty if there is none.
+    """
+    found = {
+        "axial load ratio": axial_load / (section.gross_area * section.concrete.fc),
+        "concrete strength": section.concrete.fc,
+        "yield stress of the bars": max(steel.fy for _, _, steel in section.bars),
+        "reinforcement ratio": section.steel_ratio,
+        "depth": section.depth,
+        "shear span over depth": height / section.depth,
+    }
+    remarks = []
+    if section.ties is None:
+        remarks.append("there are no ties; of the tests that the model was fitted to one had none")
+    elif section.bar_diameter:
+        found["tie spacing over bar diameter"] = section.ties.spacing / section.bar_diameter
+    if section.hollow:
+        remarks.append("the section is hollow; those of the tests were solid")
+    for name, value in found.items():
+        low, high, unit, label = RANGE[name]
+        if not low * (1 - _SLACK) <= value <= high * (1 + _SLACK):
+            remarks.append(
+                f"{name} = {value / unit:.3g}{label} is outside {low / unit:g} to "
+                f"{high / unit:g}{label}, the range of the tests that the model was fitted to"
+            )
+    return tuple(remarks)

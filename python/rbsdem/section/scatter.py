@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias
 
-__all__ = ["RANGE", "SCATTER", "Scatter"]
+__all__ = ["SCATTER", "Scatter"]
 
 
 Ends: TypeAlias = tuple[float, float]
@@ -21,9 +21,9 @@ class Scatter:
 
     Attributes
     ----------
-    strength, stiffness, degradation : float
-        Standard deviations of logarithms: force, flexibility of the whole column, rate of
-        degradation; of laboratories and tests together.
+    strength, stiffness, degradation : (float, float)
+        Standard deviations of logarithms from laboratory to laboratory, and from test to test
+        within one: force, flexibility of the whole column, rate of degradation.
     twins : float
         What nominally equal specimens differ by, over their peak force.
     force : (float, float)
@@ -33,9 +33,9 @@ class Scatter:
         predicted: far from the shear strength, and at it.
     """
 
-    strength: float
-    stiffness: float
-    degradation: float
+    strength: Ends
+    stiffness: Ends
+    degradation: Ends
     twins: float
     force: Ends
     peak: tuple[Ends, Ends]
@@ -45,9 +45,9 @@ class Scatter:
 
 SCATTER: dict[str, Scatter] = {
     "2026.3": Scatter(
-        strength=0.123,
-        stiffness=0.34,
-        degradation=0.318,
+        strength=(0.085, 0.089),
+        stiffness=(0.261, 0.217),
+        degradation=(0.087, 0.306),
         twins=0.05,
         force=(0.955, 1.383),
         peak=((0.929, 1.192), (0.951, 1.31)),
@@ -56,11 +56,3 @@ SCATTER: dict[str, Scatter] = {
     ),
 }
 """Scatter by version of the parameters."""
-
-RANGE: dict[str, tuple[float, float]] = {
-    "axial load ratio": (0.0, 0.75),
-    "concrete strength": (16e6, 110e6),
-    "shear span over depth": (1.0, 8.0),
-    "tie spacing over bar diameter": (1.2, 18.0),
-}
-"""Range of the tests that the parameters were fitted to; strength in Pa."""

@@ -12,10 +12,9 @@ another for columns that come near their shear strength, which are predicted wor
 from __future__ import annotations
 
 import math
+import os
 import warnings
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from statistics import NormalDist
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,19 +22,37 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _core, _views
 from rbsdem._core import Array
+from rbsdem._files import write_csv
 from rbsdem.analysis import cyclic
 from rbsdem.column import Column
 from rbsdem.comparison import strength_loss
-from rbsdem.comparison.metrics import work
+from rbsdem.comparison.metrics import PathPoints, work
 from rbsdem.errors import AccuracyWarning, InputError, SolveError
 from rbsdem.section.scatter import SCATTER, Scatter
+from rbsdem.section.sobol import sobol
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from rbsdem.section.model import LayeredColumn
 
-__all__ = ["Interval", "Spread", "near_shear", "sobol", "spread"]
+__all__ = [
+    "LEAST",
+    "MOST",
+    "Interval",
+    "Spread",
+    "between",
+    "half_band",
+    "has_bands",
+    "near_shear",
+    "numbers",
+    "path_force",
+    "sample",
+    "spread",
+]
+
+LEAST, MOST = 8, 4096
+"""Fewest and most samples of a band."""
 
 #: The shares between which a band lies.
 _LOW, _HIGH = 0.1, 0.9
@@ -61,7 +78,8 @@ class Interval:
     Attributes
     ----------
     lower, value, upper : float
-        NaN where the model does not say it, as the drift at a loss that does not come.
+        The value is NaN and the upper end infinite where the model does not come to it along the
+        path, as the drift at a loss that does not come.
     """
 
     lower: float
@@ -69,7 +87,22 @@ class Interval:
     upper: float
 
     def __str__(self) -> str:
+        if math.isnan(self.value):
+            return f"above {self.lower:.4g}"
         return f"{self.value:.4g} ({self.lower:.4g} to {self.upper:.4g})"
+
+    def holds(self, value: float) -> bool:
+        """Whether a measured value is in the interval.
+
+        Parameters
+        ----------
+        value : float
+            The value; NaN, which is that of a test that did not come to it, is in an interval
+            without an upper end alone.
+        """
+        if math.isnan(value):
+            return self.upper == math.inf
+        return self.lower <= value <= self.upper
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,25 +115,35 @@ class Spread:
         The path [m].
     force : ndarray, shape (m,)
         The prediction [N]; zero behind its end, where the column has failed.
+    median : ndarray, shape (m,)
+        Median of the samples at each row [N].
     lower, upper : ndarray, shape (m,)
         The band [N].
     samples : ndarray, shape (n, m)
         Forces of the samples, before the band was widened [N].
     peak_force, energy, drift_at_loss : Interval
         Largest force [N], work [J], drift ratio at which 20 % of the strength is lost.
+    near_shear : float
+        How near the column is to its shear strength, 0 to 1, on which the width depends.
     remarks : tuple of str
         Where the column is outside the range of the tests that the parameters were fitted to.
     """
 
     displacement: Array
     force: Array
+    median: Array
     lower: Array
     upper: Array
     samples: Array
     peak_force: Interval
     energy: Interval
     drift_at_loss: Interval
+    near_shear: float
     remarks: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        rows, near = self.displacement.size, self.near_shear
+        return f"<Spread: {rows} rows, width {self.width:.2f}, near_shear {near:.2f}>"
 
     @property
     def width(self) -> float:
@@ -108,10 +151,46 @@ class Spread:
         step = np.abs(np.diff(self.displacement))
         gap = self.upper - self.lower
         mean = float(step @ (gap[1:] + gap[:-1])) / (2 * float(step.sum()))
-        return mean / float(np.max(np.abs(self.force)))
+        peak = float(np.max(np.abs(self.force)))
+        return mean / peak if peak > 0 else math.nan
+
+    def holds(self, test: Any) -> float:
+        """Return the share of a measured loop that is within the band, along the path.
+
+        Parameters
+        ----------
+        test : array_like of shape (m,), or a test
+            Forces in the same rows [N].
+
+        Raises
+        ------
+        InputError
+            If it has other rows.
+        """
+        force = _core.finite_vector(getattr(test, "force", test), "test")
+        if force.size != self.force.size:
+            raise InputError(
+                f"spread: the test has {force.size} rows and the prediction {self.force.size}; "
+                "predict the displacements of the test"
+            )
+        at = PathPoints(self.displacement, name="displacement")
+        inside = (at(self.lower) <= at(force)) & (at(force) <= at(self.upper))
+        return float(np.mean(inside))
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write displacement, prediction, median and band as csv, whole or not at all.
+
+        Parameters
+        ----------
+        path : path
+            File to write.
+        """
+        header = ("displacement_m", "force_N", "median_N", "lower_N", "upper_N")
+        rows = np.column_stack((self.displacement, self.force, self.median, self.lower, self.upper))
+        write_csv(path, [header, *rows.tolist()])
 
     def plot(self, test: Any = None, ax: Axes | None = None, **line: Any) -> Axes:
-        """Draw band and prediction along the path, and a test over them.
+        """Draw band, prediction and median along the path, and a test over them.
 
         Parameters
         ----------
@@ -125,6 +204,15 @@ class Spread:
         return _views.view(self, "plot", test, ax, **line)
 
 
+def has_bands(version: str) -> None:
+    """Raise `InputError` if nobody knows the scatter of tests about a version."""
+    if version not in SCATTER:
+        raise InputError(
+            f"spread: nobody has left tests out of version {version!r}; there are bands for "
+            f"{', '.join(SCATTER)}"
+        )
+
+
 def spread(
     column: LayeredColumn,
     displacement: ArrayLike,
@@ -134,49 +222,112 @@ def spread(
 ) -> Spread:
     """Predict a path with its band; see `rbsdem.section.model.LayeredColumn.spread`."""
     number = _core.whole(samples, "samples")
-    if number < 8:
-        raise InputError(f"samples = {samples}; a band needs at least 8")
-    version = column.recipe.parameters.version if column.recipe else ""
-    found = scatter or SCATTER.get(version)
-    if found is None:
-        raise InputError(
-            f"spread: nobody has left tests out of version {version!r}; there are bands for "
-            f"{', '.join(SCATTER)}"
-        )
+    if not LEAST <= number <= MOST:
+        raise InputError(f"samples = {samples} must be {LEAST} to {MOST}; 16 are enough")
+    remarks = column.outside
+    if scatter is None:
+        found = column.recipe.parameters if column.recipe else None
+        has_bands(found.version if found else "")
+        assert found is not None
+        scatter = SCATTER[found.version]
+        if found.changed:
+            remarks = (*remarks, f"the band is that of {found.version}, whose parameters changed")
     d = _core.finite_vector(displacement, "displacement")
     if d.size < 2 or not np.any(np.diff(d)):
         raise InputError("spread: the displacement does not change; give a path")
-    remarks = column.outside
     if remarks:
         warnings.warn(f"spread: {'; '.join(remarks)}", AccuracyWarning, stacklevel=3)
-    force = _force(column, d)
-    rows = []
-    for strength, stiffness, degradation in sobol(number):
-        factor = math.exp(found.degradation * degradation)
-        other = _degraded(column, factor)
-        # A column that is softer by a factor is where the other is at a smaller displacement.
-        path = d * math.exp(found.stiffness * stiffness)
-        rows.append(math.exp(found.strength * strength) * _force(other, path))
-    sampled = np.array(rows)
+    force = path_force(column, d)
+    sampled = sample(column, d, scatter, number)
     peak = float(np.max(np.abs(force)))
-    low, high = np.quantile(sampled, (_LOW, _HIGH), axis=0)
-    # Nominally equal specimens differ by this much of their peak even so.
-    least = found.twins * peak
-    sheared = near_shear(column, peak)
-    widen = _between(found.force, sheared)
-    upper = force + widen * (np.maximum(high - force, 0.0) + least)
-    lower = force - widen * (np.maximum(force - low, 0.0) + least)
+    near = near_shear(column, peak)
+    up, down = half_band(force, sampled, scatter)
+    widen = between(scatter.force, near)
+    values = numbers(d, force, column.height)
     return Spread(
         displacement=d,
         force=force,
-        lower=lower,
-        upper=upper,
+        median=np.median(sampled, axis=0),
+        lower=force - widen * down,
+        upper=force + widen * up,
         samples=sampled,
-        peak_force=_interval(peak, found.peak, sheared),
-        energy=_interval(float(work(d, force)[-1]), found.energy, sheared),
-        drift_at_loss=_interval(strength_loss(d, force) / column.height, found.drift, sheared),
+        peak_force=_interval(values["peak"], scatter.peak, near),
+        energy=_interval(values["energy"], scatter.energy, near),
+        drift_at_loss=_interval(
+            values["drift"], scatter.drift, near, float(np.max(np.abs(d))) / column.height
+        ),
+        near_shear=near,
         remarks=remarks,
     )
+
+
+def sample(column: LayeredColumn, displacement: Array, scatter: Scatter, number: int) -> Array:
+    """Return the forces of samples of strength, stiffness and degradation, shape (number, m) [N].
+
+    Parameters
+    ----------
+    column : LayeredColumn
+        The column.
+    displacement : ndarray, shape (m,)
+        The path [m].
+    scatter : Scatter
+        Of a new laboratory: both standard deviations are in it.
+    number : int
+        How many.
+    """
+    recipe = column.recipe
+    assert recipe is not None
+    for name, made in recipe.made.items():
+        if getattr(column, name) != made:
+            raise InputError(
+                f"spread: {name} of this column is not that of its model, whose scatter is known; "
+                "change parameters by with_parameters"
+            )
+    size = {
+        name: math.hypot(*getattr(scatter, name))
+        for name in ("strength", "stiffness", "degradation")
+    }
+    rows = np.empty((number, displacement.size))
+    for row, (strength, stiffness, degradation) in zip(rows, sobol(number), strict=True):
+        other = _degraded(column, math.exp(size["degradation"] * degradation))
+        # A column that is softer by a factor is where the other is at a smaller displacement.
+        path = displacement * math.exp(size["stiffness"] * stiffness)
+        row[:] = math.exp(size["strength"] * strength) * path_force(other, path)
+    return rows
+
+
+def half_band(force: Array, samples: Array, scatter: Scatter) -> tuple[Array, Array]:
+    """Return what the band is above and below a prediction before it is widened [N].
+
+    Parameters
+    ----------
+    force : ndarray, shape (m,)
+        The prediction [N].
+    samples : ndarray, shape (n, m)
+        Its samples [N].
+    scatter : Scatter
+        What nominally equal specimens differ by is in the band even so.
+    """
+    low, high = np.quantile(samples, (_LOW, _HIGH), axis=0)
+    least = scatter.twins * float(np.max(np.abs(force)))
+    return np.maximum(high - force, 0.0) + least, np.maximum(force - low, 0.0) + least
+
+
+def numbers(displacement: Array, force: Array, height: float) -> dict[str, float]:
+    """Return the numbers that have intervals: largest force [N], work [J], drift at 20 % loss.
+
+    Parameters
+    ----------
+    displacement, force : ndarray, shape (m,)
+        A loop [m, N].
+    height : float
+        Height to which the drift relates [m].
+    """
+    return {
+        "peak": float(np.max(np.abs(force))),
+        "energy": float(work(displacement, force)[-1]),
+        "drift": strength_loss(displacement, force) / height,
+    }
 
 
 def near_shear(column: Column, peak: float) -> float:
@@ -194,15 +345,24 @@ def near_shear(column: Column, peak: float) -> float:
     return min(max((peak / strength - low) / (high - low), 0.0), 1.0)
 
 
-def _between(ends: tuple[float, float], share: float) -> float:
+def between(ends: tuple[float, float], share: float) -> float:
+    """Return the number at a share of the way between two."""
     return ends[0] + share * (ends[1] - ends[0])
 
 
 def _interval(
-    value: float, factors: tuple[tuple[float, float], tuple[float, float]], share: float
+    value: float,
+    factors: tuple[tuple[float, float], tuple[float, float]],
+    share: float,
+    least: float = math.nan,
 ) -> Interval:
-    lower, upper = (_between(ends, share) for ends in zip(*factors, strict=True))
-    return Interval(lower * value, value, upper * value)
+    """Return a value with its interval; `least` is what it exceeds if it is not known."""
+    lower, upper = (between(ends, share) for ends in zip(*factors, strict=True))
+    if math.isnan(value):
+        # No more is known than that it lies beyond, as far as the model is right.
+        return Interval(min(lower, 1.0) * least, value, math.inf)
+    ends = sorted((lower * value, upper * value))
+    return Interval(ends[0], value, ends[1])
 
 
 def _degraded(column: LayeredColumn, factor: float) -> Column:
@@ -215,7 +375,7 @@ def _degraded(column: LayeredColumn, factor: float) -> Column:
     return replace(column, recipe=other, **other.made)
 
 
-def _force(column: Column, displacement: Array) -> Array:
+def path_force(column: Column, displacement: Array) -> Array:
     """Return the lateral force along a path; zero behind the end of the analysis."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
@@ -227,41 +387,3 @@ def _force(column: Column, displacement: Array) -> Array:
     found = found[: displacement.size]
     force[: found.size] = np.where(np.isfinite(found), found, 0.0)
     return force
-
-
-def sobol(number: int) -> Array:
-    """Return standard normal numbers from the first Sobol points in three dimensions.
-
-    Parameters
-    ----------
-    number : int
-        How many points; powers of two fill the space evenly.
-
-    Returns
-    -------
-    ndarray, shape (number, 3)
-        Quantiles of the points (Sobol 1967; direction numbers of Joe and Kuo 2008), each in the
-        middle of its cell.
-    """
-    bits = max(1, (number - 1).bit_length())
-    normal = NormalDist()
-    points = np.empty((number, 3))
-    for place, first in enumerate(((), (1,), (1, 3))):
-        directions = _directions(first, bits)
-        x = 0
-        for i in range(number):
-            points[i, place] = normal.inv_cdf((x + 0.5) / 2**bits)
-            x ^= directions[((~i) & (i + 1)).bit_length() - 1] if i + 1 < 2**bits else 0
-    return points
-
-
-def _directions(first: Sequence[int], bits: int) -> list[int]:
-    """Return direction numbers of the polynomials 1, x + 1 and x^2 + x + 1."""
-    numbers = list(first) or [1] * bits
-    degree = len(first)
-    for k in range(len(numbers), bits):
-        new = numbers[k - degree] ^ (numbers[k - degree] << degree)
-        if degree == 2:
-            new ^= numbers[k - 1] << 1
-        numbers.append(new)
-    return [m << (bits - 1 - k) for k, m in enumerate(numbers[:bits])]
