@@ -208,10 +208,10 @@ def test_two_columns_and_another_loading(page):
     assert len(page.all("#drawings svg")) == 2
     page.type("#f-column-axial_load", "2000")
     page.wait(lambda: len(page.all("#figures thead th")) == 3)
-    Select(page.one("#f-loading-kind")).select_by_value("synthetic")
-    page.wait(lambda: page.all("#timefigure path.line.a") and page.all("#scalefigure path.line.b"))
     page.one("#second").click()
     page.wait(lambda: not page.all("#loopfigure path.line.b"))
+    Select(page.one("#f-loading-kind")).select_by_value("synthetic")
+    page.wait(lambda: page.all("#timefigure path.line.a") and page.all("#scalefigure path.line.a"))
 
 
 def test_exports(page):

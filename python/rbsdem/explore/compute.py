@@ -219,7 +219,7 @@ class Answers:
         given: Mapping[str, Any],
         loading: Mapping[str, Any],
         pause: Callable[[int], None],
-        scales: Sequence[float] = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 3.0),
+        scales: Sequence[float] = (0.5, 0.75, 1.0, 1.5, 2.0, 3.0),
     ) -> dict[str, Any]:
         """Return the peak drift of a motion by its scale, times that of the state."""
         found = self.solved(given, loading)

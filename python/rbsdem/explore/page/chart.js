@@ -130,7 +130,8 @@ export function drawChart(host, spec) {
   if (named.length > 1 || spec.legend) {
     const legend = svgElement("g", { class: "legend" });
     const wide = Math.max(...named.map(l => l.label.length)) * 6.4 + 34;
-    const x = spec.legendLeft ? left + 10 : right - wide, y = spec.legendTop ? top + 14 : bottom - 12 - 15 * (named.length - 1);
+    const within = spec.legend === "inside";
+    const x = within ? left + 14 : right - wide, y = bottom - (within ? 0.2 * inner[1] : 12) - 15 * (named.length - 1);
     named.forEach((line, i) => legend.append(
       svgElement("path", { class: `line ${line.kind}`, d: `M${x} ${y + 15 * i - 4}h20` }),
       svgElement("text", { x: x + 25, y: y + 15 * i }, line.label)));

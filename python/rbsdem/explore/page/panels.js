@@ -35,7 +35,7 @@ export function loopChart(host, state, loops, bands, system) {
   });
   if (!lines.length) { host.replaceChildren(element("p", { className: "empty" }, "No loop: see the messages beside the fields.")); return null; }
   const one = loops.length === 1 && loops[0], [length, metre] = unitOf(system, "length");
-  return drawChart(host, { lines, bands: areas, marks, symmetric: true, zero: true, xLabel: "Drift (%)", yLabel: `Lateral force (${unit})`,
+  return drawChart(host, { lines, bands: areas, marks, symmetric: true, zero: true, height: Math.round(Math.max(270, Math.min(0.92 * host.clientWidth, 560))), xLabel: "Drift (%)", yLabel: `Lateral force (${unit})`,
     top: one ? { factor: one.height / 100 / metre, label: `displacement (${length})` } : null, label: "Lateral force against drift; " + told.join("; ") });
 }
 
@@ -83,7 +83,7 @@ export function interactionChart(host, state, sections, own, loops, system, code
     const loop = loops[i], frame = state.columns[i].column;
     if (loop?.figures?.peak_moment && frame) marks.push({ x: loop.figures.peak_moment / factor, y: frame.axial_load / per, shape: "circle", filled: true, kind: KINDS[i], title: "largest moment of the loop" });
   });
-  if (lines.length) drawChart(host, { lines, marks, fromZero: true, xLabel: `Moment (${unit})`, yLabel: `Axial load (${newton})`, legend: true, label: `Interaction of axial load and moment, ${code}; the dot is the largest moment of the loop` });
+  if (lines.length) drawChart(host, { lines, marks, fromZero: true, xLabel: `Moment (${unit})`, yLabel: `Axial load (${newton})`, legend: "inside", label: `Interaction of axial load and moment, ${code}; the dot is the largest moment of the loop` });
   else host.replaceChildren();
   for (const fault of faults) host.append(element("p", { className: "fault" }, fault));
 }
@@ -103,20 +103,22 @@ function table(heads, rows, caption) {
   return element("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: caption || heads[0] }, made);
 }
 
-function signOf(name, i) {
+function signOf(name) {
   const [, shape, filled] = STATE_NAMES[name] ?? ["", "circle", false];
-  return markSign(shape, filled, KINDS[i]);
+  return markSign(shape, filled, "");
 }
 
 export function stateTables(host, below, state, loops, bands, system) {
-  const [unit, factor] = unitOf(system, "force"), [length, metre] = unitOf(system, "length"), rows = [];
+  const [unit, factor] = unitOf(system, "force"), [length, metre] = unitOf(system, "length");
   const names = state.columns.map((one, i) => one.name || "AB"[i]), two = loops.length > 1;
-  loops.forEach((loop, i) => {
-    for (const at of loop?.states ?? [])
-      rows.push({ kind: KINDS[i], sign: signOf(at.name, i), cells: [(two ? names[i] + ": " : "") + nameOfState(at.name), shown(100 * Math.abs(at.drift), 3), shown(Math.abs(at.displacement) / metre, 3), shown(Math.abs(at.force) / factor, 4), { text: at.source }] });
+  const reached = loops.flatMap((loop, i) => (loop?.states ?? []).map(at => ({ ...at, i })));
+  const numbers = at => at ? [shown(100 * Math.abs(at.drift), 3), shown(Math.abs(at.displacement) / metre, 3), shown(Math.abs(at.force) / factor, 4)] : ["–", "–", "–"];
+  const rows = [...new Set(reached.map(at => at.name))].map(name => {
+    const found = loops.map((_, i) => reached.find(at => at.name === name && at.i === i)), first = found.find(Boolean);
+    return { sign: signOf(name), cells: [nameOfState(name), ...found.flatMap(numbers), { text: first.source }] };
   });
-  const heads = ["First reached", "drift %", `d ${length}`, `F ${unit}`, "by"];
-  host.replaceChildren(...(rows.length ? [table(heads, rows, "")] : [element("p", { className: "empty" }, "None is reached.")]));
+  const heads = ["First reached", ...loops.flatMap((_, i) => [(two ? names[i] + ", " : "") + "drift %", `d ${length}`, `F ${unit}`]), "by"];
+  host.replaceChildren(rows.length ? table(heads, rows, "") : element("p", { className: "empty" }, "None is reached."));
   const facts = [];
   const add = (what, key, dimension, digits = 4) => {
     const [u, f] = unitOf(system, dimension);
@@ -131,7 +133,7 @@ export function stateTables(host, below, state, loops, bands, system) {
   add("drift at 20 % loss", "drift_at_loss", "drift", 3);
   add("residual drift", "residual_drift", "drift", 3);
   add("work of the springs", "energy", "energy");
-  below.replaceChildren(...(loops.some(loop => loop?.figures) ? [table(["Figures", ...names], facts, bands?.some(band => band?.lower) ? "In brackets: 80 % of left-out tests" : "")] : []));
+  below.replaceChildren(...(loops.some(loop => loop?.figures) ? [table(["", ...names], facts, bands?.some(band => band?.lower) ? "In brackets: 80 % of left-out tests" : "")] : []));
 }
 
 const CODE_UNITS = { "N": "force", "N m": "moment", "m": "length", "rad": "drift", "drift": "drift", "1/m": "curvature", "": "number" };
@@ -150,7 +152,7 @@ export function codeTable(host, state, sections, system) {
 }
 
 // A card of a test: its loop grey, the model over it.
-export function testCard(test, system, error = "") {
+export function testCard(test, system, more = "") {
   const width = 260, height = 190, X = x => width / 2 * (1 + 0.92 * x), Y = y => height / 2 * (1 - 0.92 * y);
   const path = line => line.map(([x, y], i) => (i ? "L" : "M") + X(x).toFixed(1) + " " + Y(y).toFixed(1)).join("");
   const [unit, factor] = unitOf(system, "force"), scores = test.scores;
@@ -161,7 +163,7 @@ export function testCard(test, system, error = "") {
     svgElement("text", { x: width / 2 + 4, y: 11 }, `${shown(test.force / factor, 3)} ${unit}`));
   const about = `${test.failure}, n ${shown(test.axial_load_ratio, 2)}, a/h ${shown(test.span_depth_ratio, 2)}`;
   return element("figure", {}, element("figcaption", {}, element("b", {}, test.name), element("br"), about), svg,
-    element("p", {}, `error ${shown(scores.nrmse, 3)}  peak ${shown(scores.peak_ratio, 3)}  energy ${shown(scores.energy_ratio, 3)}  stiffness ${shown(scores.stiffness_ratio, 3)}${error}`));
+    element("p", {}, [`error ${shown(scores.nrmse, 3)}`, `peak ${shown(scores.peak_ratio, 3)}`, `energy ${shown(scores.energy_ratio, 3)}`, `stiffness ${shown(scores.stiffness_ratio, 3)}`, more].filter(Boolean).join(" · ")));
 }
 
 export function nearCards(host, state, near, system) {
@@ -169,7 +171,7 @@ export function nearCards(host, state, near, system) {
   near.columns.forEach((column, i) => {
     if (near.columns.length > 1) parts.push(element("h3", {}, `Column ${state.columns[i].name}`));
     if (column.none) parts.push(element("p", { className: "empty" }, column.none));
-    else parts.push(element("div", { className: "cards" }, ...column.tests.map(test => testCard(test, system, `  distance ${shown(test.distance, 2)}`))));
+    else parts.push(element("div", { className: "cards" }, ...column.tests.map(test => testCard(test, system, `distance ${shown(test.distance, 2)}`))));
   });
   host.replaceChildren(...parts);
 }
