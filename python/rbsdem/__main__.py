@@ -54,6 +54,10 @@ def main() -> int:
         return 2
     if sys.stdout is not None:  # as it is if it was closed
         sys.stdout.flush()
+    if os.name == "nt":  # where a process that is replaced returns to the shell at once
+        from subprocess import run  # noqa: PLC0415
+
+        return run([program, *sys.argv[1:]], check=False).returncode
     os.execv(program, [program, *sys.argv[1:]])
     return 2
 

@@ -11,7 +11,7 @@ program rbsdem
    implicit none
 
    interface
-      !> C: end the process with a status and without printing anything.
+      !> In C: end the process with a status and without printing anything.
       subroutine c_exit(status) bind(c, name='exit')
          import :: c_int
          implicit none

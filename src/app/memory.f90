@@ -15,7 +15,7 @@ module rbs_app_memory
    integer(c_int), parameter :: failed = 1_c_int
 
    interface
-      !> C: the malloc of the C library.
+      !> In C: the malloc of the C library.
       function real_malloc(size) bind(c, name='__real_malloc') result(place)
          import :: c_ptr, c_size_t
          implicit none
@@ -23,7 +23,7 @@ module rbs_app_memory
          type(c_ptr) :: place
       end function real_malloc
 
-      !> C: the realloc of the C library.
+      !> In C: the realloc of the C library.
       function real_realloc(old, size) bind(c, name='__real_realloc') result(place)
          import :: c_ptr, c_size_t
          implicit none
@@ -32,7 +32,7 @@ module rbs_app_memory
          type(c_ptr) :: place
       end function real_realloc
 
-      !> C: end the process at once.
+      !> In C: end the process at once.
       subroutine c_exit_now(status) bind(c, name='_exit')
          import :: c_int
          implicit none

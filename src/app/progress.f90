@@ -27,7 +27,7 @@ module rbs_app_progress
    end type terminal_progress
 
    interface
-      !> C: 1 if a file descriptor is a terminal.
+      !> In C: 1 if a file descriptor is a terminal.
       function c_isatty(descriptor) bind(c, name='isatty') result(answer)
          import :: c_int
          implicit none

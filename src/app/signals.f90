@@ -22,7 +22,7 @@ module rbs_app_signals
    character(kind=c_char), volatile :: doomed(longest) = c_null_char
 
    interface
-      !> C: set what is done on a signal; what was done before.
+      !> In C: set what is done on a signal; what was done before.
       function c_signal(number, action) bind(c, name='signal') result(before)
          import :: c_funptr, c_int
          implicit none
@@ -31,7 +31,7 @@ module rbs_app_signals
          type(c_funptr) :: before
       end function c_signal
 
-      !> C: send a signal to the process itself; 0 on success.
+      !> In C: send a signal to the process itself; 0 on success.
       function c_raise(number) bind(c, name='raise') result(status)
          import :: c_int
          implicit none

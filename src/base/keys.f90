@@ -1,5 +1,5 @@
-!> Keys: the names under which a user sets the values of a record, each with its unit, bounds, default
-!> and meaning.
+!> The keys of a case: the names under which a user sets the values of a record, each with its unit, bounds,
+!> default and meaning.
 !>
 !> Reader, writer, validation, documentation and the Python package are driven by lists of keys. This
 !> module defines the type of a key; each list is defined beside the record that it describes.

@@ -9,7 +9,7 @@ module rbs_case_methods
    public :: method_type, methods, method_named, method_choices, methods_taking, quoted_names, method_rows
    public :: usual_tolerance, usual_rho_infinity, methods_columns
 
-   !> Defaults: error of a step of rk45, spectral radius at infinite frequency.
+   !> What is usual: error of a step of rk45, spectral radius at infinite frequency.
    real(wp), parameter :: usual_tolerance = 1.0e-6_wp, usual_rho_infinity = 0.8_wp
 
    !> The facts of one method.
@@ -19,8 +19,8 @@ module rbs_case_methods
       integer :: order = 0
       !> Whether it is an analysis in time
       logical :: in_time = .true.
-      !> Explicit: a step follows from the state at its start; implicit: from an equation with the state at
-      !> its end. `auto` is neither: it stands for one of the others.
+      !> It is explicit if a step follows from the state at its start, implicit if from an equation with the
+      !> state at its end. `auto` is neither: it stands for one of the others.
       logical :: explicit = .false., implicit = .false.
       !> Whether it chooses the length of its steps by a tolerance
       logical :: adaptive = .false.
@@ -151,9 +151,15 @@ contains
 
    pure function yes_or_no(fact) result(text)
       logical, intent(in) :: fact
-      character(len=merge(4, 3, fact)) :: text
+      character(len=answer_length(fact)) :: text
 
       text = merge(' yes', ' no ', fact)
    end function yes_or_no
+
+   pure integer function answer_length(fact)
+      logical, intent(in) :: fact
+
+      answer_length = merge(4, 3, fact)
+   end function answer_length
 
 end module rbs_case_methods

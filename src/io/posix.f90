@@ -21,6 +21,8 @@ module rbs_io_posix
 
    integer(c_int), parameter, public :: standard_output = 1_c_int
 
+   character(len=*), parameter :: standard_input_path = '/dev/stdin'
+
    !> What `poll` asks and answers for a descriptor.
    type, bind(c) :: poll_type
       integer(c_int) :: descriptor
@@ -29,7 +31,7 @@ module rbs_io_posix
    end type poll_type
 
    interface
-      !> C: open an existing file; -1 if that fails.
+      !> In C: open an existing file; -1 if that fails.
       function c_open(path, flags) bind(c, name='open') result(descriptor)
          import :: c_char, c_int
          implicit none
@@ -38,7 +40,7 @@ module rbs_io_posix
          integer(c_int) :: descriptor
       end function c_open
 
-      !> C: a second descriptor of an open file; -1 if that fails.
+      !> In C: a second descriptor of an open file; -1 if that fails.
       function c_dup(descriptor) bind(c, name='dup') result(second)
          import :: c_int
          implicit none
@@ -46,7 +48,7 @@ module rbs_io_posix
          integer(c_int) :: second
       end function c_dup
 
-      !> C: close a descriptor; 0 on success.
+      !> In C: close a descriptor; 0 on success.
       function c_close(descriptor) bind(c, name='close') result(status)
          import :: c_int
          implicit none
@@ -54,7 +56,7 @@ module rbs_io_posix
          integer(c_int) :: status
       end function c_close
 
-      !> C: read at most `length` bytes: how many, 0 at the end, -1 if nothing can be read now.
+      !> In C: read at most `length` bytes: how many, 0 at the end, -1 if nothing can be read now.
       function c_read(descriptor, text, length) bind(c, name='read') result(count)
          import :: c_char, c_int, c_size_t
          implicit none
@@ -64,7 +66,7 @@ module rbs_io_posix
          integer(c_size_t) :: count
       end function c_read
 
-      !> C: write at most `length` bytes: how many, -1 if nothing can be written now.
+      !> In C: write at most `length` bytes: how many, -1 if nothing can be written now.
       function c_write(descriptor, text, length) bind(c, name='write') result(count)
          import :: c_char, c_int, c_size_t
          implicit none
@@ -74,7 +76,7 @@ module rbs_io_posix
          integer(c_size_t) :: count
       end function c_write
 
-      !> C: wait until a descriptor is ready, for a time in ms or, with -1, for ever; 0 if it is not.
+      !> In C: wait until a descriptor is ready, for a time in ms or, with -1, for ever; 0 if it is not.
       function c_poll(what, count, milliseconds) bind(c, name='poll') result(ready)
          import :: c_int, c_size_t, poll_type
          implicit none
@@ -84,8 +86,8 @@ module rbs_io_posix
          integer(c_int) :: ready
       end function c_poll
 
-      !> C: open a file as a stream; a null pointer if that fails. Mode `wx` makes a file that was not there
-      !> and never follows a link.
+      !> In C: open a file as a stream; a null pointer if that fails. Mode `wx` makes a file that was not
+      !> there and never follows a link.
       function c_fopen(path, mode) bind(c, name='fopen') result(stream)
          import :: c_char, c_ptr
          implicit none
@@ -93,7 +95,7 @@ module rbs_io_posix
          type(c_ptr) :: stream
       end function c_fopen
 
-      !> C: the descriptor of a stream.
+      !> In C: the descriptor of a stream.
       function c_fileno(stream) bind(c, name='fileno') result(descriptor)
          import :: c_int, c_ptr
          implicit none
@@ -101,7 +103,7 @@ module rbs_io_posix
          integer(c_int) :: descriptor
       end function c_fileno
 
-      !> C: close a stream; 0 on success.
+      !> In C: close a stream; 0 on success.
       function c_fclose(stream) bind(c, name='fclose') result(status)
          import :: c_int, c_ptr
          implicit none
@@ -109,7 +111,7 @@ module rbs_io_posix
          integer(c_int) :: status
       end function c_fclose
 
-      !> C: write a file through to its disk; not 0 on failure, or if the file is not on a disk.
+      !> In C: write a file through to its disk; not 0 on failure, or if the file is not on a disk.
       function c_fsync(descriptor) bind(c, name='fsync') result(status)
          import :: c_int
          implicit none
@@ -117,7 +119,7 @@ module rbs_io_posix
          integer(c_int) :: status
       end function c_fsync
 
-      !> C: remove a file; 0 on success.
+      !> In C: remove a file; 0 on success.
       function c_unlink(path) bind(c, name='unlink') result(status)
          import :: c_char, c_int
          implicit none
@@ -125,7 +127,7 @@ module rbs_io_posix
          integer(c_int) :: status
       end function c_unlink
 
-      !> C: rename a file and replace any file that has the new name; 0 on success.
+      !> In C: rename a file and replace any file that has the new name; 0 on success.
       function c_rename(from, to) bind(c, name='rename') result(status)
          import :: c_char, c_int
          implicit none
@@ -133,14 +135,14 @@ module rbs_io_posix
          integer(c_int) :: status
       end function c_rename
 
-      !> C: number of the process.
+      !> In C: number of the process.
       function c_getpid() bind(c, name='getpid') result(number)
          import :: c_int
          implicit none
          integer(c_int) :: number
       end function c_getpid
 
-      !> C: 0 if a path leads to something.
+      !> In C: 0 if a path leads to something.
       function c_access(path, mode) bind(c, name='access') result(status)
          import :: c_char, c_int
          implicit none
@@ -149,7 +151,23 @@ module rbs_io_posix
          integer(c_int) :: status
       end function c_access
 
-      !> C: what a symbolic link says; -1 if the path is no link.
+      !> In C: open a folder; a null pointer if the path is none.
+      function c_opendir(path) bind(c, name='opendir') result(folder)
+         import :: c_char, c_ptr
+         implicit none
+         character(kind=c_char), intent(in) :: path(*)
+         type(c_ptr) :: folder
+      end function c_opendir
+
+      !> In C: close a folder; 0 on success.
+      function c_closedir(folder) bind(c, name='closedir') result(status)
+         import :: c_int, c_ptr
+         implicit none
+         type(c_ptr), value :: folder
+         integer(c_int) :: status
+      end function c_closedir
+
+      !> In C: what a symbolic link says; -1 if the path is no link.
       function c_readlink(path, text, length) bind(c, name='readlink') result(count)
          import :: c_char, c_int, c_size_t
          implicit none
@@ -159,7 +177,7 @@ module rbs_io_posix
          integer(c_size_t) :: count
       end function c_readlink
 
-      !> C: the path of an existing file, without links and dots; a null pointer if there is no such file.
+      !> In C: the path of an existing file, without links and dots; a null pointer if there is no such file.
       function c_realpath(path, real_path) bind(c, name='realpath') result(status)
          import :: c_char, c_ptr
          implicit none
@@ -186,11 +204,16 @@ contains
       if (.not. is_taken) is_taken = is_link(path)
    end function is_taken
 
-   !> Whether a path is a folder.
+   !> Whether a path is a folder that can be read.
    logical function is_folder(path)
       character(len=*), intent(in) :: path
 
-      inquire (file=path//'/.', exist=is_folder)
+      type(c_ptr) :: folder
+      integer(c_int) :: status
+
+      folder = c_opendir(path//c_null_char)
+      is_folder = c_associated(folder)
+      if (is_folder) status = c_closedir(folder)
    end function is_folder
 
    !> Whether a path is a symbolic link.
@@ -243,10 +266,17 @@ contains
    !> The path of standard input, of which `-` is short.
    pure function standard_input(path) result(long)
       character(len=*), intent(in) :: path
-      character(len=merge(10, len(path), path == '-')) :: long
+      character(len=long_length(path)) :: long
 
       long = path
-      if (path == '-') long = '/dev/stdin'
+      if (path == '-') long = standard_input_path
    end function standard_input
+
+   pure integer function long_length(path)
+      character(len=*), intent(in) :: path
+
+      long_length = len(path)
+      if (path == '-') long_length = len(standard_input_path)
+   end function long_length
 
 end module rbs_io_posix
