@@ -14,6 +14,7 @@ from importlib.resources import files
 COMMANDS = {
     "trade": "rbsdem.accuracy.command",
     "peer": "rbsdem.peer.command",
+    "predict": "rbsdem.peer.predict_command",
     "ensemble": "rbsdem.ensembles.command",
     "ida": "rbsdem.ensembles.ida_command",
     "completion": "rbsdem.completion",

@@ -83,8 +83,8 @@ contains
          '  rbsdem --help | --version', &
          '', &
          'rbsdem trade CASE.nml needs the command that comes with the Python package,', &
-         'and so do rbsdem peer DIR, rbsdem ensemble CASE.nml RECORD ... --out DIR and', &
-         'rbsdem ida CASE.nml RECORD ..., rbsdem explore and rbsdem report CASE.nml', &
+         'and so do rbsdem peer DIR, predict DIR, ensemble CASE.nml RECORD ... --out DIR,', &
+         'ida CASE.nml RECORD ..., explore and report CASE.nml', &
          '', &
          'CASE.nml may be -, which is standard input.', &
          '', &

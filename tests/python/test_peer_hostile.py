@@ -164,9 +164,9 @@ def test_second_start_goes_on(tests, tmp_path, monkeypatch):
     first = peer.predict(tests[:3], "paper", journal=path)
     assert first.resumed == 0
     done = []
-    one = peer.batch.predict_one
+    one = peer.processes.predict_one
     monkeypatch.setattr(
-        peer.batch, "predict_one", lambda s, *a, **o: done.append(s.peer_id) or one(s, *a, **o)
+        peer.processes, "predict_one", lambda s, *a, **o: done.append(s.peer_id) or one(s, *a, **o)
     )
     whole = peer.predict(tests, "paper", journal=path)
     assert done == [4]
@@ -224,9 +224,9 @@ def test_journal_is_refused(tests, tmp_path):
 # The command, whose workers wait in their second test.
 WAITING = """
 import os, pathlib, sys, time
-from rbsdem.peer import batch, command
+from rbsdem.peer import command, processes
 
-one = batch.predict_one
+one = processes.predict_one
 
 def waiting(specimen, model, **options):
     if specimen.peer_id > 1:
@@ -234,8 +234,8 @@ def waiting(specimen, model, **options):
         time.sleep(60)
     return one(specimen, model, **options)
 
-batch.predict_one = waiting
-batch._CHUNK = 1
+processes.predict_one = waiting
+processes._CHUNK = 1
 if __name__ == "__main__":
     raise SystemExit(command.main(sys.argv[1:]))
 """

@@ -58,9 +58,9 @@ def deadly(specimen: peer.Specimen) -> rbsdem.Column:
 # The command with a model that does not come to an end on its third test.
 ENDLESS = """
 import itertools, pathlib, sys, time
-from rbsdem.peer import batch, command
+from rbsdem.peer import command, one
 
-make = batch.column_of
+make = one.column_of
 count = itertools.count()
 
 def endless(specimen, model):
@@ -69,7 +69,7 @@ def endless(specimen, model):
         time.sleep(60)
     return make(specimen, model)
 
-batch.column_of = endless
+one.column_of = endless
 raise SystemExit(command.main(sys.argv[1:] + ["--model", "paper"]))
 """
 
@@ -144,7 +144,7 @@ def test_an_early_end_keeps_what_was_reached(table, monkeypatch):
         broken = replace(result, summary={**result.summary, "status": "failed"})
         raise rbsdem.SolveError("step 150: no", broken)
 
-    monkeypatch.setattr("rbsdem.peer.batch.cyclic", half)
+    monkeypatch.setattr("rbsdem.peer.one.cyclic", half)
     row = peer.predict_one(table[0], good)
     assert (row.status, row.error) == ("stopped", "step 150: no")
     assert row.comparison.rows == 150
@@ -180,7 +180,7 @@ def test_processes_give_the_same(table):
 
 
 def test_a_process_that_dies_is_rows_too(folder, monkeypatch):
-    monkeypatch.setattr("rbsdem.peer.batch._CHUNK", 2)
+    monkeypatch.setattr("rbsdem.peer.processes._CHUNK", 2)
     table = peer.read_specimens(folder)
     found = peer.predict(table, deadly, jobs=2)
     # Its neighbours go on.

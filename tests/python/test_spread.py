@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 from statistics import NormalDist
 
 import numpy as np
 import pytest
 
-from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties, peer
+from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.protocol import protocol
-from rbsdem.section import Scatter, parameters
+from rbsdem.section import Interval, Scatter, parameters
 from rbsdem.section.scatter import SCATTER
 from rbsdem.section.sobol import sobol
-from rbsdem.section.spread import near_shear
+from rbsdem.section.spread import near_shear, path_force
 
 SECTION = RectangularSection(
     0.4,
@@ -80,7 +79,7 @@ def test_scatter_of_strength_is_a_factor() -> None:
 def test_a_softer_column_is_where_the_other_is_at_a_smaller_displacement() -> None:
     found = column().spread(PATH[:2], scatter=replace(NONE, stiffness=(0.0, 0.3)))
     path = PATH[:2, None] * np.exp(0.3 * sobol(16)[:, 1])
-    again = [column().spread(row, scatter=NONE).force for row in path.T]
+    again = [path_force(column(), row) for row in path.T]
     np.testing.assert_allclose(found.samples, again, rtol=1e-12)
 
 
@@ -95,8 +94,11 @@ def test_intervals() -> None:
     assert found.peak_force.value == np.max(np.abs(found.force))
     assert found.peak_force.upper == pytest.approx(1.2 * found.peak_force.value)
     assert found.energy.lower == pytest.approx(0.5 * found.energy.value)
-    # No strength is lost at this drift.
+    # No strength is lost at this drift: that it comes later is all that is said.
     assert math.isnan(found.drift_at_loss.value)
+    assert found.drift_at_loss.lower == pytest.approx(0.7 * 0.02)
+    assert found.drift_at_loss.upper == math.inf
+    assert str(found.drift_at_loss) == "above 0.014"
     assert str(found.peak_force).startswith(f"{found.peak_force.value:.4g} (")
 
 
@@ -153,7 +155,7 @@ def test_the_newest_version_has_bands() -> None:
 def test_figure() -> None:
     found = column().spread(PATH, scatter=NONE)
     ax = found.plot(test=found)
-    assert (len(ax.lines), len(ax.collections)) == (2, 1)
+    assert (len(ax.lines), len(ax.collections)) == (3, 1)
 
 
 def test_near_the_shear_strength_the_band_is_wider() -> None:
@@ -171,14 +173,16 @@ def test_near_the_shear_strength_the_band_is_wider() -> None:
     assert found.peak_force.upper == pytest.approx((1.2 + 0.4 * share) * found.peak_force.value)
 
 
-def test_band_and_neighbours_of_a_test(peer_folder: Path) -> None:
-    tests = peer.read_specimens(peer_folder).where(author="Tanaka and Park").with_history()
-    found = peer.predict(tests)
-    near = peer.nearest(tests[0], found, n=4)
-    # Its twins of the same series come first; it is not its own neighbour.
-    assert {one.prediction.specimen.name[-1] for one in near[:3]} == {"2", "3", "4"}
-    assert near[2].distance < 0.1 < near[3].distance
-    band = peer.band(tests[0])
-    test = tests[0].test()
-    inside = np.mean((band.lower <= test.force) & (test.force <= band.upper))
-    assert inside > 0.7
+def test_what_a_band_holds() -> None:
+    found = column().spread(PATH, scatter=NONE)
+    assert found.holds(found.force) == 1.0
+    assert found.holds(found.upper + 1.0) == 0.0
+    # Far off along the second half of the path.
+    path = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(PATH)))))
+    force = np.where(path <= 0.5 * path[-1], found.force, 10 * found.upper + 1e6)
+    assert found.holds(force) == pytest.approx(0.5, abs=0.05)
+    with pytest.raises(InputError, match="the test has 2 rows"):
+        found.holds([0.0, 1.0])
+    assert Interval(1.0, 2.0, 3.0).holds(3.0)
+    assert not Interval(1.0, 2.0, 3.0).holds(math.nan)
+    assert Interval(1.0, math.nan, math.inf).holds(math.nan)

@@ -8,10 +8,11 @@ points come with rbsdem.
 from typing import TYPE_CHECKING
 
 from rbsdem import _moved
+from rbsdem.peer import band_views as band_views
 from rbsdem.peer import contact_sheet as contact_sheet
 from rbsdem.peer import gallery as gallery
 from rbsdem.peer import tables as tables
-from rbsdem.peer.bands import Neighbour, band, nearest
+from rbsdem.peer.bands import band
 from rbsdem.peer.batch import predict, predict_one
 from rbsdem.peer.columns import column
 from rbsdem.peer.doubts import Checked, Doubt, check
@@ -20,6 +21,7 @@ from rbsdem.peer.file import PeerTest, read_peer
 from rbsdem.peer.indicators import Indicators, indicators
 from rbsdem.peer.laboratory import read_test
 from rbsdem.peer.measured import PDELTA_CODES, MeasuredTest, net_force
+from rbsdem.peer.nearest import Neighbour, nearest, properties
 from rbsdem.peer.predictions import Group, Prediction, Predictions, Quartiles
 from rbsdem.peer.shipped import (
     FOLDER_VARIABLE,
@@ -63,6 +65,7 @@ __all__ = [
     "net_force",
     "predict",
     "predict_one",
+    "properties",
     "read_peer",
     "read_specimens",
     "read_test",

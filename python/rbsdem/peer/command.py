@@ -15,6 +15,7 @@ from rbsdem.errors import InputError
 from rbsdem.peer.batch import predict
 from rbsdem.peer.doubts import Checked, check
 from rbsdem.peer.journal import Journal
+from rbsdem.peer.one import How
 from rbsdem.peer.predictions import Predictions
 from rbsdem.peer.specimen import Specimen
 from rbsdem.peer.specimens import Specimens, read_specimens
@@ -28,7 +29,8 @@ holds specimens.csv and the histories of the PEER Structural Performance Databas
 EPILOG = """\
 Files (--out): results.csv (a row for each test), summary.csv (medians and quartiles of
 groups), gallery.html (all loops, to sort and filter; needs jinja2), loops.png (all loops; needs
-matplotlib); with --check only check.csv (indicators and doubts).
+matplotlib); with --bands also bands.csv (intervals, nearest tests), with --loops bands/ (the band
+along the path of each test); with --check only check.csv (indicators and doubts).
 A batch that did not come to its end leaves what was finished in unfinished.jsonl; a second start
 with the same --out goes on from there.
 Exit codes: 0 every test was analysed to its end, 1 some were not, 2 the input is wrong,
@@ -84,6 +86,11 @@ def parser() -> CommandParser:
     parser.add_argument(
         "--loops", action="store_true", help="with --out, write the loops of every test as csv"
     )
+    parser.add_argument(
+        "--bands",
+        action="store_true",
+        help="with 80 %% bands, intervals of numbers, and the nearest tests (17 times the work)",
+    )
     parser.add_argument("--quiet", action="store_true", help="print the summary only")
     return parser
 
@@ -116,6 +123,7 @@ def _run(given: argparse.Namespace) -> int:
         tests,
         given.model,
         jobs=given.jobs,
+        bands=given.bands,
         progress=not given.quiet and sys.stderr.isatty(),
         journal=journal,
         **options,
@@ -125,7 +133,8 @@ def _run(given: argparse.Namespace) -> int:
     if given.out is not None:
         lines = written(found, given.out, given.by, given.loops)
     if journal is not None and not found.interrupted:
-        Journal(journal, tests, found.model, options).forget()
+        how = How(bands=given.bands)
+        Journal(journal, tests, found.model, how.given(options)).forget()
     _report(found, given.by, given.quiet)
     for line in lines:
         print(line)
@@ -204,6 +213,10 @@ def _report(found: Predictions, by: str, quiet: bool) -> None:
     if not quiet:
         out.print(found.table())
         out.print()
+        if any(row.band is not None for row in found):
+            out.print(found.band_table())
+            out.print("* outside its interval", style="dim")
+            out.print()
     out.print(found.summary_table(by))
     print(f"\nModel {found.model}: {len(found)} tests in {found.seconds:.1f} s")
     if found.resumed:
@@ -215,6 +228,10 @@ def written(found: Predictions, folder: Path, by: str, loops: bool) -> list[str]
     files = [folder / "results.csv", folder / "summary.csv"]
     found.to_csv(files[0])
     found.summary_to_csv(files[1], by)
+    banded = any(row.band is not None for row in found)
+    if banded:
+        files.append(folder / "bands.csv")
+        found.bands_to_csv(files[-1])
     missing = []
     for name, write in (("gallery.html", found.gallery), ("loops.png", found.contact_sheet)):
         try:
@@ -224,4 +241,7 @@ def written(found: Predictions, folder: Path, by: str, loops: bool) -> list[str]
     if loops:
         found.loops_to_csv(folder / "loops")
         files.append(folder / "loops")
+    if loops and banded:
+        found.paths_to_csv(folder / "bands")
+        files.append(folder / "bands")
     return [*missing, *(f"wrote {file}" for file in files)]

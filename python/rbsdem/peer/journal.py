@@ -15,16 +15,20 @@ from typing import Any
 import numpy as np
 
 from rbsdem._code import code_digest
+from rbsdem._core import Array
 from rbsdem._files import whole_file
 from rbsdem.comparison import compare
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.peer.predictions import Prediction
 from rbsdem.peer.specimen import Specimen
+from rbsdem.section.spread import Interval, Spread
 
 __all__ = ["Journal"]
 
 _TEXTS = ("status", "error", "note")
 _TIMES = ("seconds_model", "seconds_analysis")
+_CURVES = ("displacement", "force", "median", "lower", "upper")
+_INTERVALS = ("peak_force", "energy", "drift_at_loss")
 
 
 class Journal:
@@ -92,8 +96,10 @@ class Journal:
         line |= {name: getattr(row, name) for name in (*_TEXTS, *_TIMES)}
         line["nrmse"] = row.nrmse
         if row.comparison is not None:
-            force = row.comparison.model_force.astype("<f8")
-            line["model_force"] = base64.b64encode(force.tobytes()).decode("ascii")
+            line["model_force"] = _packed(row.comparison.model_force)
+        line["remarks"] = list(row.remarks)
+        if row.band is not None:
+            line["band"] = _band_line(row.band)
         text = json.dumps(line) + "\n"
         flags = os.O_RDWR | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
         with os.fdopen(os.open(self.path, flags, 0o666), "r+b") as file:
@@ -136,14 +142,50 @@ class Journal:
         try:
             comparison = None
             if "model_force" in line:
-                force = np.frombuffer(base64.b64decode(line["model_force"]), "<f8")
                 test = specimen.test()
-                comparison = compare((test.displacement, force.astype(np.float64)), test)
+                comparison = compare((test.displacement, _unpacked(line["model_force"])), test)
+            band = _band_of(line["band"]) if "band" in line else None
+            remarks = tuple(str(text) for text in line["remarks"])
             texts = {name: str(line[name]) for name in _TEXTS}
             times = {name: float(line[name]) for name in _TIMES}
         except (ValueError, TypeError, KeyError, RbsdemError):
             return None
-        return Prediction(specimen, self._model, comparison=comparison, **texts, **times)
+        return Prediction(
+            specimen,
+            self._model,
+            comparison=comparison,
+            band=band,
+            remarks=remarks,
+            **texts,
+            **times,
+        )
+
+
+def _packed(values: Array) -> str:
+    return base64.b64encode(values.astype("<f8").tobytes()).decode("ascii")
+
+
+def _unpacked(text: str) -> Array:
+    return np.frombuffer(base64.b64decode(text), "<f8").astype(np.float64)
+
+
+def _band_line(band: Spread) -> dict[str, Any]:
+    """Return a band as values of json; its samples are left out."""
+    line: dict[str, Any] = {name: _packed(getattr(band, name)) for name in _CURVES}
+    line |= {name: dataclasses.astuple(getattr(band, name)) for name in _INTERVALS}
+    return line | {"near_shear": band.near_shear, "remarks": list(band.remarks)}
+
+
+def _band_of(line: dict[str, Any]) -> Spread:
+    curves = {name: _unpacked(line[name]) for name in _CURVES}
+    intervals = {name: Interval(*(float(value) for value in line[name])) for name in _INTERVALS}
+    return Spread(
+        **curves,
+        **intervals,
+        samples=np.empty((0, curves["force"].size)),
+        near_shear=float(line["near_shear"]),
+        remarks=tuple(str(text) for text in line["remarks"]),
+    )
 
 
 def _key(specimen: Specimen, given: bytes) -> str:

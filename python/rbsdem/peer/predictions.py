@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 import os
-import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path, PurePath
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
@@ -17,13 +15,18 @@ import numpy as np
 from rbsdem import _views
 from rbsdem._files import whole_file, write_csv
 from rbsdem._optional import need_pandas
-from rbsdem.comparison import SCORES, Comparison
+from rbsdem.comparison import Comparison
 from rbsdem.errors import InputError
 from rbsdem.peer.pictures import Picture, picture
+from rbsdem.peer.records import band_record, loop_names, score_record
 from rbsdem.peer.specimen import Specimen
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
     from rich.table import Table
+
+    from rbsdem.peer.nearest import Neighbour
+    from rbsdem.section.spread import Spread
 
 __all__ = ["SUMMARY_SCORES", "Group", "Prediction", "Predictions", "Quartiles"]
 
@@ -31,9 +34,6 @@ SUMMARY_SCORES = ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio", "end
 """Scores of which groups have quartiles."""
 
 _NOT_RUN = ("failed", "no history")
-
-#: Bytes of the longest part of a path that is written.
-_LONGEST_NAME = 120
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +58,14 @@ class Prediction:
     seconds_analysis : float
         Wall time of the analysis [s].
     comparison : Comparison or None
-        Scores; None without a history or where the process died. A test that failed has an nrmse of
-        1.
+        Scores; None without a history, along another path than that of the test, or where the
+        process died. A test that failed has an nrmse of 1.
+    band : Spread or None
+        The prediction with its 80 % band and intervals; None unless bands were asked for.
+    nearest : tuple of Neighbour
+        The tests that are most like it, with the errors of their predictions; with bands only.
+    remarks : tuple of str
+        Where the column is outside the range of the tests that the model was fitted to.
     """
 
     specimen: Specimen
@@ -70,6 +76,9 @@ class Prediction:
     seconds_model: float = 0.0
     seconds_analysis: float = 0.0
     comparison: Comparison | None = None
+    band: Spread | None = None
+    nearest: tuple[Neighbour, ...] = ()
+    remarks: tuple[str, ...] = ()
 
     @property
     def seconds(self) -> float:
@@ -92,6 +101,21 @@ class Prediction:
         if self.comparison is not None:
             return float(getattr(self.comparison, name))
         return 1.0 if name == "nrmse" and self.status == "failed" else math.nan
+
+    @property
+    def points_within(self) -> float:
+        """Share of the test that lies within the band; NaN without one of both."""
+        if self.band is None or self.comparison is None:
+            return math.nan
+        return self.band.holds(self.comparison.test_force)
+
+    def table(self) -> Table:
+        """Return the numbers with their intervals, and the nearest tests, as a table of rich."""
+        return _views.view(self, "table")
+
+    def plot(self) -> Figure:
+        """Draw loop and band, and the test if there is one, as a figure of matplotlib."""
+        return _views.view(self, "plot")
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,6 +269,10 @@ class Predictions(Sequence[Prediction]):
         """Return a table of rich, a row for each test."""
         return _views.view(self, "table")
 
+    def band_table(self) -> Table:
+        """Return bands and intervals as a table of rich, a row for each test that has them."""
+        return _views.view(self, "band_table")
+
     def summary_table(self, by: str = "failure_mode") -> Table:
         """Return `summary` as a table of rich.
 
@@ -257,7 +285,7 @@ class Predictions(Sequence[Prediction]):
 
     def records(self) -> list[dict[str, Any]]:
         """Return a dict for each test: properties that group tests, scores, times."""
-        return [_record(row) for row in self._rows]
+        return [score_record(row) for row in self._rows]
 
     def to_pandas(self) -> Any:
         """Return `records` as a DataFrame; needs pandas."""
@@ -274,6 +302,31 @@ class Predictions(Sequence[Prediction]):
             File to write.
         """
         _write(path, self.records())
+
+    def bands_to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write bands as csv: a row for each test with its intervals and what its test was.
+
+        Parameters
+        ----------
+        path : path
+            File to write.
+        """
+        _write(path, [band_record(row) for row in self._rows if row.band is not None])
+
+    def paths_to_csv(self, folder: str | os.PathLike[str]) -> None:
+        """Write the bands along the paths, a file for each test that has one.
+
+        Parameters
+        ----------
+        folder : path
+            Folder, which is made; its files are called as those of `loops_to_csv`.
+        """
+        files = [row.specimen.file or f"test_{i + 1}" for i, row in enumerate(self._rows)]
+        for row, name in zip(self._rows, loop_names(files), strict=True):
+            if row.band is not None:
+                path = Path(folder) / name
+                path.parent.mkdir(parents=True, exist_ok=True)
+                row.band.to_csv(path)
 
     def summary_to_csv(self, path: str | os.PathLike[str], by: str = "failure_mode") -> None:
         """Write `summary` as csv.
@@ -316,7 +369,7 @@ class Predictions(Sequence[Prediction]):
         where.mkdir(parents=True, exist_ok=True)
         header = "displacement_m,test_force_N,model_force_N"
         files = [row.specimen.file or f"test_{i + 1}" for i, row in enumerate(self._rows)]
-        for row, name in zip(self._rows, _loop_names(files), strict=True):
+        for row, name in zip(self._rows, loop_names(files), strict=True):
             if row.comparison is not None:
                 c = row.comparison
                 rows = np.column_stack((c.displacement, c.test_force, c.model_force))
@@ -387,53 +440,6 @@ def _quartiles(values: Sequence[float]) -> Quartiles:
     return Quartiles(*np.percentile(known, (25, 50, 75)).tolist())
 
 
-def _record(row: Prediction) -> dict[str, Any]:
-    s = row.specimen
-    return {
-        "name": s.name,
-        "file": s.file or "",
-        "peer_id": s.peer_id,
-        "series": s.series,
-        "section": s.section,
-        "failure_mode": s.failure_mode,
-        "axial_load_ratio": s.axial_load_ratio,
-        "span_depth_ratio": s.span_depth_ratio,
-        "model": row.model,
-        "status": row.status,
-        **{name: row.score(name) for name in SCORES},
-        "test_drift_at_loss": row.score("test_drift_at_loss"),
-        "model_drift_at_loss": row.score("model_drift_at_loss"),
-        "seconds_model": row.seconds_model,
-        "seconds_analysis": row.seconds_analysis,
-        "error": row.error,
-        "note": row.note,
-    }
-
-
 def _write(path: str | os.PathLike[str], rows: list[dict[str, Any]]) -> None:
-    write_csv(path, [list(rows[0]) if rows else [], *(list(row.values()) for row in rows)])
-
-
-def _loop_names(files: Sequence[str]) -> list[PurePath]:
-    """Return a csv for each history: its path below the folder, in letters that any disk takes."""
-    taken: set[str] = set()
-    names = []
-    for file in files:
-        parts = [_safe(part) for part in PurePath(file).parts if part not in ("..", "/", "")]
-        stem = re.sub(r"\.(csv|txt)$", "", parts.pop() if parts else "test", flags=re.IGNORECASE)
-        number, name = 1, PurePath(*parts, f"{stem}.csv")
-        while str(name).casefold() in taken:
-            number += 1
-            name = PurePath(*parts, f"{stem}_{number}.csv")
-        taken.add(str(name).casefold())
-        names.append(name)
-    return names
-
-
-def _safe(part: str) -> str:
-    """Return a part of a path without letters that a disk may refuse, and not too long."""
-    kept = "".join(c if c.isprintable() and c not in '\\:*?"<>|' else "_" for c in part)
-    if len(kept.encode()) <= _LONGEST_NAME:
-        return kept
-    digest = hashlib.sha256(kept.encode()).hexdigest()[:12]
-    return f"{kept.encode()[: _LONGEST_NAME - 13].decode(errors='ignore')}_{digest}"
+    header = list(dict.fromkeys(name for row in rows for name in row))
+    write_csv(path, [header, *([row.get(name) for name in header] for row in rows)])

@@ -167,15 +167,26 @@ class Spread:
         InputError
             If it has other rows.
         """
+        force = self.rows_of(test)
+        at = PathPoints(self.displacement, name="displacement")
+        inside = (at(self.lower) <= at(force)) & (at(force) <= at(self.upper))
+        return float(np.mean(inside))
+
+    def rows_of(self, test: Any) -> Array:
+        """Return the forces of a test, or raise `InputError` if it has other rows.
+
+        Parameters
+        ----------
+        test : array_like of shape (m,), or a test
+            Forces in the rows of the path [N].
+        """
         force = _core.finite_vector(getattr(test, "force", test), "test")
         if force.size != self.force.size:
             raise InputError(
                 f"spread: the test has {force.size} rows and the prediction {self.force.size}; "
                 "predict the displacements of the test"
             )
-        at = PathPoints(self.displacement, name="displacement")
-        inside = (at(self.lower) <= at(force)) & (at(force) <= at(self.upper))
-        return float(np.mean(inside))
+        return force
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Write displacement, prediction, median and band as csv, whole or not at all.

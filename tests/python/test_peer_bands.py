@@ -1,0 +1,144 @@
+"""Predictions with bands: one call for a test or a folder, the nearest tests, files, commands."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rbsdem
+from rbsdem import peer
+from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.peer import command, predict_command
+
+HEADER = (
+    "peer_id,file,name,author,year,section,L_mm,b_mm,h_mm,cover_mm,fc_MPa,axial_kN,n_long,"
+    "db_corner_mm,n_interm_perp,n_interm_par,fy_long_MPa,db_trans_mm,s_trans_mm,fy_trans_MPa,"
+    "legs_Nv,failure_mode,pdelta_code"
+)
+DRIFTS = (0.005, 0.015)
+PATH = 1.6 * rbsdem.protocol(DRIFTS, cycles=1)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Four columns of growing axial load, 5 % stronger than the model; two have no history."""
+    place = tmp_path_factory.mktemp("tests")
+    rows = [
+        f"{i},T{i}.csv,T{i},Me,{1990 + i},rectangular,1600,400,400,13,46.5,{400 * i},12,16,"
+        "2,2,446,7,85,364,4,Flexure,2"
+        for i in range(1, 7)
+    ]
+    (place / "specimens.csv").write_text("\n".join([HEADER, *rows]) + "\n")
+    for specimen in peer.read_specimens(place)[:4]:
+        force = 1.05 * rbsdem.cyclic(peer.column(specimen), displacement=PATH).force
+        history = np.column_stack((1e3 * PATH, 1e-3 * force))
+        header = "displacement_mm,force_kN"
+        name = place / f"T{specimen.peer_id}.csv"
+        np.savetxt(name, history, "%.17g", delimiter=",", header=header, comments="")
+    return place
+
+
+@pytest.fixture
+def table(folder: Path) -> peer.Specimens:
+    return peer.read_specimens(folder)
+
+
+def cells(path: Path) -> Iterator[dict[str, str]]:
+    with path.open() as file:
+        yield from csv.DictReader(file)
+
+
+def test_one_test(table: peer.Specimens) -> None:
+    """Band, intervals and the tests of the folder of its table; the nearest in axial load first."""
+    row = peer.predict(table["T1"])
+    band = peer.band(table["T1"])
+    for name in ("force", "median", "lower", "upper", "samples"):
+        np.testing.assert_array_equal(getattr(row.band, name), getattr(band, name))
+    assert [one.specimen.name for one in row.nearest] == ["T2", "T3", "T4"]
+    # 400 kN of f'c A = 7440 kN; 0.15 counts as 1.
+    assert row.nearest[0].distance == pytest.approx(400 / 7440 / 0.15)
+    assert row.nearest[0].properties["axial_load_ratio"] == pytest.approx(800 / 7440)
+    assert row.nearest[0].prediction.score("peak_ratio") == pytest.approx(1 / 1.05)
+    assert row.comparison.peak_ratio == pytest.approx(1 / 1.05)
+    # 5 % are within the band of nominally equal specimens.
+    assert row.points_within == 1.0
+    assert len(row.plot().axes) == 2
+    assert row.table().row_count == 10
+
+
+def test_a_column_that_nobody_tested(table: peer.Specimens, folder: Path) -> None:
+    mine = replace(table["T5"], folder=None, file=None)
+    with pytest.raises(InputError, match=r"no history.*displacement="):
+        peer.predict(mine)
+    row = peer.predict(mine, displacement=PATH, near=folder)
+    assert (row.status, row.comparison) == ("completed", None)
+    assert math.isnan(row.points_within)
+    assert row.nearest[0].specimen.name == "T4"
+    assert len(row.plot().axes) == 2
+    with pytest.raises(InputError, match="goes with bands"):
+        peer.predict(mine, displacement=PATH, bands=False)
+    with pytest.raises(InputError, match="layered"):
+        peer.predict(mine, "paper", displacement=PATH, bands=True)
+    with pytest.raises(InputError, match="does not change"):
+        peer.predict(mine, displacement=[0.0, 0.0])
+    high = replace(mine, concrete_strength=140e6)
+    with pytest.warns(AccuracyWarning, match="concrete strength = 140 MPa is outside"):
+        assert peer.predict(high, displacement=PATH).remarks
+    with pytest.raises(InputError, match="bars"):
+        peer.predict(replace(mine, longitudinal_number=0), displacement=PATH)
+
+
+def test_what_cannot_be_drawn_is_no_neighbour(table: peer.Specimens) -> None:
+    tests = [replace(table["T2"], longitudinal_number=0), table["T3"], table["T6"]]
+    twice = replace(table["T4"], duplicate_of=3)
+    assert [one.specimen.name for one in peer.nearest(table["T1"], [*tests, twice])] == ["T3"]
+    assert peer.nearest(replace(table["T1"], section="circular"), tests) == ()
+    with pytest.raises(InputError, match="n = 0"):
+        peer.nearest(table["T1"], tests, n=0)
+
+
+def test_folder_goes_on_with_the_same_bits(folder: Path, tmp_path: Path) -> None:
+    """One process or two, begun anew or not: bands, neighbours and files are the same."""
+    whole = peer.predict(folder, bands=True, samples=8)
+    journal = tmp_path / "journal"
+    tests = peer.read_specimens(folder).with_history()
+    peer.predict(tests[:2], bands=True, samples=8, journal=journal)
+    rest = peer.predict(folder, bands=True, samples=8, journal=journal, jobs=2)
+    assert (rest.resumed, len(rest)) == (2, 4)
+    # Another number of samples is another prediction.
+    assert peer.predict(tests[:1], bands=True, samples=9, journal=journal).resumed == 0
+    for number, found in enumerate((whole, rest)):
+        found.bands_to_csv(tmp_path / f"{number}.csv")
+        found.paths_to_csv(tmp_path / f"bands{number}")
+    assert (tmp_path / "0.csv").read_text() == (tmp_path / "1.csv").read_text()
+    assert (tmp_path / "bands0/T3.csv").read_text() == (tmp_path / "bands1/T3.csv").read_text()
+    first = next(cells(tmp_path / "0.csv"))
+    assert first["nearest_1"] == "T2"
+    assert float(first["peak_force_N_lower"]) < float(first["peak_force_N_test"])
+
+
+def test_commands(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "peer"
+    given = ["--only", "T1", "--bands", "--loops", "--jobs", "1", "--out", str(out)]
+    assert command.main([str(folder), *given]) == 0
+    assert "Within" in capsys.readouterr().out
+    names = {path.name for path in out.iterdir()}
+    assert {"bands.csv", "bands", "loops"} <= names
+    assert "unfinished.jsonl" not in names
+    out = tmp_path / "mine"
+    drifts = [str(drift) for drift in DRIFTS]
+    given = ["--cycles", "1", "--near", str(folder), "--out", str(out)]
+    assert predict_command.main([str(folder), "T5", *given, "--drifts", *drifts]) == 0
+    assert "Nearest tests" in capsys.readouterr().out
+    (numbers,) = cells(out / "numbers.csv")
+    assert (numbers["nearest_1"], numbers["peak_force_N_test"]) == ("T4", "")
+    assert len(list(cells(out / "T5.csv"))) == PATH.size
+    assert (out / "T5.png").stat().st_size > 1e4
+    assert predict_command.main([str(folder), "T5"]) == 2
+    assert "--drifts" in capsys.readouterr().err
