@@ -130,8 +130,6 @@ class Answers:
                 field = "case" if case is not None else "loading.kind"
                 return Answered(None, None, None, [{"field": field, "text": str(error)}], notes)
         notes = [*notes, *dict.fromkeys(str(one.message) for one in told)]
-        if drawn is not None and isinstance(drawn.column, LayeredColumn):
-            notes += drawn.column.outside
         return Answered(result, drawn, case, [], notes, stopped)
 
     def loops(self, state: Mapping[str, Any]) -> list[dict[str, Any]]:

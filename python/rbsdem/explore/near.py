@@ -12,8 +12,8 @@ import numpy as np
 
 from rbsdem.comparison import Comparison
 from rbsdem.errors import InputError, RbsdemError
-from rbsdem.peer.bands import nearest
-from rbsdem.peer.batch import predict_one
+from rbsdem.peer.nearest import nearest
+from rbsdem.peer.one import predict_one
 from rbsdem.peer.pictures import picture
 from rbsdem.peer.predictions import Prediction
 from rbsdem.peer.specimen import Specimen
