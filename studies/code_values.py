@@ -14,74 +14,20 @@ from __future__ import annotations
 import argparse
 import math
 import warnings
-from collections.abc import Callable
 
 import numpy as np
 
 from rbsdem import peer
-from rbsdem.codes import CodeValues
+from rbsdem.codes.drifts import DRIFTS_AT_LOSS, drift_at_loss, yield_drift
 
 CLASSES = ("Flexure", "Flexure-Shear", "Shear")
 
-
-def yield_drift(values: CodeValues, ratio: float) -> float:
-    """Drift at yield of a cantilever with a share of its gross stiffness."""
-    q = values.quantities
-    inertia = math.pi * q.depth**4 / 64 if q.round else q.width * q.depth**3 / 12
-    stiffness = ratio * 4700.0 * math.sqrt(q.fc) * inertia
-    return values["yield.moment"] * 1e3 * q.span / (3.0 * stiffness)
-
-
-def asce_41(values: CodeValues) -> float:
-    """Drift at the loss of lateral strength: yield and a."""
-    return yield_drift(values, values["asce_41.stiffness"]) + values["asce_41.a"]
-
-
-def haselton(values: CodeValues) -> float:
-    """Drift at which a fifth of the strength is lost behind the cap, under one push."""
-    cap = yield_drift(values, values["haselton.stiffness"]) + values["haselton.cap"]
-    return cap + 0.2 * values["haselton.post_cap"]
-
-
-def haselton_cyclic(values: CodeValues) -> float:
-    """Drift of a cyclic envelope: 0.7 and 0.5 of the two rotations (2016, eqs 12 and 13)."""
-    cap = yield_drift(values, values["haselton.stiffness"]) + 0.7 * values["haselton.cap"]
-    return cap + 0.1 * values["haselton.post_cap"]
-
-
-def berry(values: CodeValues) -> float:
-    """Drift at bar buckling: yield and the plastic rotation."""
-    return yield_drift(values, values["elwood.stiffness"]) + values["berry.rotation"]
-
-
-DRIFTS: dict[str, Callable[[CodeValues], float]] = {
-    "ASCE 41-17, yield + a": asce_41,
-    "EN 1998-3, theta_um (A.1)": lambda values: values["ec_8.ultimate"],
-    "EN 1998-3, theta_y + theta_um,pl (A.3)": lambda values: (
-        values["ec_8.yield"] + values["ec_8.plastic"]
-    ),
-    "Haselton, one push: cap + 0.2 post-cap": haselton,
-    "Haselton, cyclic envelope": haselton_cyclic,
-    "Elwood, Moehle 2005, shear": lambda values: values["elwood.shear_drift"],
-    "Berry, Eberhard 2005, yield + buckling": berry,
-    "Berry, Eberhard 2003, buckling": lambda values: values["berry.buckling"],
-}
 
 STIFFNESSES: dict[str, str] = {
     "ASCE 41-17": "asce_41.stiffness",
     "Elwood, Eberhard 2009": "elwood.stiffness",
     "Haselton 2016, to yield": "haselton.stiffness",
 }
-
-
-def attempt(value: Callable[[CodeValues], float], values: CodeValues) -> float:
-    """Return a value, NaN where it is not given for a column."""
-    if not all(name in values.names() for name in ("yield.moment", "asce_41.stiffness")):
-        return math.nan
-    try:
-        return value(values)
-    except ValueError:
-        return math.nan
 
 
 def row(name: str, ratios: list[float]) -> str:
@@ -126,8 +72,11 @@ def main() -> None:
         print("| --- | ---: | ---: | ---: | ---: |")
         ratios = [p.score("test_drift_at_loss") / p.score("model_drift_at_loss") for p, _ in lost]
         print(row("layered model", ratios))
-        for name, value in DRIFTS.items():
-            print(row(name, [p.score("test_drift_at_loss") / attempt(value, v) for p, v in lost]))
+        for name in DRIFTS_AT_LOSS:
+            drifts = [drift_at_loss(values, name) for _, values in lost]
+            measured = [prediction.score("test_drift_at_loss") for prediction, _ in lost]
+            ratios = list(np.divide(measured, drifts))
+            print(row(name, ratios))
     print(f"\n| secant stiffness at 70 % of the peak | {head}")
     print("| --- | ---: | ---: | ---: | ---: |")
     print(row("layered model", [1 / p.score("stiffness_ratio") for p, _ in tests]))
@@ -138,9 +87,7 @@ def main() -> None:
                 continue
             secant = prediction.comparison.test.stiffness
             span = 1e-3 * values.quantities.span
-            ratios.append(
-                secant * yield_drift(values, values[key]) * span * span / values["yield.moment"]
-            )
+            ratios.append(secant * yield_drift(values, key) * span * span / values["yield.moment"])
         print(row(name, ratios))
 
 

@@ -388,18 +388,19 @@ _AFTER, _AFTER_NUMBER = "\x1e", "\x1f"
 def plan_ensemble(
     columns: Sequence[Statement],
     settings: Statement,
-    yields: Sequence[list[float]],
+    watches: Sequence[Array],
     motions: Motions,
 ) -> tuple[Array, list[tuple[int, str]]]:
     """Return the seconds that a run is expected to take, shape (motions, columns), and faults.
 
-    A fault is the number of a column, from 0, and a message; `yields` are the rotations at which
-    the joints of each column yield.
+    A fault is the number of a column, from 0, and a message; `watches` are those of each column, of
+    shape (watches, 6): number of the limit state, joint, factors of slip, rotation and opening,
+    threshold; at least one.
     """
     room = 1 << 16
     while True:
         seconds, text, length = _rbsdem.rbs_plan_ensemble(
-            *_columns_crossing(columns, settings, yields), *_motions_crossing(motions), room
+            *_columns_crossing(columns, settings, watches), *_motions_crossing(motions), room
         )
         if length <= room:
             return seconds, list(_numbered(text[:length]))
@@ -409,7 +410,7 @@ def plan_ensemble(
 def run_ensemble(
     columns: Sequence[Statement],
     settings: Statement,
-    yields: Sequence[list[float]],
+    watches: Sequence[Array],
     motions: Motions,
     runs: tuple[NDArray[np.int32], NDArray[np.int32], Array],
     control: NDArray[np.int32],
@@ -425,7 +426,7 @@ def run_ensemble(
     column, motion, scale = runs
     room = (1 << 16) + 300 * scale.size
     fates, values, text, length = _rbsdem.rbs_run_ensemble(
-        *_columns_crossing(columns, settings, yields),
+        *_columns_crossing(columns, settings, watches),
         *_motions_crossing(motions),
         column + np.int32(1),
         motion + np.int32(1),
@@ -439,21 +440,21 @@ def run_ensemble(
 
 
 def _columns_crossing(
-    columns: Sequence[Statement], settings: Statement, yields: Sequence[list[float]]
+    columns: Sequence[Statement], settings: Statement, watches: Sequence[Array]
 ) -> tuple[bytes, Array, NDArray[np.int32], Array]:
-    """Return statements, numbers, how many numbers and joints each has, and yield rotations."""
+    """Return statements, numbers, how many numbers and watches each has, and the watches."""
     whole = [column + settings for column in columns]
     return (
         "".join(statement.text + _AFTER for statement in whole).encode("utf-8", "replace"),
         np.array([number for statement in whole for number in statement.numbers]),
         np.array(
             [
-                (len(statement.numbers), len(rotations))
-                for statement, rotations in zip(whole, yields, strict=True)
+                (len(statement.numbers), len(watch))
+                for statement, watch in zip(whole, watches, strict=True)
             ],
             dtype=np.int32,
         ).T,
-        np.array([rotation for rotations in yields for rotation in rotations]),
+        np.concatenate(watches).T,
     )
 
 

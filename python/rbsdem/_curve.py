@@ -26,6 +26,13 @@ class HasLoop(Protocol):
 Curve: TypeAlias = HasLoop | tuple[ArrayLike, ArrayLike]
 
 
+def loop_pair(curve: Any, name: str) -> tuple[Any, Any]:
+    """Return displacement and force of a loop: of a response in time its base shear; see `pair`."""
+    if hasattr(curve, "loop_force"):
+        return curve.displacement, curve.loop_force
+    return pair(curve, name)
+
+
 def pair(curve: Any, name: str) -> tuple[Any, Any]:
     """Return displacement and force of an object that has both, or of a pair.
 

@@ -13,7 +13,7 @@ from rbsdem._core import Array
 from rbsdem.analysis import cyclic, time_history
 from rbsdem.column import Column
 from rbsdem.damping import Damping
-from rbsdem.errors import SolveError
+from rbsdem.errors import InputError, SolveError
 from rbsdem.result import Result
 from rbsdem.springs import SPRINGS, Spring
 
@@ -33,7 +33,8 @@ class Case:
     method : str
         "static", or a method of `time_history`.
     time : ndarray, shape (m,)
-        Times of all loadings [s]; in a static analysis the numbers of the points.
+        Times of all loadings [s]; in a static analysis the numbers of the points. Empty for a case
+        without a loading.
     displacement, force : ndarray, shape (m,), or None
         Displacement of the top [m] or lateral force [N].
     ground_acceleration, vertical_acceleration : ndarray, shape (m,), or None
@@ -72,6 +73,11 @@ class Case:
             The result of `cyclic` or `time_history`; their exceptions are raised too.
         """
         column = self.column if column is None else column
+        if not self.time.size:
+            raise InputError(
+                "the case has no loading; give it a group &loading, or run its column: "
+                "rbsdem.cyclic(case.column, ...), rbsdem.time_history(case.column, ...)"
+            )
         loads = {name: getattr(self, name) for name in _DRIVES if getattr(self, name) is not None}
         try:
             if self.method == "static":
@@ -122,6 +128,7 @@ class Case:
 def read_case(path: str | os.PathLike[str]) -> Case:
     """Read a case file of the executable, with its histories.
 
+    A case without a loading has a column and settings to be used, as for `rbsdem.ensemble`.
     Loadings given at different times are interpolated linearly to common times.
 
     Parameters

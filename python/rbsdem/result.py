@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from rbsdem.comparison.cycles import HalfCycles
     from rbsdem.envelopes.envelope import Envelope
     from rbsdem.envelopes.idealise import Idealisation, Method
+    from rbsdem.limit_states.hinge import Hinge
     from rbsdem.limit_states.record import LimitStates
 
 #: Names of the energies.
@@ -99,7 +100,7 @@ class Result:
         the displacement), displacement_at_peak_force [m], peak_base_shear [N] (in time of the kept
         rows), energies at the end [J], energy_residual [J] and
         relative_energy_residual (largest of the kept rows),
-        peak_rotation (largest absolute rotation of a body in the kept rows [rad]), cut_steps
+        peak_rotation (largest absolute rotation of a body in all steps [rad]), cut_steps
         (steps cut at an event, for accuracy, or because they did not converge).
     opening : ndarray, shape (steps, n)
         Opening of the joints at the middle of the section [m]: of axial springs, and, if the
@@ -221,6 +222,11 @@ class Result:
         return bool(self.summary["analysis"] == "dynamic")
 
     @property
+    def loop_force(self) -> Array:
+        """Force of the loop [N], shape (steps,): `force`, in time `base_shear`."""
+        return self.base_shear if self.dynamic else self.force
+
+    @property
     def drift(self) -> Array:
         """Drift ratio, displacement of the top over the height, shape (steps,)."""
         return self.displacement / self.column.height
@@ -317,11 +323,12 @@ class Result:
     def limit_states(self) -> LimitStates:
         """Return the limit states that the response reaches, with row, drift and source.
 
-        A layered hinge that knows its drawing: cracking, first yield, nominal moment, spalling,
-        the tensile strain before bars buckle, fracture of hoops and bars, by the strains of its
-        layers (the analysis needs ``openings=True``). Other springs: where they leave the lines of
-        cracking, yield and cap. All: yield and cap of shear springs, loss of 20 % of the strength,
-        collapse, loss of the axial load. Nothing of the response is changed.
+        A layered hinge that knows its drawing: cracking, first yield, nominal moment, yield of the
+        hoops, spalling, the tensile strain before bars buckle, fracture of hoops and bars, by the
+        strains of its layers (the analysis needs ``openings=True``); other layered joints: where a
+        steel layer yields. Other springs: where they leave the lines of cracking, yield and cap.
+        All: the same of shear springs, loss of 20 % of the strength, collapse, loss of the axial
+        load. Nothing of the response is changed.
 
         Raises
         ------
@@ -329,6 +336,25 @@ class Result:
             If the openings of a layered hinge were not kept.
         """
         found: LimitStates = _views.view(self, "limit_states")
+        return found
+
+    def hinge(self, joint: int = 1, *, length: float | None = None) -> Hinge:
+        """Return rotation, plastic rotation and curvature of a hinge.
+
+        Parameters
+        ----------
+        joint : int, optional
+            The joint, from 1 at the ground to n.
+        length : float, optional
+            Length of the hinge for its curvature [m]. Known of the hinge of a column that was made
+            from its drawing by the layered model.
+
+        Raises
+        ------
+        InputError
+            If there is no such joint, or the openings of a layered hinge were not kept.
+        """
+        found: Hinge = _views.view(self, "hinge", joint, length)
         return found
 
     def to_pandas(self) -> Any:

@@ -800,7 +800,7 @@ subroutine rbs_measures(names)
    names = measure_names()
 end subroutine rbs_measures
 
-subroutine rbs_plan_ensemble(statements, nn, numbers, nc, counts, ny, yields, m, time, acceleration, nm, &
+subroutine rbs_plan_ensemble(statements, nn, numbers, nc, counts, nw, watches, m, time, acceleration, nm, &
                              points, most, seconds, text, length)
    ! `length` is that of the whole text, which is cut at `most`.
    use iso_c_binding, only: c_double, c_int
@@ -808,21 +808,21 @@ subroutine rbs_plan_ensemble(statements, nn, numbers, nc, counts, ny, yields, m,
    use rbs_case_text_buffer, only: text_buffer
    implicit none
    character(len=*), intent(in) :: statements
-   integer(c_int), intent(in) :: nn, nc, ny, m, nm, most, counts(2, nc), points(nm)
-   real(c_double), intent(in) :: numbers(nn), yields(ny), time(m), acceleration(m)
+   integer(c_int), intent(in) :: nn, nc, nw, m, nm, most, counts(2, nc), points(nm)
+   real(c_double), intent(in) :: numbers(nn), watches(6, nw), time(m), acceleration(m)
    real(c_double), intent(out) :: seconds(nm, nc)
    character(len=most), intent(out) :: text
    integer(c_int), intent(out) :: length
    !f2py threadsafe
    type(text_buffer) :: buffer
 
-   call plan_ensemble(statements, numbers, counts, yields, time, acceleration, points, seconds, buffer)
+   call plan_ensemble(statements, numbers, counts, watches, time, acceleration, points, seconds, buffer)
    text = ''
    length = buffer%length
    if (length > 0) text = buffer%text(:min(length, most))
 end subroutine rbs_plan_ensemble
 
-subroutine rbs_run_ensemble(statements, nn, numbers, nc, counts, ny, yields, m, time, acceleration, nm, &
+subroutine rbs_run_ensemble(statements, nn, numbers, nc, counts, nw, watches, m, time, acceleration, nm, &
                             points, nr, columns, motions, scales, level, control, nv, most, fates, values, &
                             text, length)
    ! `length` is that of the whole text, which is cut at `most`. Another thread reads and sets `control`.
@@ -831,10 +831,10 @@ subroutine rbs_run_ensemble(statements, nn, numbers, nc, counts, ny, yields, m, 
    use rbs_case_text_buffer, only: text_buffer
    implicit none
    character(len=*), intent(in) :: statements
-   integer(c_int), intent(in) :: nn, nc, ny, m, nm, nr, nv, most, counts(2, nc), points(nm), columns(nr)
+   integer(c_int), intent(in) :: nn, nc, nw, m, nm, nr, nv, most, counts(2, nc), points(nm), columns(nr)
    integer(c_int), intent(in) :: motions(nr), level
    integer(c_int), intent(inout) :: control(2)
-   real(c_double), intent(in) :: numbers(nn), yields(ny), time(m), acceleration(m), scales(nr)
+   real(c_double), intent(in) :: numbers(nn), watches(6, nw), time(m), acceleration(m), scales(nr)
    integer(c_int), intent(out) :: fates(nr)
    real(c_double), intent(out) :: values(nv, nr)
    character(len=most), intent(out) :: text
@@ -842,7 +842,7 @@ subroutine rbs_run_ensemble(statements, nn, numbers, nc, counts, ny, yields, m, 
    !f2py threadsafe
    type(text_buffer) :: buffer
 
-   call run_ensemble(statements, numbers, counts, yields, time, acceleration, points, columns, motions, &
+   call run_ensemble(statements, numbers, counts, watches, time, acceleration, points, columns, motions, &
                      scales, level, control, fates, values, buffer)
    text = ''
    length = buffer%length

@@ -37,12 +37,15 @@ contains
       type(column_type) :: column
       integer :: place
 
-      call load_case(path, case, history, error)
+      call load_case(path, case, history, error, unloaded=.true.)
       if (.not. allocated(error)) call make_column(case%column, column, error)
       if (allocated(error)) return
       arrays%time = history%time
       allocate (arrays%values(size(history%time), drives), source=0.0_c_double)
-      if (case%analysis%dynamic()) then
+      if (case%loadings == 0) then
+         ! What will shake it is not known yet: the method is left to that.
+         if (.not. case%analysis%named) case%analysis%method = 'auto'
+      else if (case%analysis%dynamic()) then
          associate (loads => history%loads)
             arrays%acting(2:) = merge(1_c_int, 0_c_int, [loads%force%acts(), loads%ground%acts(), &
                                                          loads%vertical%acts(), loads%axial%acts()])

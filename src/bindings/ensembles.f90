@@ -1,5 +1,6 @@
 !> Ensembles from plain arrays into plain arrays, called by the procedures for f2py.
 module rbs_bindings_ensembles
+   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
@@ -9,8 +10,8 @@ module rbs_bindings_ensembles
    use rbs_case_case_record, only: case_record
    use rbs_case_text_buffer, only: text_buffer
    use rbs_solve_ensemble_block, only: plan_column, run_block
-   use rbs_solve_ensemble_outcome, only: outcome_type
-   use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, run_type
+   use rbs_solve_ensemble_outcome, only: outcome_type, measure_count
+   use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, run_type, watch_type
    use rbs_solve_time_loads, only: loads_type
    implicit none
    private
@@ -23,11 +24,12 @@ module rbs_bindings_ensembles
 contains
 
    !> Expected seconds of each motion for each column, and what is wrong with the columns.
-   subroutine plan_ensemble(statements, numbers, counts, yields, time, acceleration, points, seconds, text)
+   subroutine plan_ensemble(statements, numbers, counts, watches, time, acceleration, points, seconds, text)
       !> Statements of the columns with their settings, each followed by `after`; all their numbers; how many
-      !> numbers and how many joints each has (2, columns); rotations at which the joints yield [rad]
+      !> numbers and watches each has (2, columns); the watches (6, all columns): state, joint, factors of
+      !> slip, rotation and opening, threshold
       character(len=*), intent(in) :: statements
-      real(c_double), intent(in) :: numbers(:), yields(:)
+      real(c_double), intent(in) :: numbers(:), watches(:, :)
       integer(c_int), intent(in) :: counts(:, :)
       !> All motions one after the other [s, m/s2], and the number of points of each (motions)
       real(c_double), intent(in) :: time(:), acceleration(:)
@@ -46,18 +48,18 @@ contains
       allocate (column(1))
       at = 1
       do i = 1, size(counts, 2)
-         call next_column(statements, numbers, counts(:, i), yields, at, motion(1), column(1), error)
+         call next_column(statements, numbers, counts(:, i), watches, at, motion(1), column(1), error)
          if (.not. allocated(error)) call plan_column(column(1), motion, seconds(:, i), error)
          if (allocated(error)) call text%append(to_text(i)//after_number//error%message//after)
       end do
    end subroutine plan_ensemble
 
    !> Runs, each of a column and a motion, into their fates and measures.
-   subroutine run_ensemble(statements, numbers, counts, yields, time, acceleration, points, columns, &
+   subroutine run_ensemble(statements, numbers, counts, watches, time, acceleration, points, columns, &
                            motions, scales, level, control, fates, values, text)
       !> As for `plan_ensemble`
       character(len=*), intent(in) :: statements
-      real(c_double), intent(in) :: numbers(:), yields(:)
+      real(c_double), intent(in) :: numbers(:), watches(:, :)
       integer(c_int), intent(in) :: counts(:, :)
       real(c_double), intent(in) :: time(:), acceleration(:)
       integer(c_int), intent(in) :: points(:)
@@ -69,7 +71,7 @@ contains
       !> See `run_block`
       integer(c_int), intent(inout), volatile :: control(2)
       integer(c_int), intent(out) :: fates(:)
-      !> (measures, runs)
+      !> (measures and, behind them, limit states but the first yield, runs)
       real(c_double), intent(out) :: values(:, :)
       !> Number of the run and message of each failure
       type(text_buffer), intent(inout) :: text
@@ -84,7 +86,8 @@ contains
       allocate (column(size(counts, 2)), run(size(columns)), outcome(size(columns)))
       at = 1
       do i = 1, size(column)
-         call next_column(statements, numbers, counts(:, i), yields, at, motion(1), column(i), error)
+         call next_column(statements, numbers, counts(:, i), watches, at, motion(1), column(i), error)
+         column(i)%states = 1 + size(values, 1) - measure_count
          if (allocated(error)) call move_alloc(error, column(i)%error)
       end do
       do i = 1, size(run)
@@ -93,7 +96,9 @@ contains
       call run_block(column, motion, run, level, outcome, control)
       do i = 1, size(run)
          fates(i) = outcome(i)%fate
-         values(:, i) = outcome(i)%value
+         values(:measure_count, i) = outcome(i)%value
+         values(measure_count + 1:, i) = ieee_value(1.0_wp, ieee_quiet_nan)
+         if (allocated(outcome(i)%reached)) values(measure_count + 1:, i) = outcome(i)%reached(2:)
          if (allocated(outcome(i)%message)) then
             call text%append(to_text(i)//after_number//outcome(i)%message//after)
          end if
@@ -116,12 +121,12 @@ contains
    end subroutine take_motions
 
    !> The next column of the statements, with its settings.
-   subroutine next_column(statements, numbers, counts, yields, at, motion, column, error)
+   subroutine next_column(statements, numbers, counts, watches, at, motion, column, error)
       character(len=*), intent(in) :: statements
-      real(c_double), intent(in) :: numbers(:), yields(:)
-      !> Numbers and joints of the column
+      real(c_double), intent(in) :: numbers(:), watches(:, :)
+      !> Numbers and watches of the column
       integer(c_int), intent(in) :: counts(2)
-      !> Where its statement, its numbers and its joints begin; on return those of the column after it
+      !> Where its statement, its numbers and its watches begin; on return those of the column after it
       integer, intent(inout) :: at(3)
       !> Any of the motions
       type(ensemble_motion), intent(in) :: motion
@@ -129,12 +134,19 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(case_record) :: case
       type(loads_type) :: loads
-      integer :: last
+      integer :: last, i
 
       last = at(1) + index(statements(at(1):), after) - 2
       call column_from_statements(statements(at(1):last), numbers(at(2):at(2) + counts(1) - 1), &
                                   column%column, case, error)
-      column%yield = yields(at(3):at(3) + counts(2) - 1)
+      if (allocated(column%watch)) deallocate (column%watch)
+      allocate (column%watch(counts(2)))
+      do i = 1, counts(2)
+         associate (given => watches(:, at(3) + i - 1))
+            column%watch(i) = watch_type(state=nint(given(1)), joint=nint(given(2)), slip=given(3), &
+                                         rotation=given(4), opening=given(5), threshold=given(6))
+         end associate
+      end do
       at = [last + 2, at(2) + counts(1), at(3) + counts(2)]
       if (allocated(error)) return
       loads%ground%value = motion%acceleration(:1)

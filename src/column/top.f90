@@ -1,4 +1,4 @@
-!> Where the top of a column is, at every level of kinematics.
+!> Where the top of a column is, at every level of kinematics, and how far its bodies have turned.
 module rbs_column_top
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
@@ -7,7 +7,7 @@ module rbs_column_top
    implicit none
    private
 
-   public :: top_position, top_displacement
+   public :: top_position, top_displacement, largest_turn
 
 contains
 
@@ -59,5 +59,20 @@ contains
          x = inner_product(size(q), column%arm, q)
       end if
    end function top_displacement
+
+   !> Largest absolute rotation of a body in deformations, or in a change of them, in size [rad].
+   pure real(wp) function largest_turn(column, change) result(largest)
+      type(column_type), intent(in) :: column
+      real(wp), intent(in) :: change(:)
+      real(wp) :: rotation
+      integer :: i
+
+      largest = 0.0_wp
+      rotation = 0.0_wp
+      do i = column%n + 1, 2*column%n
+         rotation = rotation + change(i)
+         largest = max(largest, abs(rotation))
+      end do
+   end function largest_turn
 
 end module rbs_column_top

@@ -34,15 +34,24 @@ module rbs_io_case_file
 contains
 
    !> Read a case and its loadings; all errors in them are returned as one.
-   subroutine load_case(path, case, history, error)
+   subroutine load_case(path, case, history, error, unloaded)
       character(len=*), intent(in) :: path
       type(case_record), intent(out) :: case
       type(case_history), intent(out) :: history
       type(error_type), allocatable, intent(out) :: error
+      !> Whether a case without loading is taken, with histories of no length
+      logical, intent(in), optional :: unloaded
       type(message_list) :: messages
-      logical :: understood
+      logical :: understood, bare
 
+      bare = .false.
       call read_case(path, case, messages, understood)
+      if (present(unloaded)) bare = unloaded .and. case%loadings == 0
+      if (understood .and. bare) then
+         allocate (history%time(0), history%target(0), history%axial_load(0))
+         call messages%raise(error)
+         return
+      end if
       if (understood) call load_values(case, path(:index(path, '/', back=.true.)), history, messages)
       call messages%raise(error)
       if (.not. allocated(error)) call cut_duration(case%analysis, history, error)

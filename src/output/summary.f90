@@ -34,7 +34,7 @@ module rbs_output_summary
       real(wp) :: peak_base_shear = 0.0_wp
       !> Energies at the end [J]
       real(wp) :: input = 0.0_wp, spring = 0.0_wp, damping = 0.0_wp
-      !> Largest absolute rotation of a body over the rows, in size [rad]
+      !> Largest absolute rotation of a body, in size [rad]; over all points (static) or steps (dynamic)
       real(wp) :: peak_rotation = 0.0_wp
       !> Steps that were cut: at an event, for accuracy, or because they did not converge
       integer :: cut_steps = 0
@@ -52,6 +52,7 @@ module rbs_output_summary
       real(wp) :: residual = 0.0_wp, largest = 0.0_wp
    contains
       procedure :: see_peak
+      procedure :: see_turn
       procedure :: see_base
       procedure :: see_fall
       procedure :: see
@@ -72,6 +73,15 @@ contains
          self%displacement_at_peak = displacement
       end if
    end subroutine see_peak
+
+   !> Take the largest rotation of a body into account, whether the row is kept or not.
+   pure subroutine see_turn(self, rotation)
+      class(summary_type), intent(inout) :: self
+      !> In size [rad]
+      real(wp), intent(in) :: rotation
+
+      self%peak_rotation = max(self%peak_rotation, rotation)
+   end subroutine see_turn
 
    !> Take a shear force at the base into account.
    pure subroutine see_base(self, shear)

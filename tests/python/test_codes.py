@@ -11,12 +11,15 @@ import io
 import math
 from dataclasses import replace
 
+import matplotlib.pyplot as plt
+import numpy as np
 import pytest
 from rich.console import Console
 
 import rbsdem
 from rbsdem import InputError
 from rbsdem.codes import asce_41, ec_8, flexure, quantities, regressions
+from rbsdem.codes.drifts import backbones, drift_at_loss, yield_drift
 
 STEEL = rbsdem.Steel(460e6, 575e6, es=200e9)
 BAR = 0.25 * math.pi * 0.025**2
@@ -144,6 +147,55 @@ def test_values_of_a_drawing():
     Console(file=text, width=200).print(values.table())
     assert "2.424" in text.getvalue()
     assert "not confirmed" in text.getvalue()
+
+
+def test_backbones_have_their_corners():
+    """M_y = 625.599 kNm of C1 with 0.4 E I: theta_y = 0.0053997; then a, b, c of ASCE 41."""
+    values = SECTION.code_values(1.5, 1750e3)
+    lines = {line.name: line for line in backbones(values)}
+    assert list(lines) == ["ASCE 41", "EC 8-3", "Elwood", "Haselton"]
+    at = 625.599e6 * 1500 / (3 * 0.4 * 27806 * 500**4 / 12)
+    assert yield_drift(values, "asce_41.stiffness") == pytest.approx(at, rel=1e-4)
+    asce = lines["ASCE 41"]
+    a, b = values["asce_41.a"], values["asce_41.b"]
+    assert asce.drift == pytest.approx([0.0, at, at + a, at + a, at + b, at + b], rel=1e-4)
+    assert asce.moment / 625.599e3 == pytest.approx([0, 1, 1, 0.16, 0.16, 0], rel=1e-4)
+    # An axial load of 1750 kN leans by 2 % of the span and takes 35 kN.
+    lost = asce.force(1.5, 0.0) - asce.force(1.5, 1750e3)
+    assert lost == pytest.approx(1750e3 * asce.drift)
+    cap = lines["Haselton"].drift[2] - lines["Haselton"].drift[1]
+    assert cap == pytest.approx(0.0421693, rel=1e-5)
+    assert drift_at_loss(values, "ASCE 41-17, yield + a") == pytest.approx(at + a, rel=1e-4)
+    assert math.isnan(drift_at_loss(ROUND.code_values(3.0, 1e6), "EN 1998-3, theta_um (A.1)"))
+
+
+def test_a_response_beside_the_codes():
+    """The model is a bilinear column, whose quantities are known in closed form."""
+    flexure = rbsdem.Bilinear(k=1e8, d_y=0.006, k_post=1e4)
+    column = rbsdem.Column(1.5, 100.0, rbsdem.Elastic(1e14), flexure)
+    result = rbsdem.cyclic(column, displacement=1.5 * rbsdem.protocol([0.003, 0.02, 0.04]))
+    drift = np.linspace(0.0, 0.08, 9)
+    test = 1.5 * drift, 3e5 * np.array([0.0, 0.8, 0.9, 1.0, 1.0, 0.9, 0.7, 0.6, 0.5])
+    values = SECTION.code_values(1.5, 1750e3)
+    found = values.compare(result, test)
+    assert found["largest_force"]["model"] == pytest.approx(4e5, rel=0.01)
+    assert found["stiffness"]["model"] == pytest.approx(1e8 / 1.5**2, rel=1e-6)
+    assert found["yield_drift"]["model"] == pytest.approx(0.006, rel=0.01)
+    assert found["strength_loss"]["test"] == pytest.approx(0.055)
+    assert "model" not in found["strength_loss"]
+    assert found["strength_loss"]["EC 8-3"] == values["ec_8.ultimate"]
+    # Without second-order effects the yield force is M_y/L.
+    assert found["largest_force"]["ASCE 41"] == pytest.approx(625.599e3 / 1.5, rel=1e-5)
+    assert found["bar_buckling"]["Berry"] == values["berry.buckling"]
+    table = found.to_pandas()
+    assert table.loc["strength_loss", "test"] == pytest.approx(0.055)
+    text = io.StringIO()
+    Console(file=text, width=200).print(found.table())
+    assert "drift at a loss of 20 %" in text.getvalue()
+    ax = found.plot()
+    labels = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert labels[:4] == ["test", "model", "ASCE 41", "EC 8-3"]
+    plt.close(ax.figure)
 
 
 def test_circles_have_the_values_of_circles():

@@ -365,7 +365,6 @@ def test_faults_of_a_case_are_those_of_check(run_cli, case_text, tmp_path):
             loading=GROUND,
             analysis="method = 'rk4', duration = -1",
         ),
-        case_text(loading=None),
         case_text(
             column="height = 1.6, mass = 1e3, kinematics = 'finite', axial_load = 1e3, "
             "axial_follows = T",
@@ -627,6 +626,20 @@ def test_finite_rotations_need_no_note():
         warnings.simplefilter("error")
         run = rbsdem.time_history(column, [0.0, 1e-3], initial={"rotation": [0.5]}, method="rk4")
     assert run.summary["peak_rotation"] == pytest.approx(0.5, rel=0.01)
+
+
+def test_largest_rotation_is_that_of_all_steps():
+    """Whichever rows are kept."""
+    column = rbsdem.paper_columns()["zahn_7"]
+    path = [0.0, 0.01, 0.02, 0.01, 0.0, 0.0]
+    runs = [rbsdem.cyclic(column, displacement=path, every=every) for every in (1, 5)]
+    assert runs[0].summary["peak_rotation"] == np.abs(runs[0].rotation).max()
+    assert runs[1].summary["peak_rotation"] == runs[0].summary["peak_rotation"]
+    time = np.linspace(0.0, 0.1, 101)
+    shaken = {"ground_acceleration": 30.0 * np.sin(60.0 * time), "method": "rk4"}
+    runs = [rbsdem.time_history(column, time, **shaken, every=every) for every in (1, 10000)]
+    assert runs[1].time.size == 2
+    assert runs[1].summary["peak_rotation"] == np.abs(runs[0].rotation).max()
 
 
 def test_modes_near_the_critical_load_are_noted(run_cli, case_text, tmp_path):

@@ -117,6 +117,24 @@ def test_cases_without_motion(
     assert "takes no records" in capsys.readouterr().err
 
 
+def test_a_case_without_loading(
+    case: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its column is shaken by records; by itself it has nothing to run."""
+    case.write_text(column().to_namelist() + ANALYSIS)
+    record = case.with_name("one.csv")
+    assert command(monkeypatch, case, record, "--out", case.parent / "out") == 0
+    assert "1 runs: 1 completed" in capsys.readouterr().out
+    assert command(monkeypatch, case, "--out", case.parent / "out") == 2
+    assert "no ground acceleration; give records" in capsys.readouterr().err
+    bare = rbsdem.read_case(case)
+    assert bare.method == "newmark"
+    with pytest.raises(rbsdem.InputError, match="the case has no loading"):
+        bare.run()
+    case.write_text(column().to_namelist())
+    assert rbsdem.read_case(case).method == "auto"
+
+
 @pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
 def test_ctrl_c_keeps_what_is_done(case: Path) -> None:
     """Whole shards are kept, the exit code tells, and a second start goes on."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,7 +12,7 @@ import pytest
 
 import rbsdem
 from rbsdem import InputError, SolveError
-from rbsdem.ensembles import MEASURES
+from rbsdem.ensembles import LIMIT_STATES, MEASURES
 from rbsdem.ensembles.inputs import Motion
 from rbsdem.ensembles.measures import core_measures
 from rbsdem.ensembles.tasks import Task, compute
@@ -119,6 +120,40 @@ def test_first_yield_is_that_of_the_history() -> None:
     rotation = np.abs(found.history(1).rotation[:, 0])
     assert math.isnan(found.measures["first_yield"][0])
     assert found.measures["first_yield"][1] == TIME[np.argmax(rotation >= 2.7e-3)]
+
+
+def test_limit_states_are_those_of_the_history() -> None:
+    """Of a layered hinge, a spring with a cap, and a spring in lanes."""
+    section = rbsdem.paper_sections()["zahn_7"].section
+    layered = replace(section.column(1.6, axial_load=1.01e6), top_mass=1.01e5, damping=0.02)
+    peaked = rbsdem.PeakOriented(d_y=0.003, f_y=2e5, d_cap=0.01, f_cap=2.2e5, d_pc=0.1)
+    capped = replace(column(), flexure=peaked)
+    time, acceleration = motion(1)
+    time, acceleration = time[:300], acceleration[:300]
+    names = ["first_yield", *LIMIT_STATES]
+    found = rbsdem.ensemble(
+        [layered, capped, column()],
+        (time, acceleration),
+        scales=4.0,
+        measures=names,
+        method="newmark",
+    )
+    reached = []
+    for run in range(3):
+        result = found.history(run)
+        states = result.limit_states()
+        for name in names:
+            at = found.measures[name][run]
+            assert (name in states) == math.isfinite(at), name
+            if name in states:
+                assert at == result.time[states[name].row]
+                reached.append(name)
+    assert {"first_yield", "cracking", "nominal_moment", "cap", "shear_yield"} <= set(reached)
+    # The first yield does not depend on what else is asked for, nor on whether lanes run it.
+    alone = rbsdem.ensemble(
+        [layered, capped, column()], (time, acceleration), scales=4.0, method="newmark"
+    )
+    np.testing.assert_array_equal(alone.measures["first_yield"], found.measures["first_yield"])
 
 
 def test_measures_of_functions() -> None:

@@ -164,7 +164,7 @@ def test_several_columns_split_the_variance(records):
 
 def test_a_column_that_cannot_tell_when_it_yields(column, records, hunted):
     """An elastic column never does; the yield is no collapse either."""
-    with pytest.raises(InputError, match="no spring yielded in any run"):
+    with pytest.raises(InputError, match="reached in no run"):
         hunted.fragility("first_yield")
 
 

@@ -41,6 +41,57 @@ def test_first_state_of_either_side_counts():
     assert state.displacement == pytest.approx(-0.008)
 
 
+def test_each_side_has_its_own_lines():
+    """Of a capped spring that yields earlier to the negative side."""
+    flexure = rbsdem.PeakOriented(
+        d_y=0.004, f_y=4e5, d_cap=0.02, f_cap=5e5, d_pc=0.03, d_y_neg=0.002, f_y_neg=2e5
+    )
+    column = rbsdem.Column(2.0, 100.0, rbsdem.Elastic(1e14), flexure)
+    result = rbsdem.cyclic(column, displacement=[0.0, 0.006, -0.012, 0.0])
+    state = result.limit_states()["first_yield"]
+    assert state.displacement == pytest.approx(-0.004)
+    assert "d_y_neg" in state.source
+    assert result.hinge().yield_rotation == (0.004, 0.002)
+
+
+def test_layers_without_a_drawing_yield_where_their_steel_does():
+    """Two bars 0.4 m apart that share nothing else: the rotation at yield is 2 f_y/k/0.4."""
+    steel = rbsdem.SteelSpring(k=1e8, f_y=2e5, k_post=1e6, r0=20.0)
+    flexure = rbsdem.Layered([(-0.2, steel), (0.2, steel)])
+    column = rbsdem.Column(2.0, 100.0, rbsdem.Elastic(1e14), flexure)
+    path = np.linspace(0.0, 0.06, 200)
+    result = rbsdem.cyclic(column, displacement=path, openings=True)
+    state = result.limit_states()["first_yield"]
+    assert state.drift == pytest.approx(0.01, rel=1e-3)
+    assert result.hinge().yield_rotation[0] == pytest.approx(0.01, rel=1e-3)
+
+
+def test_plastic_rotation_and_curvature_of_a_hinge():
+    """A rigid column on one bilinear hinge of 0.25 m: the rotation is the drift."""
+    flexure = rbsdem.Bilinear(k=1e8, d_y=0.004, k_post=1e6)
+    column = rbsdem.Column(2.0, 100.0, rbsdem.Elastic(1e14), flexure)
+    result = rbsdem.cyclic(column, displacement=[0.0, 0.006, 0.02, 0.0, -0.014])
+    hinge = result.hinge(length=0.25)
+    assert hinge.yield_rotation == (0.004, 0.004)
+    expected = [0.0, 0.0, 0.006, 0.0, -0.003]
+    assert hinge.plastic_rotation == pytest.approx(expected, abs=1e-8)
+    assert hinge.curvature == pytest.approx(4.0 * result.rotation[:, 0])
+    assert hinge.plastic_curvature[2] == pytest.approx(0.024, rel=1e-4)
+    assert hinge.ductility == pytest.approx(2.5, rel=1e-4)
+    with pytest.raises(InputError, match="length"):
+        _ = result.hinge().curvature
+    with pytest.raises(InputError, match="joint = 2"):
+        result.hinge(2)
+    # The layered hinge knows its length, and yields where its first bar does.
+    states, hinge = RESULT.limit_states(), RESULT.hinge()
+    row = states["first_yield"].row
+    ends = sorted(abs(hinge.rotation[row - 1 : row + 1]))
+    assert ends[0] <= hinge.yield_rotation[0] <= ends[1]
+    strains = RESULT.strains(1).value
+    middle = (strains[:, 0] - strains[:, 13]) / np.ptp(RESULT.strains(1).position[:14])
+    assert abs(hinge.curvature) == pytest.approx(abs(middle), rel=1e-9, abs=1e-12)
+
+
 def test_loss_of_strength_is_that_of_the_comparison():
     state = RESULT.limit_states()["strength_loss"]
     assert abs(state.displacement) == RESULT.strength_loss()
@@ -60,7 +111,10 @@ def test_strains_of_the_hinge_are_read():
     row = states["nominal_moment"].row
     assert strains.cover_compression[: row - 1].max() < 0.003
     assert states["nominal_moment"].threshold == 0.003
-    order = ["cracking", "first_yield", "nominal_moment", "spalling"]
+    core = SECTION.confinement
+    row = states["hoop_yield"].row
+    assert strains.core_compression[: row - 1].max() < core.eps_cc
+    order = ["cracking", "first_yield", "nominal_moment", "spalling", "hoop_yield"]
     assert [name for name in states.names() if name in order] == order
 
 

@@ -18,6 +18,10 @@ from rbsdem.section.section import Section
 if TYPE_CHECKING:
     from rich.table import Table
 
+    from rbsdem._curve import Curve
+    from rbsdem.codes.comparison import CodeComparison
+    from rbsdem.result import Result
+
 __all__ = ["CodeValue", "CodeValues", "code_values"]
 
 
@@ -81,6 +85,29 @@ class CodeValues:
     def names(self) -> list[str]:
         """Return the names."""
         return list(self._values)
+
+    def compare(self, result: Result, test: Curve | None = None) -> CodeComparison:
+        """Hold a response, and a test if there is one, against these values.
+
+        Parameters
+        ----------
+        result : Result
+            Of the same column. One of a layered hinge needs its openings (``openings=True``).
+        test : Result, PeerTest or pair of arrays, optional
+            The measured loop [m, N].
+
+        Returns
+        -------
+        CodeComparison
+            Stiffness, yield, strength and drifts by source; its methods `table`, `plot`.
+
+        Raises
+        ------
+        InputError
+            If the openings of a layered hinge were not kept, or the test is no loop.
+        """
+        found: CodeComparison = _views.view(self, "compare", result, test)
+        return found
 
     def to_pandas(self) -> Any:
         """Return a DataFrame with name, meaning, value, unit, source, confirmed; needs pandas."""

@@ -14,7 +14,7 @@ from rbsdem.ensembles.fragility import Capacities, Counts, Fragility, fit_fragil
 from rbsdem.ensembles.hazard import Hazard
 from rbsdem.ensembles.hunt import Hunt
 from rbsdem.ensembles.ida import IDA, ida
-from rbsdem.ensembles.measures import MEASURES, STATUSES
+from rbsdem.ensembles.measures import LIMIT_STATES, MEASURES, STATUSES
 from rbsdem.ensembles.record import Ensemble
 from rbsdem.ensembles.stripes import Stripes, stripes
 from rbsdem.ensembles.uncertain import (
@@ -27,6 +27,7 @@ from rbsdem.ensembles.uncertain import (
 
 __all__ = [
     "IDA",
+    "LIMIT_STATES",
     "MEASURES",
     "STATUSES",
     "Capacities",

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rbsdem.ensembles.measures import STATUSES, core_measures
+from rbsdem.ensembles.measures import STATUSES
 from rbsdem.ensembles.tasks import Plan, Task, TaskResult, compute
 from rbsdem.ensembles.threads import Piece
 from rbsdem.errors import InputError
@@ -81,7 +81,7 @@ def _died(task: Task) -> TaskResult:
     text = "several worker processes died at the task of this run; run it alone to see why"
     return TaskResult(
         np.full(runs, STATUSES.index("failed"), dtype=np.int8),
-        np.full((len(core_measures()), runs), np.nan),
+        np.full((len(task.names), runs), np.nan),
         {name: np.full(runs, np.nan) for name in task.functions},
         dict.fromkeys(range(runs), text),
     )

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rbsdem._core import Array
-from rbsdem.ensembles.measures import core_measures
 from rbsdem.ensembles.tasks import TaskResult
 
 __all__ = ["Collected"]
@@ -23,11 +22,13 @@ class Collected:
         Number of runs.
     functions : iterable of str
         Names of the measures of functions.
+    measures : int
+        Number of the other measures.
     """
 
-    def __init__(self, runs: int, functions: Iterable[str]) -> None:
+    def __init__(self, runs: int, functions: Iterable[str], measures: int) -> None:
         self.fates: NDArray[np.int8] = np.zeros(runs, dtype=np.int8)
-        self.values: Array = np.full((len(core_measures()), runs), np.nan)
+        self.values: Array = np.full((measures, runs), np.nan)
         self.extra: dict[str, Array] = {name: np.full(runs, np.nan) for name in functions}
         self.errors: dict[int, str] = {}
 

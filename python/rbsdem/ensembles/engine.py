@@ -23,7 +23,7 @@ from rbsdem.ensembles.inputs import (
     raise_faults,
     scale_array,
 )
-from rbsdem.ensembles.measures import STATUSES, Measure, checked_measures, core_measures
+from rbsdem.ensembles.measures import STATUSES, Measure, checked_measures, limit_states_among
 from rbsdem.ensembles.progress import telling
 from rbsdem.ensembles.record import Ensemble
 from rbsdem.ensembles.store import Store
@@ -72,9 +72,10 @@ def ensemble(
         Factors of the accelerations: shape (k,) for all, (motions, k) or (columns, motions, k).
         NaN stands for no run.
     measures : sequence of str and callable, optional
-        What is kept of each run: names of `rbsdem.ensembles.MEASURES` (by default all), and
-        functions of a `Result` that return a number. A function makes the run's history once more,
-        which takes as long as `time_history`.
+        What is kept of each run: names of `rbsdem.ensembles.MEASURES` (by default all), limit
+        states (`rbsdem.ensembles.LIMIT_STATES`: the time at which each is first reached, NaN if it
+        is not), and functions of a `Result` that return a number. A function makes the run's
+        history once more, which takes as long as `time_history`; a limit state does not.
     method : str, optional
         As for `time_history`; "auto" chooses for each column and motion.
     dt, tolerance, rho_infinity, collapse_drift : float, optional
@@ -148,6 +149,7 @@ def ensemble(
         column.astype(np.int32),
         motion.astype(np.int32),
         full.ravel()[wanted],
+        limit_states_among(names),
     )
     seconds, wrong = expected(plan)
     raise_faults([f"column {column_names[i]!r}: {text}" for i, text in wrong])
@@ -155,7 +157,7 @@ def ensemble(
     total = float(seconds[plan.motion, plan.column].sum())
     longest = _LONGEST if store is not None else min(_LONGEST, total / (8 * threads))
     pieces = cut(plan, seconds, longest)
-    collected = Collected(plan.scale.size, functions)
+    collected = Collected(plan.scale.size, functions, len(plan.names))
     with ExitStack() as stack:
         kept = None
         resumed = 0
@@ -231,7 +233,7 @@ def available_processors() -> int:
 
 
 def _named(names: tuple[str, ...], result: Collected, plan: Plan) -> dict[str, Array]:
-    values = dict(zip(core_measures(), result.values, strict=True))
+    values = dict(zip(plan.names, result.values, strict=True))
     heights = np.array([column.height for column in plan.columns])[plan.column]
     values["peak_drift"] = np.abs(values["peak_displacement"]) / heights
     values["residual_drift"] = np.abs(values["residual_displacement"]) / heights

@@ -7,9 +7,10 @@ from typing import Any
 
 from rbsdem import _core
 from rbsdem.errors import InputError
+from rbsdem.limit_states.criteria import WATCHED
 
 #: Measures that are 0 or 1, and the threshold that tells the two apart.
-_SWITCHES = {"collapse": 1.0, "first_yield": 1.0}
+_SWITCHES = dict.fromkeys(("collapse", *WATCHED), 1.0)
 
 
 def limit_states(edp: str, threshold: Any) -> dict[str, tuple[str, float]]:
@@ -21,7 +22,8 @@ def limit_states(edp: str, threshold: Any) -> dict[str, tuple[str, float]]:
         The measure.
     threshold : float, mapping or None
         One value, or values by the name of the limit state, each a number for this measure or a
-        pair of a measure and a number. None for "collapse" and "first_yield".
+        pair of a measure and a number. None for "collapse" and the limit states of
+        `rbsdem.Result.limit_states`.
     """
     if isinstance(threshold, Mapping):
         if not threshold:

@@ -8,9 +8,10 @@ from typing import Any, TypeAlias
 
 from rbsdem import _core
 from rbsdem.errors import InputError
+from rbsdem.limit_states.criteria import WATCHED
 from rbsdem.result import Result
 
-__all__ = ["MEASURES", "STATUSES", "Measure", "checked_measures"]
+__all__ = ["LIMIT_STATES", "MEASURES", "STATUSES", "Measure", "checked_measures"]
 
 #: A measure of the user: a function of the `Result` of a run.
 Measure: TypeAlias = Callable[[Result], float]
@@ -32,7 +33,7 @@ MEASURES = {
     "damping_energy": "energy of the damping [J]",
     "energy_residual": "largest error of the energy balance [J]",
     "relative_energy_residual": "the same over the largest energy",
-    "first_yield": "time at which a flexural spring first has yielded [s]; NaN: it has not",
+    "first_yield": "time at which a bar or a flexural spring first yields [s]; NaN: none does",
     "end_time": "time at which the run ended [s]",
     "time_step": "step [s]",
     "steps": "number of steps",
@@ -40,6 +41,10 @@ MEASURES = {
     "cut_steps": "steps cut at an event, for accuracy, or because they did not converge",
     "lost_joint": "number of the joint that lost its axial load, 0 for none",
 }
+
+#: Limit states that are measures too if they are asked for: the time at which each is first reached
+#: [s], NaN if it is not; see `rbsdem.Result.limit_states`.
+LIMIT_STATES = {name: what for name, what in WATCHED.items() if name != "first_yield"}
 
 #: Measures that are whole numbers.
 COUNTS = ("steps", "events", "cut_steps", "lost_joint")
@@ -49,6 +54,11 @@ COUNTS = ("steps", "events", "cut_steps", "lost_joint")
 def core_measures() -> tuple[str, ...]:
     """Return the names of the measures that the Fortran part returns, in its order."""
     return _core.measures()
+
+
+def limit_states_among(names: Sequence[str]) -> tuple[str, ...]:
+    """Return the limit states among names, but the first yield, which is kept anyway."""
+    return tuple(name for name in LIMIT_STATES if name in names)
 
 
 def checked_measures(
@@ -70,14 +80,14 @@ def checked_measures(
     for measure in measures:
         name: Any = measure if isinstance(measure, str) else getattr(measure, "__name__", None)
         if isinstance(measure, str):
-            if measure not in MEASURES:
+            if measure not in MEASURES and measure not in LIMIT_STATES:
                 raise InputError(
-                    f"measures: {measure!r} is not known; it is one of {', '.join(MEASURES)}, or a "
-                    "function of a Result"
+                    f"measures: {measure!r} is not known; it is one of {', '.join(MEASURES)}, a "
+                    f"limit state ({', '.join(LIMIT_STATES)}), or a function of a Result"
                 )
             names.append(name)
         elif callable(measure) and isinstance(name, str) and name.isidentifier():
-            if name in functions or name in MEASURES:
+            if name in functions or name in MEASURES or name in LIMIT_STATES:
                 raise InputError(f"measures: two are called {name!r}; give one another name")
             functions[name] = measure
         else:

@@ -17,6 +17,7 @@ from rbsdem.column import Column, checked_column
 from rbsdem.ensembles.engine import ensemble
 from rbsdem.ensembles.intensity import Intensity
 from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.limit_states.criteria import WATCHED
 from rbsdem.motions.motion import GroundMotion
 
 if TYPE_CHECKING:
@@ -78,8 +79,8 @@ class Runs:
         Parameters
         ----------
         edp : str
-            Name of the measure; "collapse" is 0 or infinity, "first_yield" 1 where a spring has
-            yielded, else 0.
+            Name of the measure; "collapse" is 0 or infinity, a limit state such as "first_yield" 1
+            where it was reached, else 0.
         """
         if edp == "collapse":
             return np.where(self.collapsed, np.inf, 0.0)
@@ -89,11 +90,11 @@ class Runs:
                 "with measures="
             )
         values = self.measures[edp]
-        if edp == "first_yield":
+        if edp in WATCHED:
             if not np.isfinite(values).any():
                 raise InputError(
-                    "edp = 'first_yield': no spring yielded in any run, or its joints have no one "
-                    "yield point, as layered ones; give a drift as the limit state"
+                    f"edp = {edp!r}: it was reached in no run, or the columns have no such limit "
+                    "state; give a drift as the limit state"
                 )
             values = np.isfinite(values).astype(float)
         return np.where(self.collapsed, np.inf, np.abs(values))

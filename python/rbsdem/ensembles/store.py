@@ -23,8 +23,8 @@ from rbsdem import _core
 from rbsdem._code import code_digest
 from rbsdem._files import whole_file
 from rbsdem._optional import need_parquet
-from rbsdem.ensembles.measures import STATUSES, Measure, core_measures
-from rbsdem.ensembles.tasks import Plan, Task, TaskResult
+from rbsdem.ensembles.measures import STATUSES, Measure
+from rbsdem.ensembles.tasks import Plan, Task, TaskResult, watches
 from rbsdem.ensembles.threads import Piece
 from rbsdem.errors import InputError
 
@@ -113,7 +113,7 @@ class Store:
                 "motions": _digest(_motion_bytes(plan, j) for j in range(len(plan.motions))),
                 "scales": _digest([plan.column, plan.motion, plan.scale]),
                 "settings": _digest([json.dumps(plan.settings, sort_keys=True)]),
-                "measures": _digest(_source(f) for f in plan.functions.values()),
+                "measures": _digest([*plan.states, *map(_source, plan.functions.values())]),
             },
             "settings": plan.settings,
             "measures": list(plan.functions),
@@ -193,7 +193,7 @@ class Store:
             table = parquet.read_table(path).to_pydict()
             statuses = [STATUSES.index(status) for status in table["status"]]
             fates = np.array(statuses, dtype=np.int8)
-            values = np.array([table[name] for name in core_measures()], dtype=np.float64)
+            values = np.array([table[name] for name in self._plan.names], dtype=np.float64)
             extra = {name: np.array(table[name], dtype=np.float64) for name in self._plan.functions}
         except (OSError, KeyError, ValueError):  # Those of pyarrow are ValueErrors.
             return None
@@ -227,7 +227,7 @@ class Store:
         }
         data |= {
             name: pa.array(values)
-            for name, values in zip(core_measures(), result.values, strict=True)
+            for name, values in zip(self._plan.names, result.values, strict=True)
         }
         data |= {name: pa.array(values) for name, values in result.extra.items()}
         data["error"] = pa.array([result.errors.get(run, "") for run in range(last - first)])
@@ -290,6 +290,7 @@ def _given(plan: Plan) -> bytes:
     """Return the digest of what all shards follow from."""
     digest = hashlib.sha256(code_digest())
     digest.update(json.dumps(plan.settings, sort_keys=True).encode())
+    digest.update("\0".join(plan.states).encode())
     for name, function in plan.functions.items():
         digest.update(f"{name}\0{_source(function)}\0".encode())
     return digest.digest()
@@ -311,6 +312,8 @@ def _shard_name(task: Task, given: bytes) -> str:
     for column in task.columns:
         statement = column._statement
         digest.update(f"{statement.text}\0{statement.numbers!r}\0".encode())
+        # Limit states follow from the drawing, which the statement does not have.
+        digest.update(watches(column, task.states).tobytes())
     for motion in task.motions:
         digest.update(motion.time.tobytes() + motion.acceleration.tobytes())
     digest.update(task.column.tobytes() + task.motion.tobytes() + task.scale.tobytes())

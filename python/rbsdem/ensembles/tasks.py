@@ -16,14 +16,17 @@ from rbsdem.column import Column
 from rbsdem.ensembles.inputs import Motion
 from rbsdem.ensembles.measures import STATUSES, Measure, core_measures
 from rbsdem.errors import RbsdemError
-from rbsdem.springs import Spring
+from rbsdem.limit_states.criteria import criteria
+from rbsdem.springs import Layered
 
-__all__ = ["Plan", "Task", "TaskResult", "compute", "cut"]
+__all__ = ["Plan", "Task", "TaskResult", "compute", "cut", "watches"]
 
 Integers = NDArray[np.int32]
 
-#: A rotation that no joint reaches: where it is not known when the joint yields.
-_NEVER = float(np.finfo(np.float64).max)
+#: Watches for a rotation that no joint reaches.
+_NO_WATCH: Array = np.array(
+    [(1, 1, 0.0, side, 0.0, np.finfo(np.float64).max) for side in (1.0, -1.0)]
+)
 
 _FAILED = STATUSES.index("failed")
 
@@ -39,6 +42,12 @@ class Task:
     motion: Integers
     scale: Array
     functions: dict[str, Measure] = field(default_factory=dict)
+    states: tuple[str, ...] = ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the measures, those of functions left out."""
+        return core_measures() + self.states
 
     def __len__(self) -> int:
         """Return the number of runs."""
@@ -66,6 +75,12 @@ class Plan:
     column: Integers
     motion: Integers
     scale: Array
+    states: tuple[str, ...] = ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the measures, those of functions left out."""
+        return core_measures() + self.states
 
     def task(self, first: int, last: int) -> Task:
         """Return the runs from first to before last."""
@@ -79,6 +94,7 @@ class Plan:
             motion.astype(np.int32),
             self.scale[first:last],
             self.functions,
+            self.states,
         )
 
 
@@ -98,7 +114,7 @@ def expected(plan: Plan) -> tuple[Array, list[tuple[int, str]]]:
     return _core.plan_ensemble(
         [column._statement for column in plan.columns],
         _core.settings(plan.settings),
-        [_yields(column) for column in plan.columns],
+        [_NO_WATCH] * len(plan.columns),
         [(motion.time, motion.acceleration) for motion in plan.motions],
     )
 
@@ -113,11 +129,11 @@ def compute(task: Task, control: Integers | None = None, kernel: int = 0) -> Tas
     fates, values, errors = _core.run_ensemble(
         [column._statement for column in task.columns],
         _core.settings(task.settings),
-        [_yields(column) for column in task.columns],
+        [watches(column, task.states) for column in task.columns],
         [(motion.time, motion.acceleration) for motion in task.motions],
         (task.column, task.motion, task.scale),
         control,
-        len(core_measures()),
+        len(task.names),
         kernel,
     )
     extra = {name: np.full(len(task), np.nan) for name in task.functions}
@@ -162,16 +178,21 @@ def _call_functions(
 
 def one_run(column: Column, motion: Motion, scale: float, settings: dict[str, Any]) -> Any:
     """Return the `Result` of one run, with its history."""
+    layered = any(isinstance(spring, Layered) for spring in column.joints("flexure"))
     return time_history(
-        column, motion.time, ground_acceleration=scale * motion.acceleration, **settings
+        column,
+        motion.time,
+        ground_acceleration=scale * motion.acceleration,
+        openings=layered,
+        **settings,
     )
 
 
-def _yields(column: Column) -> list[float]:
-    """Return the rotation at which each joint yields, if its spring says so."""
-    return [_yield(spring) for spring in column.joints("flexure")]
-
-
-def _yield(spring: Spring) -> float:
-    rotation = getattr(spring, "d_y", None)
-    return _NEVER if rotation is None else float(rotation)
+def watches(column: Column, states: tuple[str, ...]) -> Array:
+    """Return what runs of a column are watched for, as `_core.run_ensemble` takes it."""
+    numbers = {name: number for number, name in enumerate(("first_yield", *states), 1)}
+    rows = [
+        (numbers[c.name], c.joint, c.slip, c.rotation, c.opening, c.threshold)
+        for c in criteria(column, numbers)
+    ]
+    return np.array(rows) if rows else _NO_WATCH

@@ -9,7 +9,7 @@ import numpy as np
 
 from rbsdem import _views
 from rbsdem._core import Array
-from rbsdem._curve import Curve, columns, pair
+from rbsdem._curve import Curve, columns, loop_pair
 from rbsdem.comparison import cycles
 from rbsdem.envelopes.idealise import Idealisation, Method, crossing, idealise
 from rbsdem.errors import InputError
@@ -151,9 +151,7 @@ def envelope(curve: Curve, side: Literal[1, -1] = 1) -> Envelope:
     """
     if side not in (1, -1):
         raise InputError(f"side = {side!r} must be 1 or -1")
-    if getattr(curve, "dynamic", False):
-        curve = (curve.displacement, curve.base_shear)  # type: ignore[union-attr]
-    d, f = columns(("displacement", "force"), *pair(curve, "the curve"))
+    d, f = columns(("displacement", "force"), *loop_pair(curve, "the curve"))
     rows = cycles.envelope(d, f, side)
     x, y = side * d[rows], side * f[rows]
     beyond = x > np.maximum.accumulate(np.concatenate(([0.0], x)))[:-1]

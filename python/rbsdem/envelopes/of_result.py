@@ -39,4 +39,4 @@ def loss(result: Result, share: float) -> float:
 
 
 def _loop(result: Result) -> tuple[Array, Array]:
-    return result.displacement, result.base_shear if result.dynamic else result.force
+    return result.displacement, result.loop_force

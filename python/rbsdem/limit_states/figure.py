@@ -20,7 +20,7 @@ _MARKERS = "os^Dv<>phX*P8"
 def draw(states: LimitStates, ax: Axes | None) -> Axes:
     """Draw the loop thin and gray, and a marker for each state."""
     result = states.result
-    force = result.base_shear if result.dynamic else result.force
+    force = result.loop_force
     with plot.axes_or_new(ax, (4.6, 3.4)) as drawn:
         plot.loop(result, height=result.column.height, ax=drawn, color="0.55", linewidth=0.6)
         for state, marker in zip(states, _MARKERS, strict=False):

@@ -24,9 +24,9 @@ class LimitState:
     Attributes
     ----------
     name : str
-        "cracking", "first_yield", "nominal_moment", "spalling", "bar_buckling", "hoop_fracture",
-        "bar_fracture", "cap", "shear_yield", "shear_failure", "strength_loss", "collapse" or
-        "axial_failure".
+        "cracking", "first_yield", "nominal_moment", "hoop_yield", "spalling", "bar_buckling",
+        "hoop_fracture", "bar_fracture", "cap", "shear_cracking", "shear_yield", "shear_failure",
+        "strength_loss", "collapse" or "axial_failure".
     row : int
         First row of the result at or behind it.
     time : float

@@ -9,7 +9,7 @@ import numpy as np
 from rbsdem._core import Array
 from rbsdem._views import view_of
 from rbsdem.errors import InputError
-from rbsdem.limit_states.find import buckling_strain
+from rbsdem.limit_states.criteria import buckling_strain
 from rbsdem.plot import MODEL_LINE, ZERO_LINE, new_axes, style_of
 from rbsdem.result import Result
 from rbsdem.section.model import LayeredColumn

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rbsdem._curve import Curve, pair
+from rbsdem._curve import Curve, loop_pair
 from rbsdem._optional import need_matplotlib
 from rbsdem.errors import InputError
 from rbsdem.plot.style import (
@@ -99,8 +99,6 @@ def loop(
     'Top displacement (mm)'
     """
     shaken = force is None and isinstance(curve, Result) and curve.dynamic
-    if shaken:
-        curve, force = curve.displacement, curve.base_shear
     d, f = _curve((curve, force) if force is not None else curve, "the loop")
     with axes_or_new(ax) as drawn:
         drawn.plot(d, f, **line_of(MODEL_LINE, line))
@@ -233,7 +231,7 @@ def four_panels(
 
 def _curve(curve: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return displacements [mm] and forces [kN] of a result, a test or a pair of arrays."""
-    d, f = (np.asarray(values) for values in pair(curve, name))
+    d, f = (np.asarray(values) for values in loop_pair(curve, name))
     try:
         d, f = d.astype(np.float64), f.astype(np.float64)
     except (TypeError, ValueError) as error:

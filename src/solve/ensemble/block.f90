@@ -68,7 +68,7 @@ contains
                in_lanes = .false.
                call plan_run(one, shaken, plan, error)
                if (.not. allocated(error) .and. level /= without_lanes) then
-                  in_lanes = takes_lanes(one%column, one%analysis, plan, shaken%time)
+                  in_lanes = takes_lanes(one, plan, shaken%time)
                end if
             end if
             if (in_lanes) then
@@ -144,13 +144,14 @@ contains
       type(error_type), allocatable :: error
 
       if (allocated(unplanned)) then
+         allocate (outcome%reached(column%states))
          call settle(tally, summary, unplanned, outcome)
          return
       end if
       loads%ground%time = motion%time
       loads%ground%value = scale*motion%acceleration
-      tally%n = column%column%n
-      tally%yield = column%yield
+      call tally%begin(column%column%n, column%watch, column%states)
+      allocate (outcome%reached(column%states))
       call run_dynamic(column%column, column%analysis, plan, motion%time, loads, at_rest, unset_integer, &
                        tally, summary, error)
       call settle(tally, summary, error, outcome)

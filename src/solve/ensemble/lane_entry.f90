@@ -4,11 +4,10 @@ module rbs_solve_ensemble_lane_entry
    use rbs_base_check, only: is_given
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_case_analysis_record, only: analysis_record
-   use rbs_column_column, only: column_type, finite
+   use rbs_column_column, only: finite
    use rbs_solve_ensemble_lane_fields, only: one_body_lanes, lane_method
    use rbs_solve_ensemble_lane_step, only: lane_type, from_state, show_motion
-   use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion
+   use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, watch_type
    use rbs_solve_time_implicit, only: implicit_stepper
    use rbs_solve_time_loads, only: loads_type, horizontal
    use rbs_solve_time_march, only: initial_state, start_state, step_of
@@ -37,20 +36,22 @@ module rbs_solve_ensemble_lane_entry
 contains
 
    !> Whether lanes can take a run: one body without damping, all steps equal, lines changed at the end of
-   !> a step.
-   pure logical function takes_lanes(column, analysis, plan, time)
-      type(column_type), intent(in) :: column
-      type(analysis_record), intent(in) :: analysis
+   !> a step, watched for yield at a rotation alone.
+   pure logical function takes_lanes(of_runs, plan, time)
+      type(ensemble_column), intent(in) :: of_runs
       type(time_plan), intent(in) :: plan
       real(wp), intent(in) :: time(:)
       integer :: i
 
       takes_lanes = .false.
-      if (column%unknowns /= 2 .or. column%kinematics == finite .or. column%damped) return
-      if (any(column%spring%rule == 'layered')) return
+      associate (column => of_runs%column)
+         if (column%unknowns /= 2 .or. column%kinematics == finite .or. column%damped) return
+         if (any(column%spring%rule == 'layered')) return
+      end associate
+      if (.not. one_rotation(of_runs%watch)) return
       select case (plan%method)
       case ('rk4')
-         if (plan%located .or. analysis%events == 'located') return
+         if (plan%located .or. of_runs%analysis%events == 'located') return
       case ('newmark', 'hht', 'generalised_alpha')
       case default
          return
@@ -62,6 +63,18 @@ contains
       end do
       takes_lanes = .true.
    end function takes_lanes
+
+   !> Whether all that is watched is yield at one rotation to both sides, or nothing.
+   pure logical function one_rotation(watch)
+      type(watch_type), intent(in) :: watch(:)
+
+      one_rotation = size(watch) == 0
+      if (size(watch) /= 2) return
+      one_rotation = all(watch%state == 1 .and. abs(watch%slip) <= 0.0_wp &
+                         .and. abs(watch%opening) <= 0.0_wp) &
+                     .and. abs(watch(1)%rotation + watch(2)%rotation) <= 0.0_wp &
+                     .and. abs(watch(1)%threshold - watch(2)%threshold) <= 0.0_wp
+   end function one_rotation
 
    !> All motions one after the other.
    subroutine fill_table(motion, table)
@@ -126,7 +139,8 @@ contains
             x%furthest(l) = column%analysis%collapse_drift*one%joint_height(2)
          end if
       end associate
-      x%yield(l) = column%yield(1)
+      x%yield(l) = huge(1.0_wp)
+      if (size(column%watch) > 0) x%yield(l) = column%watch(1)%threshold/abs(column%watch(1)%rotation)
       select type (stepper => lane%stepper)
       class is (implicit_stepper)
          method = lane_method(stepper%step%alpha_m, stepper%step%alpha_f, stepper%step%beta, &

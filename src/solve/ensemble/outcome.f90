@@ -24,6 +24,8 @@ module rbs_solve_ensemble_outcome
    type :: outcome_type
       integer :: fate = fate_skipped
       real(wp) :: value(measure_count) = 0.0_wp
+      !> When each limit state was reached first; not a number if it was not (states) [s]
+      real(wp), allocatable :: reached(:)
       !> Why it failed
       character(len=:), allocatable :: message
    end type outcome_type

@@ -7,14 +7,24 @@ module rbs_solve_ensemble_subject
    implicit none
    private
 
-   public :: ensemble_column, ensemble_motion, run_type
+   public :: ensemble_column, ensemble_motion, run_type, watch_type
+
+   !> A limit state is reached where a sum of a joint's deformations is at a threshold or beyond it.
+   type :: watch_type
+      !> Number of the limit state, 1 for first yield, and joint
+      integer :: state = 1, joint = 1
+      !> Factors of slip, of rotation and of opening; where there is one of the opening, rotations count with
+      !> those at rest
+      real(wp) :: slip = 0.0_wp, rotation = 0.0_wp, opening = 0.0_wp, threshold = huge(1.0_wp)
+   end type watch_type
 
    !> A column and what is asked of it.
    type :: ensemble_column
       type(column_type) :: column
       type(analysis_record) :: analysis
-      !> Rotation at which each joint yields; `huge` where that is not known (n) [rad]
-      real(wp), allocatable :: yield(:)
+      !> What its runs are watched for, and the number of limit states of the ensemble
+      type(watch_type), allocatable :: watch(:)
+      integer :: states = 1
       !> What is wrong with it; all its runs fail
       type(error_type), allocatable :: error
    end type ensemble_column

@@ -11,35 +11,63 @@ module rbs_solve_ensemble_tally
                                          at_peak_base_shear, at_peak_rotation, at_input, at_spring, &
                                          at_damping, at_residual, at_relative_residual, at_first_yield, &
                                          at_end, at_time_step, at_steps, at_events, at_cut, at_lost_joint
+   use rbs_solve_ensemble_subject, only: watch_type
    implicit none
    private
 
    public :: tally_recorder, settle
 
    type, extends(recorder_type) :: tally_recorder
-      !> Number of joints, and the rotation at which each yields; `huge` where that is not known (n) [rad]
+      !> Number of joints, and what is watched
       integer :: n = 0
-      real(wp), allocatable :: yield(:)
-      !> Displacement and time of the last row [m, s]; time of the first row in which a joint has yielded [s]
-      real(wp) :: displacement = 0.0_wp, time = 0.0_wp, first_yield = huge(1.0_wp)
+      type(watch_type), allocatable :: watch(:)
+      !> Displacement and time of the last row [m, s]
+      real(wp) :: displacement = 0.0_wp, time = 0.0_wp
+      !> Time of the first row in which each limit state is reached; `huge` before (states) [s]
+      real(wp), allocatable :: reached(:)
    contains
+      procedure :: begin
       procedure :: record
    end type tally_recorder
 
 contains
 
+   !> Make it ready for a run.
+   subroutine begin(self, n, watch, states)
+      class(tally_recorder), intent(inout) :: self
+      !> Number of joints, and of limit states
+      integer, intent(in) :: n, states
+      type(watch_type), intent(in) :: watch(:)
+
+      self%n = n
+      self%watch = watch
+      self%openings = any(abs(watch%opening) > 0.0_wp)
+      allocate (self%reached(states), source=huge(1.0_wp))
+   end subroutine begin
+
    subroutine record(self, row, error)
       class(tally_recorder), intent(inout) :: self
       real(wp), intent(in) :: row(:)
       type(error_type), allocatable, intent(inout) :: error
-      integer :: i
+      real(wp) :: value
+      integer :: i, opening
 
       if (allocated(error)) return
       self%time = row(row_time)
       self%displacement = row(row_displacement)
-      if (self%first_yield < huge(1.0_wp)) return
-      do i = 1, self%n
-         if (abs(row(row_joints + self%n + i - 1)) >= self%yield(i)) self%first_yield = self%time
+      ! The row ends with the openings and the rotations at rest.
+      opening = size(row) - 2*self%n
+      do i = 1, size(self%watch)
+         associate (watch => self%watch(i))
+            if (self%reached(watch%state) < huge(1.0_wp)) cycle
+            value = watch%slip*row(row_joints + watch%joint - 1) &
+                    + watch%rotation*row(row_joints + self%n + watch%joint - 1)
+            if (abs(watch%opening) > 0.0_wp) then
+               value = value + watch%opening*row(opening + watch%joint) &
+                       + watch%rotation*row(opening + self%n + watch%joint)
+            end if
+            if (value >= watch%threshold) self%reached(watch%state) = self%time
+         end associate
       end do
    end subroutine record
 
@@ -56,6 +84,7 @@ contains
          outcome%fate = fate_failed
          outcome%message = error%message
          outcome%value = nothing
+         outcome%reached = nothing
          return
       end if
       outcome%fate = fate_completed
@@ -71,8 +100,8 @@ contains
          value(at_damping) = summary%damping
          value(at_residual) = summary%residual
          value(at_relative_residual) = summary%residual/max(summary%largest, tiny(1.0_wp))
-         value(at_first_yield) = nothing
-         if (tally%first_yield < huge(1.0_wp)) value(at_first_yield) = tally%first_yield
+         outcome%reached = merge(tally%reached, nothing, tally%reached < huge(1.0_wp))
+         value(at_first_yield) = outcome%reached(1)
          value(at_end) = tally%time
          value(at_time_step) = summary%time_step
          value(at_steps) = real(summary%steps, wp)

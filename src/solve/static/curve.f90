@@ -2,13 +2,14 @@
 module rbs_solve_static_curve
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
+   use rbs_column_top, only: largest_turn
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_static_finite_equilibrium, only: path_point
    use rbs_solve_static_path, only: on_the_end
    implicit none
    private
 
-   public :: curve_type, clean, first_ahead, largest_turn, most_turn, most_bend, same_rate
+   public :: curve_type, clean, first_ahead, most_turn, most_bend, same_rate
 
    !> Largest rotation in one stride [rad], how far it may be from its tangent as a share of it, and what
    !> the slopes may correct of its work as a share of the largest energy so far.
@@ -97,21 +98,6 @@ contains
       work = self%work()
       is_gentle = is_gentle .and. abs(work(2)) <= most_correction*max(most_work, turnover)
    end function is_gentle
-
-   !> Largest absolute rotation of a body in a change of the deformations [rad].
-   pure real(wp) function largest_turn(column, change) result(largest)
-      type(column_type), intent(in) :: column
-      real(wp), intent(in) :: change(:)
-      real(wp) :: rotation
-      integer :: i
-
-      largest = 0.0_wp
-      rotation = 0.0_wp
-      do i = column%n + 1, 2*column%n
-         rotation = rotation + change(i)
-         largest = max(largest, abs(rotation))
-      end do
-   end function largest_turn
 
    !> Work of the lateral force: trapezoidal rule, and its correction by the slopes at both ends [J]. The
    !> correction is exact for a cubic F(x), or for a cubic x(F): of two, the smaller is that of the

@@ -3,7 +3,8 @@
 !> Newton's method.
 module rbs_solve_static_finite_search
    use rbs_base_kinds, only: wp
-   use rbs_solve_static_curve, only: curve_type, largest_turn, same_rate
+   use rbs_column_top, only: largest_turn
+   use rbs_solve_static_curve, only: curve_type, same_rate
    use rbs_solve_static_finite_equilibrium, only: finite_equilibrium, path_point
    use rbs_solve_static_path, only: static_path
    implicit none

@@ -6,6 +6,7 @@ module rbs_solve_static_path
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, joint_name, small
+   use rbs_column_top, only: largest_turn
    use rbs_hysteresis_layer_fall, only: layer_fall
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_observer, only: observer_type
@@ -75,13 +76,12 @@ module rbs_solve_static_path
       end subroutine solve_line_interface
 
       !> The values of a row that do not follow from the springs.
-      pure subroutine measure_interface(self, axial_work, height, rotation)
+      pure subroutine measure_interface(self, axial_work, height)
          import :: static_path, wp
          implicit none
          class(static_path), intent(in) :: self
-         !> Potential of axial load and weight [J], height of the top above the ground [m], and the largest
-         !> absolute rotation of a body, in size [rad]
-         real(wp), intent(out) :: axial_work, height, rotation
+         !> Potential of axial load and weight [J], and height of the top above the ground [m]
+         real(wp), intent(out) :: axial_work, height
       end subroutine measure_interface
    end interface
 
@@ -107,7 +107,7 @@ contains
       !> Number of springs that can move
       integer, intent(in) :: moving
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: axial_work, height, rotation
+      real(wp) :: axial_work, height
 
       self%column = column
       self%by_force = by_force
@@ -116,7 +116,7 @@ contains
       allocate (self%rate(column%unknowns), source=0.0_wp)
       allocate (self%changed(column%unknowns), source=0)
       if (column%opens) call compress(self, error)
-      call self%measure(axial_work, height, rotation)
+      call self%measure(axial_work, height)
       self%at_begin = sum(self%springs%work) + axial_work
    end subroutine begin
 
@@ -184,10 +184,11 @@ contains
          ! A force that pulls the column back, as where second-order moments drive it on, is no strength.
          call summary%see_peak(self%displacement, merge(self%force, 0.0_wp, &
                                                         self%force*self%displacement >= 0.0_wp))
+         call summary%see_turn(largest_turn(self%column, self%springs%d))
          if (may_collapse) summary%collapsed = abs(self%displacement)/height >= collapse_drift
          if (mod(i - 1, n) == 0 .or. i == size(target) .or. allocated(failure) .or. &
              summary%collapsed .or. summary%lost_joint > 0) then
-            call fill_row(self, row, i - 1, summary%peak_rotation)
+            call fill_row(self, row, i - 1)
             call summary%see(row)
             call recorder%record(row, error)
             if (allocated(error)) return
@@ -226,13 +227,10 @@ contains
    end function is_on_end
 
    !> The present state as a row.
-   subroutine fill_row(self, row, number, peak_rotation)
+   subroutine fill_row(self, row, number)
       class(static_path), intent(in) :: self
       real(wp), intent(out) :: row(:)
       integer, intent(in) :: number
-      !> Largest absolute rotation so far, in size [rad]
-      real(wp), intent(inout) :: peak_rotation
-      real(wp) :: rotation
       integer :: m
 
       associate (springs => self%springs)
@@ -244,8 +242,7 @@ contains
          row(row_kinetic) = 0.0_wp
          row(row_spring) = sum(springs%work)
          row(row_damping) = 0.0_wp
-         call self%measure(row(row_axial), row(row_top), rotation)
-         peak_rotation = max(peak_rotation, rotation)
+         call self%measure(row(row_axial), row(row_top))
          row(row_residual) = row(row_input) + self%at_begin - row(row_spring) - row(row_axial)
          row(row_joints:row_joints + m - 1) = springs%d
          row(row_joints + m:row_joints + 2*m - 1) = springs%f0 + springs%k*(springs%d - springs%d0)
@@ -253,23 +250,20 @@ contains
       end associate
    end subroutine fill_row
 
-   !> Height of the top with small rotations, with `pdelta` to second order as the axial load sees it [m], and
-   !> the largest absolute rotation of a body [rad].
-   pure subroutine top_height(path, height, rotation)
+   !> Height of the top with small rotations, with `pdelta` to second order as the axial load sees it [m].
+   pure subroutine top_height(path, height)
       class(static_path), intent(in) :: path
-      real(wp), intent(out) :: height, rotation
+      real(wp), intent(out) :: height
       real(wp) :: turned, lost
       integer :: i, n
 
       n = path%column%n
-      rotation = 0.0_wp
       turned = 0.0_wp
       lost = 0.0_wp
       do i = 1, n
          lost = lost + path%springs%d(i)*turned
          turned = turned + path%springs%d(n + i)
          lost = lost + 0.5_wp*path%column%length(i)*turned**2
-         rotation = max(rotation, abs(turned))
       end do
       height = path%column%joint_height(n + 1)
       if (path%column%kinematics /= small) height = height - lost

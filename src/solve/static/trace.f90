@@ -205,13 +205,13 @@ contains
 
    !> The second-order work of the axial load and its work on the openings; the height of the top, with
    !> `pdelta` to second order, as the axial load sees it.
-   pure subroutine measure(self, axial_work, height, rotation)
+   pure subroutine measure(self, axial_work, height)
       class(straight_path), intent(in) :: self
-      real(wp), intent(out) :: axial_work, height, rotation
+      real(wp), intent(out) :: axial_work, height
       integer :: n
 
       n = self%column%n
-      call top_height(self, height, rotation)
+      call top_height(self, height)
       axial_work = 0.0_wp
       if (self%equilibrium%coupled) axial_work = axial_energy(self%column, self%springs%d)
       if (.not. self%column%opens) return

@@ -10,11 +10,12 @@ module rbs_solve_static_trace_finite
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
    use rbs_column_finite, only: finite_potential, finite_top
+   use rbs_column_top, only: largest_turn
    use rbs_output_observer, only: observer_type
    use rbs_output_recorder, only: recorder_type
    use rbs_output_summary, only: summary_type
    use rbs_solve_static_corner, only: turn_corner
-   use rbs_solve_static_curve, only: clean, first_ahead, largest_turn, most_turn
+   use rbs_solve_static_curve, only: clean, first_ahead, most_turn
    use rbs_solve_static_finite_search, only: turning_search
    use rbs_solve_static_path, only: describe_state, name_spring, is_on_end, on_the_end
    implicit none
@@ -287,15 +288,14 @@ contains
       end if
    end subroutine report_no_way
 
-   pure subroutine measure(self, axial_work, height, rotation)
+   pure subroutine measure(self, axial_work, height)
       class(turning_path), intent(in) :: self
-      real(wp), intent(out) :: axial_work, height, rotation
+      real(wp), intent(out) :: axial_work, height
       real(wp) :: top(2)
 
       axial_work = finite_potential(self%column, self%springs%d)
       top = finite_top(self%column, self%springs%d)
       height = top(2)
-      rotation = largest_turn(self%column, self%springs%d)
    end subroutine measure
 
 end module rbs_solve_static_trace_finite

@@ -9,12 +9,12 @@ module rbs_solve_static_trace_interaction
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, finite
-   use rbs_column_top, only: top_position, top_displacement
+   use rbs_column_top, only: top_position, top_displacement, largest_turn
    use rbs_output_observer, only: observer_type
    use rbs_output_recorder, only: recorder_type
    use rbs_output_summary, only: summary_type
    use rbs_solve_static_corner, only: report_no_line
-   use rbs_solve_static_curve, only: largest_turn, most_turn, most_bend
+   use rbs_solve_static_curve, only: most_turn, most_bend
    use rbs_solve_static_path, only: static_path, describe_state, name_spring, is_on_end
    use rbs_solve_static_pressed_balance, only: pressed_balance, pressed_point
    use rbs_solve_static_pressed_corner, only: find_lines
@@ -315,15 +315,14 @@ contains
    end subroutine move_springs
 
    !> The values of a row that do not follow from the springs.
-   pure subroutine measure(self, axial_work, height, rotation)
+   pure subroutine measure(self, axial_work, height)
       class(pressed_path), intent(in) :: self
-      real(wp), intent(out) :: axial_work, height, rotation
+      real(wp), intent(out) :: axial_work, height
       real(wp) :: top(2)
 
       axial_work = self%axial_work
       top = top_position(self%column, self%springs%d)
       height = top(2)
-      rotation = largest_turn(self%column, self%springs%d)
    end subroutine measure
 
 end module rbs_solve_static_trace_interaction

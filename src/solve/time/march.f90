@@ -6,7 +6,7 @@ module rbs_solve_time_march
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, joint_name
    use rbs_column_energy, only: kinetic_energy, potential_energy
-   use rbs_column_top, only: top_position, top_displacement
+   use rbs_column_top, only: top_position, top_displacement, largest_turn
    use rbs_hysteresis_layer_fall, only: layer_fall
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_output_observer, only: observer_type
@@ -75,6 +75,7 @@ contains
       if (every /= unset_integer) next_row = min(every, plan%steps)
       displacement = top_displacement(state%motion%column, state%q)
       call summary%see_peak(displacement, state%load(lateral))
+      call summary%see_turn(largest_turn(state%motion%column, state%q))
       call keep(state, row, recorder, summary, error)
       if (allocated(error)) return
       finish = plan%begin
@@ -105,6 +106,7 @@ contains
             state%time = state%clock - plan%begin
             displacement = top_displacement(state%motion%column, state%q)
             call summary%see_peak(displacement, state%load(lateral))
+            call summary%see_turn(largest_turn(state%motion%column, state%q))
             summary%collapsed = abs(displacement) >= furthest
             ends = summary%collapsed .or. summary%lost_joint > 0
             if (summary%lost_joint > 0) then
@@ -301,24 +303,8 @@ contains
       call state%springs%fill_openings(state%motion%column%n, row(at:))
       call summary%see_base(base)
       summary%events = state%springs%events
-      summary%peak_rotation = max(summary%peak_rotation, largest_rotation(state))
       call summary%see(row)
       call recorder%record(row, error)
    end subroutine keep
-
-   !> Largest absolute rotation of a body, in size [rad].
-   pure real(wp) function largest_rotation(state) result(largest)
-      type(state_type), intent(in) :: state
-      real(wp) :: rotation
-      integer :: i, n
-
-      n = state%motion%column%n
-      largest = 0.0_wp
-      rotation = 0.0_wp
-      do i = n + 1, 2*n
-         rotation = rotation + state%q(i)
-         largest = max(largest, abs(rotation))
-      end do
-   end function largest_rotation
 
 end module rbs_solve_time_march

@@ -1,0 +1,211 @@
+"""What a column is watched for: limit states as linear criteria on the joints' deformations.
+
+A strain of a layered hinge is linear in the rotation and the opening of its joint, and a spring
+leaves its line at a deformation. So one list serves the rows of a result and the runs of an
+ensemble, which keep no rows.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from rbsdem._core import Array
+from rbsdem.codes.drawing import quantities
+from rbsdem.codes.regressions import goodnight_buckling_strain
+from rbsdem.column import Column
+from rbsdem.result import Result
+from rbsdem.section.model import LayeredColumn
+from rbsdem.section.section import Section
+from rbsdem.springs import Layered, Spring, SteelSpring
+from rbsdem.strains import Gauge
+
+__all__ = ["WATCHED", "Criterion", "buckling_strain", "criteria"]
+
+#: The limit states that criteria find, and what each is.
+WATCHED: dict[str, str] = {
+    "cracking": "the section cracks, or a spring leaves its first line",
+    "first_yield": "the first bar, or a flexural spring, yields",
+    "nominal_moment": "the extreme fibre is at the strain of the nominal moment",
+    "hoop_yield": "the core is at the peak of its confined strength, where its hoops yield",
+    "spalling": "the cover spalls",
+    "bar_buckling": "a bar is stretched so far that it buckles on reversal",
+    "hoop_fracture": "the core is at the strain at which its hoops fracture",
+    "bar_fracture": "a bar in tension breaks",
+    "cap": "a flexural spring is at its largest moment",
+    "shear_cracking": "a shear spring leaves its first line",
+    "shear_yield": "a shear spring yields",
+    "shear_failure": "a shear spring is at its largest force",
+}
+
+
+#: Limit states of springs, and the ends of the lines where they are reached.
+_TURNS = (("cracking", "d_c"), ("first_yield", "d_y"), ("cap", "d_cap"))
+_SLIPS = (("shear_cracking", "d_c"), ("shear_yield", "d_y"), ("shear_failure", "d_cap"))
+
+_OF_BARS = ("first_yield", "bar_buckling", "bar_fracture")
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """A limit state is reached where a sum of a joint's deformations is at a threshold.
+
+    Attributes
+    ----------
+    name : str
+        The limit state, one of `WATCHED`.
+    joint : int
+        The joint, from 1 at the ground.
+    threshold : float
+        A strain, a rotation [rad] or a slip [m].
+    source : str
+        Where the threshold comes from.
+    slip, rotation, opening : float
+        Factors of the slip, of the rotation with that at rest, and of the opening.
+    """
+
+    name: str
+    joint: int
+    threshold: float
+    source: str
+    slip: float = 0.0
+    rotation: float = 0.0
+    opening: float = 0.0
+
+    def values(self, result: Result) -> Array:
+        """Return what is compared with the threshold, shape (rows,)."""
+        at = self.joint - 1
+        if self.slip:
+            return np.asarray(self.slip * result.slip[:, at])
+        turned = result.rotation[:, at]
+        if not self.opening:
+            return np.asarray(self.rotation * turned)
+        if result.rest is not None:
+            turned = turned + result.rest[:, at]
+        return np.asarray(self.rotation * turned + self.opening * result.opening[:, at])
+
+
+def criteria(column: Column, names: Collection[str] = tuple(WATCHED)) -> list[Criterion]:
+    """Return the criteria of a column; a state may have several, of which the first counts.
+
+    Parameters
+    ----------
+    column : Column
+        The column.
+    names : collection of str, optional
+        The limit states that are wanted.
+    """
+    found: list[Criterion] = []
+    for joint, spring in enumerate(column.joints("flexure"), 1):
+        if isinstance(spring, Layered):
+            found += _of_layers(column, joint, spring, names)
+        else:
+            found += _of_spring(joint, spring, _TURNS, "rotation")
+    for joint, spring in enumerate(column.joints("shear"), 1):
+        found += _of_spring(joint, spring, _SLIPS, "slip")
+    return [criterion for criterion in found if criterion.name in names]
+
+
+def _of_spring(
+    joint: int, spring: Spring, names: tuple[tuple[str, str], ...], what: str
+) -> Iterator[Criterion]:
+    """Yield where a spring leaves its lines, to either side."""
+    kind = f"{type(spring).__name__}{' shear' if what == 'slip' else ''}"
+    for name, key in names:
+        for side, own in ((1.0, key), (-1.0, f"{key}_neg")):
+            # A side without values of its own has those of the other.
+            known = own if getattr(spring, own, None) is not None else key
+            at = getattr(spring, known, None)
+            if at is not None and math.isfinite(at):
+                source = f"{known} of the {kind} spring of joint {joint}"
+                yield Criterion(name, joint, float(at), source, **{what: side})
+
+
+def _of_layers(
+    column: Column, joint: int, spring: Layered, names: Collection[str]
+) -> Iterator[Criterion]:
+    if column.opens:  # Its openings are those of axial springs.
+        return
+    gauge = column.gauge(joint)
+    if gauge is not None and isinstance(column, LayeredColumn) and column.recipe is not None:
+        section = column.recipe.section
+        yield from _of_bars(section, column, joint, (spring, gauge), "bar_buckling" in names)
+        if not set(names) <= set(_OF_BARS):
+            yield from _of_fibres(section, joint, gauge)
+        return
+    for y, layer in spring.layers:
+        if isinstance(layer, SteelSpring):
+            source = f"f_y/k of a steel layer of joint {joint}, in tension"
+            at = layer.f_y / layer.k
+            yield Criterion("first_yield", joint, at, source, rotation=y, opening=1.0)
+
+
+def _of_fibres(section: Section, joint: int, gauge: Gauge) -> Iterator[Criterion]:
+    """Yield strains of the concrete of a hinge that knows its drawing."""
+    law, core = section.concrete_law, section.confinement
+    half = 0.5 * section.depth
+    length = next(
+        length for part, length in zip(gauge.part, gauge.length, strict=True) if part != "bar"
+    )
+
+    def strain(name: str, y: float, at: float, source: str, sign: float = 1.0) -> Criterion:
+        turn, open_ = sign * y / length, sign / length
+        return Criterion(name, joint, float(at), source, rotation=turn, opening=open_)
+
+    for y in (half, -half):
+        source = "f_t/E_c at the extreme fibre, over the length of the hinge"
+        yield strain("cracking", y, law["ft"] / law["ec"], source)
+        source = "0.003 at the extreme fibre (ACI 318-19, 22.2.2.1)"
+        yield strain("nominal_moment", y, 0.003, source, -1.0)
+        source = "eps_spall of the concrete"
+        yield strain("spalling", y, section.concrete.eps_spall, source, -1.0)
+        if core is None:
+            continue
+        edge = math.copysign(0.5 * core.depth, y)
+        source = "eps_cc at the edge of the core (Mander, Priestley, Park 1988)"
+        yield strain("hoop_yield", edge, core.eps_cc, source, -1.0)
+        source = "eps_cu at the edge of the core (Priestley, Seible, Calvi 1996, eq 5.14)"
+        yield strain("hoop_fracture", edge, core.eps_cu, source, -1.0)
+
+
+def _of_bars(
+    section: Section, column: Column, joint: int, layers: tuple[Layered, Gauge], buckling: bool
+) -> Iterator[Criterion]:
+    """Yield strains of the bars of a hinge that knows its drawing."""
+    spring, gauge = layers
+    buckles = buckling_strain(section, column) if buckling else math.inf
+    outer: dict[tuple[float, float, float], list[float]] = {}
+    for (y, _), part, over in zip(spring.layers, gauge.part, gauge.length, strict=True):
+        if part == "bar":
+            steel = min(section.bars, key=lambda bar, y=y: abs(bar[0] - y))[2]
+            outer.setdefault((steel.fy / steel.es, steel.eps_u, over), []).append(y)
+    for (yields, breaks, over), places in outer.items():
+        # Plane sections: of equal bars the outermost ones are stretched most.
+        for y in dict.fromkeys((max(places), min(places))):
+            for name, at, source in (
+                ("first_yield", yields, "f_y/E_s of a bar in tension"),
+                ("bar_fracture", breaks, "eps_u of a bar in tension"),
+                (
+                    "bar_buckling",
+                    buckles,
+                    "tensile strain before bars buckle on reversal (Goodnight, Kowalsky, Nau 2016)",
+                ),
+            ):
+                if math.isfinite(at):
+                    yield Criterion(
+                        name, joint, float(at), source, rotation=y / over, opening=1.0 / over
+                    )
+
+
+def buckling_strain(section: Section, column: Column) -> float:
+    """Return the tensile strain beyond which bars buckle on reversal; infinite if not known.
+
+    It is known of solid sections with hoops.
+    """
+    if section.hollow or section.ties is None:
+        return math.inf
+    given = quantities(section, column.height, column.axial_load)
+    return max(goodnight_buckling_strain(given), 0.01)
