@@ -47,12 +47,12 @@ SCATTER: dict[str, Scatter] = {
     "2026.3": Scatter(
         strength=(0.085, 0.089),
         stiffness=(0.261, 0.217),
-        degradation=(0.087, 0.306),
+        degradation=(0.116, 0.306),
         twins=0.05,
-        force=(0.955, 1.383),
-        peak=((0.929, 1.192), (0.951, 1.31)),
-        energy=((0.833, 1.544), (0.561, 1.333)),
-        drift=((0.664, 1.44), (0.648, 1.585)),
+        force=(0.945, 1.44),
+        peak=((0.884, 1.195), (0.91, 1.303)),
+        energy=((0.741, 1.498), (0.539, 1.437)),
+        drift=((0.619, 1.404), (0.508, 1.712)),
     ),
 }
 """Scatter by version of the parameters."""
