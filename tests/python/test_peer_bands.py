@@ -129,7 +129,7 @@ def test_commands(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[st
     assert command.main([str(folder), *given]) == 0
     assert "Within" in capsys.readouterr().out
     names = {path.name for path in out.iterdir()}
-    assert {"bands.csv", "bands", "loops"} <= names
+    assert {"bands.csv", "bands.png", "bands", "loops"} <= names
     assert "unfinished.jsonl" not in names
     out = tmp_path / "mine"
     drifts = [str(drift) for drift in DRIFTS]

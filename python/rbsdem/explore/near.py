@@ -15,7 +15,7 @@ from rbsdem.errors import InputError, RbsdemError
 from rbsdem.peer.nearest import nearest
 from rbsdem.peer.one import predict_one
 from rbsdem.peer.pictures import picture
-from rbsdem.peer.predictions import Prediction
+from rbsdem.peer.prediction import Prediction
 from rbsdem.peer.specimen import Specimen
 from rbsdem.peer.specimens import read_specimens
 

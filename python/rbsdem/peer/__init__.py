@@ -22,7 +22,8 @@ from rbsdem.peer.indicators import Indicators, indicators
 from rbsdem.peer.laboratory import read_test
 from rbsdem.peer.measured import PDELTA_CODES, MeasuredTest, net_force
 from rbsdem.peer.nearest import Neighbour, nearest, properties
-from rbsdem.peer.predictions import Group, Prediction, Predictions, Quartiles
+from rbsdem.peer.prediction import Prediction
+from rbsdem.peer.predictions import Group, Predictions, Quartiles
 from rbsdem.peer.shipped import (
     FOLDER_VARIABLE,
     HISTORY_FILES,

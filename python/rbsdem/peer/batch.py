@@ -20,7 +20,8 @@ from rbsdem.peer.columns import check_options, checked_specimen
 from rbsdem.peer.journal import Journal
 from rbsdem.peer.nearest import nearest
 from rbsdem.peer.one import How, Model, name_of, predict_one
-from rbsdem.peer.predictions import Prediction, Predictions
+from rbsdem.peer.prediction import Prediction
+from rbsdem.peer.predictions import Predictions
 from rbsdem.peer.processes import check_sent, here, in_processes
 from rbsdem.peer.progress import progress_bar
 from rbsdem.peer.specimen import Specimen

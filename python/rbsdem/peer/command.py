@@ -29,8 +29,8 @@ holds specimens.csv and the histories of the PEER Structural Performance Databas
 EPILOG = """\
 Files (--out): results.csv (a row for each test), summary.csv (medians and quartiles of
 groups), gallery.html (all loops, to sort and filter; needs jinja2), loops.png (all loops; needs
-matplotlib); with --bands also bands.csv (intervals, nearest tests), with --loops bands/ (the band
-along the path of each test); with --check only check.csv (indicators and doubts).
+matplotlib); with --bands also bands.csv (intervals, nearest tests) and bands.png, with --loops
+bands/ (the band along the path of each test); with --check only check.csv (indicators and doubts).
 A batch that did not come to its end leaves what was finished in unfinished.jsonl; a second start
 with the same --out goes on from there.
 Exit codes: 0 every test was analysed to its end, 1 some were not, 2 the input is wrong,
@@ -233,7 +233,10 @@ def written(found: Predictions, folder: Path, by: str, loops: bool) -> list[str]
         files.append(folder / "bands.csv")
         found.bands_to_csv(files[-1])
     missing = []
-    for name, write in (("gallery.html", found.gallery), ("loops.png", found.contact_sheet)):
+    pictures = {"gallery.html": found.gallery, "loops.png": found.contact_sheet}
+    if banded:
+        pictures["bands.png"] = found.band_sheet
+    for name, write in pictures.items():
         try:
             files.append(write(folder / name))
         except ImportError as error:

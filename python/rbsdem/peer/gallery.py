@@ -14,7 +14,8 @@ from rbsdem._files import whole_file
 from rbsdem._optional import need_jinja2
 from rbsdem._views import view_of
 from rbsdem.peer.pictures import Picture
-from rbsdem.peer.predictions import Prediction, Predictions
+from rbsdem.peer.prediction import Prediction
+from rbsdem.peer.predictions import Predictions
 
 __all__ = ["write_gallery"]
 

@@ -19,7 +19,7 @@ from rbsdem._core import Array
 from rbsdem._files import whole_file
 from rbsdem.comparison import compare
 from rbsdem.errors import InputError, RbsdemError
-from rbsdem.peer.predictions import Prediction
+from rbsdem.peer.prediction import Prediction
 from rbsdem.peer.specimen import Specimen
 from rbsdem.section.spread import Interval, Spread
 

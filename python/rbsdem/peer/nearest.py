@@ -11,7 +11,7 @@ from rbsdem import _core
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.peer.columns import checked_specimen
 from rbsdem.peer.drawing import draw
-from rbsdem.peer.predictions import Prediction
+from rbsdem.peer.prediction import Prediction
 from rbsdem.peer.specimen import Specimen
 
 __all__ = ["Neighbour", "nearest", "properties"]

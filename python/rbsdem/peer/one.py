@@ -17,7 +17,7 @@ from rbsdem.comparison import compare
 from rbsdem.errors import RbsdemError, SolveError
 from rbsdem.peer.columns import check_options, checked_specimen
 from rbsdem.peer.columns import column as column_of
-from rbsdem.peer.predictions import Prediction
+from rbsdem.peer.prediction import Prediction
 from rbsdem.peer.specimen import Specimen
 from rbsdem.section.model import DEFAULT, model_name
 from rbsdem.section.spread import Spread

@@ -17,7 +17,8 @@ from rbsdem._parser import CommandParser, run_command
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.peer.batch import predict
 from rbsdem.peer.command import chosen
-from rbsdem.peer.predictions import Prediction, Predictions
+from rbsdem.peer.prediction import Prediction
+from rbsdem.peer.predictions import Predictions
 from rbsdem.peer.records import loop_names
 from rbsdem.peer.specimen import Specimen
 from rbsdem.peer.specimens import read_specimens

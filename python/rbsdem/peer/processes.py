@@ -16,7 +16,7 @@ from typing import Any
 
 from rbsdem.errors import InputError
 from rbsdem.peer.one import How, Model, light, name_of, predict_one
-from rbsdem.peer.predictions import Prediction
+from rbsdem.peer.prediction import Prediction
 from rbsdem.peer.specimen import Specimen
 
 __all__ = ["check_sent", "here", "in_processes"]

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from rbsdem._optional import need_rich
-from rbsdem.peer.predictions import Prediction
+from rbsdem.peer.prediction import Prediction
 
 
 @contextmanager

@@ -13,7 +13,7 @@ from rbsdem.comparison import SCORES
 from rbsdem.section.spread import numbers
 
 if TYPE_CHECKING:
-    from rbsdem.peer.predictions import Prediction
+    from rbsdem.peer.prediction import Prediction
 
 __all__ = ["band_record", "loop_names", "score_record"]
 
