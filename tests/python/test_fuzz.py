@@ -1,4 +1,4 @@
-"""Fuzzing: 2000 mutated namelists and 2000 mutated history files.
+"""Fuzzing: 1000 mutated namelists and 1000 mutated history files.
 
 No crash, no hang, no traceback: exit code 0, 1 or 2, a message that begins with `rbsdem: ` where
 it is not 0, finite numbers where it is. The seed is fixed; what fails is kept in the folder of the
