@@ -2,7 +2,7 @@
 
     python studies/calibration_table.py DIR [--model NAME] [--free NAME...] [--only NAME...]
         [--section KIND] [--failure MODE] [--loss LOSS] [--evaluations N] [--seconds S]
-        [--jobs N] [--out FILE]
+        [--every N] [--first N] [--jobs N] [--out FILE]
 
 DIR has the histories and the table `specimens.csv`. Model "lumped" is one Takeda spring that starts
 from the gross section. The other models are those of `rbsdem.peer.column`, whose parameters start
@@ -44,6 +44,7 @@ def main() -> int:
         names["failure_mode"] = names.pop("failure")
     tests = read_specimens(options.folder).where(**names)
     tests = [test for test in tests if test.path and _wanted(test, options.only)]
+    tests = tests[options.first :: options.every]
     fit = partial(
         one,
         model=options.model,
@@ -138,6 +139,8 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--model", default="layered")
     parser.add_argument("--free", nargs="+", metavar="NAME")
     parser.add_argument("--only", nargs="+", metavar="NAME", help="parts of names of tests")
+    parser.add_argument("--every", type=int, default=1, metavar="N", help="each Nth test only")
+    parser.add_argument("--first", type=int, default=0, metavar="N", help="of those, from 0")
     parser.add_argument("--section", default="rectangular", help="'' for all")
     parser.add_argument("--failure", default="Flexure", help="'' for all")
     parser.add_argument("--loss", default="nrmse")

@@ -1,6 +1,6 @@
 """The scatter of left-out tests about the model, and what its bands hold: tables of docs/peer.md.
 
-    python studies/spread_table.py FOLDER STATE [--samples 16] [--jobs 2] [--write]
+    python studies/spread_table.py FOLDER STATE [--samples 16] [--jobs 2] [--once] [--write]
 
 STATE is the file in which `studies/fit_model.py` keeps the parameters without each group of series.
 
@@ -20,6 +20,10 @@ quantiles without a group hold 80 % of that group, over all groups (conformal co
 are found anew from the other groups alone, which for this are predicted with the parameters without
 them and without the judged group. Leaving out is additive to first order, so these parameters are
 those of the fit to all, plus the changes by leaving out the one and the other.
+
+This takes nine times the predictions of all tests with their samples. `--once` takes one: samples
+of the scatter of all groups, and parameters that the judged group was left out of for its own tests
+alone. The numbers that are shipped are the same, and what is judged hardly differs.
 
 `--write` puts the tables into docs/peer.md and the numbers into python/rbsdem/section/scatter.py.
 """
@@ -280,14 +284,21 @@ def fold(
     group: np.ndarray,
     samples: int,
     run: Callable[[Any, list[Any]], Iterator[Any]],
+    once: dict[str, Any] | None,
 ) -> Fold:
     """Find scatter, correction and ends without a group; None for those that are shipped."""
     every = range(len(series))
     chosen = group != (-1 if judged is None else judged)
-    rows = list(run(_numbers, [(i, judged) for i in every]))
+    if once:
+        rows, scatter, bands = once["rows"], once["scatter"], once["bands"]
+    else:
+        without = None if once is not None else judged
+        rows = list(run(_numbers, [(i, without) for i in every]))
+        scatter = scatter_of(rows, series, chosen if without is not None else group >= 0)
+        bands = list(run(_band, [(i, without, samples, scatter) for i in every]))
+        if once is not None:
+            once |= {"rows": rows, "scatter": scatter, "bands": bands}
     about = series, group, np.array([row.near for row in rows])
-    scatter = scatter_of(rows, series, chosen)
-    bands = list(run(_band, [(i, judged, samples, scatter) for i in every]))
     points = Points([row[0] for row in bands], *about)
     ends = points.ends(chosen, points.tail(chosen))
     width = between(ends, points.near) * np.array([row[1] for row in bands])
@@ -390,6 +401,7 @@ def main() -> None:
     parser.add_argument("--groups", type=int, default=8)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--version", default=parameters().version, help="of STATE; the newest")
+    parser.add_argument("--once", action="store_true", help="samples of each test once")
     parser.add_argument("--write", action="store_true", help="into docs and scatter.py")
     given = parser.parse_args()
 
@@ -408,16 +420,17 @@ def main() -> None:
             return pool.map(function, tasks, chunksize=4)
 
         rows = list(run(_numbers, [(i, None) for i in range(len(cases))]))
+        once: dict[str, Any] | None = {} if given.once else None
         for judged in range(given.groups):
             own = group == judged
-            found = fold(judged, series, group, given.samples, run)
+            found = fold(judged, series, group, given.samples, run, once)
             width[own] = found.width[own]
             for name, values in inside.items():
                 values[own] = found.inside[name][own]
             seconds = time.perf_counter() - began
             held = inside["force"][own].mean()
             print(f"group {judged + 1}: {held:.2f} within, {seconds:.0f} s", flush=True)
-        shipped = fold(None, series, group, given.samples, run).scatter
+        shipped = fold(None, series, group, given.samples, run, once).scatter
     tables = {
         "scatter": residual_table(rows, series),
         "coverage": coverage_table(inside, width, kinds, group, series),

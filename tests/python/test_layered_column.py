@@ -15,7 +15,7 @@ import rbsdem
 from rbsdem import peer
 from rbsdem.errors import InputError
 from rbsdem.section import parameters, versions
-from rbsdem.section.parameters import VERSIONS
+from rbsdem.section.parameters import FACTORS, VERSIONS
 
 SPECIMEN = peer.Specimen(
     name="Square",
@@ -136,7 +136,17 @@ def test_numbers_to_fit_stand_between_their_bounds_and_come_back():
     for name, number in column.parameters.items():
         assert number.low < number.value < number.high, name
         other = column.with_parameters(**{name: math.sqrt(number.low * number.high)})
-        assert other.parameters[name].value == pytest.approx(math.sqrt(number.low * number.high))
+        if name in FACTORS:
+            values, before = other.recipe.parameters.values, column.recipe.parameters.values
+            for one in FACTORS[name][0]:
+                factor = values[one] / before[one]
+                assert factor == pytest.approx(math.sqrt(number.low * number.high)), one
+            # The next factor is one on these.
+            assert other.parameters[name].value == 1.0
+        else:
+            assert other.parameters[name].value == pytest.approx(
+                math.sqrt(number.low * number.high)
+            )
         assert other.n == column.n
 
 

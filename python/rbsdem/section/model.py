@@ -20,7 +20,7 @@ from rbsdem.column import Column
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.parameter import Parameter
 from rbsdem.section.hinge import HingeJoint, hinge_joint
-from rbsdem.section.parameters import ModelParameters, parameters
+from rbsdem.section.parameters import FACTORS, ModelParameters, parameters
 from rbsdem.section.ranges import axial_load_note, column_length, outside
 from rbsdem.section.scatter import Scatter
 from rbsdem.section.shear_model import shear_limits, shear_spring
@@ -310,20 +310,25 @@ class LayeredModel:
         }
 
 
-#: Parameters of the layered hinge that may be calibrated; bounds are factors of their values.
+#: Parameters of the layered hinge that may be calibrated, and factors on several of them; bounds
+#: are factors of their values. The first six follow a loop best (studies/calibration_choice.py).
 _FREE = {
+    "strength": (0.7, 1.5, "-", ""),
+    "lengths": (0.2, 4.0, "-", ""),
+    "softening": (0.1, 20.0, "-", ""),
+    "r0": (0.2, 5.0, "-", "R0 of the steel"),
+    "core_softening": (0.1, 50.0, "-", "factor of the slope behind the peak of the core"),
+    "plastic": (0.2, 3.0, "-", "factor of the plastic closing of concrete"),
     "steel_strength": (0.7, 1.5, "-", "yield and ultimate stress over the measured ones"),
     "concrete_strength": (0.6, 1.7, "-", "strength in place over that of cylinders"),
     "hinge_length": (0.2, 4.0, "-", "factor of the hinge length"),
     "compression_length": (0.3, 3.0, "-", "hinge length of the concrete over that of the steel"),
     "wear": (0.05, 8.0, "-", "strength of the concrete lost by a cycle"),
-    "r0": (0.3, 3.0, "-", "R0 of the steel"),
     "stiffness": (0.2, 4.0, "-", "flexural stiffness above the hinge over the gross one"),
     "fatigue": (0.05, 50.0, "-", "1 over the plastic work that halves the strength"),
     "slip_length": (0.1, 5.0, "1/MPa", "length of yielding in the footing"),
     "confinement": (0.1, 5.0, "-", "factor of the confining stress"),
     "cover_softening": (0.2, 20.0, "-", "factor of the slope behind the peak of the cover"),
-    "core_softening": (0.1, 50.0, "-", "factor of the slope behind the peak of the core"),
     "contact": (0.1, 2.0, "-", "share of the force at which a crack is closed"),
     "shear_strength": (0.5, 2.0, "-", "shear force at yield of the ties over the shear strength"),
     "shear_endurance": (0.02, 50.0, "-", "energy that the shear strength lasts for"),
@@ -371,7 +376,11 @@ class LayeredColumn(Column):
         values, limits = self._recipe.parameters.values, self._recipe.limits
         found = {}
         for name, (low, high, unit, what) in _FREE.items():
-            if not self._kept(_made_from(name)):
+            if self._kept(_made_from(name)):
+                continue
+            if name in FACTORS:
+                found[name] = Parameter(1.0, low, high, unit, f"factor of {FACTORS[name][1]}")
+            else:
                 least, most = limits.get(name, (0.0, math.inf))
                 value = min(max(values[name], least), most)
                 ends = max(low * value, least), min(high * value, most)
@@ -384,7 +393,7 @@ class LayeredColumn(Column):
         Parameters
         ----------
         **values
-            Any of `ModelParameters.values`.
+            Any of `ModelParameters.values`, or a factor on several of them as in `parameters`.
 
         Raises
         ------
@@ -400,7 +409,9 @@ class LayeredColumn(Column):
                     f"parameters: {name} belongs to springs that were replaced: {field} of this "
                     "column is not that of its model"
                 )
-        recipe.check(values)
+        # What a factor makes of several is limited, not refused.
+        factors = [name for name in values if name in FACTORS]
+        recipe.check(set(values).difference(factors, *(FACTORS[name][0] for name in factors)))
         made = {name: value for name, value in recipe.made.items() if not self._kept(name)}
         return replace(self, recipe=recipe, **made)
 

@@ -13,6 +13,7 @@ from rbsdem import _core
 from rbsdem.errors import InputError
 
 __all__ = [
+    "FACTORS",
     "VERSIONS",
     "HingeParameters",
     "ModelParameters",
@@ -180,6 +181,19 @@ _SHEAR = "shear_"
 _HINGE_NAMES = tuple(field.name for field in fields(HingeParameters))
 _SHEAR_NAMES = tuple(field.name for field in fields(ShearParameters))
 
+FACTORS: dict[str, tuple[tuple[str, ...], str]] = {
+    "strength": (("steel_strength", "concrete_strength"), "strengths of steel and concrete"),
+    "lengths": (
+        ("hinge_length", "slip_length"),
+        "lengths of hinge and slip: rotations of all bars",
+    ),
+    "softening": (
+        ("core_softening", "cover_softening", "fatigue"),
+        "slopes of core and cover behind the peak, fatigue of the bars",
+    ),
+}
+"""Names that stand for a factor on several parameters: which, and what they are."""
+
 #: Names before 2026.
 _OLD = {
     "roundness": "r0",
@@ -241,7 +255,8 @@ class ModelParameters:
         Parameters
         ----------
         **values
-            Names as in `values`, such as ``steel_strength=1.0`` or ``shear_strength=1.1``.
+            Names as in `values`, such as ``steel_strength=1.0`` or ``shear_strength=1.1``; or one
+            of `FACTORS`, by which several are multiplied.
 
         Raises
         ------
@@ -249,13 +264,17 @@ class ModelParameters:
             If a name is not known, or a value is not a finite number.
         """
         hinge, shear = {}, {}
+        for name in [name for name in FACTORS if name in values]:
+            factor = _core.number(values.pop(name), f"parameters: {name}")
+            for one in FACTORS[name][0]:
+                values[one] = factor * values.get(one, getattr(self.hinge, one))
         for name, value in values.items():
             if name in _HINGE_NAMES:
                 hinge[name] = value
             elif name.startswith(_SHEAR) and name[len(_SHEAR) :] in _SHEAR_NAMES:
                 shear[name[len(_SHEAR) :]] = value
             else:
-                raise _unknown(name, list(self.values))
+                raise _unknown(name, [*self.values, *FACTORS])
         return replace(self, hinge=replace(self.hinge, **hinge), shear=replace(self.shear, **shear))
 
 
