@@ -4,8 +4,11 @@ bash scripts/docs.sh
 """
 
 import re
+import subprocess
+import sys
 from importlib.metadata import version as installed_version
 from importlib.util import find_spec
+from pathlib import Path
 
 project = "rbsdem"
 author = "the rbsdem authors"
@@ -59,7 +62,16 @@ def _escape_bars(*event) -> None:
     lines[:] = [re.sub(r"\|(\w+)\|", r"\\|\1\\|", line) for line in lines]
 
 
+def _make_gallery(app) -> None:
+    """Run the examples, whose pictures docs/gallery.md shows."""
+    docs = Path(app.srcdir)
+    subprocess.run(
+        [sys.executable, docs.parent / "scripts" / "gallery.py", docs / "_gallery"], check=True
+    )
+
+
 def setup(app) -> None:
     """Connect the above; the first comes before napoleon."""
+    app.connect("builder-inited", _make_gallery)
     app.connect("autodoc-process-docstring", _split_names, priority=400)
     app.connect("autodoc-process-docstring", _escape_bars)

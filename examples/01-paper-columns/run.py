@@ -1,6 +1,6 @@
 """The four columns of the paper against their tests: predicted from their drawings, and as there.
 
-    python examples/01-paper-columns/run.py [--peer DIR] [--out DIR] [--no-plot]
+    python examples/01-paper-columns/run.py [--peer DIR] [--out DIR] [--pdf] [--no-plot]
 
 (a) Table 2 of the paper, which is what the drawings show, becomes columns of the layered model. The
     measured displacement drives them on the static path. No result of the tests is used.
@@ -319,6 +319,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument(
         "--out", type=Path, metavar="DIR", default=Path("figures"), help="default: ./figures"
     )
+    parser.add_argument("--pdf", action="store_true", help="write the figures as PDF too")
     parser.add_argument("--no-plot", action="store_true", help="print and write the tables only")
     parser.add_argument(
         "--row-time",
@@ -391,7 +392,7 @@ def main() -> None:
             ("fig3_force_driven", one_part(by_drive["force"])),
             ("displacement_driven", one_part(by_drive["displacement"])),
         ):
-            written += plot.save(figure, given.out / f"{name}.png", pdf=True)
+            written += plot.save(figure, given.out / f"{name}.png", pdf=given.pdf)
     for path in written:
         console.print(f"wrote {path}", markup=False, soft_wrap=True)
 

@@ -34,12 +34,12 @@ print(f"steps of RK4           {result.summary['steps']:8d}")
 print(f"energy residual        {result.summary['relative_energy_residual']:8.0e}")
 
 if "--no-plot" not in sys.argv:
-    import matplotlib.pyplot as plt
+    from rbsdem import plot
 
-    figure, (upper, lower) = plt.subplots(2, 1, figsize=(6.5, 5.5), layout="constrained")
-    upper.plot(result.time, 1e3 * result.displacement, "k-", lw=0.9)
-    upper.set(xlabel="Time (s)", ylabel="Top displacement (mm)")
-    lower.plot(1e3 * result.rotation[:, 0], result.moment[:, 0] / 1e3, "k-", lw=0.9)
+    upper, lower = plot.new_axes(2, 1, (5.2, 5.0))
+    plot.history(result, ax=upper)
+    plot.loop(result.rotation[:, 0], result.moment[:, 0], ax=lower)
+    # The loop is that of the hinge: rotations in mrad, moments in kN m.
     lower.set(xlabel="Rotation of the hinge (mrad)", ylabel="Base moment (kN m)")
-    figure.savefig("ground_motion.png", dpi=150)
+    plot.save(upper.figure, "ground_motion.png")
     print("wrote ground_motion.png")

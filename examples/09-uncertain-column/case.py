@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 import rbsdem
-from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties, ensembles, motions
+from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties, ensembles, motions, plot
 
 RECORDS, COLUMNS = 5, 8
 
@@ -65,6 +65,8 @@ print(f"theta {curve.theta:.1f} m/s2, beta {curve.beta:.2f}")
 if "--no-plot" not in sys.argv:
     ax = alone.fragility().plot(label="median column, records only")
     curve.plot(ax, color="#c0392b", label="uncertain columns")
-    ax.legend()
-    ax.figure.savefig("uncertain.png", dpi=150)
+    with plot.style():
+        ax.legend(loc="lower right")
+        ax.set_title("")
+    plot.save(ax.figure, "uncertain.png")
     print("wrote uncertain.png")

@@ -56,9 +56,10 @@ def test_there_are_examples():
 
 @pytest.mark.parametrize("folder", EXAMPLES, ids=lambda folder: folder.name)
 def test_example_runs_in_a_clone(executable, folder, tmp_path, monkeypatch):
-    """Scripts and cases of a copy, without the histories of the database.
+    """Scripts and cases of a copy, with their figures, without the histories of the database.
 
-    Nothing is written beside them but what is there already, and that comes out the same.
+    Nothing is written beside them but what is there already, and that comes out the same. The
+    figures that the gallery of the documentation shows are among those that are written.
     """
     monkeypatch.delenv("RBSDEM_PEER_DIR", raising=False)
     copy = tmp_path / "a" / "clone" / "examples" / folder.name
@@ -67,8 +68,7 @@ def test_example_runs_in_a_clone(executable, folder, tmp_path, monkeypatch):
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
     for script in sorted(copy.glob("*.py")):
-        options = ["--no-plot"] if "--no-plot" in script.read_text("utf-8") else []
-        printed = run([sys.executable, script, *options], elsewhere)
+        printed = run([sys.executable, script], elsewhere)
         assert printed.strip() or script.name not in ("run.py", "case.py")
     for case in sorted(copy.glob("*.nml")):
         output = elsewhere / f"{case.stem}-rows.csv"
@@ -76,16 +76,18 @@ def test_example_runs_in_a_clone(executable, folder, tmp_path, monkeypatch):
         run([executable, "run", case, "--output", output], elsewhere)
         assert output.read_text("utf-8").startswith("# rbsdem ")
     assert contents(copy) == before
+    figures = {path.stem for path in elsewhere.rglob("*.png") if path.stat().st_size > 5000}
+    assert figures or not list(copy.glob("*.py"))
+    page = (REPOSITORY / "docs" / "gallery.md").read_text("utf-8")
+    shown = set(re.findall(rf"\(_gallery/{folder.name}_(\w+)\.png\)", page))
+    assert shown, "docs/gallery.md shows nothing of it"
+    assert shown <= figures
 
 
-@pytest.mark.parametrize("folder", EXAMPLES, ids=lambda folder: folder.name)
-def test_example_draws(folder, tmp_path):
-    """In its place, with figures where a script makes some."""
-    for script in sorted(folder.glob("*.py")):
-        if "--no-plot" in script.read_text("utf-8"):
-            run([sys.executable, script], tmp_path)
-            figures = [path for path in tmp_path.rglob("*.png") if path.stat().st_size > 5000]
-            assert figures
+def test_example_without_figures(tmp_path):
+    script = REPOSITORY / "examples" / "02-cyclic-protocol" / "case.py"
+    assert run([sys.executable, script, "--no-plot"], tmp_path).strip()
+    assert not list(tmp_path.iterdir())
 
 
 def test_python_blocks_of_the_readme_print_what_stands_below_them(tmp_path):
