@@ -11,11 +11,6 @@ def need_matplotlib() -> None:
     _need("matplotlib", "figures need", "plot")
 
 
-def need_jinja2() -> Any:
-    """Return jinja2, or raise `ImportError` with the installation command."""
-    return _need("jinja2", "the gallery needs", "gallery")
-
-
 def need_pandas() -> Any:
     """Return pandas, or raise `ImportError` with the installation command."""
     return _need("pandas", "a DataFrame needs", "pandas")

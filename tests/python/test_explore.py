@@ -19,7 +19,7 @@ import rbsdem
 from rbsdem.explore import texts
 from rbsdem.explore.command import main, start_of
 from rbsdem.explore.near import Near
-from rbsdem.explore.parts import MODULES, parts
+from rbsdem.explore.parts import GALLERY, MODULES, parts
 from rbsdem.explore.report import write_report
 from rbsdem.explore.report_command import main as report_main
 from rbsdem.explore.server import MOST_STATE, ExploreServer
@@ -231,6 +231,9 @@ def test_section_and_band_are_those_of_the_functions(post):
         ({"loading_amplitudes": []}, "loading.amplitudes", "must not be empty"),
         ({"loading_amplitudes": [0.01, "x"]}, "loading.amplitudes", "array of numbers"),
         ({"loading_cycles": 10**9}, "loading.cycles", "too many here"),
+        ({"loading_cycles": 10**400}, "loading.cycles", "must be a whole number"),
+        ({"section_width": 10**400}, "section.width", "width"),
+        ({"column_height": [1.6]}, "column.height", "must be a number"),
         ({"loading_kind": "record"}, "loading.name", "not open here"),
     ],
 )
@@ -376,13 +379,14 @@ def test_a_report_is_one_file(tmp_path, post, capsys):
         write_report(tmp_path, state(), "x")
 
 
-def test_modules_of_the_page_can_stand_in_one_file():
+@pytest.mark.parametrize(("page", "modules"), [("index", MODULES), ("gallery", GALLERY)])
+def test_modules_of_a_page_can_stand_in_one_file(page, modules):
     seen: dict[str, str] = {}
-    files = parts()
-    for name in MODULES:
+    files = parts(f"{page}.html", modules)
+    for name in modules:
         text = files[name].decode()
         for imported in re.findall(r'^import .* from "\./(.*)";$', text, re.MULTILINE):
-            assert imported in MODULES[: MODULES.index(name)]
+            assert imported in modules[: modules.index(name)]
         own = r"^(?:export )?(?:async )?(?:function|const|let) ([\w$]+)"
         for word in re.findall(own, text, re.MULTILINE):
             assert seen.setdefault(word, name) == name, word

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import pytest
 
 import rbsdem
-from rbsdem.explore import write_report
+from rbsdem.explore.report import write_report
 from rbsdem.explore.server import ExploreServer
 from rbsdem.explore.state import DEFAULT
 
@@ -254,6 +254,27 @@ def test_a_report_asks_nothing(page, tmp_path):
         "return performance.getEntriesByType('resource').filter(e => !e.name.startsWith('data:'))"
     )
     assert page.driver.execute_script(asked) == []
+
+
+def test_the_gallery_of_many_tests(page, tmp_path):
+    column = rbsdem.paper_columns("pdelta")["zahn_7"]
+    result = rbsdem.cyclic(column, displacement=1.6 * rbsdem.protocol([0.01], points=8))
+    rows = []
+    for name, factor, mode in (("Good", 1.0, "Flexure"), ("Bad <i>", 2.0, "Shear")):
+        specimen = rbsdem.peer.Specimen(
+            name, "rectangular", 1.6, 0.4, 0.4, 3e7, 1e6, 8, failure_mode=mode
+        )
+        compared = rbsdem.compare(result, (result.displacement, factor * result.force))
+        rows.append(rbsdem.peer.Prediction(specimen, "m", "completed", comparison=compared))
+    path = rbsdem.peer.Predictions(rows).gallery(tmp_path / "gallery.html")
+    page.driver.get(path.as_uri())
+    page.wait(lambda: [e.text for e in page.all("#cards b")] == ["Bad <i>", "Good"])
+    Select(page.one("#mode")).select_by_value("Flexure")
+    page.wait(lambda: page.text("#count") == "1 of 2")
+    Select(page.one("#mode")).select_by_value("")
+    page.one("#name").send_keys("bad")
+    page.wait(lambda: [e.text for e in page.all("#cards b")] == ["Bad <i>"])
+    assert page.all("#cards path.line.test")
 
 
 def test_a_server_that_has_ended(page):

@@ -13,7 +13,7 @@ from conftest import REPOSITORY
 PACKAGE = REPOSITORY / "python" / "rbsdem"
 
 # Packages that need not be installed: only they are imported inside functions.
-OPTIONAL = {"distributed", "jinja2", "matplotlib", "pandas", "pyarrow", "rich", "scipy"}
+OPTIONAL = {"distributed", "matplotlib", "pandas", "pyarrow", "rich", "scipy"}
 
 # Modules that draw, tabulate or write records. Packages, commands and other views import them.
 VIEWS = {

@@ -437,7 +437,6 @@ def test_a_module_that_has_moved_names_its_new_place():
     [
         ("matplotlib", "plot", "rbsdem.plot.loop([0, 1], [0, 1])"),
         ("scipy", "calibrate", "rbsdem.calibrate(column, test, free=['flexure.k_u'])"),
-        ("jinja2", "gallery", "rbsdem.peer.Predictions([]).gallery('x.html')"),
         ("pandas", "pandas", "rbsdem.peer.Predictions([]).to_pandas()"),
         ("pandas", "pandas", "rbsdem.peer.Specimens([]).to_pandas()"),
     ],

@@ -2,8 +2,5 @@
 
 `state` reads what the page sends, `compute` answers it by the functions that everybody calls,
 `texts` writes and opens files, `server` talks to the browser, `report` puts the answers in a file.
+`parts` has the files of the page; the gallery of `rbsdem.peer` is made of them too.
 """
-
-from rbsdem.explore.report import write_report
-
-__all__ = ["write_report"]

@@ -11,7 +11,7 @@ import time
 import warnings
 from collections import OrderedDict
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -92,19 +92,23 @@ class Answers:
     def solved(self, given: Mapping[str, Any], loading: Mapping[str, Any]) -> Answered:
         """Return a column of the state with its response."""
         key = key_of([given, loading])
-        if key not in self._kept:
-            begun = time.perf_counter()
-            answered = self._solve(given, loading)
-            seconds = time.perf_counter() - begun
-            self._kept[key] = Answered(**{**vars(answered), "seconds": seconds})
+        if key in self._kept:
+            self._kept.move_to_end(key)
+            return self._kept[key]
+        begun = time.perf_counter()
+        answered = self._solve(given, loading)
+        answered = replace(answered, seconds=time.perf_counter() - begun)
+        # What was refused may be right later: a record may be opened meanwhile.
+        if answered.result is not None:
+            self._kept[key] = answered
             while len(self._kept) > _KEPT:
                 self._kept.popitem(last=False)
-        self._kept.move_to_end(key)
-        return self._kept[key]
+        return answered
 
     def _solve(self, given: Mapping[str, Any], loading: Mapping[str, Any]) -> Answered:
-        faults, notes = Faults(), []
-        drawn, case, run = None, None, None
+        faults, drawn, case = Faults(), None, None
+        notes: list[str] = []
+        run: Callable[[], Result]
         if "case" in given:
             try:
                 case = case_of_text(given["case"])

@@ -8,10 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from rbsdem.comparison import Comparison
 from rbsdem.errors import InputError, RbsdemError
+from rbsdem.peer.cards import card
 from rbsdem.peer.nearest import nearest
 from rbsdem.peer.one import predict_one
 from rbsdem.peer.pictures import picture
@@ -20,9 +18,6 @@ from rbsdem.peer.specimen import Specimen
 from rbsdem.peer.specimens import read_specimens
 
 __all__ = ["Near", "specimen_of"]
-
-#: Scores that are shown.
-_SCORES = ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio")
 
 
 class Near:
@@ -140,24 +135,5 @@ def specimen_of(given: Mapping[str, Any]) -> Specimen | None:
 
 
 def _row(found: Prediction, distance: float) -> dict[str, Any]:
-    specimen = found.specimen
-    assert isinstance(found.comparison, Comparison)
-    drawn = picture(found.comparison)
-    return {
-        "name": specimen.name,
-        "distance": round(distance, 3),
-        "failure": specimen.failure_mode or "not known",
-        "axial_load_ratio": round(specimen.axial_load_ratio, 3),
-        "span_depth_ratio": round(specimen.span_depth_ratio, 2),
-        "status": found.status,
-        "scores": {name: _finite(found.score(name)) for name in _SCORES},
-        "test": np.round(drawn.test, 4).tolist(),
-        "model": np.round(drawn.model, 4).tolist(),
-        "displacement": drawn.displacement,
-        "force": drawn.force,
-        "height": found.comparison.height,
-    }
-
-
-def _finite(value: float) -> float | None:
-    return round(value, 4) if np.isfinite(value) else None
+    drawn = None if found.comparison is None else picture(found.comparison)
+    return card(found, drawn) | {"distance": round(distance, 3)}

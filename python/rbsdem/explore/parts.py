@@ -6,11 +6,11 @@ import base64
 import hashlib
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib import resources
 from typing import Any
 
-__all__ = ["MODULES", "TYPES", "one_file", "parts"]
+__all__ = ["GALLERY", "MODULES", "TYPES", "one_file", "parts"]
 
 #: Modules of the page, each after those that it imports.
 MODULES = (
@@ -24,6 +24,9 @@ MODULES = (
     "main.js",
 )
 
+#: Modules of the page of all tests.
+GALLERY = ("units.js", "chart.js", "fields.js", "panels.js", "gallery.js")
+
 TYPES = {
     "html": "text/html; charset=utf-8",
     "css": "text/css; charset=utf-8",
@@ -34,16 +37,14 @@ _IMPORT = re.compile(r"^import \{[^}]*\} from \"\./[a-z]+\.js\";\n", re.MULTILIN
 _EXPORT = re.compile(r"^export ", re.MULTILINE)
 
 
-def parts() -> dict[str, bytes]:
-    """Return the files of the page by their names."""
+def parts(page: str = "index.html", modules: Sequence[str] = MODULES) -> dict[str, bytes]:
+    """Return the files of a page by their names."""
     folder = resources.files("rbsdem.explore").joinpath("page")
-    return {
-        name: folder.joinpath(name).read_bytes() for name in ("index.html", "page.css", *MODULES)
-    }
+    return {name: folder.joinpath(name).read_bytes() for name in (page, "page.css", *modules)}
 
 
-def one_file(title: str, data: Mapping[str, Any]) -> str:
-    """Return the page with its style, its modules and its results inside.
+def one_file(title: str, data: Mapping[str, Any], modules: Sequence[str] = MODULES) -> str:
+    """Return a page with its style, its modules and its results inside.
 
     It asks nothing of a network: its policy allows only the script and the style that are in it.
 
@@ -53,9 +54,12 @@ def one_file(title: str, data: Mapping[str, Any]) -> str:
         Title of the document.
     data : mapping
         What the page would have got from the server.
+    modules : sequence of str, optional
+        `MODULES` or `GALLERY`.
     """
-    files = {name: raw.decode("utf-8") for name, raw in parts().items()}
-    script = "\n".join(_EXPORT.sub("", _IMPORT.sub("", files[name])) for name in MODULES)
+    name = "gallery.html" if modules is GALLERY else "index.html"
+    files = {key: raw.decode("utf-8") for key, raw in parts(name, modules).items()}
+    script = "\n".join(_EXPORT.sub("", _IMPORT.sub("", files[module])) for module in modules)
     style = files["page.css"]
     policy = (
         f"default-src 'none'; script-src '{_digest(script)}'; style-src '{_digest(style)}'; "
@@ -63,7 +67,7 @@ def one_file(title: str, data: Mapping[str, Any]) -> str:
     )
     # In JSON "<" stands only in texts, where it can be written so that no tag ends.
     packed = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-    page = files["index.html"]
+    page = files[name]
     for old, new in (
         ("<title>rbsdem</title>", f"<title>{_plain(title)}</title>"),
         (

@@ -14,6 +14,7 @@ import json
 import secrets
 import tempfile
 import threading
+import traceback
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -350,6 +351,9 @@ class _Handler(BaseHTTPRequestHandler):
             self._send(409, b'{"overtaken": true}', "application/json")
         except (ConnectionError, TimeoutError):
             self.close_connection = True  # nobody waits for the answer
+        except Exception as error:  # one of the program, which must not end the server
+            traceback.print_exc()
+            self._refuse(500, f"an error of rbsdem, {type(error).__name__}: the terminal has more")
         finally:
             self.server.room.release()
 
@@ -401,7 +405,7 @@ class _Handler(BaseHTTPRequestHandler):
         if len(raw) < int(length):
             raise ConnectionResetError
         try:
-            asked = json.loads(raw, parse_constant=_no_constant)
+            asked = json.loads(raw, parse_constant=_no_constant, parse_int=_whole)
         except (ValueError, RecursionError) as error:
             raise RefusedError(400, f"this is not JSON: {error}") from None
         if not isinstance(asked, dict):
@@ -428,6 +432,11 @@ class _Handler(BaseHTTPRequestHandler):
 
     def log_message(self, format: str, *arguments: object) -> None:  # noqa: A002
         """Print nothing: the path has the token."""
+
+
+def _whole(digits: str) -> int | float:
+    """Return a whole number; one that no computer counts to becomes a float."""
+    return int(digits) if len(digits) < 16 else float(digits)
 
 
 def _no_constant(name: str) -> None:

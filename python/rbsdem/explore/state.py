@@ -305,8 +305,7 @@ def loading_of(
             name = given.get("name")
             if not isinstance(name, str):
                 raise InputError(f"name = {name!r} must be the name of a protocol")
-            options = {key: given.get(key) for key in ("reference", "largest")}
-            return Loading(protocol(name, **options))
+            return Loading(protocol(name, **_drifts(given)))
         if kind == "synthetic":
             seed = _core.whole(given.get("seed", 1), "seed")
             motion = synthetic(1, seed, dt=0.01)[0]
@@ -322,6 +321,18 @@ def loading_of(
             f"kind = {kind!r} is not known; there are amplitudes, named, synthetic, record"
         )
     return None
+
+
+def _drifts(given: Mapping[str, Any]) -> dict[str, float | None]:
+    """Return reference and largest drift of a protocol of the literature, of a size to look at."""
+    found: dict[str, float | None] = {}
+    for name in ("reference", "largest"):
+        found[name] = None
+        if given.get(name) is not None:
+            drift = found[name] = _core.number(given[name], name)
+            if not 1e-4 <= drift <= 1.0:
+                raise InputError(f"{name} = {drift:g} must be a drift from 0.0001 to 1")
+    return found
 
 
 def factor(given: Mapping[str, Any]) -> float:

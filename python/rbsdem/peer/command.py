@@ -28,9 +28,9 @@ holds specimens.csv and the histories of the PEER Structural Performance Databas
 
 EPILOG = """\
 Files (--out): results.csv (a row for each test), summary.csv (medians and quartiles of
-groups), gallery.html (all loops, to sort and filter; needs jinja2), loops.png (all loops; needs
-matplotlib); with --bands also bands.csv (intervals, nearest tests) and bands.png, with --loops
-bands/ (the band along the path of each test); with --check only check.csv (indicators and doubts).
+groups), gallery.html (all loops, to sort and filter), loops.png (all loops; needs matplotlib);
+with --bands also bands.csv (intervals, nearest tests) and bands.png, with --loops bands/ (the band
+along the path of each test); with --check only check.csv (indicators and doubts).
 A batch that did not come to its end leaves what was finished in unfinished.jsonl; a second start
 with the same --out goes on from there.
 Exit codes: 0 every test was analysed to its end, 1 some were not, 2 the input is wrong,
@@ -225,15 +225,16 @@ def _report(found: Predictions, by: str, quiet: bool) -> None:
 
 def written(found: Predictions, folder: Path, by: str, loops: bool) -> list[str]:
     """Write the files; return lines that say which."""
-    files = [folder / "results.csv", folder / "summary.csv"]
+    files = [folder / "results.csv", folder / "summary.csv", folder / "gallery.html"]
     found.to_csv(files[0])
     found.summary_to_csv(files[1], by)
+    found.gallery(files[2])
     banded = any(row.band is not None for row in found)
     if banded:
         files.append(folder / "bands.csv")
         found.bands_to_csv(files[-1])
     missing = []
-    pictures = {"gallery.html": found.gallery, "loops.png": found.contact_sheet}
+    pictures = {"loops.png": found.contact_sheet}
     if banded:
         pictures["bands.png"] = found.band_sheet
     for name, write in pictures.items():

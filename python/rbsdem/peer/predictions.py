@@ -293,7 +293,7 @@ class Predictions(Sequence[Prediction]):
                     np.savetxt(file, rows, "%.7g", delimiter=",", header=header, comments="")
 
     def gallery(self, path: str | os.PathLike[str]) -> Path:
-        """Write one page of html with all loops, to sort and to filter; needs jinja2.
+        """Write one page of html with all loops, to sort and to filter.
 
         Parameters
         ----------
@@ -304,11 +304,6 @@ class Predictions(Sequence[Prediction]):
         -------
         Path
             The file. It stands alone: styles, script and figures are in it.
-
-        Raises
-        ------
-        ImportError
-            If jinja2 is not installed.
         """
         return _views.view(self, "gallery", Path(path))
 

@@ -35,6 +35,16 @@ export function packed(value) {
   return btoa(text).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "");
 }
 
+// A state with all its groups: a link may come from anywhere.
+export function tidied({ columns, loading }) {
+  const group = value => value && typeof value === "object" && !Array.isArray(value) ? value : {};
+  return { loading, columns: columns.map((column, i) => {
+    if ("case" in column) return { name: String(column.name ?? "AB"[i]), case: String(column.case) };
+    const { section, concrete, bars, ties, column: frame } = column;
+    return { name: String(column.name ?? "AB"[i]), section: { ...group(section), shape: String(section?.shape ?? "rectangle") }, concrete: group(concrete), bars: group(bars), ties: group(ties), column: group(frame) };
+  }) };
+}
+
 export function unpacked(text) {
   try {
     const raw = atob(text.replace(/-/g, "+").replace(/_/g, "/"));
@@ -42,6 +52,6 @@ export function unpacked(text) {
     const right = value && Array.isArray(value.state?.columns) && value.state.columns.length >= 1 &&
       value.state.columns.length <= 2 && value.state.columns.every(one => one && typeof one === "object") &&
       value.state.loading && typeof value.state.loading === "object";
-    return right ? value : null;
+    return right ? { ...value, state: tidied(value.state) } : null;
   } catch { return null; }
 }

@@ -88,7 +88,7 @@ export function interactionChart(host, state, sections, own, loops, system, code
   for (const fault of faults) host.append(element("p", { className: "fault" }, fault));
 }
 
-function table(heads, rows, caption) {
+export function table(heads, rows, caption) {
   const made = element("table", {});
   if (caption) made.append(element("caption", {}, caption));
   const words = i => rows.every(row => typeof row.cells[i] === "object" && row.cells[i].text !== undefined);
@@ -151,19 +151,25 @@ export function codeTable(host, state, sections, system) {
   host.replaceChildren(...parts);
 }
 
-// A card of a test: its loop grey, the model over it.
+// A card of a test: its loop grey, the model over it; lines are x, y, x, y, ... in thousandths of their box.
 export function testCard(test, system, more = "") {
-  const width = 260, height = 190, X = x => width / 2 * (1 + 0.92 * x), Y = y => height / 2 * (1 - 0.92 * y);
-  const path = line => line.map(([x, y], i) => (i ? "L" : "M") + X(x).toFixed(1) + " " + Y(y).toFixed(1)).join("");
-  const [unit, factor] = unitOf(system, "force"), scores = test.scores;
-  const svg = svgElement("svg", { viewBox: `0 0 ${width} ${height}`, class: "card", role: "img", "aria-label": `${test.name}: prediction over test, error ${shown(scores.nrmse, 3)}` },
-    svgElement("path", { class: "zero", d: `M0 ${height / 2}H${width}M${width / 2} 0V${height}` }),
-    svgElement("path", { class: "line test", d: path(test.test) }), svgElement("path", { class: "line a thin", d: test.model.length > 1 ? path(test.model) : "" }),
-    svgElement("text", { x: width - 2, y: height / 2 + 12, "text-anchor": "end" }, shown(100 * test.displacement / test.height, 2) + " %"),
-    svgElement("text", { x: width / 2 + 4, y: 11 }, `${shown(test.force / factor, 3)} ${unit}`));
-  const about = `${test.failure}, n ${shown(test.axial_load_ratio, 2)}, a/h ${shown(test.span_depth_ratio, 2)}`;
-  return element("figure", {}, element("figcaption", {}, element("b", {}, test.name), element("br"), about), svg,
-    element("p", {}, [`error ${shown(scores.nrmse, 3)}`, `peak ${shown(scores.peak_ratio, 3)}`, `energy ${shown(scores.energy_ratio, 3)}`, `stiffness ${shown(scores.stiffness_ratio, 3)}`, more].filter(Boolean).join(" · ")));
+  const about = `${test.failure}, ${test.section}, n ${shown(test.axial_load_ratio, 2)}, a/h ${shown(test.span_depth_ratio, 2)}`, scores = test.scores;
+  const made = element("figure", {}, element("figcaption", {}, element("b", {}, test.name), element("br"), about));
+  if (test.test) {
+    const width = 260, height = 190, X = x => width / 2 * (1 + 0.92e-3 * x), Y = y => height / 2 * (1 - 0.92e-3 * y);
+    const path = line => { let d = ""; for (let i = 0; i < line.length; i += 2) d += (i ? "L" : "M") + X(line[i]).toFixed(1) + " " + Y(line[i + 1]).toFixed(1); return d; };
+    const [unit, factor] = unitOf(system, "force"), [length, metre] = unitOf(system, "length");
+    const drift = test.height > 0 ? ` = ${shown(100 * test.displacement / test.height, 2)} %` : "";
+    made.append(svgElement("svg", { viewBox: `0 0 ${width} ${height}`, class: "card", role: "img", "aria-label": `${test.name}: prediction over test, error ${shown(scores.nrmse, 3)}` },
+      svgElement("path", { class: "zero", d: `M0 ${height / 2}H${width}M${width / 2} 0V${height}` }),
+      svgElement("path", { class: "line test", d: path(test.test) }), svgElement("path", { class: "line a thin", d: path(test.model) }),
+      svgElement("text", { x: width - 2, y: height / 2 + 12, "text-anchor": "end" }, `${shown(test.displacement / metre, 3)} ${length}${drift}`),
+      svgElement("text", { x: width / 2 + 4, y: 11 }, `${shown(test.force / factor, 3)} ${unit}`)));
+  }
+  const words = [["error", "nrmse"], ["peak", "peak_ratio"], ["energy", "energy_ratio"], ["stiffness", "stiffness_ratio"], ["end", "end_ratio"]].map(([word, name]) => `${word} ${shown(scores[name], 3)}`);
+  made.append(element("p", {}, [...words, more].filter(Boolean).join(" · ")));
+  if (test.status !== "completed") made.append(element("p", { className: "fault" }, `${test.status}: ${test.error}`));
+  return made;
 }
 
 export function nearCards(host, state, near, system) {
