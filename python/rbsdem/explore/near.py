@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import threading
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +20,7 @@ __all__ = ["Near", "specimen_of"]
 
 
 class Near:
-    """The predicted tests of a folder.
+    """The tests of a folder; those that are shown are predicted, and kept.
 
     Parameters
     ----------
@@ -41,39 +40,12 @@ class Near:
         if not self._tests:
             raise InputError(f"{folder} has no history of any test of its table")
         self._number = number
-        self._found: list[Prediction] = []
-        self._stop = threading.Event()
+        self._found: dict[str, Prediction] = {}
 
-    def begin(self, computing: threading.Lock) -> None:
-        """Predict the tests one by one in a thread, between what the page asks for."""
-        threading.Thread(target=self._predict, args=(computing,), daemon=True).start()
-
-    def end(self) -> None:
-        """Leave the tests that are not predicted yet."""
-        self._stop.set()
-
-    def _predict(self, computing: threading.Lock) -> None:
-        for test in self._tests:
-            if self._stop.wait(0.002):
-                return
-            with computing:
-                self.predict(test)
-
-    def predict(self, test: Specimen) -> None:
-        """Predict one test, and keep it."""
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            self._found.append(predict_one(test))
-
-    def all(self) -> Near:
-        """Predict what is left, now."""
-        for test in self._tests[len(self._found) :]:
-            self.predict(test)
-        return self
-
-    def of(self, state: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the nearest tests of each column, and how many of the folder are predicted."""
-        found = list(self._found)
+    def of(
+        self, state: Mapping[str, Any], pause: Callable[[], None] = lambda: None
+    ) -> dict[str, Any]:
+        """Return the nearest tests of each column; `pause` is called between predictions."""
         columns: list[dict[str, Any]] = []
         for given in state["columns"]:
             specimen = None if "case" in given else specimen_of(given)
@@ -81,14 +53,25 @@ class Near:
                 columns.append({"none": "the folder has no tests of such columns"})
                 continue
             try:
-                with warnings.catch_warnings():
-                    warnings.simplefilter("ignore")
-                    rows = nearest(specimen, found, self._number)
+                near = nearest(specimen, self._tests, self._number)
             except (RbsdemError, ValueError) as error:
                 columns.append({"none": str(error)})
                 continue
-            columns.append({"tests": [_row(row.prediction, row.distance) for row in rows]})
-        return {"columns": columns, "predicted": len(found), "tests": len(self._tests)}
+            rows = []
+            for one in near:
+                pause()
+                row = self._predicted(one.specimen)
+                drawn = None if row.comparison is None else picture(row.comparison)
+                rows.append(card(row, drawn) | {"distance": round(one.distance, 3)})
+            columns.append({"tests": rows})
+        return {"columns": columns, "tests": len(self._tests)}
+
+    def _predicted(self, test: Specimen) -> Prediction:
+        if test.name not in self._found:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                self._found[test.name] = predict_one(test)
+        return self._found[test.name]
 
 
 def specimen_of(given: Mapping[str, Any]) -> Specimen | None:
@@ -132,8 +115,3 @@ def specimen_of(given: Mapping[str, Any]) -> Specimen | None:
         )
     except (KeyError, TypeError, ValueError):
         return None
-
-
-def _row(found: Prediction, distance: float) -> dict[str, Any]:
-    drawn = None if found.comparison is None else picture(found.comparison)
-    return card(found, drawn) | {"distance": round(distance, 3)}

@@ -41,7 +41,7 @@ def report_data(state: Mapping[str, Any], title: str, near: Near | None = None) 
         "bands": [answers.band(given, loading) for given in columns],
         "scales": None,
         "own": answers.own_interaction(state),
-        "near": None if near is None else near.all().of(state),
+        "near": None if near is None else near.of(state),
     }
     if any(loop.get("dynamic") for loop in loops):
         data["scales"] = [answers.scaled(given, loading, lambda _: None) for given in columns]

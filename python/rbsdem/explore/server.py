@@ -100,8 +100,6 @@ class ExploreServer(ThreadingHTTPServer):
         self.room = threading.BoundedSemaphore(_AT_ONCE)
         self._newest: OrderedDict[tuple[str, str], int] = OrderedDict()
         self._newest_lock = threading.Lock()
-        if near is not None:
-            near.begin(self.computing)
 
     @property
     def port(self) -> int:
@@ -112,12 +110,6 @@ class ExploreServer(ThreadingHTTPServer):
     def address(self) -> str:
         """The address for the browser, with the token."""
         return f"http://127.0.0.1:{self.port}/{self.token}/"
-
-    def server_close(self) -> None:
-        """Close the socket; the tests that are still to be predicted are left."""
-        if self.near is not None:
-            self.near.end()
-        super().server_close()
 
     # ---- newest wins ----------------------------------------------------------------------------
 
@@ -189,7 +181,7 @@ class ExploreServer(ThreadingHTTPServer):
     def _nearest(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
         if self.near is None:
             return {"none": "rbsdem explore --tests FOLDER shows the tests that are most like it"}
-        return self.near.of(_state(asked))
+        return self.near.of(_state(asked), lambda: self._let_others(check))
 
     def _export(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
         state, form, which = _state(asked), asked.get("form"), asked.get("column", 0)

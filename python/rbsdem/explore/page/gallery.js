@@ -29,7 +29,7 @@ function showGallery(data) {
     get("cards").replaceChildren(...chosen.map(one => one.card));
     get("count").textContent = `${shown(chosen.length)} of ${all.length}`;
   }
-  for (const id of ["sort", "mode", "name"]) get(id).addEventListener("input", show);
+  for (const [id, event] of [["sort", "change"], ["mode", "change"], ["name", "input"]]) get(id).addEventListener(event, show);
   get("units").addEventListener("change", () => { for (const one of all) one.card = null; show(); });
   document.querySelector("form").addEventListener("submit", event => event.preventDefault());
   show();

@@ -35,7 +35,7 @@ const lanes = fixed ? {} : {
   bands: makeLane("bands", { question: () => isMotion() ? null : sent(), take: answer => { bands = answer.columns; showLoops(); }, fail: gone, delay: 140 }),
   scales: makeLane("scales", { question: () => isMotion() ? sent() : null, take: answer => { scales = answer.columns; showTime(); }, fail: gone, delay: 300 }),
   own: makeLane("own", { question: sent, take: answer => { own = answer.columns; showSections(); }, fail: gone, delay: 450 }),
-  nearest: makeLane("nearest", { question: () => withTests ? sent() : null, take: takeNear, fail: gone, delay: 250 }),
+  nearest: makeLane("nearest", { question: () => withTests ? sent() : null, take: answer => { near = answer; showNear(); }, fail: gone, delay: 250 }),
 };
 
 function askAll() {
@@ -59,12 +59,6 @@ function takeLoops(answer, body) {
   showLoops();
   showDrawings();
   showMessages();
-}
-
-function takeNear(answer) {
-  near = answer;
-  showNear();
-  if (answer.predicted < answer.tests) setTimeout(() => lanes.nearest.go(), 1500);
 }
 
 // ---- what is shown ---------------------------------------------------------------------------------
@@ -124,7 +118,7 @@ function showSections() {
 function showNear() {
   get("near").hidden = !near?.columns;
   if (!near?.columns) return;
-  get("nearstate").textContent = `of ${near.tests} tests` + (near.predicted < near.tests ? `, ${near.predicted} predicted so far` : "") + "; grey: test, line: prediction";
+  get("nearstate").textContent = `Of ${near.tests} tests; grey: test, line: prediction`;
   nearCards(get("neartests"), state, near, system);
 }
 
