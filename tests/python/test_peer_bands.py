@@ -56,8 +56,8 @@ def cells(path: Path) -> Iterator[dict[str, str]]:
 
 def test_one_test(table: peer.Specimens) -> None:
     """Band, intervals and the tests of the folder of its table; the nearest in axial load first."""
-    row = peer.predict(table["T1"])
-    band = peer.band(table["T1"])
+    row = peer.predict(table["T1"], samples=8)
+    band = peer.band(table["T1"], samples=8)
     for name in ("force", "median", "lower", "upper", "samples"):
         np.testing.assert_array_equal(getattr(row.band, name), getattr(band, name))
     assert [one.specimen.name for one in row.nearest] == ["T2", "T3", "T4"]
@@ -90,6 +90,9 @@ def test_a_column_that_nobody_tested(table: peer.Specimens, folder: Path) -> Non
     high = replace(mine, concrete_strength=140e6)
     with pytest.warns(AccuracyWarning, match="concrete strength = 140 MPa is outside"):
         assert peer.predict(high, displacement=PATH).remarks
+    # A folder says it in the rows, and warns of nothing.
+    (far,) = peer.predict([high], displacement=PATH, samples=8)
+    assert far.remarks == far.band.remarks
     with pytest.raises(InputError, match="bars"):
         peer.predict(replace(mine, longitudinal_number=0), displacement=PATH)
 

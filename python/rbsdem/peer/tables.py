@@ -33,7 +33,9 @@ def tests_table(predictions: Predictions) -> Table:
         drifts = (row.score("test_drift_at_loss"), row.score("model_drift_at_loss"))
         cells = [_number(row.nrmse, 3), *(_number(row.score(name), 2) for name in _RATIOS)]
         cells += [_number(100 * drift, 1) for drift in drifts]
-        remark = "" if row.status == "completed" else f"{row.status}: {row.error}"
+        remark = f"outside the tests: {'; '.join(row.remarks)}" if row.remarks else ""
+        if row.status != "completed":
+            remark = f"{row.status}: {row.error}"
         table.add_row(
             plain(row.specimen.name),
             plain(row.specimen.failure_mode or ""),

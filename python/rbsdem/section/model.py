@@ -425,7 +425,8 @@ class LayeredColumn(Column):
     @property
     def outside(self) -> tuple[str, ...]:
         """Where the column is outside the range of the tests that the model was fitted to."""
-        return outside(self._recipe.section, self.height, self.axial_load)
+        # The recipe knows the shear span, whatever the ends of the column are.
+        return outside(self._recipe.section, self._recipe.height, self.axial_load)
 
     def spread(
         self, displacement: ArrayLike, *, samples: int = 16, scatter: Scatter | None = None
