@@ -248,8 +248,9 @@ def spring_response(statement: Statement, axial_load: float, deformation: Array)
     return force
 
 
-#: Rows, summary values, the error that ended a run early, and a note on its accuracy.
-Run = tuple[Array, dict[str, Any], SolveError | None, str]
+#: Rows, the state at the end (None after a failure), summary values, the error that ended a run
+#: early, and a note on its accuracy.
+Run = tuple[Array, Array | None, dict[str, Any], SolveError | None, str]
 
 #: Number of bodies, and what the rows hold: openings of axial springs, forces at the base, openings
 #: of layered joints.
@@ -294,11 +295,14 @@ def cyclic(
     by_force: bool,
     values: Array,
     axial_load: Array,
+    before: Array,
+    room: int,
     every: int | None,
 ) -> Run:
     """Follow a static path.
 
-    `column` holds the settings of the analysis too; an empty `axial_load` is a constant one;
+    `column` holds the settings of the analysis too; an empty `axial_load` is a constant one,
+    an empty `before` a virgin column; `room` is the expected size of the state at the end;
     `shape` is the number of bodies, whether joints open, and whether the rows have the forces at
     the base and the openings of layered joints.
     """
@@ -306,10 +310,14 @@ def cyclic(
         shape, _rbsdem.rbs_kept_rows(values.size, UNSET_INTEGER if every is None else every)
     )
     figures = len(quantities(False)[1])
-    return _finish(
-        rows,
-        *_rbsdem.rbs_cyclic(*_crossing(column), int(by_force), values, axial_load, rows, figures),
-    )
+    while True:
+        after = np.empty(room)
+        kept, ended, *rest = _rbsdem.rbs_cyclic(
+            *_crossing(column), int(by_force), values, axial_load, before, rows, after, figures
+        )
+        if ended <= room:
+            return _finish(rows, kept, after[:ended], *rest)
+        room = ended
 
 
 def time_history(
@@ -319,6 +327,8 @@ def time_history(
     loads: Mapping[str, Array],
     initial: Array,
     opening_given: bool,
+    before: Array,
+    room: int,
     every: int | None,
     tell: Callable[[str], None],
 ) -> Run:
@@ -341,24 +351,28 @@ def time_history(
     wanted = time.size if every is None else 0
     told = False
     while True:
-        rows = _empty_rows(shape, wanted)
-        wanted, *rest = _rbsdem.rbs_time_history(
+        rows, after = _empty_rows(shape, wanted), np.empty(room)
+        wanted, ended, *rest = _rbsdem.rbs_time_history(
             *_crossing(column),
             time,
             " ".join(loads),
             load,
             initial,
             int(opening_given),
+            before,
             int(told),
             rows,
+            after,
             figures,
         )
         status, message = rest[2:]
         if status == _LONG_RUN:
             tell(_text(message))
             told, wanted = True, rows.shape[1]
+        elif ended > room:
+            room, wanted = ended, rows.shape[1]
         elif status != _LITTLE_ROOM:
-            return _finish(rows, wanted, *rest)
+            return _finish(rows, wanted, after[:ended], *rest)
 
 
 def settings(given: Mapping[str, Any]) -> Statement:
@@ -696,7 +710,13 @@ def _empty_rows(shape: Shape, rows: int) -> Array:
 
 
 def _finish(
-    rows: Array, kept: int, figures: Array, method: bytes, status: int, message: bytes
+    rows: Array,
+    kept: int,
+    after: Array,
+    figures: Array,
+    method: bytes,
+    status: int,
+    message: bytes,
 ) -> Run:
     """Keep the rows that were filled; raise wrong input, return a failed analysis as an error."""
     error, note = None, ""
@@ -720,7 +740,8 @@ def _finish(
     named["method"] = _text(method[:_METHOD_LENGTH])
     named["reason"] = _text(method[_METHOD_LENGTH:])
     named["status"] = "failed" if error else status
-    return rows[:, :kept].T, named, error, note
+    state = None if error or not after.size else after.copy()
+    return rows[:, :kept].T, state, named, error, note
 
 
 def _raise(status: int, message: bytes) -> None:

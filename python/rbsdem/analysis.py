@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -18,6 +19,8 @@ from rbsdem.methods import IN_TIME
 from rbsdem.motions.acting import acting
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.result import Result, result_from_rows
+from rbsdem.springs import Layered
+from rbsdem.state_file import named_state, state_of
 
 #: Names of the methods in time.
 METHODS = IN_TIME
@@ -97,6 +100,7 @@ def cyclic(
     displacement: ArrayLike | None = None,
     force: ArrayLike | None = None,
     axial_load: ArrayLike | None = None,
+    initial: Result | str | os.PathLike[str] | None = None,
     every: int | None = None,
     collapse_drift: float | None = None,
     openings: bool = False,
@@ -105,7 +109,8 @@ def cyclic(
 
     The path is exact for `kinematics` "small" and "pdelta": it goes from event to event (a spring
     reaches the end of its line) without increments or tolerance. With "finite" each increment is
-    solved for equilibrium, and events are located. The path starts at zero.
+    solved for equilibrium, and events are located. The path starts at zero, or in the
+    state that another analysis ended in.
 
     Parameters
     ----------
@@ -118,6 +123,14 @@ def cyclic(
         of the column; it changes in proportion on the way from point to point, and the path starts
         under its first value. With `Column(axial_force_ratio=r)` the load is this one plus r F.
         For `kinematics` "small" (layered joints) and "pdelta".
+    initial : Result or path, optional
+        The result of this column in whose end the path begins, or a file that
+        `Result.save_state` or the executable wrote. A static result that was driven by the same
+        quantity goes on with the same bits as one path. After a response in time the top is held
+        where the motion has brought it, the velocities vanish, and the joints come to equilibrium;
+        so do they where the axial load is another. Axial load, loading, method, masses and damping
+        may differ, springs, lengths, number of bodies and kinematics not. Energies go on; rows and
+        peaks are those of this path.
     every : int, optional
         Keep every n-th point and the last one. By default all points are kept.
     collapse_drift : float, optional
@@ -165,9 +178,17 @@ def cyclic(
         by_force,
         values,
         _NONE if load is None else load,
+        _NONE if initial is None else state_of(initial, "cyclic"),
+        _room(column),
         every,
     )
-    call = {name: values, "axial_load": load, "every": every, "collapse_drift": collapse_drift}
+    call = {
+        name: values,
+        "axial_load": load,
+        "initial": named_state(initial),
+        "every": every,
+        "collapse_drift": collapse_drift,
+    }
     return _return(column, run, {"analysis": "static", "driven": name}, call)
 
 
@@ -179,7 +200,7 @@ def time_history(
     ground_acceleration: ArrayLike | GroundMotion | None = None,
     dt: float | None = None,
     method: Method | None = None,
-    initial: Mapping[str, ArrayLike] | None = None,
+    initial: Mapping[str, ArrayLike] | Result | str | os.PathLike[str] | None = None,
     vertical_acceleration: ArrayLike | GroundMotion | None = None,
     axial_load: ArrayLike | None = None,
     events: Literal["step", "located"] | None = None,
@@ -214,11 +235,15 @@ def time_history(
         Runge-Kutta 5(4) with error control. The others are implicit: average acceleration,
         Hilber-Hughes-Taylor, generalised-alpha. The default is "auto" with ground motion; with a
         lateral force alone the method must be named.
-    initial : mapping, optional
-        State at the start: "slip" [m], "rotation" [rad], "opening" [m], and "slip_velocity",
-        "rotation_velocity", "opening_velocity", each of shape (n,). The springs are loaded
-        from zero to this state. Without "opening" the joints start in equilibrium under axial load
-        and weight.
+    initial : mapping, Result or path, optional
+        State at the start. As a mapping: "slip" [m], "rotation" [rad], "opening" [m], and
+        "slip_velocity", "rotation_velocity", "opening_velocity", each of shape (n,). The springs
+        are loaded from zero to this state. Without "opening" the joints start in equilibrium under
+        axial load and weight. As a `Result` of this column, or a file that `Result.save_state` or
+        the executable wrote: the state that it ended in. Times that begin where those of the
+        result end go on with the same bits as one analysis, if the method is the same. After a
+        static path the column starts at rest; its lateral force is let go, unless `force` holds
+        it. What may differ is said at `cyclic`.
     vertical_acceleration : array_like of shape (m,), or GroundMotion, optional
         Vertical acceleration of the ground, upward positive [m/s2].
     axial_load : array_like, shape (m,), optional
@@ -291,17 +316,29 @@ def time_history(
     kept = not _checked(column).opens and _core.switch(openings, "openings")
     settings = _settings(every, kept, **chosen)
     times = _core.vector(time, "time")
+    from_end = initial is not None and not isinstance(initial, Mapping)
     run = _core.time_history(
         column._statement + settings,
         (column.n, column.opens, column.damped, kept),
         times,
         loads,
-        *_initial_state(initial, column),
+        *((_NONE, False) if from_end else _initial_state(initial, column)),
+        state_of(initial, "time_history") if from_end else _NONE,
+        _room(column),
         every,
         lambda note: warnings.warn(note, LongRunWarning, stacklevel=4),
     )
-    call = {"time": times, **loads, "initial": initial, **chosen, "every": every}
+    kept_initial = named_state(initial) if from_end else initial
+    call = {"time": times, **loads, "initial": kept_initial, **chosen, "every": every}
     return _return(column, run, {"analysis": "dynamic"}, call)
+
+
+def _room(column: Column) -> int:
+    """Return how many numbers a state mostly has at most; a longer one is asked for again."""
+    layers = sum(
+        len(spring.layers) for spring in column.joints("flexure") if isinstance(spring, Layered)
+    )
+    return 1000 + 600 * column.unknowns + 40 * layers
 
 
 def _checked(column: Column) -> Column:
@@ -331,7 +368,9 @@ def _initial_state(initial: Mapping[str, ArrayLike] | None, column: Column) -> t
     An empty array means a column at rest.
     """
     if initial is not None and not isinstance(initial, Mapping):
-        raise InputError(f"initial = {initial!r} must be a dict, as {{'slip': [0.001]}}")
+        raise InputError(
+            f"initial = {initial!r} must be a dict, as {{'slip': [0.001]}}, a result, or a path"
+        )
     if not initial:
         return _NONE, False
     n = column.n
@@ -352,11 +391,11 @@ def _initial_state(initial: Mapping[str, ArrayLike] | None, column: Column) -> t
 
 
 def _return(column: Column, run: _core.Run, about: dict[str, str], call: dict[str, Any]) -> Result:
-    rows, summary, error, note = run
+    rows, state, summary, error, note = run
     summary |= about
     summary["kinematics"] = column.kinematics
     given = {name: value for name, value in call.items() if value is not None}
-    result = result_from_rows(rows, column, summary, given)
+    result = result_from_rows(rows, column, summary, given, state)
     if error is not None:
         error.result = result
         raise error

@@ -115,6 +115,10 @@ class Result:
         The loading and the settings that were given, as keywords of `cyclic` or `time_history`.
     case : Case or None
         The case that was run; None if the analysis was called for the column.
+    state : ndarray or None
+        The state at the end, in numbers whose meaning is the program's own: what the springs
+        remember, where the column is and how it moves. ``initial=result`` begins another analysis
+        from it. None after a failure, and where a joint has lost its axial load.
     rest : ndarray, shape (steps, n), or None
         Rotations of layered joints under their first axial load, from which `rotation` counts
         [rad]; zero but for unsymmetric sections. None if the openings were not kept.
@@ -138,6 +142,7 @@ class Result:
     call: dict[str, Any]
     case: Case | None = None
     rest: Array | None = None
+    state: Array | None = None
 
     @property
     def elongation(self) -> Array:
@@ -284,7 +289,9 @@ class Result:
             return float(mixed) if np.ndim(mixed) == 0 else np.array(mixed)
 
         arrays = {
-            name: value for name, value in vars(self).items() if isinstance(value, np.ndarray)
+            name: value
+            for name, value in vars(self).items()
+            if isinstance(value, np.ndarray) and name != "state"
         }
         state: dict[str, Any] = {name: between(values) for name, values in arrays.items()}
         return state | {"energy": between(self.energy), "time": at}
@@ -397,6 +404,21 @@ class Result:
         """
         _views.view(self, "save", path)
 
+    def save_state(self, path: str | os.PathLike[str]) -> None:
+        """Write the state at the end as text, for ``initial=path`` and the executable.
+
+        Parameters
+        ----------
+        path : path
+            File to write, whole or not at all.
+
+        Raises
+        ------
+        InputError
+            If the result has no state, as after a failure.
+        """
+        _views.view(self, "save_state", path)
+
     @property
     def error_estimate(self) -> ErrorEstimate:
         """What is known of the error: the class of the method, and the balance of energy."""
@@ -481,7 +503,11 @@ def _width(column: Column, with_base: bool) -> int:
 
 
 def result_from_rows(
-    rows: Array, column: Column, summary: dict[str, Any], call: dict[str, Any]
+    rows: Array,
+    column: Column,
+    summary: dict[str, Any],
+    call: dict[str, Any],
+    state: Array | None = None,
 ) -> Result:
     """Return the result whose arrays are views of rows of the Fortran part."""
     values: dict[str, Array] = {}
@@ -513,4 +539,5 @@ def result_from_rows(
         top=np.column_stack((values["displacement"], values["top_height"])),
         column=column,
         call=call,
+        state=state,
     )

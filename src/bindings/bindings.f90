@@ -224,9 +224,10 @@ subroutine rbs_quantities(opens, with_base, with_openings, rows, figures)
    figures = figure_names()
 end subroutine rbs_quantities
 
-subroutine rbs_cyclic(statement, nn, number, by_force, m, values, ma, axial_load, width, height, rows, kept, &
-                      nf, figures, method, status, message)
-   ! `axial_load` is empty where the axial load is constant.
+subroutine rbs_cyclic(statement, nn, number, by_force, m, values, ma, axial_load, mb, before, width, height, &
+                      rows, kept, ms, after, ended, nf, figures, method, status, message)
+   ! `axial_load` is empty where the axial load is constant, `before` where the column is virgin. The state at
+   ! the end has `ended` numbers; it is not filled if they are more than `after` has room for.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_bindings_runs, only: into_rows_static, tell_run
@@ -236,11 +237,11 @@ subroutine rbs_cyclic(statement, nn, number, by_force, m, values, ma, axial_load
    use rbs_output_summary, only: summary_type
    implicit none
    character(len=*), intent(in) :: statement
-   integer(c_int), intent(in) :: nn, by_force, m, ma, width, height, nf
-   real(c_double), intent(in) :: number(nn), values(m), axial_load(ma)
-   real(c_double), intent(inout) :: rows(width, height)
+   integer(c_int), intent(in) :: nn, by_force, m, ma, mb, width, height, ms, nf
+   real(c_double), intent(in) :: number(nn), values(m), axial_load(ma), before(mb)
+   real(c_double), intent(inout) :: rows(width, height), after(ms)
    real(c_double), intent(out) :: figures(nf)
-   integer(c_int), intent(out) :: kept, status
+   integer(c_int), intent(out) :: kept, ended, status
    character(len=220), intent(out) :: method
    character(len=8192), intent(out) :: message
    !f2py threadsafe
@@ -250,15 +251,18 @@ subroutine rbs_cyclic(statement, nn, number, by_force, m, values, ma, axial_load
    type(error_type), allocatable :: error
 
    kept = 0
+   ended = 0
    call column_from_statements(statement, number, column, case, error)
    if (.not. allocated(error)) then
-      call into_rows_static(column, case, by_force /= 0, values, axial_load, rows, kept, summary, error)
+      call into_rows_static(column, case, by_force /= 0, values, axial_load, before, rows, kept, after, &
+                            ended, summary, error)
    end if
    call tell_run(column, summary, error, figures, method, status, message)
 end subroutine rbs_cyclic
 
 subroutine rbs_time_history(statement, nn, number, m, time, drives, nd, load, mi, initial, opening_given, &
-                            told, width, height, rows, kept, nf, figures, used, status, message)
+                            mb, before, told, width, height, rows, kept, ms, after, ended, nf, figures, &
+                            used, status, message)
    ! status 3: the array is too small for the rows; `kept` rows are needed, and nothing was solved.
    ! status 4: the run is long, as the message says, and nothing was solved; with `told` it starts.
    use iso_c_binding, only: c_double, c_int
@@ -271,11 +275,11 @@ subroutine rbs_time_history(statement, nn, number, m, time, drives, nd, load, mi
    use rbs_solve_time_loads, only: loads_type
    implicit none
    character(len=*), intent(in) :: statement, drives
-   integer(c_int), intent(in) :: nn, m, nd, mi, opening_given, told, width, height, nf
-   real(c_double), intent(in) :: number(nn), time(m), load(m, nd), initial(mi)
-   real(c_double), intent(inout) :: rows(width, height)
+   integer(c_int), intent(in) :: nn, m, nd, mi, opening_given, mb, told, width, height, ms, nf
+   real(c_double), intent(in) :: number(nn), time(m), load(m, nd), initial(mi), before(mb)
+   real(c_double), intent(inout) :: rows(width, height), after(ms)
    real(c_double), intent(out) :: figures(nf)
-   integer(c_int), intent(out) :: kept, status
+   integer(c_int), intent(out) :: kept, ended, status
    character(len=220), intent(out) :: used
    character(len=8192), intent(out) :: message
    !f2py threadsafe
@@ -288,13 +292,14 @@ subroutine rbs_time_history(statement, nn, number, m, time, drives, nd, load, mi
    logical :: enough
 
    kept = 0
+   ended = 0
    enough = .true.
    call column_from_statements(statement, number, column, case, error)
    if (.not. allocated(error)) call make_loads(loads, drives, time, load, error)
    if (.not. allocated(error)) call choose_method(case, loads, error)
    if (.not. allocated(error)) then
-      call into_rows_dynamic(column, case, time, loads, initial, opening_given /= 0, rows, kept, summary, &
-                             enough, told /= 0, note, error)
+      call into_rows_dynamic(column, case, time, loads, initial, opening_given /= 0, before, rows, kept, &
+                             after, ended, summary, enough, told /= 0, note, error)
    end if
    call tell_run(column, summary, error, figures, used, status, message)
    if (.not. enough) status = little_room

@@ -12,6 +12,7 @@ module rbs_bindings_runs
    use rbs_output_notes, only: rotation_note
    use rbs_output_recorder, only: array_recorder
    use rbs_output_summary, only: summary_type
+   use rbs_solve_end_state, only: end_state
    use rbs_solve_static_run_static, only: run_static
    use rbs_solve_time_effort, only: expected_seconds, long_run_note, patience
    use rbs_solve_time_loads, only: loads_type
@@ -33,8 +34,8 @@ module rbs_bindings_runs
 contains
 
    !> Write the rows of a static path into an array.
-   subroutine into_rows_static(column, case, by_force, target_values, axial_load, rows, count, summary, &
-                               error)
+   subroutine into_rows_static(column, case, by_force, target_values, axial_load, before, rows, count, &
+                               after, ended, summary, error)
       type(column_type), intent(in) :: column
       !> Settings of analysis and output
       type(case_record), intent(inout) :: case
@@ -42,22 +43,52 @@ contains
       real(c_double), intent(in) :: target_values(:)
       !> Axial load at each of them; empty: constant
       real(c_double), intent(in) :: axial_load(:)
+      !> The state to begin in; empty: virgin
+      real(c_double), intent(in) :: before(:)
       real(c_double), intent(inout), target, contiguous :: rows(:, :)
       integer, intent(out) :: count
+      !> The state at the end, and how many numbers it has: 0 if there is none; if it has no room it is not
+      !> filled
+      real(c_double), intent(inout) :: after(:)
+      integer(c_int), intent(out) :: ended
       type(summary_type), intent(out) :: summary
       type(error_type), allocatable, intent(out) :: error
       type(array_recorder) :: recorder
+      type(end_state) :: from, at_end
 
       count = 0
+      ended = 0
       case%analysis%method = 'static'
       call check_settings(case, error)
       if (allocated(error)) return
       recorder%rows => rows
       recorder%openings = case%output%openings .and. .not. column%opens
+      call take_from(before, from)
       call run_static(column, by_force, target_values, case%output%every, case%analysis%collapse_drift, &
-                      recorder, summary, error, axial_load=axial_load)
+                      recorder, summary, error, axial_load=axial_load, before=from, after=at_end)
       count = recorder%count
+      call hand_over(at_end, after, ended)
    end subroutine into_rows_static
+
+   !> A state from the numbers of the user.
+   subroutine take_from(numbers, state)
+      real(c_double), intent(in) :: numbers(:)
+      type(end_state), intent(inout) :: state
+
+      if (size(numbers) == 0) return
+      state%tape%value = numbers
+      state%tape%count = size(numbers)
+   end subroutine take_from
+
+   !> A state into an array of the user, if there is room.
+   subroutine hand_over(state, numbers, count)
+      type(end_state), intent(in) :: state
+      real(c_double), intent(inout) :: numbers(:)
+      integer(c_int), intent(out) :: count
+
+      count = state%tape%count
+      if (count > 0 .and. count <= size(numbers)) numbers(:count) = state%tape%value(:count)
+   end subroutine hand_over
 
    !> Validate the case without its column.
    subroutine check_settings(case, error)
@@ -91,8 +122,8 @@ contains
    end subroutine choose_method
 
    !> Write the rows of a response in time into an array.
-   subroutine into_rows_dynamic(column, case, time, loads, initial_values, opening_given, rows, count, &
-                                summary, enough, told, note, error)
+   subroutine into_rows_dynamic(column, case, time, loads, initial_values, opening_given, before, rows, &
+                                count, after, ended, summary, enough, told, note, error)
       type(column_type), intent(in) :: column
       !> Settings of analysis and output
       type(case_record), intent(in) :: case
@@ -101,9 +132,15 @@ contains
       !> Deformations, then velocities (2 unknowns); empty: at rest
       real(c_double), intent(in) :: initial_values(:)
       logical, intent(in) :: opening_given
+      !> The state to begin in; empty: that of `initial_values`
+      real(c_double), intent(in) :: before(:)
       real(c_double), intent(inout), target, contiguous :: rows(:, :)
       !> Rows kept; if the array is too small, nothing is solved and this is the number of rows needed
       integer, intent(out) :: count
+      !> The state at the end, and how many numbers it has: 0 if there is none; if it has no room it is not
+      !> filled
+      real(c_double), intent(inout) :: after(:)
+      integer(c_int), intent(out) :: ended
       type(summary_type), intent(out) :: summary
       logical, intent(out) :: enough
       !> Whether the user has been told how long the run takes; if not, the note is allocated for a long
@@ -114,8 +151,10 @@ contains
       type(array_recorder) :: recorder
       type(initial_state) :: initial
       type(time_plan) :: plan
+      type(end_state) :: from, at_end
 
       count = 0
+      ended = 0
       enough = .true.
       call plan_dynamic(column, case%analysis, time, loads, plan, error)
       if (allocated(error)) return
@@ -135,9 +174,11 @@ contains
       end if
       recorder%rows => rows
       recorder%openings = case%output%openings .and. .not. column%opens
+      call take_from(before, from)
       call run_dynamic(column, case%analysis, plan, time, loads, initial, case%output%every, recorder, &
-                       summary, error)
+                       summary, error, before=from, after=at_end)
       count = recorder%count
+      call hand_over(at_end, after, ended)
    end subroutine into_rows_dynamic
 
    !> The excitation, from one column of values for each drive.

@@ -6,6 +6,7 @@
 !> residual are the points where the lines meet; beyond `d_u` the force drops to zero.
 module rbs_hysteresis_backbone
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_backbone_parameters, only: backbone_parameters
@@ -32,6 +33,7 @@ module rbs_hysteresis_backbone
       procedure :: meeting
       procedure :: add_corner
       procedure :: end_at_rupture
+      procedure :: walk
    end type backbone_side
 
 contains
@@ -188,5 +190,18 @@ contains
       end do
       meeting = max(start + self%f(self%last)/k, self%d(self%last))
    end function meeting
+
+   !> Present to a tape what deterioration has made of the backbone.
+   pure subroutine walk(self, memory)
+      class(backbone_side), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      call memory%keep(self%strength)
+      call memory%keep(self%softening)
+      call memory%keep_count(self%last, ubound(self%d, 1))
+      call memory%keep(self%d)
+      call memory%keep(self%f)
+      call memory%keep(self%d_y)
+   end subroutine walk
 
 end module rbs_hysteresis_backbone

@@ -6,6 +6,7 @@ module rbs_hysteresis_bilinear
    use rbs_base_error, only: message_list
    use rbs_base_keys, only: key_type, above_zero, not_negative, deformation, stiffness
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_base_text, only: to_text
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_rule, only: rule_type, check_product, places_length, in_shear, in_flexure, &
@@ -40,6 +41,7 @@ module rbs_hysteresis_bilinear
       procedure :: start
       procedure :: next
       procedure :: copy_memory
+      procedure :: walk
    end type bilinear_rule
 
 contains
@@ -120,5 +122,13 @@ contains
       ! There is none: the line says all.
       done = same_type_as(self, other)
    end subroutine copy_memory
+
+   !> There is no memory: the line says all.
+   pure subroutine walk(self, memory)
+      class(bilinear_rule), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      memory%broken = memory%broken .or. .not. self%k > 0.0_wp
+   end subroutine walk
 
 end module rbs_hysteresis_bilinear

@@ -2,6 +2,7 @@
 module rbs_hysteresis_compression
    use rbs_base_keys, only: key_type, above_zero, stiffness
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_rule, only: rule_type, places_length, in_axial, in_layer
    use rbs_hysteresis_segment, only: segment
@@ -24,6 +25,7 @@ module rbs_hysteresis_compression
       procedure :: initial_stiffness
       procedure :: start
       procedure :: next
+      procedure :: walk
    end type compression_rule
 
 contains
@@ -72,5 +74,13 @@ contains
          line = segment(k=self%k, lo=-unbounded, hi=0.0_wp, hi_closed=.true.)
       end if
    end subroutine next
+
+   !> There is no memory: the line says all.
+   pure subroutine walk(self, memory)
+      class(compression_rule), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      memory%broken = memory%broken .or. .not. self%k > 0.0_wp
+   end subroutine walk
 
 end module rbs_hysteresis_compression

@@ -19,6 +19,7 @@ module rbs_hysteresis_concrete
    use rbs_base_keys, only: key_type, above_zero, not_negative, share_below_one, &
                            force, deformation, stiffness
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_base_text, only: to_text
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_rule, only: rule_type, check_product, places_length, in_axial, in_layer
@@ -93,6 +94,7 @@ module rbs_hysteresis_concrete
       procedure :: start
       procedure :: next
       procedure :: copy_memory
+      procedure :: walk
    end type concrete_rule
 
 contains
@@ -524,5 +526,21 @@ contains
          done = .true.
       end select
    end subroutine copy_memory
+
+   !> Present the memory to a tape.
+   pure subroutine walk(self, memory)
+      class(concrete_rule), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      call memory%keep(self%stage)
+      call memory%keep(self%c_u)
+      call memory%keep(self%f_u)
+      call memory%keep(self%c_p)
+      call memory%keep(self%f_largest)
+      call memory%keep(self%gap)
+      call memory%keep(self%widest)
+      call memory%keep(self%c_opened)
+      call memory%keep(self%strength)
+   end subroutine walk
 
 end module rbs_hysteresis_concrete

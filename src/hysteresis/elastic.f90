@@ -2,6 +2,7 @@
 module rbs_hysteresis_elastic
    use rbs_base_keys, only: key_type, above_zero, stiffness
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_hysteresis_rule, only: rule_type, places_length, in_shear, in_flexure, in_axial, in_layer
    use rbs_hysteresis_segment, only: segment
    implicit none
@@ -23,6 +24,7 @@ module rbs_hysteresis_elastic
       procedure :: initial_stiffness
       procedure :: start
       procedure :: next
+      procedure :: walk
    end type elastic_rule
 
 contains
@@ -68,5 +70,13 @@ contains
       line%k = self%k
       line%one_way = 0*direction
    end subroutine next
+
+   !> There is no memory: the line says all.
+   pure subroutine walk(self, memory)
+      class(elastic_rule), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      memory%broken = memory%broken .or. .not. self%k > 0.0_wp
+   end subroutine walk
 
 end module rbs_hysteresis_elastic

@@ -2,6 +2,7 @@
 module rbs_hysteresis_inner_peaks
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_hysteresis_segment, only: segment
    implicit none
    private
@@ -16,6 +17,8 @@ module rbs_hysteresis_inner_peaks
    type :: point
       !> Deformation [m or rad] and force [N or N m]
       real(wp) :: d = 0.0_wp, f = 0.0_wp
+   contains
+      procedure :: walk => walk_point
    end type point
 
    !> A reloading line, with all that is needed to continue on it later.
@@ -28,6 +31,8 @@ module rbs_hysteresis_inner_peaks
       integer(int64) :: target_serial = 0_int64
       !> The crossing of zero force at which it started [m or rad]
       real(wp) :: zero = 0.0_wp
+   contains
+      procedure :: walk => walk_reloading
    end type reloading_line
 
    !> A point where reloading turned back.
@@ -51,6 +56,7 @@ module rbs_hysteresis_inner_peaks
    contains
       procedure :: push
       procedure :: take
+      procedure :: walk => walk_peaks
       procedure :: newest_of_side
       procedure :: place_of
    end type inner_peaks
@@ -137,5 +143,45 @@ contains
       end do
       place = 0
    end function place_of
+
+   pure subroutine walk_point(self, memory)
+      class(point), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      call memory%keep(self%d)
+      call memory%keep(self%f)
+   end subroutine walk_point
+
+   pure subroutine walk_reloading(self, memory)
+      class(reloading_line), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      call self%line%walk(memory)
+      call self%target%walk(memory)
+      call memory%keep(self%target_serial)
+      call memory%keep(self%zero)
+   end subroutine walk_reloading
+
+   !> Present the open peaks to a tape; they come back into the room that is there if it is enough.
+   pure subroutine walk_peaks(self, memory)
+      class(inner_peaks), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+      integer :: i
+
+      call memory%keep_count(self%count, most_peaks)
+      call memory%keep(self%last_serial)
+      if (memory%restoring) then
+         if (allocated(self%peak)) then
+            if (size(self%peak) < self%count) deallocate (self%peak)
+         end if
+         if (.not. allocated(self%peak) .and. self%count > 0) allocate (self%peak(self%count))
+      end if
+      do i = 1, self%count
+         call memory%keep(self%peak(i)%side)
+         call memory%keep(self%peak(i)%serial)
+         call self%peak(i)%at%walk(memory)
+         call self%peak(i)%left%walk(memory)
+      end do
+   end subroutine walk_peaks
 
 end module rbs_hysteresis_inner_peaks

@@ -4,6 +4,7 @@
 module rbs_hysteresis_layer_lines
    use rbs_base_constants, only: unbounded
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_hysteresis_layer_kernels, only: add_lines
    use rbs_hysteresis_rule, only: rule_type
    use rbs_hysteresis_segment, only: segment
@@ -100,6 +101,7 @@ module rbs_hysteresis_layer_lines
       procedure :: forget
       procedure :: remember
       procedure :: go_back
+      procedure :: walk
    end type layer_lines
 
 contains
@@ -287,5 +289,47 @@ contains
       self%number_kept = 0
       self%bank_state = self%kept_state
    end subroutine restore
+
+   !> Present to a tape where the joint stands, and lines and memory of its layers.
+   pure subroutine walk(self, memory)
+      class(layer_lines), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+      integer :: i
+
+      call walk_state(self%bank_state, memory)
+      do i = 1, self%count
+         call self%line(i)%walk(memory)
+         call self%slot(i)%rule%walk(memory)
+         if (memory%restoring) call put_line(self, i)
+      end do
+   end subroutine walk
+
+   pure subroutine walk_state(self, memory)
+      type(bank_state), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      call memory%keep(self%rotation)
+      call memory%keep(self%axial_load)
+      call memory%keep(self%opening)
+      call memory%keep(self%on_end)
+      call memory%keep(self%largest)
+      call memory%keep(self%a)
+      call memory%keep(self%s)
+      call memory%keep(self%q)
+      call memory%keep(self%force_0)
+      call memory%keep(self%moment_0)
+      call memory%keep(self%moment)
+      call memory%keep(self%turn)
+      call memory%keep(self%press)
+      call memory%keep(self%open)
+      call memory%keep(self%ends%ahead)
+      call memory%keep(self%ends%behind)
+      call memory%keep(self%ends%first_ahead)
+      call memory%keep(self%ends%first_behind)
+      call memory%keep(self%ends%one_way)
+      call memory%keep(self%ends%stiffness)
+      call memory%keep(self%failed)
+      call memory%keep(self%failure_way)
+   end subroutine walk_state
 
 end module rbs_hysteresis_layer_lines

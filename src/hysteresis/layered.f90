@@ -13,6 +13,7 @@ module rbs_hysteresis_layered
    use rbs_base_constants, only: unbounded
    use rbs_base_keys, only: key_type
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_hysteresis_layers, only: layer_bank
    use rbs_hysteresis_rule, only: rule_type, places_length, in_flexure
    use rbs_hysteresis_segment, only: segment
@@ -53,6 +54,8 @@ module rbs_hysteresis_layered
       procedure :: mark
       procedure :: restore
       procedure :: forget
+      procedure :: walk
+      procedure :: line_under
    end type layered_rule
 
 contains
@@ -293,5 +296,32 @@ contains
 
       call self%layers%forget()
    end subroutine forget
+
+   !> Present the memory to a tape.
+   pure subroutine walk(self, memory)
+      class(layered_rule), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      call memory%keep(self%rest)
+      call self%layers%walk(memory)
+   end subroutine walk
+
+   !> At a rotation the axial load changes at once; the line of the joint from there on.
+   subroutine line_under(self, rotation, axial_load, work, line)
+      class(layered_rule), intent(inout) :: self
+      !> Present rotation, on the present line
+      real(wp), intent(in) :: rotation, axial_load
+      !> Work of the moment, to be added to [J]
+      real(wp), intent(inout) :: work
+      type(segment), intent(out) :: line
+      real(wp) :: way
+
+      associate (layers => self%layers)
+         way = layers%turn*(rotation + self%rest - layers%rotation)
+         if (abs(way) > 0.0_wp) call layers%place(rotation + self%rest, layers%axial_load, way, 0)
+      end associate
+      call self%go(rotation, axial_load, work)
+      call make_line(self, 1, line)
+   end subroutine line_under
 
 end module rbs_hysteresis_layered

@@ -6,6 +6,7 @@ module rbs_hysteresis_peak_oriented
    use rbs_base_error, only: message_list
    use rbs_base_keys, only: key_type, bound_type, not_negative, share_below_one
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_base_text, only: to_text
    use rbs_hysteresis_backbone_parameters, only: backbone_parameters, backbone_keys, other_side_keys, &
                                                   from_values
@@ -56,6 +57,7 @@ module rbs_hysteresis_peak_oriented
       procedure :: start
       procedure :: next
       procedure :: copy_memory
+      procedure :: walk
       procedure :: hears
       procedure :: hear
    end type peak_oriented_rule
@@ -189,5 +191,13 @@ contains
 
       self%part%heard = work
    end subroutine hear
+
+   !> Present the memory to a tape.
+   pure subroutine walk(self, memory)
+      class(peak_oriented_rule), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      call self%part%walk(memory)
+   end subroutine walk
 
 end module rbs_hysteresis_peak_oriented

@@ -3,6 +3,7 @@ module rbs_hysteresis_rule
    use rbs_base_error, only: message_list
    use rbs_base_keys, only: key_type
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_base_text, only: to_text
    use rbs_hysteresis_segment, only: segment
    implicit none
@@ -30,6 +31,7 @@ module rbs_hysteresis_rule
       procedure :: check
       procedure(start_interface), deferred :: start
       procedure(next_interface), deferred :: next
+      procedure(walk_interface), deferred :: walk
       procedure :: copy_memory
       procedure :: hears
       procedure :: hear
@@ -84,6 +86,15 @@ module rbs_hysteresis_rule
          type(segment), intent(inout) :: line
          integer, intent(in) :: direction
       end subroutine next_interface
+
+      !> Present to a tape everything that `next` changes, the parameters not: what another analysis needs to
+      !> go on.
+      pure subroutine walk_interface(self, memory)
+         import :: rule_type, memory_type
+         implicit none
+         class(rule_type), intent(inout) :: self
+         type(memory_type), intent(inout) :: memory
+      end subroutine walk_interface
    end interface
 
 contains

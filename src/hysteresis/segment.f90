@@ -2,6 +2,7 @@
 module rbs_hysteresis_segment
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unbounded
+   use rbs_base_memory, only: memory_type
    implicit none
    private
 
@@ -28,6 +29,7 @@ module rbs_hysteresis_segment
       procedure :: force
       procedure :: end_toward
       procedure :: outward
+      procedure :: walk
    end type segment
 
 contains
@@ -75,5 +77,20 @@ contains
       end if
       if (one_way) line%one_way = s
    end function outward
+
+   !> Present the line to a tape.
+   pure subroutine walk(self, memory)
+      class(segment), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      call memory%keep(self%d0)
+      call memory%keep(self%f0)
+      call memory%keep(self%k)
+      call memory%keep(self%lo)
+      call memory%keep(self%hi)
+      call memory%keep(self%lo_closed)
+      call memory%keep(self%hi_closed)
+      call memory%keep(self%one_way)
+   end subroutine walk
 
 end module rbs_hysteresis_segment

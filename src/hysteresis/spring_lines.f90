@@ -2,6 +2,7 @@
 module rbs_hysteresis_spring_lines
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_journal, only: journal_type, rule_slot
    use rbs_hysteresis_segment, only: segment
@@ -9,7 +10,7 @@ module rbs_hysteresis_spring_lines
    implicit none
    private
 
-   public :: spring_lines, first_on, last_on
+   public :: spring_lines, first_on, last_on, put_line
 
    !> Most lines within one move. More mean that a rule goes round in lines without length, which is an error
    !> of the rule. The longest correct move closes all open inner loops that a rule remembers.
@@ -60,6 +61,7 @@ module rbs_hysteresis_spring_lines
       procedure :: mark
       procedure :: restore
       procedure :: forget_mark
+      procedure :: walk_lines
    end type spring_lines
 
 contains
@@ -286,6 +288,28 @@ contains
          end do
       end associate
    end subroutine restore
+
+   !> Present to a tape where the springs are, and what their rules remember.
+   subroutine walk_lines(self, memory)
+      class(spring_lines), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+      integer :: i
+
+      call memory%keep(self%d)
+      call memory%keep(self%d0)
+      call memory%keep(self%f0)
+      call memory%keep(self%k)
+      call memory%keep(self%first)
+      call memory%keep(self%last)
+      call memory%keep(self%work)
+      call memory%keep(self%lo_closed)
+      call memory%keep(self%hi_closed)
+      do i = 1, self%count
+         call memory%keep(self%one_way(i))
+         call self%slot(i)%rule%walk(memory)
+      end do
+      self%version = modulo(self%version + 1, huge(1))
+   end subroutine walk_lines
 
    !> The present line of a spring, in the form that its rule takes.
    pure type(segment) function line_of(self, i) result(line)

@@ -2,10 +2,12 @@
 !> load, and are on planes where other springs are on lines.
 module rbs_hysteresis_spring_planes
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_layer_fall, only: layer_fall, find_fall
    use rbs_hysteresis_layered, only: layered_rule
-   use rbs_hysteresis_spring_lines, only: spring_lines
+   use rbs_hysteresis_segment, only: segment
+   use rbs_hysteresis_spring_lines, only: spring_lines, put_line
    use rbs_hysteresis_spring_record, only: spring_record
    implicit none
    private
@@ -31,6 +33,8 @@ module rbs_hysteresis_spring_planes
       procedure :: way_on_plane
       procedure :: put_on_plane
       procedure :: turns_on_plane
+      procedure :: walk_memory
+      procedure :: go_under
    end type spring_planes
 
 contains
@@ -50,16 +54,12 @@ contains
    !> and axial load, towards `press_to`, and have no line of their own that the rotation alone could leave.
    subroutine vary_axial_loads(self)
       class(spring_planes), intent(inout) :: self
-      integer :: j
 
       self%pressed = size(self%layered) > 0
       if (.not. self%pressed) return
       allocate (self%press_to(self%count), self%press_at(self%count), self%centre(self%count), &
                 source=0.0_wp)
-      do j = 1, size(self%layered)
-         call read_plane(self, self%layered(j))
-      end do
-      self%press_to(:) = self%press_at
+      call read_planes(self)
    end subroutine vary_axial_loads
 
    !> The plane that a layered joint is on.
@@ -226,5 +226,58 @@ contains
          call read_plane(self, self%layered(j))
       end do
    end subroutine restore
+
+   !> Present to a tape where the springs are, and what they remember.
+   subroutine walk_memory(self, memory)
+      class(spring_planes), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      call self%walk_lines(memory)
+      if (.not. (self%pressed .and. memory%restoring)) return
+      call read_planes(self)
+   end subroutine walk_memory
+
+   subroutine read_planes(self)
+      type(spring_planes), intent(inout) :: self
+      integer :: j
+
+      do j = 1, size(self%layered)
+         call read_plane(self, self%layered(j))
+      end do
+      self%press_to(:) = self%press_at
+   end subroutine read_planes
+
+   !> Springs that were restored go on under other axial loads: at their rotations layered joints go
+   !> straight to them. Those under the load that they have stay as they are, unless they were on planes and
+   !> are to be on lines.
+   subroutine go_under(self, axial_load, from_planes)
+      class(spring_planes), intent(inout) :: self
+      !> Of the joints, compression positive (n) [N]
+      real(wp), intent(in) :: axial_load(:)
+      !> Whether the axial loads varied before
+      logical, intent(in) :: from_planes
+      type(segment) :: line
+      real(wp) :: load
+      integer :: i, j
+
+      do j = 1, size(self%layered)
+         i = self%layered(j)
+         load = axial_load(i - size(axial_load))
+         select type (rule => self%slot(i)%rule)
+         type is (layered_rule)
+            if (self%pressed) then
+               if (abs(rule%present_load() - load) > 0.0_wp .or. .not. from_planes) then
+                  call rule%line_under(self%d(i), load, self%work(i), line)
+                  call read_plane(self, i)
+               end if
+               self%press_to(i) = load
+            else if (abs(rule%present_load() - load) > 0.0_wp .or. from_planes) then
+               call rule%line_under(self%d(i), load, self%work(i), line)
+               call put_line(self%spring_lines, i, line)
+            end if
+         end select
+      end do
+      self%version = modulo(self%version + 1, huge(1))
+   end subroutine go_under
 
 end module rbs_hysteresis_spring_planes

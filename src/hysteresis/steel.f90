@@ -12,6 +12,7 @@ module rbs_hysteresis_steel
    use rbs_base_error, only: message_list
    use rbs_base_keys, only: key_type, above_zero, not_negative, share_below_one, force, stiffness, deformation
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_base_text, only: to_text
    use rbs_hysteresis_rule, only: rule_type, check_product, places_length, in_shear, in_flexure, &
       in_axial, in_layer
@@ -111,6 +112,7 @@ module rbs_hysteresis_steel
       procedure :: start
       procedure :: next
       procedure :: copy_memory
+      procedure :: walk
    end type steel_rule
 
 contains
@@ -474,5 +476,19 @@ contains
          done = .true.
       end select
    end subroutine copy_memory
+
+   !> Present the memory to a tape.
+   pure subroutine walk(self, memory)
+      class(steel_rule), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      call memory%keep(self%s)
+      call memory%keep(self%rate)
+      call memory%keep(self%d)
+      call memory%keep(self%highest)
+      call memory%keep(self%lowest)
+      call memory%keep(self%worn)
+      call memory%keep(self%wear_rate)
+   end subroutine walk
 
 end module rbs_hysteresis_steel

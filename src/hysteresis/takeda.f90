@@ -17,6 +17,7 @@ module rbs_hysteresis_takeda
    use rbs_base_error, only: message_list
    use rbs_base_keys, only: key_type, word_kind, above_zero, not_negative, deformation, stiffness
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_base_text, only: to_text
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_inner_peaks, only: point, reloading_line, inner_peaks
@@ -87,6 +88,7 @@ module rbs_hysteresis_takeda
       procedure :: start
       procedure :: next
       procedure :: copy_memory
+      procedure :: walk
    end type takeda_rule
 
 contains
@@ -460,5 +462,22 @@ contains
          done = .true.
       end select
    end subroutine copy_memory
+
+   !> Present the memory to a tape.
+   pure subroutine walk(self, memory)
+      class(takeda_rule), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+      integer :: s
+
+      call memory%keep(self%branch)
+      call memory%keep(self%side)
+      call memory%keep(self%cracked)
+      do s = -1, 1, 2
+         call self%peak(s)%walk(memory)
+      end do
+      call memory%keep(self%k_r)
+      call self%aim%walk(memory)
+      call self%open%walk(memory)
+   end subroutine walk
 
 end module rbs_hysteresis_takeda

@@ -1,10 +1,15 @@
 !> What holds for every rule in the registry, with random parameters on random paths (`any_rule`).
 module test_rules
-   use any_rule, only: detours, loops, detour_result, loop_result
+   use, intrinsic :: iso_fortran_env, only: int64
+   use any_rule, only: detours, loops, detour_result, loop_result, random_spring, random_path, yield_of
    use check, only: unit_test, check_true
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_hysteresis_registry, only: rule_names
+   use rbs_hysteresis_spring_record, only: spring_record
+   use rbs_hysteresis_springs, only: spring_array
+   use samples, only: random_type
    implicit none
    private
 
@@ -21,7 +26,8 @@ contains
 
       tests = [unit_test('a detour of size e changes later forces by 10 k e at most', &
                          continuous), &
-               unit_test('property 9: no loop and no path gives energy', dissipative)]
+               unit_test('property 9: no loop and no path gives energy', dissipative), &
+               unit_test('what a spring remembers is all that it goes on by', resumes)]
    end subroutine collect_rules
 
    subroutine continuous(error)
@@ -50,5 +56,66 @@ contains
          call check_true(error, found%loops > 0, trim(rule_names(i))//': some loops close')
       end do
    end subroutine dissipative
+
+   !> A path that is cut anywhere goes on with the same bits in springs that were made anew and given the
+   !> memory: a rule that leaves something out of its `walk` fails.
+   subroutine resumes(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer :: i, history
+
+      do i = 1, size(rule_names)
+         do history = 1, merge(6, 60, rule_names(i) == 'layered')
+            call cut_path(error, trim(rule_names(i)), history)
+         end do
+      end do
+   end subroutine resumes
+
+   !> Two springs of a rule, of which the first may hear of the work of the second.
+   subroutine cut_path(error, rule, history)
+      type(error_type), allocatable, intent(inout) :: error
+      character(len=*), intent(in) :: rule
+      integer, intent(in) :: history
+      type(random_type) :: random
+      type(spring_record) :: spec(2)
+      type(spring_array) :: whole, part
+      type(memory_type) :: memory
+      real(wp) :: d(24, 2), f(24, 2), w(24, 2)
+      integer :: cut, i, j
+      logical :: equal
+
+      random%state = 7919_int64*history + len(rule)
+      do i = 1, 2
+         call random_spring(random, rule, spec(i))
+         call random_path(random, yield_of(spec(i)), d(:, i))
+      end do
+      cut = 1 + int(random%uniform(0.0_wp, 23.0_wp))
+      call whole%create(spec)
+      do j = 1, size(d, 1)
+         call whole%move_all(d(j, :))
+         if (j == cut) then
+            call memory%save()
+            call whole%walk_memory(memory)
+         end if
+         f(j, :) = [whole%force(1), whole%force(2)]
+         w(j, :) = whole%work
+      end do
+      call part%create(spec)
+      call memory%restore()
+      call part%walk_memory(memory)
+      call check_true(error, memory%at == memory%count .and. .not. memory%broken, rule//': all is read')
+      equal = .true.
+      do j = cut, size(d, 1)
+         if (j > cut) call part%move_all(d(j, :))
+         equal = equal .and. all(same([part%force(1), part%force(2)], f(j, :))) .and. &
+                 all(same(part%work, w(j, :)))
+      end do
+      call check_true(error, equal, rule//': forces and works')
+   end subroutine cut_path
+
+   elemental logical function same(a, b)
+      real(wp), intent(in) :: a, b
+
+      same = .not. abs(a - b) > 0.0_wp
+   end function same
 
 end module test_rules

@@ -4,6 +4,7 @@
 !>     K rate = a dF,   a rate = 1        K = diag(k) + K_G
 module rbs_solve_static_few_bodies
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_base_small_systems, only: solve_rows, row_length
    implicit none
    private
@@ -27,6 +28,7 @@ module rbs_solve_static_few_bodies
       procedure :: create
       procedure :: solve
       procedure :: update
+      procedure :: walk
    end type few_bodies
 
 contains
@@ -130,5 +132,17 @@ contains
       self%updates = self%updates + 1
       done = .true.
    end subroutine update
+
+   !> Present to a tape the last solution, from which the next one may follow.
+   pure subroutine walk(self, memory)
+      class(few_bodies), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      if (.not. allocated(self%solved)) return
+      call memory%keep(self%solved)
+      call memory%keep(self%k)
+      call memory%keep(self%changing)
+      call memory%keep(self%updates)
+   end subroutine walk
 
 end module rbs_solve_static_few_bodies

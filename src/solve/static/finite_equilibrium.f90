@@ -51,6 +51,7 @@ module rbs_solve_static_finite_equilibrium
       procedure :: find_rates
       procedure :: settle
       procedure :: remember
+      procedure :: find_balance
    end type finite_equilibrium
 
 contains
@@ -126,6 +127,24 @@ contains
       point%q = point%q + self%joints
       point%force = point%force + more_force
    end subroutine settle
+
+   !> What takes a point to equilibrium at a displacement of the top.
+   subroutine find_balance(self, springs, point, displacement, correction, more_force, regular)
+      class(finite_equilibrium), intent(inout) :: self
+      type(spring_array), intent(in) :: springs
+      type(path_point), intent(inout) :: point
+      real(wp), intent(in) :: displacement
+      real(wp), intent(out) :: correction(:), more_force
+      logical, intent(out) :: regular
+      logical :: by_force
+
+      by_force = self%by_force
+      self%by_force = .false.
+      call find_correction(self, springs, point, 0, displacement, more_force, regular)
+      self%by_force = by_force
+      correction = self%joints
+      if (regular) regular = reasonable(self)
+   end subroutine find_balance
 
    !> Loads less springs and the tangent, and the displacement of the top.
    subroutine see(self, springs, point)

@@ -4,6 +4,7 @@ module rbs_solve_static_path
    use rbs_base_constants, only: unset, unset_integer
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, joint_name, small
    use rbs_column_top, only: largest_turn
@@ -17,7 +18,8 @@ module rbs_solve_static_path
    implicit none
    private
 
-   public :: static_path, kept_rows, is_on_end, top_height, describe_state, name_spring, on_the_end
+   public :: static_path, kept_rows, is_on_end, top_height, describe_state, name_spring, on_the_end, &
+             walk_path
 
    !> A spring this close to an end of its line, relative to the end, is on it. Not a tolerance of the
    !> solution: where a cycle returns to its peak, round-off would otherwise decide between outer and inner
@@ -47,12 +49,19 @@ module rbs_solve_static_path
       !> Energy of springs and axial load at the start [J], and the steps that were cut
       real(wp) :: at_begin = 0.0_wp
       integer :: cuts = 0
+      !> Axial load at the top without what follows the force [N], and energy that was damped before [J]
+      real(wp) :: load_now = 0.0_wp, damped_before = 0.0_wp
    contains
+      procedure :: prepare
       procedure :: begin
+      procedure :: compress
       procedure :: follow
+      procedure(walk_interface), deferred :: walk
       procedure(advance_interface), deferred :: advance
       procedure(solve_line_interface), deferred :: solve_line
       procedure(measure_interface), deferred :: measure
+      procedure(balance_interface), deferred :: find_balance
+      procedure(stand_interface), deferred :: stand_still
    end type static_path
 
    abstract interface
@@ -83,6 +92,32 @@ module rbs_solve_static_path
          !> Potential of axial load and weight [J], and height of the top above the ground [m]
          real(wp), intent(out) :: axial_work, height
       end subroutine measure_interface
+
+      !> What takes the springs, where they are and on their present lines, to equilibrium at the
+      !> displacement of the top.
+      subroutine balance_interface(self, correction, force, found)
+         import :: static_path, wp
+         implicit none
+         class(static_path), intent(inout) :: self
+         !> Of the deformations (unknowns), and of the lateral force [N]
+         real(wp), intent(out) :: correction(:), force
+         logical, intent(out) :: found
+      end subroutine balance_interface
+
+      !> The springs stand where the path begins: take their place as the present point.
+      subroutine stand_interface(self)
+         import :: static_path
+         implicit none
+         class(static_path), intent(inout) :: self
+      end subroutine stand_interface
+
+      !> Present to a tape all that the next target depends on, the springs excepted.
+      subroutine walk_interface(self, memory)
+         import :: static_path, memory_type
+         implicit none
+         class(static_path), intent(inout) :: self
+         type(memory_type), intent(inout) :: memory
+      end subroutine walk_interface
    end interface
 
 contains
@@ -99,15 +134,13 @@ contains
       end if
    end function kept_rows
 
-   !> The straight column under its axial load.
-   subroutine begin(self, column, by_force, moving, error)
+   !> The column as it is given, its springs without load.
+   subroutine prepare(self, column, by_force, moving)
       class(static_path), intent(inout) :: self
       type(column_type), intent(in) :: column
       logical, intent(in) :: by_force
       !> Number of springs that can move
       integer, intent(in) :: moving
-      type(error_type), allocatable, intent(out) :: error
-      real(wp) :: axial_work, height
 
       self%column = column
       self%by_force = by_force
@@ -115,10 +148,42 @@ contains
       call self%springs%create(column%spring)
       allocate (self%rate(column%unknowns), source=0.0_wp)
       allocate (self%changed(column%unknowns), source=0)
-      if (column%opens) call compress(self, error)
+   end subroutine prepare
+
+   !> The straight column under its axial load.
+   subroutine begin(self, column, by_force, moving, varies, error)
+      class(static_path), intent(inout) :: self
+      type(column_type), intent(in) :: column
+      logical, intent(in) :: by_force
+      !> Number of springs that can move
+      integer, intent(in) :: moving
+      !> Whether the axial loads of layered joints vary
+      logical, intent(in) :: varies
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: axial_work, height
+
+      call self%prepare(column, by_force, moving)
+      if (column%opens) call self%compress(error)
+      if (allocated(error)) return
+      if (varies) call self%springs%vary_axial_loads()
+      self%load_now = column%axial_load
       call self%measure(axial_work, height)
       self%at_begin = sum(self%springs%work) + axial_work
    end subroutine begin
+
+   !> Present to a tape what every path remembers; solvers add what is their own.
+   subroutine walk_path(self, memory)
+      class(static_path), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      call memory%keep(self%displacement)
+      call memory%keep(self%force)
+      call memory%keep(self%work)
+      call memory%keep(self%control)
+      call memory%keep(self%direction)
+      call memory%keep(self%rate)
+      call memory%keep(self%load_now)
+   end subroutine walk_path
 
    !> The axial springs follow their lines to the forces of load and weight.
    subroutine compress(self, error)
@@ -241,9 +306,10 @@ contains
          row(row_input) = self%work
          row(row_kinetic) = 0.0_wp
          row(row_spring) = sum(springs%work)
-         row(row_damping) = 0.0_wp
+         row(row_damping) = self%damped_before
          call self%measure(row(row_axial), row(row_top))
-         row(row_residual) = row(row_input) + self%at_begin - row(row_spring) - row(row_axial)
+         row(row_residual) = row(row_input) + self%at_begin - row(row_spring) - row(row_damping) &
+                             - row(row_axial)
          row(row_joints:row_joints + m - 1) = springs%d
          row(row_joints + m:row_joints + 2*m - 1) = springs%f0 + springs%k*(springs%d - springs%d0)
          call springs%fill_openings(self%column%n, row(row_joints + 2*m:))

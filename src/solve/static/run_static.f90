@@ -8,6 +8,7 @@ module rbs_solve_static_run_static
    use rbs_output_recorder, only: recorder_type
    use rbs_output_summary, only: summary_type
    use rbs_solve_check_values, only: check_values
+   use rbs_solve_end_state, only: end_state
    use rbs_solve_static_trace, only: trace
    use rbs_solve_static_trace_finite, only: trace_finite
    use rbs_solve_static_trace_interaction, only: trace_interaction
@@ -20,7 +21,7 @@ contains
 
    !> Static path through displacements of the top or lateral forces.
    subroutine run_static(column, by_force, target, every, collapse_drift, recorder, summary, error, &
-                         progress, axial_load)
+                         progress, axial_load, before, after)
       type(column_type), intent(in) :: column
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
@@ -36,6 +37,8 @@ contains
       class(observer_type), intent(inout), optional :: progress
       !> Axial load at the top at each target (m), instead of the constant one; empty: constant [N]
       real(wp), intent(in), optional :: axial_load(:)
+      !> The state to begin in, and the one at the end; empty where there is none
+      type(end_state), intent(inout), optional :: before, after
       real(wp) :: load(size(target))
       logical :: varies
 
@@ -61,12 +64,13 @@ contains
       if (allocated(error)) return
       if (varies) then
          call trace_interaction(column, by_force, target, load, every, collapse_drift, recorder, summary, &
-                                error, progress)
+                                error, progress, before, after)
       else if (column%kinematics == finite) then
          call trace_finite(column, by_force, target, every, collapse_drift, recorder, summary, error, &
-                           progress)
+                           progress, before, after)
       else
-         call trace(column, by_force, target, every, collapse_drift, recorder, summary, error, progress)
+         call trace(column, by_force, target, every, collapse_drift, recorder, summary, error, progress, &
+                    before, after)
       end if
       ! Without inertia the ground holds what drives the column.
       summary%peak_base_shear = summary%peak_force

@@ -4,16 +4,19 @@
 module rbs_solve_static_trace
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_base_text, only: to_text
    use rbs_column_axial, only: axial_energy
    use rbs_column_column, only: column_type
    use rbs_output_observer, only: observer_type
    use rbs_output_recorder, only: recorder_type
    use rbs_output_summary, only: summary_type
+   use rbs_solve_end_state, only: end_state
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_path, only: static_path, describe_state, kept_rows, is_on_end, on_the_end, &
-                                    top_height
+                                    top_height, walk_path
+   use rbs_solve_static_resume, only: begin_path, end_path
    implicit none
    private
 
@@ -39,12 +42,16 @@ module rbs_solve_static_trace
       procedure :: advance
       procedure :: solve_line
       procedure :: measure
+      procedure :: find_balance
+      procedure :: stand_still
+      procedure :: walk
    end type straight_path
 
 contains
 
-   !> Follow the targets one after the other from the virgin state.
-   subroutine trace(column, by_force, target, every, collapse_drift, recorder, summary, error, progress)
+   !> Follow the targets one after the other.
+   subroutine trace(column, by_force, target, every, collapse_drift, recorder, summary, error, progress, &
+                    before, after)
       type(column_type), intent(in) :: column
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
@@ -60,15 +67,19 @@ contains
       type(error_type), allocatable, intent(out) :: error
       !> Told now and then how far the path is
       class(observer_type), intent(inout), optional :: progress
+      !> The state to begin in, and the one at the end
+      type(end_state), intent(inout), optional :: before, after
       type(straight_path) :: path
       integer :: m
 
       m = 2*column%n
       call path%equilibrium%create(column)
       allocate (path%q(m), path%residual(m), path%correction(m), path%f(m), source=0.0_wp)
-      call path%begin(column, by_force, m, error)
+      call begin_path(path, column, by_force, m, .false., error, before)
       if (allocated(error)) return
       call path%follow(target, every, collapse_drift, recorder, summary, error, progress)
+      if (allocated(error) .or. .not. present(after)) return
+      if (summary%lost_joint == 0) call end_path(path, .false., after)
    end subroutine trace
 
    !> Go on to a target.
@@ -202,6 +213,50 @@ contains
       if (self%direction /= 0 .and. i > 0) call self%springs%arrive(i, merge(1, -1, self%rate(i) > 0.0_wp))
       self%direction = 0
    end subroutine end_line
+
+   !> What takes the springs to equilibrium at the displacement of the top.
+   subroutine find_balance(self, correction, force, found)
+      class(straight_path), intent(inout) :: self
+      real(wp), intent(out) :: correction(:), force
+      logical, intent(out) :: found
+      real(wp) :: force_rate
+      integer :: m
+
+      m = self%moving
+      correction = 0.0_wp
+      force = 0.0_wp
+      associate (springs => self%springs)
+         self%f = springs%f0(:m) + springs%k(:m)*(springs%d(:m) - springs%d0(:m))
+         call self%equilibrium%residual(springs%d(:m), self%f, self%force, self%residual)
+         call self%equilibrium%follow_displacement(springs%k(:m), self%residual, self%displacement &
+                                                   - sum(self%equilibrium%arm*springs%d(:m)), self%rate(:m), &
+                                                   force_rate, correction(:m), force, found)
+      end associate
+   end subroutine find_balance
+
+   !> Nothing but the springs tells where the path is.
+   subroutine stand_still(self)
+      class(straight_path), intent(inout) :: self
+
+      self%direction = 0
+   end subroutine stand_still
+
+   !> Present to a tape the line that the column is on.
+   subroutine walk(self, memory)
+      class(straight_path), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      call walk_path(self, memory)
+      call memory%keep(self%start)
+      call memory%keep(self%q)
+      call memory%keep(self%force_start)
+      call memory%keep(self%force_rate)
+      call memory%keep(self%displacement_start)
+      call memory%keep(self%displacement_rate)
+      call memory%keep(self%finish)
+      call memory%keep(self%ends)
+      call self%equilibrium%few%walk(memory)
+   end subroutine walk
 
    !> The second-order work of the axial load and its work on the openings; the height of the top, with
    !> `pdelta` to second order, as the axial load sees it.

@@ -7,6 +7,7 @@
 module rbs_solve_static_trace_finite
    use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
    use rbs_column_finite, only: finite_potential, finite_top
@@ -14,10 +15,12 @@ module rbs_solve_static_trace_finite
    use rbs_output_observer, only: observer_type
    use rbs_output_recorder, only: recorder_type
    use rbs_output_summary, only: summary_type
+   use rbs_solve_end_state, only: end_state
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_curve, only: clean, first_ahead, most_turn
    use rbs_solve_static_finite_search, only: turning_search
-   use rbs_solve_static_path, only: describe_state, name_spring, is_on_end, on_the_end
+   use rbs_solve_static_path, only: describe_state, name_spring, is_on_end, on_the_end, walk_path
+   use rbs_solve_static_resume, only: begin_path, end_path
    implicit none
    private
 
@@ -45,13 +48,16 @@ module rbs_solve_static_trace_finite
       procedure :: advance
       procedure :: solve_line
       procedure :: measure
+      procedure :: find_balance
+      procedure :: stand_still
+      procedure :: walk
    end type turning_path
 
 contains
 
-   !> Follow the targets one after the other from the virgin state.
+   !> Follow the targets one after the other.
    subroutine trace_finite(column, by_force, target, every, collapse_drift, recorder, summary, error, &
-                           progress)
+                           progress, before, after)
       type(column_type), intent(in) :: column
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
@@ -67,6 +73,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
       !> Told now and then how far the path is
       class(observer_type), intent(inout), optional :: progress
+      !> The state to begin in, and the one at the end
+      type(end_state), intent(inout), optional :: before, after
       type(turning_path) :: path
       integer :: m
 
@@ -79,10 +87,13 @@ contains
       m = column%unknowns
       call path%equilibrium%create(column, by_force)
       allocate (path%here%q(m), path%here%rate(m), path%there%q(m), path%there%rate(m), source=0.0_wp)
-      call path%begin(column, by_force, m, error)
+      path%here%q = 0.0_wp
+      call begin_path(path, column, by_force, m, .false., error, before)
       if (allocated(error)) return
       path%here%q = path%springs%d
       call path%follow(target, every, collapse_drift, recorder, summary, error, progress)
+      if (allocated(error) .or. .not. present(after)) return
+      if (summary%lost_joint == 0) call end_path(path, .false., after)
    end subroutine trace_finite
 
    !> Go on to a target.
@@ -287,6 +298,48 @@ contains
                           'follow that, use a dynamic analysis')
       end if
    end subroutine report_no_way
+
+   !> What takes the springs to equilibrium at the displacement of the top.
+   subroutine find_balance(self, correction, force, found)
+      class(turning_path), intent(inout) :: self
+      real(wp), intent(out) :: correction(:), force
+      logical, intent(out) :: found
+
+      self%here%q = self%springs%d
+      self%here%force = self%force
+      call self%equilibrium%find_balance(self%springs, self%here, self%displacement, correction, force, found)
+   end subroutine find_balance
+
+   !> The springs stand where the path begins.
+   subroutine stand_still(self)
+      class(turning_path), intent(inout) :: self
+
+      self%direction = 0
+      self%here%q = self%springs%d
+      self%here%force = self%force
+      self%here%displacement = self%displacement
+      self%extent = abs(merge(self%force, self%displacement, self%by_force))
+      call self%equilibrium%remember(self%here%q)
+   end subroutine stand_still
+
+   !> Present to a tape where the path is and how far it may stride.
+   subroutine walk(self, memory)
+      class(turning_path), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      call walk_path(self, memory)
+      call memory%keep(self%stride)
+      call memory%keep(self%target)
+      call memory%keep(self%extent)
+      call memory%keep(self%most_work)
+      call memory%keep(self%here%q)
+      call memory%keep(self%here%rate)
+      call memory%keep(self%here%force)
+      call memory%keep(self%here%displacement)
+      call memory%keep(self%here%force_rate)
+      call memory%keep(self%here%displacement_rate)
+      call memory%keep(self%equilibrium%scale)
+   end subroutine walk
 
    pure subroutine measure(self, axial_work, height)
       class(turning_path), intent(in) :: self

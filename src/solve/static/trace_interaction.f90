@@ -7,19 +7,22 @@
 module rbs_solve_static_trace_interaction
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, finite
    use rbs_column_top, only: top_position, top_displacement, largest_turn
    use rbs_output_observer, only: observer_type
    use rbs_output_recorder, only: recorder_type
    use rbs_output_summary, only: summary_type
+   use rbs_solve_end_state, only: end_state
    use rbs_solve_static_corner, only: report_no_line
    use rbs_solve_static_curve, only: most_turn, most_bend
-   use rbs_solve_static_path, only: static_path, describe_state, name_spring, is_on_end
+   use rbs_solve_static_path, only: static_path, describe_state, name_spring, is_on_end, walk_path
    use rbs_solve_static_pressed_balance, only: pressed_balance, pressed_point
    use rbs_solve_static_pressed_corner, only: find_lines
    use rbs_solve_static_pressed_finite, only: pressed_finite
    use rbs_solve_static_pressed_search, only: find_end, find_point, find_turn, hides_event, no_way
+   use rbs_solve_static_resume, only: begin_path, end_path
    implicit none
    private
 
@@ -39,9 +42,8 @@ module rbs_solve_static_trace_interaction
       class(pressed_balance), allocatable :: balance
       !> Axial load at the top at each target (m) [N]
       real(wp), allocatable :: load(:)
-      !> Present target, axial load reached without the share of the force [N]
+      !> Present target
       integer :: row = 0
-      real(wp) :: load_now = 0.0_wp
       !> Work of the axial forces, that of the openings included [J]
       real(wp) :: axial_work = 0.0_wp
       type(pressed_point) :: at
@@ -49,13 +51,16 @@ module rbs_solve_static_trace_interaction
       procedure :: advance
       procedure :: solve_line
       procedure :: measure
+      procedure :: find_balance
+      procedure :: stand_still
+      procedure :: walk
    end type pressed_path
 
 contains
 
    !> Follow the targets one after the other from the virgin state under the first axial load.
    subroutine trace_interaction(column, by_force, target, load, every, collapse_drift, recorder, summary, &
-                                error, progress)
+                                error, progress, before, after)
       type(column_type), intent(in) :: column
       logical, intent(in) :: by_force
       !> Targets, and axial loads at the top there (m) [N]
@@ -66,6 +71,8 @@ contains
       type(summary_type), intent(out) :: summary
       type(error_type), allocatable, intent(out) :: error
       class(observer_type), intent(inout), optional :: progress
+      !> The state to begin in, under its axial load, and the one at the end
+      type(end_state), intent(inout), optional :: before, after
       type(pressed_path) :: path
       type(column_type) :: first
       integer :: m, n
@@ -73,7 +80,6 @@ contains
       n = column%n
       m = column%unknowns
       path%load = load
-      path%load_now = load(1)
       if (column%kinematics == finite) then
          allocate (pressed_finite :: path%balance)
       else
@@ -83,11 +89,13 @@ contains
       first = column
       first%compression = load(1) + path%balance%weight_above
       first%spring(n + 1:2*n)%axial_load = first%compression
-      call path%begin(first, by_force, m, error)
-      if (allocated(error)) return
-      call path%springs%vary_axial_loads()
+      first%axial_load = load(1)
       allocate (path%at%q(m), path%at%rate(m), path%at%press(n), path%at%press_rate(n), source=0.0_wp)
+      call begin_path(path, first, by_force, m, .true., error, before)
+      if (allocated(error)) return
       call path%follow(target, every, collapse_drift, recorder, summary, error, progress)
+      if (allocated(error) .or. .not. present(after)) return
+      if (summary%lost_joint == 0) call end_path(path, .true., after)
    end subroutine trace_interaction
 
    !> Go on to a target and to the axial load there.
@@ -313,6 +321,58 @@ contains
          end do
       end associate
    end subroutine move_springs
+
+   !> What takes the springs to equilibrium at the displacement of the top, under the present axial load.
+   subroutine find_balance(self, correction, force, found)
+      class(pressed_path), intent(inout) :: self
+      real(wp), intent(out) :: correction(:), force
+      logical, intent(out) :: found
+      integer :: i, n
+      logical :: by_force
+
+      n = self%column%n
+      by_force = self%balance%by_force
+      self%balance%by_force = .false.
+      self%balance%begin_way = [self%displacement, self%load_now]
+      self%balance%way = 0.0_wp
+      self%at%share = 0.0_wp
+      call stand(self)
+      call self%balance%solve_point(self%springs, self%at, correction, force, found)
+      self%balance%by_force = by_force
+      if (.not. self%springs%pressed) return
+      do i = 1, size(self%springs%layered)
+         associate (place => self%springs%layered(i))
+            self%springs%press_to(place) = self%at%press(place - n)
+         end associate
+      end do
+   end subroutine find_balance
+
+   !> The springs stand where the path begins.
+   subroutine stand_still(self)
+      class(pressed_path), intent(inout) :: self
+
+      self%direction = 0
+      call stand(self)
+   end subroutine stand_still
+
+   !> Present to a tape where the path is.
+   subroutine walk(self, memory)
+      class(pressed_path), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      call walk_path(self, memory)
+      call memory%keep(self%axial_work)
+      call memory%keep(self%at%q)
+      call memory%keep(self%at%rate)
+      call memory%keep(self%at%press)
+      call memory%keep(self%at%press_rate)
+      call memory%keep(self%at%share)
+      call memory%keep(self%at%force)
+      call memory%keep(self%at%force_rate)
+      call memory%keep(self%at%displacement)
+      call memory%keep(self%at%displacement_rate)
+      call memory%keep(self%at%axial_power)
+   end subroutine walk
 
    !> The values of a row that do not follow from the springs.
    pure subroutine measure(self, axial_work, height)

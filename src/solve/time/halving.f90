@@ -2,6 +2,7 @@
 module rbs_solve_time_halving
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_base_text, only: to_text
    use rbs_column_column, only: joint_name
    use rbs_solve_time_state, only: state_type, stepper_type
@@ -17,8 +18,10 @@ module rbs_solve_time_halving
       logical, private :: ready = .false.
    contains
       procedure :: advance
+      procedure :: resume
       procedure(prepare_interface), deferred :: prepare
       procedure(take_step_interface), deferred :: take_step
+      procedure(walk_interface), deferred :: walk
    end type halving_stepper
 
    abstract interface
@@ -42,6 +45,14 @@ module rbs_solve_time_halving
          !> The spring that changed its line last, 0 for none
          integer, intent(out) :: busiest
       end subroutine take_step_interface
+
+      !> Present to a tape what the bodies do at the start of a step.
+      subroutine walk_interface(self, memory)
+         import :: halving_stepper, memory_type
+         implicit none
+         class(halving_stepper), intent(inout) :: self
+         type(memory_type), intent(inout) :: memory
+      end subroutine walk_interface
    end interface
 
 contains
@@ -69,6 +80,17 @@ contains
       end if
       if (.not. allocated(error)) state%time = finish
    end subroutine advance
+
+   !> Accelerations and forces at the start of a step are those that the step before ended with.
+   subroutine resume(self, state, memory)
+      class(halving_stepper), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      type(memory_type), intent(inout) :: memory
+
+      if (.not. self%ready) call self%prepare(state)
+      self%ready = .true.
+      call self%walk(memory)
+   end subroutine resume
 
    !> Take a step, or its two halves if it does not converge.
    recursive subroutine move_on(self, state, h, cuts, error)

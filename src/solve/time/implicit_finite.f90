@@ -2,6 +2,7 @@
 !> (`rbs_solve_time_finite_step`), a number of operations a step in proportion to n.
 module rbs_solve_time_implicit_finite
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_solve_time_finite_step, only: finite_step
    use rbs_solve_time_halving, only: halving_stepper
    use rbs_solve_time_state, only: state_type, in_bounds, out_of_bounds
@@ -30,6 +31,7 @@ module rbs_solve_time_implicit_finite
    contains
       procedure :: prepare
       procedure :: take_step
+      procedure :: walk
    end type finite_stepper
 
 contains
@@ -178,5 +180,13 @@ contains
       end if
       call self%step%find_residual(state, h, load, marked, size_now)
    end subroutine try
+
+   !> Present to a tape what the bodies do at the start of a step.
+   subroutine walk(self, memory)
+      class(finite_stepper), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      call self%step%walk(memory)
+   end subroutine walk
 
 end module rbs_solve_time_implicit_finite

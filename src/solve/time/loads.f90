@@ -27,6 +27,7 @@ module rbs_solve_time_loads
       procedure :: at_time
       procedure :: corner_after
       procedure :: slope_after
+      procedure :: find_largest
    end type loads_type
 
 contains
@@ -88,5 +89,17 @@ contains
       if (self%acts(vertical)) corner = min(corner, self%vertical%corner_after(t))
       if (self%acts(axial)) corner = min(corner, self%axial%corner_after(t))
    end function corner_after
+
+   !> Largest values of the loads, in size.
+   pure subroutine find_largest(self, largest)
+      class(loads_type), intent(in) :: self
+      real(wp), intent(out) :: largest(4)
+
+      largest = 0.0_wp
+      if (self%acts(lateral)) largest(lateral) = maxval(abs(self%force%value))
+      if (self%acts(horizontal)) largest(horizontal) = maxval(abs(self%ground%value))
+      if (self%acts(vertical)) largest(vertical) = maxval(abs(self%vertical%value))
+      if (self%acts(axial)) largest(axial) = maxval(abs(self%axial%value))
+   end subroutine find_largest
 
 end module rbs_solve_time_loads

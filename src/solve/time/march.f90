@@ -4,18 +4,19 @@ module rbs_solve_time_march
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type, joint_name
+   use rbs_column_column, only: column_type
    use rbs_column_energy, only: kinetic_energy, potential_energy
    use rbs_column_top, only: top_position, top_displacement, largest_turn
    use rbs_hysteresis_layer_fall, only: layer_fall
-   use rbs_hysteresis_spring_record, only: spring_record
    use rbs_output_observer, only: observer_type
    use rbs_output_recorder, only: recorder_type
    use rbs_output_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
                               row_spring, row_damping, row_axial, row_residual, row_top, row_joints
    use rbs_output_summary, only: summary_type
-   use rbs_solve_time_loads, only: loads_type, lateral, vertical, axial
-   use rbs_solve_time_plan, only: time_plan
+   use rbs_solve_end_state, only: end_state, standing_type
+   use rbs_solve_time_loads, only: loads_type, lateral
+   use rbs_solve_time_plan, only: time_plan, same_step
+   use rbs_solve_time_start, only: initial_state, start_state, resume_state, resume_steps, keep_state
    use rbs_solve_time_state, only: state_type, stepper_type, out_of_bounds
    use rbs_base_check, only: is_given
    implicit none
@@ -23,25 +24,13 @@ module rbs_solve_time_march
 
    public :: initial_state, march, start_state, report_state, step_of
 
-   !> Share of a step by which those of equal length may differ.
-   real(wp), parameter :: same_step = 1.0e-10_wp
-
-   !> State at the start; arrays that are not allocated are zero.
-   type :: initial_state
-      !> Deformations [m, rad] and velocities [m/s, rad/s] (unknowns); the springs reach them from zero
-      real(wp), allocatable :: deformation(:), velocity(:)
-      !> Whether the openings are among them; else the axial springs begin in equilibrium with axial load
-      !> and weight
-      logical :: opening_given = .false.
-   end type initial_state
-
 contains
 
    !> March through the plan.
-   subroutine march(column, plan, stepper, time, loads, initial, collapse_drift, every, recorder, summary, &
-                    error, progress)
+   subroutine march(column, planned, stepper, time, loads, initial, collapse_drift, every, recorder, &
+                    summary, error, progress, before, after, method, setting)
       type(column_type), intent(in) :: column
-      type(time_plan), intent(in) :: plan
+      type(time_plan), intent(in) :: planned
       !> The method
       class(stepper_type), intent(inout) :: stepper
       !> Times of the loading (m) [s]
@@ -58,6 +47,13 @@ contains
       type(error_type), allocatable, intent(out) :: error
       !> Told now and then how far the run is
       class(observer_type), intent(inout), optional :: progress
+      !> The state to begin in, and the one at the end; empty where there is none
+      type(end_state), intent(inout), optional :: before, after
+      !> What the method is and its setting: one that goes on with the same remembers its steps
+      integer, intent(in), optional :: method
+      real(wp), intent(in), optional :: setting
+      type(standing_type) :: standing
+      type(time_plan) :: plan
       type(state_type) :: state
       type(layer_fall) :: fall
       real(wp), allocatable :: row(:)
@@ -65,7 +61,15 @@ contains
       integer :: interval, part, parts, step, next_row
       logical :: ends
 
-      call start_state(state, column, loads, initial, plan%begin, error)
+      plan = planned
+      if (present(before)) then
+         if (before%is_given()) then
+            call resume_state(state, column, loads, before, plan, standing, error)
+            if (allocated(error)) return
+            call resume_steps(state, stepper, before, standing, method, setting)
+         end if
+      end if
+      if (standing%kind == 0) call start_state(state, column, loads, initial, plan%begin, error)
       if (allocated(error)) return
       allocate (row(row_size(column%unknowns, column%damped, merge(column%n, 0, recorder%openings))))
       furthest = huge(1.0_wp)
@@ -102,8 +106,8 @@ contains
             if (part == parts) state%clock = finish
             summary%lost_joint = max(state%springs%lost_joint() - column%n, 0)
             ! A joint may have lost its axial load within the step.
-            if (summary%lost_joint > 0) state%clock = min(state%clock, plan%begin + state%time)
-            state%time = state%clock - plan%begin
+            if (summary%lost_joint > 0) state%clock = min(state%clock, state%begin + state%time)
+            state%time = state%clock - state%begin
             displacement = top_displacement(state%motion%column, state%q)
             call summary%see_peak(displacement, state%load(lateral))
             call summary%see_turn(largest_turn(state%motion%column, state%q))
@@ -119,7 +123,13 @@ contains
                summary%cut_steps = stepper%cut_steps
                if (stepper%longest_step > 0.0_wp) summary%time_step = stepper%longest_step
                call keep(state, row, recorder, summary, error)
-               if (allocated(error) .or. ends) return
+               if (allocated(error)) return
+               if (ends .or. step == plan%steps) then
+                  if (present(after) .and. summary%lost_joint == 0) then
+                     call keep_state(state, stepper, plan, step, row(row_residual), method, setting, after)
+                  end if
+                  if (ends) return
+               end if
                if (every /= unset_integer) next_row = min(step + every, plan%steps)
             end if
             if (iand(step, 8191) == 0 .and. present(progress)) then
@@ -139,7 +149,7 @@ contains
 
       if (plan%free) then
          parts = 1
-         finish = min(plan%begin + interval*plan%dt, plan%finish)
+         finish = min(plan%origin + (plan%offset + interval)*plan%dt, plan%finish)
          if (interval == plan%intervals) finish = plan%finish
       else
          parts = plan%parts(interval)
@@ -156,85 +166,6 @@ contains
       step_of = h
       if (abs(h - plan%dt) <= same_step*plan%dt) step_of = plan%dt
    end function step_of
-
-   subroutine start_state(state, column, loads, initial, begin, error)
-      type(state_type), intent(out) :: state
-      type(column_type), intent(in) :: column
-      type(loads_type), intent(in) :: loads
-      type(initial_state), intent(in) :: initial
-      real(wp), intent(in) :: begin
-      type(error_type), allocatable, intent(out) :: error
-      integer :: m
-
-      m = column%unknowns
-      state%loads = loads
-      call state%loads%find_acting()
-      call state%loads%set_begin(begin)
-      call state%motion%create(column, state%loads%acts, error)
-      if (allocated(error)) return
-      state%begin = begin
-      state%clock = begin
-      ! The history is that of the whole axial load; the motion takes what it adds to the constant one.
-      if (state%loads%acts(axial)) state%loads%axial%value = state%loads%axial%value - column%axial_load
-      call state%loads%at_time(0.0_wp, state%load)
-      call create_springs(state, column)
-      allocate (state%q(m), state%v(m), source=0.0_wp)
-      if (allocated(initial%deformation)) state%q = initial%deformation
-      if (allocated(initial%velocity)) state%v = initial%velocity
-      if (column%opens .and. .not. initial%opening_given) then
-         call close_joints(state, error)
-         if (allocated(error)) return
-      end if
-      call state%springs%move_all(state%q)
-      state%at_begin = kinetic_energy(state%motion%column, state%q, state%v) + sum(state%springs%work) &
-                       + potential_energy(state%motion%column, state%q)
-   end subroutine start_state
-
-   !> Virgin springs; layered joints begin under the axial forces of the first moment.
-   subroutine create_springs(state, column)
-      type(state_type), intent(inout) :: state
-      type(column_type), intent(in) :: column
-      type(spring_record), allocatable :: spring(:)
-      integer :: i
-
-      if (.not. any(state%loads%acts([vertical, axial]))) then
-         call state%springs%create(column%spring)
-         return
-      end if
-      spring = column%spring
-      do i = 1, column%n
-         associate (joint => spring(column%n + i))
-            joint%axial_load = joint%axial_load + state%load(axial) &
-                               + state%load(vertical)*column%lifted_joint(i)
-         end associate
-      end do
-      call state%springs%create(spring)
-      call state%springs%vary_axial_loads()
-      call state%motion%press(state%springs, state%load)
-   end subroutine create_springs
-
-   !> Openings in equilibrium with axial load and weight.
-   subroutine close_joints(state, error)
-      type(state_type), intent(inout) :: state
-      type(error_type), allocatable, intent(out) :: error
-      real(wp) :: tension
-      integer :: i, n
-      logical :: found
-
-      n = state%motion%column%n
-      do i = 1, n
-         tension = -(state%motion%column%compression(i) + state%load(axial))
-         call state%springs%load_to(2*n + i, tension, found)
-         if (.not. found) then
-            call fatal_error(error, analysis_failed, trim(joint_name(state%motion%column, 2*n + i))// &
-                             ' cannot carry the axial force of '//to_text(-tension)//' N (compression '// &
-                             'positive) at the start; change axial_load or the spring, or give the '// &
-                             'openings at the start')
-            return
-         end if
-         state%q(2*n + i) = state%springs%d(2*n + i)
-      end do
-   end subroutine close_joints
 
    !> Report why the run cannot be continued.
    subroutine report_state(state, error)

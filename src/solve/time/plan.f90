@@ -9,10 +9,13 @@ module rbs_solve_time_plan
    implicit none
    private
 
-   public :: time_plan, new_plan, check_times, check_length
+   public :: time_plan, same_step, new_plan, check_times, check_length
 
    !> Steps this close to a whole number in an interval divide it.
    real(wp), parameter :: whole = 1.0e-9_wp
+
+   !> Share of a step by which those of equal length may differ.
+   real(wp), parameter :: same_step = 1.0e-10_wp
 
    !> More steps than this would take too long.
    real(wp), parameter :: most_steps = 2.0e9_wp
@@ -35,9 +38,13 @@ module rbs_solve_time_plan
       logical :: free = .false.
       !> First and last time [s]
       real(wp) :: begin = 0.0_wp, finish = 0.0_wp
+      !> Where steps of length dt are counted from [s], and how many of them lie before the first time
+      real(wp) :: origin = 0.0_wp
+      integer :: offset = 0
       integer, allocatable :: parts(:)
    contains
       procedure :: rows
+      procedure :: go_on_from
    end type time_plan
 
 contains
@@ -97,6 +104,7 @@ contains
 
       m = size(time)
       plan%begin = time(1)
+      plan%origin = time(1)
       plan%finish = time(m)
       if (is_given(dt)) then
          call check_step(dt, limit, error)
@@ -120,6 +128,9 @@ contains
       else
          plan%parts = nint(parts)
          plan%dt = maxval((time(2:) - time(:m - 1))/parts)
+         ! Of steps that differ by round-off the first has most digits, and a shorter loading has it too.
+         step = (time(2) - time(1))/parts(1)
+         if (abs(step - plan%dt) <= same_step*plan%dt) plan%dt = step
          plan%intervals = m - 1
       end if
    end subroutine new_plan
@@ -136,6 +147,20 @@ contains
                           "a longer dt (method = 'generalised_alpha' has no limit of stability)")
       end if
    end subroutine check_length
+
+   !> The steps go on from those of another analysis, if they are the same but for round-off.
+   pure subroutine go_on_from(self, dt, origin, offset)
+      class(time_plan), intent(inout) :: self
+      !> Step of the other one, where it counted from, and how many it has taken
+      real(wp), intent(in) :: dt, origin
+      integer, intent(in) :: offset
+
+      if (abs(self%dt - dt) > same_step*dt) return
+      self%dt = dt
+      if (.not. self%free .or. abs(origin + offset*dt - self%begin) > 0.0_wp) return
+      self%origin = origin
+      self%offset = offset
+   end subroutine go_on_from
 
    !> Number of rows of a run, the first at its start.
    elemental integer function rows(self, every)

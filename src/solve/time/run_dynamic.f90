@@ -4,7 +4,7 @@ module rbs_solve_time_run_dynamic
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_case_methods, only: method_type, method_named, usual_tolerance, usual_rho_infinity
+   use rbs_case_methods, only: method_type, methods, method_named, usual_tolerance, usual_rho_infinity
    use rbs_column_axial, only: check_stable
    use rbs_column_column, only: column_type, small, finite
    use rbs_loading_signal, only: signal_type
@@ -13,6 +13,7 @@ module rbs_solve_time_run_dynamic
    use rbs_output_summary, only: summary_type
    use rbs_solve_check_values, only: check_values
    use rbs_solve_modal_modes, only: frequency_bounds, stability_limit
+   use rbs_solve_end_state, only: end_state
    use rbs_solve_time_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha, &
                                       with_finite_rotations
    use rbs_solve_time_loads, only: loads_type
@@ -170,7 +171,7 @@ contains
 
    !> Response in time under lateral force, ground motion, axial load, or all of them.
    subroutine run_dynamic(column, analysis, plan, time, loads, initial, every, recorder, summary, error, &
-                          progress)
+                          progress, before, after)
       type(column_type), intent(in) :: column
       !> Validated settings
       type(analysis_record), intent(in) :: analysis
@@ -186,7 +187,11 @@ contains
       type(summary_type), intent(out) :: summary
       type(error_type), allocatable, intent(out) :: error
       class(observer_type), intent(inout), optional :: progress
+      !> The state to begin in, and the one at the end; empty where there is none
+      type(end_state), intent(inout), optional :: before, after
       class(stepper_type), allocatable :: stepper
+      real(wp) :: setting
+      integer :: method
 
       call check_signal(loads%force, 'force', error)
       call check_signal(loads%ground, 'ground_acceleration', error)
@@ -203,8 +208,12 @@ contains
       summary%method = plan%method
       summary%reason = plan%reason
       call new_stepper(stepper, column, analysis, plan)
+      method = findloc(methods%name == plan%method, .true., dim=1)
+      if (analysis%events == 'located' .or. plan%located) method = method + 100
+      setting = 0.0_wp
+      if (is_given(analysis%rho_infinity)) setting = analysis%rho_infinity
       call march(column, plan, stepper, time, loads, initial, analysis%collapse_drift, every, recorder, &
-                 summary, error, progress)
+                 summary, error, progress, before, after, method, setting)
    end subroutine run_dynamic
 
    !> The method of a plan, ready for its first step.

@@ -2,6 +2,7 @@
 module rbs_solve_time_state
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_time_loads, only: loads_type
    use rbs_solve_time_motion, only: motion_type
@@ -42,6 +43,7 @@ module rbs_solve_time_state
       real(wp) :: longest_step = 0.0_wp
    contains
       procedure(advance_interface), deferred :: advance
+      procedure :: resume
    end type stepper_type
 
    abstract interface
@@ -58,6 +60,16 @@ module rbs_solve_time_state
    end interface
 
 contains
+
+   !> Present to a tape what the next step depends on besides the state. A method whose steps depend on the
+   !> state alone inherits this procedure.
+   subroutine resume(self, state, memory)
+      class(stepper_type), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      type(memory_type), intent(inout) :: memory
+
+      memory%broken = memory%broken .or. self%steps < 0 .or. state%lost
+   end subroutine resume
 
    !> Whether all deformations are within bounds.
    pure logical function in_bounds(m, q)

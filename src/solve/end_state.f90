@@ -1,0 +1,288 @@
+!> The state that an analysis ended in, from which another one begins: where the column stands, what its
+!> springs remember, and what the solver needs to go on with the same bits.
+!>
+!> It is one list of numbers. Its head says to which column it belongs and how the rest adds up, so that it
+!> can go through Python or a file.
+module rbs_solve_end_state
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use, intrinsic :: iso_fortran_env, only: int64
+   use rbs_base_error, only: error_type, fatal_error, bad_input
+   use rbs_base_keys, only: key_type
+   use rbs_base_kinds, only: wp
+   use rbs_base_memory, only: memory_type
+   use rbs_base_text, only: to_text
+   use rbs_column_column, only: column_type
+   use rbs_hysteresis_registry, only: keys_of
+   use rbs_hysteresis_spring_record, only: spring_record
+   use rbs_hysteresis_springs, only: spring_array
+   implicit none
+   private
+
+   public :: end_state, standing_type, static_state, moving_state
+
+   !> Changes when what is written here changes.
+   integer, parameter :: format = 1
+
+   !> Numbers of the head: format, two of the model, two of the rest, bodies, kinematics, joints that open.
+   integer, parameter :: head = 8
+
+   !> Kinds of analyses.
+   integer, parameter :: static_state = 1, moving_state = 2
+
+   !> Where a column stands, as either kind of analysis takes it up.
+   type :: standing_type
+      integer :: kind = 0
+      !> Whether the axial loads of layered joints varied
+      logical :: pressed = .false.
+      !> Displacement of the top [m], lateral force [N], axial load at the top without what follows the
+      !> force [N]
+      real(wp) :: displacement = 0.0_wp, force = 0.0_wp, axial_load = 0.0_wp
+      !> Axial forces of the joints, compression positive (n) [N]
+      real(wp), allocatable :: press(:)
+      !> Velocities of the joints (unknowns); zero after a static path
+      real(wp), allocatable :: v(:)
+      !> Works of loads and damping, energy at the start, what was missing from the balance [J]
+      real(wp) :: input = 0.0_wp, damping = 0.0_wp, at_begin = 0.0_wp, residual = 0.0_wp
+      !> Kinetic energy that the velocities of the joints do not show [J]
+      real(wp) :: along_joints = 0.0_wp
+      !> The clock: where its counting began, where it is now, and the way between as the steps counted it [s]
+      real(wp) :: begin = 0.0_wp, clock = 0.0_wp, time = 0.0_wp
+      !> Loads at the end; the step [s], steps from `origin` where they do not follow the times of the loading
+      real(wp) :: load(4) = 0.0_wp, dt = 0.0_wp, origin = 0.0_wp
+      integer :: offset = 0
+      !> The method, and the setting that it has; those of another need not match
+      integer :: method = 0
+      real(wp) :: setting = 0.0_wp
+   contains
+      procedure :: walk => walk_standing
+   end type standing_type
+
+   type :: end_state
+      type(memory_type) :: tape
+   contains
+      procedure :: is_given
+      procedure :: start_saving
+      procedure :: finish_saving
+      procedure :: take_up
+      procedure :: check
+   end type end_state
+
+contains
+
+   !> Whether there is a state.
+   pure logical function is_given(self)
+      class(end_state), intent(in) :: self
+
+      is_given = self%tape%count > 0
+   end function is_given
+
+   pure subroutine walk_standing(self, memory)
+      class(standing_type), intent(inout) :: self
+      type(memory_type), intent(inout) :: memory
+
+      call memory%keep(self%kind)
+      call memory%keep(self%pressed)
+      call memory%keep(self%displacement)
+      call memory%keep(self%force)
+      call memory%keep(self%axial_load)
+      call memory%keep(self%press)
+      call memory%keep(self%v)
+      call memory%keep(self%input)
+      call memory%keep(self%damping)
+      call memory%keep(self%at_begin)
+      call memory%keep(self%residual)
+      call memory%keep(self%along_joints)
+      call memory%keep(self%begin)
+      call memory%keep(self%clock)
+      call memory%keep(self%time)
+      call memory%keep(self%load)
+      call memory%keep(self%dt)
+      call memory%keep(self%origin)
+      call memory%keep(self%offset)
+      call memory%keep(self%method)
+      call memory%keep(self%setting)
+   end subroutine walk_standing
+
+   !> Begin a state with what every analysis has. What the solver remembers follows.
+   subroutine start_saving(self, column, standing, springs)
+      class(end_state), intent(inout) :: self
+      type(column_type), intent(in) :: column
+      type(standing_type), intent(inout) :: standing
+      type(spring_array), intent(inout) :: springs
+      real(wp) :: first(head)
+
+      first = 0.0_wp
+      first(1) = format
+      call find_stamp(column, first(2:3))
+      first(6) = column%n
+      first(7) = column%kinematics
+      first(8) = merge(1.0_wp, 0.0_wp, column%opens)
+      call self%tape%save()
+      call self%tape%keep(first)
+      call standing%walk(self%tape)
+      call springs%walk_memory(self%tape)
+   end subroutine start_saving
+
+   !> The state is whole. One with a number that is none is not kept: nothing could go on from it.
+   subroutine finish_saving(self)
+      class(end_state), intent(inout) :: self
+
+      if (.not. all(ieee_is_finite(self%tape%value(:self%tape%count)))) then
+         self%tape%count = 0
+         return
+      end if
+      call find_sum(self%tape%value(head + 1:self%tape%count), self%tape%value(4:5))
+   end subroutine finish_saving
+
+   !> Whether an analysis of a column can begin from the state.
+   subroutine check(self, column, error)
+      class(end_state), intent(in) :: self
+      type(column_type), intent(in) :: column
+      type(error_type), allocatable, intent(out) :: error
+      character(len=*), parameter :: kinematics(3) = [character(len=6) :: 'small', 'pdelta', 'finite']
+      real(wp) :: expected(2)
+
+      associate (value => self%tape%value, count => self%tape%count)
+         if (count <= head) then
+            call fatal_error(error, bad_input, 'initial: this is no state of an analysis, or it is '// &
+                             'damaged; '// &
+                             'run the first analysis again')
+            return
+         end if
+         expected = -1.0_wp
+         if (all(ieee_is_finite(value(:count)))) call find_sum(value(head + 1:count), expected)
+         if (abs(value(1) - format) > 0.0_wp .and. ieee_is_finite(value(1))) then
+            call fatal_error(error, bad_input, 'initial: the state was written by a version of '// &
+                             'rbsdem whose '// &
+                             'springs remember other things (format '//to_text(value(1))//', here '// &
+                             to_text(format)//'); run the first analysis again with this version')
+         else if (any(abs(expected - value(4:5)) > 0.0_wp)) then
+            call fatal_error(error, bad_input, 'initial: the state is damaged, its numbers do not '// &
+                             'add up to '// &
+                             'what its head says; run the first analysis again')
+         else if (nint(value(6)) /= column%n) then
+            call fatal_error(error, bad_input, 'initial: the state belongs to a column of n = '// &
+                             to_text(nint(value(6)))//' bodies, this one has n = '//to_text(column%n)// &
+                             '; begin from a result of the same column')
+         else if (nint(value(7)) /= column%kinematics) then
+            call fatal_error(error, bad_input, "initial: the state is one of kinematics = '"// &
+                             trim(kinematics(min(max(nint(value(7)), 1), 3)))//"', this column has '"// &
+                             trim(kinematics(column%kinematics))//"', under which it would not be in "// &
+                             'equilibrium; run both analyses with the same kinematics')
+         else
+            call find_stamp(column, expected)
+            if (all(abs(expected - value(2:3)) <= 0.0_wp)) return
+            call fatal_error(error, bad_input, 'initial: the state belongs to a column with other '// &
+                             'springs or '// &
+                             'lengths; begin from a result of the same column (loading, method, '// &
+                             'axial load, '// &
+                             'mass and damping may be others)')
+         end if
+      end associate
+   end subroutine check
+
+   !> Take up what every analysis has; springs are those of the column, virgin. What the solver remembers
+   !> comes next on the tape.
+   subroutine take_up(self, column, standing, springs, error)
+      class(end_state), intent(inout) :: self
+      type(column_type), intent(in) :: column
+      type(standing_type), intent(out) :: standing
+      type(spring_array), intent(inout) :: springs
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: first(head)
+
+      call self%check(column, error)
+      if (allocated(error)) return
+      allocate (standing%press(column%n), standing%v(column%unknowns), source=0.0_wp)
+      call self%tape%restore()
+      call self%tape%keep(first)
+      call standing%walk(self%tape)
+      call springs%walk_memory(self%tape)
+      if (self%tape%broken) then
+         call fatal_error(error, bad_input, 'initial: the state was written by a version of rbsdem whose '// &
+                          'springs remember other things; run the first analysis again with this version')
+      end if
+   end subroutine take_up
+
+   !> Two numbers that tell columns with other springs or lengths apart.
+   subroutine find_stamp(column, stamp)
+      type(column_type), intent(in) :: column
+      real(wp), intent(out) :: stamp(2)
+      integer(int64) :: hash
+      integer :: i
+
+      hash = 88172645463325252_int64
+      do i = 1, column%n
+         call mix(hash, column%length(i))
+      end do
+      do i = 1, size(column%spring)
+         if (i > 1) then
+            if (column%spring(i)%same_as(column%spring(i - 1))) then
+               call mix(hash, 1.0_wp)
+               cycle
+            end if
+         end if
+         call mix_spring(hash, column%spring(i))
+      end do
+      call split(hash, stamp)
+   end subroutine find_stamp
+
+   recursive subroutine mix_spring(hash, spring)
+      integer(int64), intent(inout) :: hash
+      type(spring_record), intent(in) :: spring
+      type(key_type), allocatable :: keys(:)
+      integer :: i, j
+
+      do i = 1, len_trim(spring%rule)
+         call mix(hash, real(iachar(spring%rule(i:i)), wp))
+      end do
+      call keys_of(spring%rule, keys)
+      do i = 1, size(keys)
+         call mix(hash, spring%value(i))
+      end do
+      if (.not. allocated(spring%y)) return
+      do i = 1, size(spring%y)
+         call mix(hash, spring%y(i))
+         call mix(hash, real(spring%layer_rule(i), wp))
+         do j = 1, size(spring%layer_value, 1)
+            ! Parameters that a rule does not have all are the same number.
+            if (spring%layer_value(j, i) > -huge(1.0_wp)) call mix(hash, spring%layer_value(j, i))
+         end do
+      end do
+   end subroutine mix_spring
+
+   !> Two numbers that follow from all numbers of a list.
+   pure subroutine find_sum(value, total)
+      real(wp), intent(in) :: value(:)
+      real(wp), intent(out) :: total(2)
+      integer(int64) :: hash
+      integer :: i
+
+      hash = 1442695040888963407_int64
+      do i = 1, size(value)
+         call mix(hash, value(i))
+      end do
+      call split(hash, total)
+   end subroutine find_sum
+
+   !> Marsaglia's xorshift (J. Stat. Softw. 8 (2003) 14), which has no overflow.
+   pure subroutine mix(hash, x)
+      integer(int64), intent(inout) :: hash
+      real(wp), intent(in) :: x
+
+      hash = ieor(hash, transfer(x + 0.0_wp, hash))
+      hash = ieor(hash, ishft(hash, 13))
+      hash = ieor(hash, ishft(hash, -7))
+      hash = ieor(hash, ishft(hash, 17))
+   end subroutine mix
+
+   !> Whole numbers that a real holds exactly.
+   pure subroutine split(hash, parts)
+      integer(int64), intent(in) :: hash
+      real(wp), intent(out) :: parts(2)
+
+      parts(1) = real(ibits(hash, 0, 32), wp)
+      parts(2) = real(ibits(hash, 32, 32), wp)
+   end subroutine split
+
+end module rbs_solve_end_state

@@ -1,0 +1,243 @@
+!> Static paths that begin in the state another analysis ended in, and the state that they end in themselves.
+module rbs_solve_static_resume
+   use rbs_base_error, only: error_type, fatal_error, analysis_failed
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_column_column, only: column_type
+   use rbs_column_top, only: top_displacement
+   use rbs_solve_end_state, only: end_state, standing_type, static_state
+   use rbs_solve_static_path, only: static_path
+   implicit none
+   private
+
+   public :: begin_path, end_path
+
+   !> Joints have come to equilibrium if a correction is below this share of the deformations, measured by the
+   !> initial stiffness; where round-off ends the progress before, below the second.
+   real(wp), parameter :: settled = 1.0e-13_wp, nearly_settled = 1.0e-9_wp
+   integer, parameter :: most_rounds = 200, most_trials = 12
+
+contains
+
+   !> The straight column under its axial load, or the state that another analysis ended in.
+   subroutine begin_path(path, column, by_force, moving, varies, error, before)
+      class(static_path), intent(inout) :: path
+      type(column_type), intent(in) :: column
+      logical, intent(in) :: by_force
+      !> Number of springs that can move
+      integer, intent(in) :: moving
+      !> Whether the axial loads of layered joints vary
+      logical, intent(in) :: varies
+      type(error_type), allocatable, intent(out) :: error
+      !> Empty where there is none
+      type(end_state), intent(inout), optional :: before
+
+      if (present(before)) then
+         if (before%is_given()) then
+            call path%prepare(column, by_force, moving)
+            call begin_from(path, before, varies, error)
+            return
+         end if
+      end if
+      call path%begin(column, by_force, moving, varies, error)
+   end subroutine begin_path
+
+   !> Begin in the state that another analysis ended in. A static path of the same kind under the same axial
+   !> load goes on as if it had not been cut. Otherwise the top is held where it is, velocities vanish, and
+   !> the joints come to equilibrium.
+   subroutine begin_from(path, before, varies, error)
+      class(static_path), intent(inout) :: path
+      type(end_state), intent(inout) :: before
+      logical, intent(in) :: varies
+      type(error_type), allocatable, intent(out) :: error
+      type(standing_type) :: standing
+      real(wp) :: press(path%column%n), axial_work, height, missing
+      integer :: joint
+      logical :: goes_on
+
+      call before%take_up(path%column, standing, path%springs, error)
+      if (allocated(error)) return
+      if (varies) call path%springs%vary_axial_loads()
+      press = path%column%compression
+      if (varies) press = standing%press
+      goes_on = standing%kind == static_state .and. all(abs(press - standing%press) <= 0.0_wp)
+      call path%springs%go_under(press, standing%pressed)
+      joint = path%springs%lost_joint() - path%column%n
+      if (joint > 0) then
+         call fatal_error(error, analysis_failed, 'initial: the layers of joint '//to_text(joint)// &
+                          ' cannot carry the axial load of '//to_text(press(joint))//' N in the '// &
+                          'state that the first analysis ended in; give a smaller axial_load')
+         return
+      end if
+      path%load_now = merge(standing%axial_load, path%column%axial_load, varies)
+      path%work = standing%input
+      path%damped_before = standing%damping
+      path%at_begin = standing%at_begin
+      if (goes_on) then
+         path%displacement = standing%displacement
+         path%force = standing%force
+         if (standing%method == kind_of(path, varies)) then
+            call path%walk(before%tape)
+            if (before%tape%broken) then
+               call fatal_error(error, analysis_failed, 'initial: the state ends too early; run the '// &
+                                'first analysis again')
+               return
+            end if
+         else
+            call path%stand_still()
+         end if
+      else
+         path%displacement = top_displacement(path%column, path%springs%d)
+         path%force = standing%force
+         if (path%column%opens) call path%compress(error)
+         if (.not. allocated(error)) call settle(path, error)
+         if (allocated(error)) return
+         call path%stand_still()
+      end if
+      if (path%direction == 0) path%control = merge(path%force, path%displacement, path%by_force)
+      call path%measure(axial_work, height)
+      missing = standing%residual - (path%work + path%at_begin - sum(path%springs%work) - path%damped_before &
+                                     - axial_work)
+      if (abs(missing) > 0.0_wp) path%at_begin = path%at_begin + missing
+   end subroutine begin_from
+
+   !> What must be the same for a path to go on with what another one remembered: the solver, and what is
+   !> driven.
+   pure integer function kind_of(path, varies)
+      class(static_path), intent(in) :: path
+      logical, intent(in) :: varies
+
+      kind_of = 1 + path%column%kinematics + merge(10, 0, path%by_force) + merge(100, 0, varies)
+   end function kind_of
+
+   !> The joints come to equilibrium at the displacement of the top, by Newton's method with a line search.
+   !> Every trial goes from where the springs are, each in one direction, so that earlier trials leave no
+   !> trace.
+   subroutine settle(path, error)
+      class(static_path), intent(inout) :: path
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), dimension(path%column%unknowns) :: q, way, next
+      real(wp) :: more, next_more, before, change, slope, share, low, high, at_low, at_high, now, largest
+      integer :: round, trial
+      logical :: found, there
+
+      q = path%springs%d
+      there = .false.
+      call path%springs%mark()
+      call path%find_balance(way, more, found)
+      largest = measure_of(q, q)
+      change = measure_of(way, way)
+      do round = 1, most_rounds
+         if (.not. found .or. .not. change < huge(1.0_wp)) exit
+         before = change
+         call try(1.0_wp)
+         if (.not. found) exit
+         slope = measure_of(way, next)
+         ! The trial has gone too far: find the share of the correction at which the next one is across it,
+         ! by the method of false position (Illinois).
+         if (slope < -0.3_wp*before) then
+            low = 0.0_wp
+            high = 1.0_wp
+            at_low = before
+            at_high = slope
+            now = 1.0_wp
+            do trial = 1, most_trials
+               share = low + (high - low)*at_low/(at_low - at_high)
+               call try(share - now)
+               now = share
+               if (.not. found) exit
+               slope = measure_of(way, next)
+               if (abs(slope) <= 0.1_wp*before) exit
+               if (slope > 0.0_wp) then
+                  low = share
+                  at_low = slope
+                  at_high = 0.5_wp*at_high
+               else
+                  high = share
+                  at_high = slope
+                  at_low = 0.5_wp*at_low
+               end if
+            end do
+            if (.not. found) exit
+         end if
+         change = measure_of(next, next)
+         largest = max(largest, measure_of(q, q))
+         there = change <= settled**2*largest .or. &
+                 (change <= nearly_settled**2*largest .and. change >= 0.25_wp*before)
+         way = next
+         more = next_more
+         if (.not. there) cycle
+         call try(1.0_wp)
+         exit
+      end do
+      if (.not. there .or. path%springs%stuck) then
+         call fatal_error(error, analysis_failed, 'initial: no equilibrium was found at the displacement '// &
+                          to_text(path%displacement)//' m in which the first analysis ended; let '// &
+                          'the motion '// &
+                          'come to rest first, or change axial_load')
+      end if
+      call path%springs%forget_mark()
+
+   contains
+
+      !> Go on by a share of the correction, and find the next one there.
+      subroutine try(part)
+         real(wp), intent(in) :: part
+
+         q = q + part*way
+         path%force = path%force + part*more
+         call path%springs%restore()
+         call path%springs%move_all(q)
+         found = .not. path%springs%stuck
+         if (found) call path%find_balance(next, next_more, found)
+      end subroutine try
+
+      !> Product of two changes of deformations, measured by the initial stiffness [J].
+      pure real(wp) function measure_of(a, b)
+         real(wp), intent(in) :: a(:), b(:)
+
+         measure_of = sum(path%column%initial_stiffness*a*b)
+      end function measure_of
+
+   end subroutine settle
+
+   !> Keep the state in which the path ends.
+   subroutine end_path(path, varies, after)
+      class(static_path), intent(inout) :: path
+      logical, intent(in) :: varies
+      type(end_state), intent(inout) :: after
+      type(standing_type) :: standing
+      real(wp) :: axial_work, height
+      integer :: i
+
+      call path%measure(axial_work, height)
+      standing%kind = static_state
+      standing%pressed = path%springs%pressed
+      standing%displacement = path%displacement
+      standing%force = path%force
+      standing%axial_load = path%load_now
+      standing%press = path%column%compression
+      if (varies) then
+         standing%press = path%load_now + path%column%axial_force_ratio*path%force &
+                          + (path%column%compression - path%column%axial_load)
+         if (path%springs%pressed) then
+            do i = 1, size(path%springs%layered)
+               associate (place => path%springs%layered(i))
+                  standing%press(place - path%column%n) = path%springs%press_at(place)
+               end associate
+            end do
+         end if
+      end if
+      allocate (standing%v(path%column%unknowns), source=0.0_wp)
+      standing%input = path%work
+      standing%damping = path%damped_before
+      standing%at_begin = path%at_begin
+      standing%residual = path%work + path%at_begin - sum(path%springs%work) - path%damped_before - axial_work
+      standing%load(1) = path%force
+      standing%method = kind_of(path, varies)
+      call after%start_saving(path%column, standing, path%springs)
+      call path%walk(after%tape)
+      call after%finish_saving()
+   end subroutine end_path
+
+end module rbs_solve_static_resume

@@ -1,0 +1,252 @@
+!> Where an analysis in time begins: at rest, in a state that the user gives, or in the one that another
+!> analysis ended in; and the state that it ends in itself.
+module rbs_solve_time_start
+   use rbs_base_error, only: error_type, fatal_error, analysis_failed
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_column_column, only: column_type, joint_name
+   use rbs_column_energy, only: kinetic_energy, potential_energy
+   use rbs_column_top, only: top_displacement
+   use rbs_hysteresis_spring_record, only: spring_record
+   use rbs_solve_end_state, only: end_state, standing_type, moving_state
+   use rbs_solve_time_loads, only: loads_type, lateral, vertical, axial
+   use rbs_solve_time_plan, only: time_plan, same_step
+   use rbs_solve_time_state, only: state_type, stepper_type
+   implicit none
+   private
+
+   public :: initial_state, start_state, resume_state, resume_steps, keep_state
+
+   !> State at the start; arrays that are not allocated are zero.
+   type :: initial_state
+      !> Deformations [m, rad] and velocities [m/s, rad/s] (unknowns); the springs reach them from zero
+      real(wp), allocatable :: deformation(:), velocity(:)
+      !> Whether the openings are among them; else the axial springs begin in equilibrium with axial load
+      !> and weight
+      logical :: opening_given = .false.
+   end type initial_state
+
+contains
+
+   !> The state that another analysis ended in. At a time that is that of its end the clock goes on.
+   subroutine resume_state(state, column, loads, before, plan, standing, error)
+      type(state_type), intent(out) :: state
+      type(column_type), intent(in) :: column
+      type(loads_type), intent(in) :: loads
+      type(end_state), intent(inout) :: before
+      type(time_plan), intent(inout) :: plan
+      type(standing_type), intent(out) :: standing
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: press(column%n), missing, largest(4)
+      integer :: i, joint
+
+      call create_state(state, column, loads, plan%begin, error)
+      if (allocated(error)) return
+      call before%take_up(column, standing, state%springs, error)
+      if (allocated(error)) return
+      if (standing%kind == moving_state) then
+         call plan%go_on_from(standing%dt, standing%origin, standing%offset)
+         if (.not. abs(standing%clock - plan%begin) > 0.0_wp) then
+            state%begin = standing%begin
+            state%time = standing%time
+            state%loads = loads
+            call prepare_loads(state, column)
+         end if
+      end if
+      ! A load that goes on differs by the round-off of a clock that counts steps from where it was.
+      call state%loads%find_largest(largest)
+      largest = same_step*max(largest, abs(standing%load))
+      if (all(abs(state%load - standing%load) <= largest)) state%load = standing%load
+      do i = 1, column%n
+         press(i) = state%motion%axial_force(i, state%load)
+      end do
+      call state%springs%go_under(press, standing%pressed)
+      joint = state%springs%lost_joint() - column%n
+      if (joint > 0) then
+         call fatal_error(error, analysis_failed, 'initial: the layers of joint '//to_text(joint)// &
+                          ' cannot carry the axial load of '//to_text(press(joint))//' N in the '// &
+                          'state that the first analysis ended in; give a smaller axial_load')
+         return
+      end if
+      state%q = state%springs%d
+      state%v = standing%v
+      state%of_loads = standing%input
+      state%of_damping = standing%damping
+      state%at_begin = standing%at_begin
+      state%along_joints = standing%along_joints
+      missing = standing%residual - residual_of(state)
+      if (abs(missing) > 0.0_wp) state%at_begin = state%at_begin + missing
+   end subroutine resume_state
+
+   !> What is missing from the balance of energy [J].
+   real(wp) function residual_of(state)
+      type(state_type), intent(in) :: state
+
+      residual_of = state%of_loads + state%at_begin &
+                    - (kinetic_energy(state%motion%column, state%q, state%v) + state%along_joints) &
+                    - sum(state%springs%work) - state%of_damping &
+                    - potential_energy(state%motion%column, state%q)
+   end function residual_of
+
+   !> The same method goes on with what it remembers, unless a load jumps at the start.
+   subroutine resume_steps(state, stepper, before, standing, method, setting)
+      type(state_type), intent(in) :: state
+      class(stepper_type), intent(inout) :: stepper
+      type(end_state), intent(inout) :: before
+      type(standing_type), intent(in) :: standing
+      integer, intent(in), optional :: method
+      real(wp), intent(in), optional :: setting
+
+      if (.not. (present(method) .and. present(setting))) return
+      if (standing%kind /= moving_state .or. standing%method /= method) return
+      if (abs(standing%setting - setting) > 0.0_wp .or. any(abs(state%load - standing%load) > 0.0_wp)) return
+      call stepper%resume(state, before%tape)
+   end subroutine resume_steps
+
+   !> Keep the state at the end.
+   subroutine keep_state(state, stepper, plan, steps, residual, method, setting, after)
+      type(state_type), intent(inout) :: state
+      class(stepper_type), intent(inout) :: stepper
+      type(time_plan), intent(in) :: plan
+      !> Steps taken, as planned
+      integer, intent(in) :: steps
+      real(wp), intent(in) :: residual
+      integer, intent(in), optional :: method
+      real(wp), intent(in), optional :: setting
+      type(end_state), intent(inout) :: after
+      type(standing_type) :: standing
+      integer :: i
+
+      associate (column => state%motion%column)
+         standing%kind = moving_state
+         standing%pressed = state%springs%pressed
+         standing%displacement = top_displacement(column, state%q)
+         standing%force = state%load(lateral)
+         standing%axial_load = column%axial_load + state%load(axial)
+         allocate (standing%press(column%n))
+         do i = 1, column%n
+            standing%press(i) = state%motion%axial_force(i, state%load)
+         end do
+         standing%v = state%v
+         standing%input = state%of_loads
+         standing%damping = state%of_damping
+         standing%at_begin = state%at_begin
+         standing%residual = residual
+         standing%along_joints = state%along_joints
+         standing%begin = state%begin
+         standing%clock = state%clock
+         standing%time = state%time
+         standing%load = state%load
+         standing%dt = plan%dt
+         if (plan%free) then
+            standing%origin = plan%origin
+            standing%offset = plan%offset + steps
+         end if
+         if (present(method)) standing%method = method
+         if (present(setting)) standing%setting = setting
+         ! The motion stands where its springs do.
+         call after%start_saving(column, standing, state%springs)
+      end associate
+      call stepper%resume(state, after%tape)
+      call after%finish_saving()
+   end subroutine keep_state
+
+   subroutine start_state(state, column, loads, initial, begin, error)
+      type(state_type), intent(out) :: state
+      type(column_type), intent(in) :: column
+      type(loads_type), intent(in) :: loads
+      type(initial_state), intent(in) :: initial
+      real(wp), intent(in) :: begin
+      type(error_type), allocatable, intent(out) :: error
+
+      call create_state(state, column, loads, begin, error)
+      if (allocated(error)) return
+      if (allocated(initial%deformation)) state%q = initial%deformation
+      if (allocated(initial%velocity)) state%v = initial%velocity
+      if (column%opens .and. .not. initial%opening_given) then
+         call close_joints(state, error)
+         if (allocated(error)) return
+      end if
+      call state%springs%move_all(state%q)
+      state%at_begin = kinetic_energy(state%motion%column, state%q, state%v) + sum(state%springs%work) &
+                       + potential_energy(state%motion%column, state%q)
+   end subroutine start_state
+
+   !> The straight column at rest under the loads of the first moment.
+   subroutine create_state(state, column, loads, begin, error)
+      type(state_type), intent(out) :: state
+      type(column_type), intent(in) :: column
+      type(loads_type), intent(in) :: loads
+      real(wp), intent(in) :: begin
+      type(error_type), allocatable, intent(out) :: error
+
+      state%loads = loads
+      state%begin = begin
+      state%clock = begin
+      call state%loads%find_acting()
+      call state%motion%create(column, state%loads%acts, error)
+      if (allocated(error)) return
+      call prepare_loads(state, column)
+      call create_springs(state, column)
+      allocate (state%q(column%unknowns), state%v(column%unknowns), source=0.0_wp)
+   end subroutine create_state
+
+   !> Loads by the time since the start of the run, and those of the moment.
+   subroutine prepare_loads(state, column)
+      type(state_type), intent(inout) :: state
+      type(column_type), intent(in) :: column
+
+      call state%loads%find_acting()
+      call state%loads%set_begin(state%begin)
+      ! The history is that of the whole axial load; the motion takes what it adds to the constant one.
+      if (state%loads%acts(axial)) state%loads%axial%value = state%loads%axial%value - column%axial_load
+      call state%loads%at_time(state%time, state%load)
+   end subroutine prepare_loads
+
+   !> Virgin springs; layered joints begin under the axial forces of the first moment.
+   subroutine create_springs(state, column)
+      type(state_type), intent(inout) :: state
+      type(column_type), intent(in) :: column
+      type(spring_record), allocatable :: spring(:)
+      integer :: i
+
+      if (.not. any(state%loads%acts([vertical, axial]))) then
+         call state%springs%create(column%spring)
+         return
+      end if
+      spring = column%spring
+      do i = 1, column%n
+         associate (joint => spring(column%n + i))
+            joint%axial_load = joint%axial_load + state%load(axial) &
+                               + state%load(vertical)*column%lifted_joint(i)
+         end associate
+      end do
+      call state%springs%create(spring)
+      call state%springs%vary_axial_loads()
+      call state%motion%press(state%springs, state%load)
+   end subroutine create_springs
+
+   !> Openings in equilibrium with axial load and weight.
+   subroutine close_joints(state, error)
+      type(state_type), intent(inout) :: state
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: tension
+      integer :: i, n
+      logical :: found
+
+      n = state%motion%column%n
+      do i = 1, n
+         tension = -(state%motion%column%compression(i) + state%load(axial))
+         call state%springs%load_to(2*n + i, tension, found)
+         if (.not. found) then
+            call fatal_error(error, analysis_failed, trim(joint_name(state%motion%column, 2*n + i))// &
+                             ' cannot carry the axial force of '//to_text(-tension)//' N (compression '// &
+                             'positive) at the start; change axial_load or the spring, or give the '// &
+                             'openings at the start')
+            return
+         end if
+         state%q(2*n + i) = state%springs%d(2*n + i)
+      end do
+   end subroutine close_joints
+
+end module rbs_solve_time_start
