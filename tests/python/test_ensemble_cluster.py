@@ -21,7 +21,7 @@ distributed = pytest.importorskip("distributed", reason="the extra 'cluster' bri
 
 pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning")
 
-GIVEN = {"scales": np.linspace(0.1, 3.0, 60), "method": "rk4", "dt": 1e-4}
+GIVEN = {"scales": np.linspace(0.1, 3.0, 20), "method": "rk4", "dt": 1e-4}
 
 
 @pytest.fixture(scope="module")
