@@ -51,14 +51,14 @@ def stiffness_at_first(column: rbsdem.Column, load: float) -> float:
 
 
 def test_the_number_of_bodies_does_not_matter_in_the_layered_model():
-    """The hinge keeps its length, the top its flexibility; P-Delta between the bodies differs."""
+    """The hinge keeps its length, the top its flexibility; cracks above spread, P-Delta differs."""
     forces = [
         rbsdem.cyclic(peer.column(SPECIMEN, "layered", n=n), displacement=LOOP).force
         for n in (2, 3, 5, 9, 17)
     ]
     largest = np.max(np.abs(forces[0]))
     for force in forces[1:]:
-        assert np.max(np.abs(force - forces[0])) < 2e-3 * largest
+        assert np.max(np.abs(force - forces[0])) < 4e-3 * largest
 
 
 @pytest.mark.parametrize("n", [2, 3, 8])
@@ -167,6 +167,51 @@ def test_numbers_that_no_column_has_are_refused(model, changed, text):
         peer.column(replace(SPECIMEN, **changed), model)
 
 
+@pytest.mark.parametrize(("n", "error"), [(2, 0.05), (17, 0.005)])
+def test_the_column_above_cracks_as_a_continuous_one(n, error):
+    """Its curvature gains (M - M_c)(1/c - 1)/EI where M is above M_c, at foot moments of 4 M_c."""
+    share = 0.4
+    given = parameters().with_values(cracked_above=share)
+    column = peer.column(SPECIMEN, n=n, model_parameters=given)
+    above = column.height - column.recipe.joint.length
+    bending = column.recipe.joint.flexural_stiffness
+    tensile = 0.6e6 * math.sqrt(40) + 1.2e6 / 0.16
+    m_c = tensile * 0.4**3 / 6
+    # Foot moment 4 M_c above the hinge: the quarter at the top has not cracked.
+    low = above / 4
+    gain = 4 * m_c / above * (above**3 - low**3) / 3 - m_c * (above**2 - low**2) / 2
+    expected = (4 * m_c * above**2 / 3 + (1 / share - 1) * gain) / bending
+    found = 0.0
+    for i, spring in enumerate(column.joints("flexure")[1:]):
+        lever = above * (1 - (i + 0.5) / (n - 1))
+        moment = 4 * m_c * lever / above
+        cracking = spring.k_c * spring.d_c
+        beyond = max(moment - cracking, 0.0)
+        found += lever * (min(moment, cracking) / spring.k_c + beyond / spring.k_y)
+    assert found == pytest.approx(expected, rel=error)
+
+
+def test_parameters_of_bond_and_of_cracked_shear_are_factors():
+    """Off, on, and by how much: exponents of B/0.12 and of n - 0.1, factors of stiffness."""
+    off = parameters("2026.2")
+    on = off.with_values(
+        r0_bond=0.5, isotropic_bond=0.3, shear_pinch_axial=2.0, shear_cracked=0.5, shear_b0=0.3
+    )
+    plain, changed = (peer.column(SPECIMEN, model_parameters=given) for given in (off, on))
+    demand = 450 * 0.02 / (10 * math.sqrt(40) * 1.6) / 0.12
+    bars = [column.flexure[0].layers[-1][1] for column in (plain, changed)]
+    assert bars[1].r0 / bars[0].r0 == pytest.approx(demand**-0.5)
+    grown = bars[1].isotropic_hardening / bars[0].isotropic_hardening
+    assert grown == pytest.approx(demand**0.3)
+    feet = [column.shear[0] for column in (plain, changed)]
+    ratio = 1.2e6 / (40e6 * 0.16)
+    assert feet[1].kappa_f / feet[0].kappa_f == pytest.approx(math.exp(2 * (ratio - 0.1)))
+    slopes = [(foot.f_y - foot.f_c) / (foot.d_y - foot.d_c) for foot in feet]
+    assert slopes[1] / slopes[0] == pytest.approx(0.5)
+    assert (feet[0].b0, feet[1].b0) == (0.0, 0.3)
+    assert all(isinstance(spring, rbsdem.Elastic) for spring in plain.joints("flexure")[1:])
+
+
 # ---- from a section ------------------------------------------------------------------------------
 
 SECTION = rbsdem.RectangularSection(
@@ -254,6 +299,13 @@ def test_the_first_version_stands():
         "shear_decay": 0.0,
         "shear_snap_back": 0.0,
         "shear_endurance_ties": 0.0,
+        "r0_bond": 0.0,
+        "isotropic_bond": 0.0,
+        "cracked_above": 0.0,
+        "shear_round_strength": 1.0,
+        "shear_pinch_axial": 0.0,
+        "shear_cracked": 1.0,
+        "shear_b0": 0.0,
     }
     assert {name: values.pop(name) for name in later} == later
     # Of no effect without them.
@@ -405,7 +457,7 @@ def test_each_parameter_has_its_say_up_to_its_bounds(column):
             with pytest.raises(InputError, match=f"{name} = .* is below .* changes nothing"):
                 column.with_parameters(**{name: 0.999 * least})
             beyond += 1
-    assert beyond == 13
+    assert beyond == 14
 
 
 def test_parameters_of_another_model_are_held_to_the_same_limits():

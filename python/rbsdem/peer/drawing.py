@@ -132,10 +132,8 @@ class Drawing:
         InputError
             If the section is refused.
         """
-        steels = {
-            (bar.yield_stress, bar.ultimate_stress): _steel(bar.yield_stress, bar.ultimate_stress)
-            for bar in self.bars
-        }
+        stresses = {(bar.yield_stress, bar.ultimate_stress) for bar in self.bars}
+        steels = {pair: _steel(*pair) for pair in stresses}
         given: dict[str, Any] = {
             "concrete": Concrete(self.concrete_strength),
             "bars": [

@@ -26,7 +26,7 @@ from rbsdem.section.scatter import Scatter
 from rbsdem.section.shear_model import shear_limits, shear_spring
 from rbsdem.section.spread import Spread, spread
 from rbsdem.section.spring_fit import fit_springs
-from rbsdem.springs import Elastic, Spring
+from rbsdem.springs import Elastic, Spring, Takeda
 from rbsdem.strains import Gauge
 
 if TYPE_CHECKING:
@@ -286,8 +286,8 @@ class LayeredModel:
     def made(self) -> dict[str, tuple[Spring, ...] | tuple[float, ...] | str]:
         """The arguments of `rbsdem.Column` that the model makes: shear, flexure, lengths, model.
 
-        Elastic joints stand at the middles of n - 1 equal parts above the hinge. All slip is at the
-        foot: where the column fails in shear is where it bends most.
+        Joints that may crack stand at the middles of n - 1 equal parts above the hinge. All slip is
+        at the foot: where the column fails in shear is where it bends most.
         """
         joint, n = self.joint, self.n
         lengths, part = _parts(self.height, joint.length, n)
@@ -304,10 +304,36 @@ class LayeredModel:
         rigid = Elastic(1e3 * joint.shear_stiffness / self.height)
         return {
             "shear": (foot, *[rigid] * (n - 1)),
-            "flexure": (joint.spring, *[Elastic(stiffness)] * (n - 1)),
+            "flexure": (joint.spring, *(self._above(stiffness, i) for i in range(n - 1))),
             "lengths": lengths,
             "model": f"layered {self.parameters.label}",
         }
+
+    def _above(self, stiffness: float, number: int) -> Spring:
+        """Return the spring of a joint above the hinge, counted from below.
+
+        The column cracks at the moment of a tensile stress of 0.6 sqrt(f'c) (MPa), and stays below
+        yield. From a to b below the top its curvature gains in proportion to what the moment is
+        above that; where all of the part has cracked, the joint in its middle turns as much if it
+        cracks at 3/4 (a + b)^2/(a^2 + a b + b^2) of the moment.
+        """
+        cracked = self.parameters.hinge.cracked_above
+        if not cracked > 0.0:
+            return Elastic(stiffness)
+        section, figures = self.section, self.section._figures
+        tensile = 0.6e6 * math.sqrt(section.concrete.fc / 1e6)
+        # Under tension the least moment keeps the lines of the spring apart.
+        stress = max(tensile + self.axial_load / figures["area"], 0.1 * tensile)
+        low = self.n - 1 - number
+        high = low - 1
+        share = 0.75 * (low + high) ** 2 / (low**2 + low * high + high**2)
+        m_c = share * stress * figures["inertia"] / (0.5 * section.depth)
+        d_c, k_y = m_c / stiffness, cracked * stiffness
+        # More than the hinge carries, so that the joint never yields.
+        most = 2.0 * max(self.joint.yield_moment, m_c)
+        return Takeda(
+            k_c=stiffness, d_c=d_c, k_y=k_y, d_y=d_c + (most - m_c) / k_y, k_u=0.9 * k_y, b0=0.0
+        )
 
 
 #: Parameters of the layered hinge that may be calibrated, and factors on several of them; bounds

@@ -41,11 +41,16 @@ class HingeParameters:
     r0_stress : float
         Exponent e of a factor exp(e (min(P/(40 MPa A_g), 1.5) - 0.15)) of R0: branches are the less
         round the larger the axial stress.
+    r0_bond : float
+        Exponent e of a factor (B/0.12)^-e of R0, B = f_y d_b/(10 sqrt(f'c) L) in MPa: the length
+        that anchors a bar over that of the column. Bars that slip in their bond are rounder.
     cr1, cr2 : float
         Their cR1 and cR2.
     isotropic_hardening : float
         Share by which the strength of a bar has grown when the range of its strains was twice that
         between its yield strains (Filippou, Popov and Bertero 1983).
+    isotropic_bond : float
+        Exponent e of a factor (B/0.12)^e of it, B as for `r0_bond`.
     fatigue : float
         1 over the plastic deformation inside the reach, over d_y, that halves the strength of a
         bar: 1 over the `endurance` of `rbsdem.SteelSpring`.
@@ -70,6 +75,9 @@ class HingeParameters:
     stiffness, stiffness_axial : float
         Flexural stiffness of the column above over that of the uncracked section, up to 2: above 1
         it makes up for the hinge, which is lumped at the foot.
+    cracked_above : float
+        Bending stiffness of the column above after it has cracked over that before; 0: it does not
+        crack.
     shear_stiffness : float
         Shear stiffness of the column over the uncracked one.
     buckling, buckling_strain : float
@@ -115,6 +123,9 @@ class HingeParameters:
     buckling: float = 0.0
     buckling_strain: float = 1.0
     friction: float = 0.0
+    r0_bond: float = 0.0
+    isotropic_bond: float = 0.0
+    cracked_above: float = 0.0
 
     def __post_init__(self) -> None:
         _take(self, "hinge")
@@ -129,6 +140,8 @@ class ShearParameters:
     strength : float
         Force at which the ties yield over the shear strength of the simplified modified compression
         field theory (Bentz, Vecchio, Collins 2006).
+    round_strength : float
+        Factor of that of columns with spirals or round hoops.
     hardening : float
         Largest force over that at yield, 1 or more.
     cap : float
@@ -140,7 +153,13 @@ class ShearParameters:
     endurance : float
         Energy that the strength lasts for, over yield force times yield slip; 0: for ever.
     pinch_force, pinch_slip : float
-        `kappa_f` and `kappa_d` of `rbsdem.Pinching`.
+        `kappa_f`, at an axial load ratio of 0.1, and `kappa_d` of `rbsdem.Pinching`.
+    pinch_axial : float
+        Exponent e of a factor exp(e (n - 0.1)) of `kappa_f`: compression closes cracks.
+    cracked : float
+        Factor of the stiffness of the cracked truss.
+    b0 : float
+        Exponent of the unloading stiffness over ductility.
     decay : float
         Share of the strength that can decay which is left after the hinge has worked M_y theta_y/a:
         the factor a of D = a W/(M_y theta_y), to which the strength falls by 1/(1 + D).
@@ -170,6 +189,10 @@ class ShearParameters:
     decay_strut: float = 0.1
     snap_back: float = 0.0
     endurance_ties: float = 0.0
+    round_strength: float = 1.0
+    pinch_axial: float = 0.0
+    cracked: float = 1.0
+    b0: float = 0.0
 
     def __post_init__(self) -> None:
         _take(self, "shear spring")

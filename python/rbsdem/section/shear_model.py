@@ -133,13 +133,16 @@ def _shear(
     # A section without bars in tension, which has no strength, still needs a spring with one.
     by_theory = shear_strength_mcft(section, length, axial_load)
     least = 1e-4 * sizes.fc * sizes.gross_area
-    f_y = max(given.strength * by_theory, least)
+    is_round = section.ties is not None and section.ties.is_round
+    shaped = given.round_strength if is_round else 1.0
+    f_y = max(given.strength * shaped * by_theory, least)
     f_cap = max(given.hardening, 1.0) * f_y
     by_ties = sizes.tie_area * sizes.tie_yield * sizes.d / sizes.spacing
     by_concrete = shear_strength_sezen(section, length, axial_load) - by_ties
     f_c = min(max(by_concrete, _LEAST * f_y), 0.9 * f_y)
     whole = stiffness / length
-    cracked = min(max(cracked_shear_stiffness(section) / length, _LEAST * whole), 0.9 * whole)
+    truss = given.cracked * cracked_shear_stiffness(section) / length
+    cracked = min(max(truss, _LEAST * whole), 0.9 * whole)
     d_c = f_c / whole
     d_y = d_c + (f_y - f_c) / cracked
     # Behind yield it may not go up steeper than before.
@@ -150,17 +153,19 @@ def _shear(
         # What falls faster than the column above springs back has no equilibrium.
         above = 3 * section.concrete_law["ec"] * section._figures["inertia"] / length**3
         fall = max(fall, f_cap / (given.snap_back * above))
-    is_round = section.ties is not None and section.ties.is_round
     ties = (_ROUND if is_round else 1.0) * by_ties / f_y
     # Few ties do not hold a crack together: what the concrete carried is soon gone.
     lasts = min(1.0, max(2.0 * ties, 0.1) ** given.endurance_ties)
     lambda_h, s_min = _decay(section, f_y, ties, given, joint)
+    ratio = axial_load / (sizes.fc * sizes.gross_area)
+    closed = math.exp(given.pinch_axial * (ratio - 0.1))
     limits = {
-        "strength": (least / by_theory if by_theory > 0.0 else 0.0, math.inf),
+        "strength": (least / (shaped * by_theory) if by_theory > 0.0 else 0.0, math.inf),
         "hardening": (1.0, math.inf),
         "cap": (least_rise / length, math.inf),
         "residual": (0.0, 0.9 * f_y / f_cap),
         "endurance": (0.0, math.inf),
+        "pinch_force": (0.0, 1.0 / closed),
     }
     spring = Pinching(
         d_c=d_c,
@@ -172,7 +177,8 @@ def _shear(
         d_pc=fall,
         f_res=min(given.residual * f_cap, 0.9 * f_y),
         lambda_s=given.endurance * lasts,
-        kappa_f=given.pinch_force,
+        b0=given.b0,
+        kappa_f=min(given.pinch_force * closed, 1.0),
         kappa_d=given.pinch_slip,
         lambda_h=lambda_h / (f_y * d_y),
         s_min=s_min,

@@ -173,8 +173,7 @@ def shear_strength_mcft(
 
     # More shear opens the cracks: strength(v) falls, so there is one v that equals it.
     low, high = 0.0, strength(0.0)
-    for _ in range(100):
-        v = 0.5 * (low + high)
+    while low < (v := 0.5 * (low + high)) < high:
         if strength(v) > v:
             low = v
         else:
