@@ -18,6 +18,7 @@ import pytest
 import rbsdem
 from rbsdem.explore import texts
 from rbsdem.explore.command import main, start_of
+from rbsdem.explore.compute import shown_rows
 from rbsdem.explore.near import Near
 from rbsdem.explore.parts import GALLERY, MODULES, parts
 from rbsdem.explore.report import write_report
@@ -297,6 +298,17 @@ def test_records_are_texts_and_scales_follow(post):
     assert wrong["text"].startswith("x.csv")
 
 
+def test_long_responses_keep_their_extremes():
+    t = np.linspace(0.0, 400.0, 50_000)
+    d, f = np.sin(t) * np.cos(7.3 * t), np.sin(3.1 * t)
+    d[31_007] = 2.0
+    rows = shown_rows(d, f, most=800)
+    assert rows.size <= 802
+    assert rows[0] == 0
+    assert rows[-1] == t.size - 1
+    assert (d[rows].max(), f[rows].min()) == (d.max(), f.min())
+
+
 # ---- files --------------------------------------------------------------------------------------
 
 
@@ -375,6 +387,9 @@ def test_a_report_is_one_file(tmp_path, post, capsys):
     data = json.loads(packed)
     assert data["title"] == "A </script> pier"
     assert data["loops"][0]["force"]
+    with pytest.raises(rbsdem.InputError, match="number = 11"):
+        write_report(tmp_path / "wrong.html", state(bars_number=11), "x")
+    assert not (tmp_path / "wrong.html").exists()
     with pytest.raises(rbsdem.InputError, match="is a folder"):
         write_report(tmp_path, state(), "x")
 

@@ -115,14 +115,18 @@ def address():
 
 
 @pytest.fixture
-def page(driver, address):
+def unopened(driver, address):
     driver.get_log("browser")
     size(driver, 1280, 900)
-    found = Page(driver, address, driver.downloads)
-    found.open()
-    yield found
+    yield Page(driver, address, driver.downloads)
     # Nothing that the policy of the page forbids, and no error of a script.
     assert driver.get_log("browser") == []
+
+
+@pytest.fixture
+def page(unopened):
+    unopened.open()
+    return unopened
 
 
 def size(driver, width: int, height: int, scheme: str = "light") -> None:
@@ -234,16 +238,18 @@ def test_exports(page):
     page.wait(lambda: page.value("#f-section-width") == "400")
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_a_small_screen_and_the_dark(page, scheme):
-    size(page.driver, 390, 844, scheme)
-    page.open()
+def test_a_small_screen_and_the_dark(page):
+    light = "return getComputedStyle(document.body).backgroundColor"
+    for scheme, dark in (("dark", True), ("light", False)):
+        size(page.driver, 390, 844, scheme)
+        paper = page.driver.execute_script(light)
+        assert (sum(int(part) for part in paper[4:-1].split(",")) < 380) == dark
+    page.wait(lambda: page.one("#loopfigure svg").size["width"] < 390)
     assert page.driver.execute_script("return document.documentElement.scrollWidth") <= 390
-    paper = page.driver.execute_script("return getComputedStyle(document.body).backgroundColor")
-    assert (sum(int(part) for part in paper[4:-1].split(",")) < 380) == (scheme == "dark")
 
 
-def test_a_report_asks_nothing(page, tmp_path):
+def test_a_report_asks_nothing(unopened, tmp_path):
+    page = unopened
     path = write_report(tmp_path / "report.html", START, "A pier")
     page.open(path.as_uri())
     assert "A pier" in page.text("h1")
@@ -256,7 +262,8 @@ def test_a_report_asks_nothing(page, tmp_path):
     assert page.driver.execute_script(asked) == []
 
 
-def test_the_gallery_of_many_tests(page, tmp_path):
+def test_the_gallery_of_many_tests(unopened, tmp_path):
+    page = unopened
     column = rbsdem.paper_columns("pdelta")["zahn_7"]
     result = rbsdem.cyclic(column, displacement=1.6 * rbsdem.protocol([0.01], points=8))
     rows = []

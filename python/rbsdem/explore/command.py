@@ -69,7 +69,7 @@ def start_of(path: Path) -> Mapping[str, Any]:
         found = opened(case.to_namelist())
     if "faults" in found:
         raise InputError("\n".join(fault["text"] for fault in found["faults"]))
-    return {**found["state"], "note": found.get("note", "")}
+    return {**found["state"], "note": found.get("note", ""), "title": case.title}
 
 
 def _run(given: argparse.Namespace) -> int:

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rbsdem import _core
 from rbsdem._core import Array
@@ -41,6 +42,8 @@ __all__ = ["Answered", "Answers", "numbers"]
 
 #: Results that are kept: those of two columns, before and after a few undos.
 _KEPT = 12
+#: Rows of a response in an answer; a figure shows no more.
+_ROWS = 8000
 
 
 @dataclass(frozen=True)
@@ -268,9 +271,10 @@ def _response(found: Answered) -> dict[str, Any]:
     assert result is not None
     factor = 1.0 if found.drawn is None else found.drawn.factor
     force = result.base_shear if result.dynamic else result.force
+    rows = shown_rows(result.displacement, force)
     answer: dict[str, Any] = {
-        "displacement": numbers(factor * result.displacement),
-        "force": numbers(force),
+        "displacement": numbers(factor * result.displacement[rows]),
+        "force": numbers(force[rows]),
         "height": factor * result.column.height,
         "status": result.summary["status"],
         "stopped": found.stopped,
@@ -280,7 +284,6 @@ def _response(found: Answered) -> dict[str, Any]:
         "states": [
             {
                 "name": state.name,
-                "row": state.row,
                 "displacement": _number(factor * state.displacement),
                 "force": _number(_at(force, result, state.time)),
                 "drift": _number(state.drift),
@@ -303,8 +306,20 @@ def _response(found: Answered) -> dict[str, Any]:
         },
     }
     if result.dynamic:
-        answer["time"] = numbers(result.time)
+        answer["time"] = numbers(result.time[rows])
     return answer
+
+
+def shown_rows(displacement: Array, force: Array, most: int = _ROWS) -> NDArray[np.intp]:
+    """Return the rows of a response that a figure needs: all, or the extremes of equal parts."""
+    size = displacement.size
+    if size <= most:
+        return np.arange(size)
+    kept = [0, size - 1]
+    for part in np.array_split(np.arange(size), most // 4):
+        for values in (displacement[part], force[part]):
+            kept += [int(part[np.argmin(values)]), int(part[np.argmax(values)])]
+    return np.unique(kept)
 
 
 def _states(result: Result) -> list[Any]:

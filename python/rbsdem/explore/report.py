@@ -9,12 +9,16 @@ from typing import Any
 
 from rbsdem import _core
 from rbsdem._files import whole_file
+from rbsdem.errors import InputError
 from rbsdem.explore import texts
 from rbsdem.explore.compute import Answers
 from rbsdem.explore.near import Near
 from rbsdem.explore.parts import one_file
 
 __all__ = ["report_data", "write_report"]
+
+#: Letters of a text that a report takes with it.
+_MOST_TEXT = 400_000
 
 
 def report_data(state: Mapping[str, Any], title: str, near: Near | None = None) -> dict[str, Any]:
@@ -28,10 +32,18 @@ def report_data(state: Mapping[str, Any], title: str, near: Near | None = None) 
         Title of the report.
     near : Near, optional
         Tests to compare with.
+
+    Raises
+    ------
+    InputError
+        With a line for everything that is wrong with a column or the loading.
     """
     answers = Answers()
     columns, loading = state["columns"], state["loading"]
     loops = answers.loops(state)
+    faults = [fault["text"] for loop in loops for fault in loop["faults"]]
+    if faults:
+        raise InputError("\n".join(dict.fromkeys(faults)))
     data: dict[str, Any] = {
         "title": title,
         "version": _core.version(),
@@ -50,7 +62,9 @@ def report_data(state: Mapping[str, Any], title: str, near: Near | None = None) 
     if found.result is not None:
         for form in ("namelist", "python"):
             text = texts.exported(form, found, columns[0], state)
-            data["exports"][form] = {"text": text, "name": "column"}
+            # A long history would be most of the report; the case that it is made from has it.
+            if len(text) < _MOST_TEXT:
+                data["exports"][form] = {"text": text, "name": "column"}
     return data
 
 

@@ -45,5 +45,6 @@ def _run(given: argparse.Namespace) -> int:
     start = start_of(given.case)
     near = None if given.tests is None else Near(given.tests)
     output = given.output or given.case.with_suffix(".html")
-    print(f"wrote {write_report(output, start, given.title or given.case.stem, near)}")
+    title = given.title or start["title"] or given.case.stem
+    print(f"wrote {write_report(output, start, title, near)}")
     return 0

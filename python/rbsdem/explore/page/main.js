@@ -105,6 +105,7 @@ function showTime() {
   timeChart(get("timefigure"), state, loops);
   const found = (scales ?? []).filter(one => one.scales);
   scaleChart(get("scalefigure"), state, scales ?? []);
+  get("scales").hidden = state.columns.every(one => "case" in one);
   get("scalestate").textContent = found.length ? "Crosses: collapse or axial failure" : "Other scales of the motion follow";
 }
 
@@ -124,6 +125,7 @@ function showNear() {
 
 function showDrawings() {
   const host = get("drawings");
+  get("draw").hidden = state.columns.every(one => "case" in one);
   const focused = document.activeElement?.dataset?.path && host.contains(document.activeElement) ? [document.activeElement.closest("[data-column]").dataset.column, document.activeElement.dataset.path] : null;
   while (host.children.length > state.columns.length) host.lastChild.remove();
   state.columns.forEach((column, i) => {
