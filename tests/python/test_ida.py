@@ -148,7 +148,7 @@ def test_a_softening_column_is_hunted_down(records):
 
 def test_several_columns_split_the_variance(records):
     """Elastic columns: the record has no part in Sa at the own period, stiffness has all of it."""
-    columns = {f"{k:g}": oscillator(k) for k in (3e5, 4e5, 5e5)}
+    columns = {f"{k:g}": oscillator(k) for k in (4e5, 5e5)}
     period = 1 / float(rbsdem.modes(columns["400000"]).frequency[0])
     found = rbsdem.ida(
         columns, records, period=period, collapse_drift=0.05, levels=Hunt(points=1), **SETTINGS

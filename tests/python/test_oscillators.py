@@ -215,7 +215,7 @@ def collapses_again(motion: rbsdem.GroundMotion, scale: float, drift: float) -> 
 
 def test_collapse_intensity_against_scipy():
     """Below the bracket the column stands by scipy too, above it it falls; 1 % apart from it."""
-    chosen = RECORDS[:2]
+    chosen = RECORDS[:1]
     found = rbsdem.ida(
         softening(),
         chosen,
