@@ -97,6 +97,17 @@ def test_a_column_that_nobody_tested(table: peer.Specimens, folder: Path) -> Non
         peer.predict(replace(mine, longitudinal_number=0), displacement=PATH)
 
 
+def test_a_history_that_cannot_be_read_is_no_neighbour(folder: Path, tmp_path: Path) -> None:
+    for path in folder.iterdir():
+        (tmp_path / path.name).write_text(path.read_text())
+    (tmp_path / "T2.csv").write_text("displacement_mm,force_kN\n1,what\n")
+    row = peer.predict(peer.read_specimens(tmp_path)["T1"], samples=8)
+    assert [one.specimen.name for one in row.nearest] == ["T3", "T4"]
+    found = peer.predict(tmp_path, bands=True, samples=8)
+    assert [one.status for one in found] == ["completed", "no history", *2 * ["completed"]]
+    assert found.band_table().row_count == 3
+
+
 def test_what_cannot_be_drawn_is_no_neighbour(table: peer.Specimens) -> None:
     tests = [replace(table["T2"], longitudinal_number=0), table["T3"], table["T6"]]
     twice = replace(table["T4"], duplicate_of=3)

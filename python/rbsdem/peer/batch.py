@@ -18,7 +18,7 @@ from rbsdem import _core
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.peer.columns import check_options, checked_specimen
 from rbsdem.peer.journal import Journal
-from rbsdem.peer.nearest import nearest
+from rbsdem.peer.nearest import Neighbour, nearest
 from rbsdem.peer.one import How, Model, name_of, predict_one
 from rbsdem.peer.prediction import Prediction
 from rbsdem.peer.predictions import Predictions
@@ -32,6 +32,9 @@ from rbsdem.section.scatter import SCATTER
 from rbsdem.section.spread import has_bands
 
 __all__ = ["predict", "predict_one"]
+
+#: Tests most like a column that stand beside its prediction.
+_NEIGHBOURS = 5
 
 Near: TypeAlias = str | os.PathLike[str] | Iterable[Specimen | Prediction]
 
@@ -280,11 +283,15 @@ def _with_nearest(
         if row.status in {"failed", "no history"}:
             found.append(row)
             continue
-        near = []
-        for one in nearest(row.specimen, tests):
+        near: list[Neighbour] = []
+        for one in nearest(row.specimen, tests, max(len(tests), 1)):
             if one.prediction is None and id(one.specimen) not in known:
                 known[id(one.specimen)] = predict_one(one.specimen, model, **options)
             own = one.prediction or known[id(one.specimen)]
+            if own.comparison is None:  # its history cannot be read
+                continue
             near.append(replace(one, prediction=replace(own, band=None, nearest=())))
+            if len(near) == _NEIGHBOURS:
+                break
         found.append(replace(row, nearest=tuple(near)))
     return found

@@ -6,6 +6,7 @@ import math
 import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 
 from rbsdem import _core
 from rbsdem.errors import AccuracyWarning, InputError
@@ -150,6 +151,7 @@ def _round(specimen: Specimen) -> bool:
     return specimen.section != "rectangular"
 
 
+@lru_cache(maxsize=4096)
 def _place(specimen: Specimen) -> tuple[float, ...]:
     """Return a column as a point: each number over what counts as 1."""
     found = []

@@ -98,8 +98,8 @@ def _run(given: argparse.Namespace) -> int:
         out.print()
     for line in lines:
         print(line)
-    for error in errors:
-        sys.stderr.write(f"rbsdem: predict: {error}\n")
+    for text in errors:
+        sys.stderr.write(f"rbsdem: predict: {text}\n")
     return 1 if errors or any(row.status != "completed" for row in rows) else 0
 
 
