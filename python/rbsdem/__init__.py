@@ -14,6 +14,7 @@ from rbsdem.case import Case, read_case
 from rbsdem.column import Column
 from rbsdem.comparison import Comparison, compare
 from rbsdem.damping import Damping
+from rbsdem.ends import double_curvature
 from rbsdem.ensembles import Ensemble, cloud, ensemble, ida, stripes
 from rbsdem.envelopes import Envelope, Idealisation, envelope
 from rbsdem.errors import (
@@ -25,6 +26,7 @@ from rbsdem.errors import (
     SolveError,
 )
 from rbsdem.export import load
+from rbsdem.footing import Footing
 from rbsdem.limit_states import LimitState, LimitStates
 from rbsdem.motions import GroundMotion
 from rbsdem.paper import paper_columns, paper_sections
@@ -73,6 +75,7 @@ __all__ = [
     "Elastic",
     "Ensemble",
     "Envelope",
+    "Footing",
     "Gauge",
     "GroundMotion",
     "HollowCircularSection",
@@ -107,6 +110,7 @@ __all__ = [
     "compare",
     "comparison",
     "cyclic",
+    "double_curvature",
     "ensemble",
     "envelope",
     "ida",

@@ -275,9 +275,11 @@ def to_namelist(statement: Statement) -> str:
         room = length
 
 
-def modes(column: Statement, unknowns: int) -> tuple[Array, Array, float, str]:
+def modes(column: Statement, unknowns: int, count: int) -> tuple[Array, Array, float, str]:
     """Return circular frequencies, shapes (one in each column), the stable step of RK4, a note."""
-    omega, shapes, stable_step, status, message = _rbsdem.rbs_modes(*_crossing(column), unknowns)
+    omega, shapes, stable_step, status, message = _rbsdem.rbs_modes(
+        *_crossing(column), unknowns, count
+    )
     _raise(status, message)
     return omega, shapes, stable_step, _text(message)
 

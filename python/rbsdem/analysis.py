@@ -72,7 +72,9 @@ def modes(column: Column) -> Modes:
         If the axial load is so close to the critical one that low frequencies depend on its last
         digits.
     """
-    omega, shapes, stable_step, note = _core.modes(_checked(column)._statement, column.unknowns)
+    # The rotation of a fixed top is no unknown of its own.
+    count = _checked(column).unknowns - (column.top == "fixed")
+    omega, shapes, stable_step, note = _core.modes(column._statement, column.unknowns, count)
     if note:
         warnings.warn(note, AccuracyWarning, stacklevel=2)
     return Modes(omega, omega / (2 * np.pi), shapes, stable_step)
@@ -174,7 +176,7 @@ def cyclic(
     settings = _settings(every, kept, collapse_drift=collapse_drift)
     run = _core.cyclic(
         column._statement + settings,
-        (column.n, column.opens, False, kept),
+        (len(column.joint_numbers), column.opens, False, kept),
         by_force,
         values,
         _NONE if load is None else load,
@@ -319,7 +321,7 @@ def time_history(
     from_end = initial is not None and not isinstance(initial, Mapping)
     run = _core.time_history(
         column._statement + settings,
-        (column.n, column.opens, column.damped, kept),
+        (len(column.joint_numbers), column.opens, column.damped, kept),
         times,
         loads,
         *((_NONE, False) if from_end else _initial_state(initial, column)),
@@ -373,7 +375,7 @@ def _initial_state(initial: Mapping[str, ArrayLike] | None, column: Column) -> t
         )
     if not initial:
         return _NONE, False
-    n = column.n
+    n = len(column.joint_numbers)
     known = _DEFORMATIONS if column.opens else _DEFORMATIONS[:2]
     parts = {name: np.zeros(n) for name in (*known, *(f"{name}_velocity" for name in known))}
     for name, values in initial.items():
@@ -394,6 +396,8 @@ def _return(column: Column, run: _core.Run, about: dict[str, str], call: dict[st
     rows, state, summary, error, note = run
     summary |= about
     summary["kinematics"] = column.kinematics
+    if "lost_joint" in summary:
+        summary["lost_joint"] = column.joint_numbers[summary["lost_joint"] - 1]
     given = {name: value for name, value in call.items() if value is not None}
     result = result_from_rows(rows, column, summary, given, state)
     if error is not None:

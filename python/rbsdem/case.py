@@ -14,6 +14,7 @@ from rbsdem.analysis import cyclic, time_history
 from rbsdem.column import Column
 from rbsdem.damping import Damping
 from rbsdem.errors import InputError, SolveError
+from rbsdem.footing import Footing
 from rbsdem.result import Result
 from rbsdem.springs import SPRINGS, Spring
 
@@ -153,7 +154,15 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     for name in ("duration", "file"):
         settings.pop(name, None)
     column = _typed("column", found["column"])
-    column |= springs.of_joints(column.get("n", 1))
+    column |= springs.of_joints(column.get("n", 1) + (column.get("top") == "fixed"))
+    beneath = {name: column.pop(f"{name}_0", None) for name in ("shear", "flexure", "axial_spring")}
+    footing = {
+        name: column.pop(f"footing_{name}")
+        for name in ("mass", "inertia", "height")
+        if f"footing_{name}" in column
+    }
+    if beneath["shear"] is not None:
+        column["footing"] = Footing(**beneath, **footing)
     if "damping" in found:
         column["damping"] = Damping(**_typed("damping", found["damping"]))
     loads = (np.ascontiguousarray(values[:, i]) if acting[i] else None for i in range(len(_DRIVES)))
@@ -197,8 +206,11 @@ class _Springs:
             self.stated[group].append(given)
         return group in self.stated
 
-    def of_joints(self, n: int) -> dict[str, Any]:
-        """Return the springs of a column, one for all joints or one for each."""
+    def of_joints(self, last: int) -> dict[str, Any]:
+        """Return the springs of a column, one for all joints or one for each from 1 to the last.
+
+        Those of joint 0, beneath a footing, have its number in their names.
+        """
         springs = {int(given["id"]): _spring(given) for given in self.stated["layer_spring"]}
         layers: dict[tuple[int, ...], list[tuple[float, Spring]]] = {
             _joints(given): list(
@@ -212,15 +224,17 @@ class _Springs:
         }
         column: dict[str, Any] = {}
         for name in ("shear", "flexure", "axial_spring"):
-            places: dict[int, Spring] = {}
+            places: dict[int | None, Spring] = {}
             for given in self.stated[name]:
                 joints = _joints(given)
                 spring = _spring(given, layers[joints] if given["rule"] == "layered" else None)
-                places |= dict.fromkeys(joints or (0,), spring)
+                places |= dict.fromkeys(joints or (None,), spring)
             if 0 in places:
-                column[name] = places[0]
+                column[f"{name}_0"] = places.pop(0)
+            if None in places:
+                column[name] = places[None]
             elif places:
-                column[name] = [places[joint] for joint in range(1, n + 1)]
+                column[name] = [places[joint] for joint in range(1, last + 1)]
         return column
 
 

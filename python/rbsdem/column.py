@@ -16,6 +16,7 @@ from rbsdem import _core
 from rbsdem._renamed import renamed
 from rbsdem.damping import Damping
 from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.footing import Footing
 from rbsdem.springs import Layered, Spring, classes_for, layer_springs, whole_column
 from rbsdem.strains import Gauge
 
@@ -24,6 +25,9 @@ STANDARD_GRAVITY = 9.80665
 
 #: Levels of kinematics.
 Kinematics = Literal["small", "pdelta", "finite"]
+
+#: What the top of a column can do.
+Top = Literal["free", "fixed"]
 
 #: Whether notes on new columns are told. A context variable, as columns are made in threads too.
 _TELLING: ContextVar[bool] = ContextVar("_TELLING", default=True)
@@ -60,14 +64,19 @@ def without_notes() -> Iterator[None]:
 class Column:
     """A column of `n` rigid bodies on `n` joints; joint i is at the bottom of body i.
 
+    Its ends may be others than a rigid ground and a free top. Where the top is fixed against
+    rotation there is one joint more, n + 1, between the last body and what holds it. A footing
+    stands on a joint of its own, joint 0.
+
     Parameters
     ----------
     height : float
         Height of the column [m].
     mass : float or None
         Mass of the column [kg], spread in proportion to the lengths; None if `masses` are given.
-    shear, flexure : Spring or sequence of n Spring
-        Springs of the joints: one for every joint, or one for each from the ground up.
+    shear, flexure : Spring or sequence of Spring
+        Springs of the joints: one for every joint, or one for each from joint 1 up (n of them, or
+        n + 1 with a fixed top).
     n : int, optional
         Number of bodies, up to 10000.
     axial_load : float, optional
@@ -89,7 +98,7 @@ class Column:
         Whether the weight of the bodies acts too.
     gravity : float, optional
         Acceleration of gravity for the weight [m/s2].
-    axial_spring : Spring or sequence of n Spring, optional
+    axial_spring : Spring or sequence of Spring, optional
         Axial springs of the joints, opening and tension positive: `Elastic`, `Bilinear` or
         `Compression`. Without them the joints do not open.
     top_mass, top_inertia : float, optional
@@ -105,6 +114,12 @@ class Column:
         only.
     damping : float or Damping, optional
         Viscous damping; a number is the damping ratio of every mode.
+    top : {"free", "fixed"}, optional
+        "fixed" holds the top against rotation, while it moves along and down: a column in double
+        curvature. `height` is then the whole length between the two ends, and a dynamic analysis
+        needs a `top_mass`.
+    footing : Footing, optional
+        A footing on springs, between the ground and the column.
     model : str, optional
         The model that made the column and the version of its parameters ("layered 2026.2"). It has
         no effect on the analysis.
@@ -143,6 +158,8 @@ class Column:
     axial_height: float | None = None
     axial_force_ratio: float = 0.0
     model: str = ""
+    top: Top = "free"
+    footing: Footing | None = None
 
     def __post_init__(self) -> None:
         def put(name: str, value: Any) -> None:
@@ -160,12 +177,15 @@ class Column:
         for name in _LISTS:
             if getattr(self, name) is not None:
                 put(name, _parts(getattr(self, name), name))
-        put("shear", _springs(self.shear, "shear", self.n))
-        put("flexure", _springs(self.flexure, "flexure", self.n))
+        if self.footing is not None and not isinstance(self.footing, Footing):
+            raise InputError(f"column: footing = {self.footing!r} must be a Footing")
+        joints = self.n + (self.top == "fixed")
+        put("shear", _springs(self.shear, "shear", joints))
+        put("flexure", _springs(self.flexure, "flexure", joints))
         if self.axial_spring is not None:
-            put("axial_spring", _springs(self.axial_spring, "axial_spring", self.n))
+            put("axial_spring", _springs(self.axial_spring, "axial_spring", joints))
         for name in ("shear", "flexure"):
-            _refuse_whole(getattr(self, name), name, self.n)
+            _refuse_whole(getattr(self, name), name, joints)
         if self.damping is not None and not isinstance(self.damping, Damping):
             put("damping", Damping(modal=_core.number(self.damping, "column: damping")))
         # Once for all analyses, as a frozen column does not change.
@@ -183,8 +203,17 @@ class Column:
 
     @property
     def unknowns(self) -> int:
-        """Number of joint deformations: 2n, or 3n where the joints open."""
-        return (2 if self.axial_spring is None else 3) * self.n
+        """Number of joint deformations: two a joint, or three where the joints open."""
+        return (2 if self.axial_spring is None else 3) * len(self.joint_numbers)
+
+    @property
+    def joint_numbers(self) -> range:
+        """Numbers of the joints from the ground up, as the columns of a result hold them.
+
+        They are 1 to n; 0 comes before them where the column stands on a footing, n + 1 after them
+        where the top is fixed.
+        """
+        return range(int(self.footing is None), self.n + 1 + (self.top == "fixed"))
 
     @property
     def opens(self) -> bool:
@@ -197,7 +226,7 @@ class Column:
         return isinstance(self.damping, Damping) and self.damping.acts
 
     def joints(self, name: Literal["shear", "flexure", "axial_spring"]) -> tuple[Spring, ...]:
-        """Return the springs of one kind, one for each joint from the ground up.
+        """Return the springs of one kind, one for each of `joint_numbers`.
 
         Parameters
         ----------
@@ -207,7 +236,10 @@ class Column:
         springs = getattr(self, name)
         if springs is None:
             return ()
-        return (springs,) * self.n if isinstance(springs, Spring) else tuple(springs)
+        if isinstance(springs, Spring):
+            springs = (springs,) * (self.n + (self.top == "fixed"))
+        beneath = () if self.footing is None else (getattr(self.footing, name),)
+        return (*beneath, *springs)
 
     def gauge(self, joint: int) -> Gauge | None:
         """Return what the layers of a joint stand for, and over which lengths; None if not known.
@@ -231,12 +263,15 @@ class Column:
         own |= {name: getattr(self, name) for name in (*_NUMBERS, "mass", "axial_height", *_LISTS)}
         own |= {name: True for name in _SWITCHES if getattr(self, name)}
         own |= {"model": _core.Text(self.model)} if self.model else {}
+        own |= {"top": str(self.top)} if self.top != "free" else {}
+        own |= self.footing.keys() if self.footing is not None else {}
         parts = [_core.group("column", own)]
         if self.damping is not None:
             parts.append(self.damping.statement())
         ids: dict[Spring, int] = {}
         for name in ("shear", "flexure", "axial_spring"):
-            parts += _springs_statement(getattr(self, name), name, ids)
+            beneath = None if self.footing is None else getattr(self.footing, name)
+            parts += _springs_statement(getattr(self, name), beneath, name, ids)
         if ids:
             parts.append(layer_springs(ids))
         numbers = [number for part in parts for number in part.numbers]
@@ -244,18 +279,23 @@ class Column:
 
 
 def _springs_statement(
-    springs: Spring | Sequence[Spring] | None, name: str, ids: dict[Spring, int]
+    springs: Spring | Sequence[Spring] | None,
+    beneath: Spring | None,
+    name: str,
+    ids: dict[Spring, int],
 ) -> Iterator[_core.Statement]:
     """Yield the springs of one kind, equal springs once, with the joints that have them."""
-    if springs is None:
-        return
+    stated: list[tuple[Spring, dict[str, Any]]] = []
+    if beneath is not None:
+        stated.append((beneath, {"joint": [0]}))
     if isinstance(springs, Spring):
-        joints: dict[Spring, dict[str, Any]] = {springs: {}}
-    else:
-        joints = {}
+        stated.append((springs, {}))
+    elif springs is not None:
+        joints: dict[Spring, list[int]] = {}
         for number, spring in enumerate(springs, 1):
-            joints.setdefault(spring, {"joint": []})["joint"].append(number)
-    for spring, place in joints.items():
+            joints.setdefault(spring, []).append(number)
+        stated += [(spring, {"joint": numbers}) for spring, numbers in joints.items()]
+    for spring, place in stated:
         yield spring.statement(name, **place)
         if isinstance(spring, Layered):
             yield spring.layers_statement(ids, **place)

@@ -78,9 +78,11 @@ class Result:
         Displacement of the top relative to the ground [m].
     force : ndarray, shape (steps,)
         Lateral force at the top [N].
-    slip, rotation : ndarray, shape (steps, n)
-        Slip [m] and relative rotation [rad] of the joints, from the ground up.
-    shear, moment : ndarray, shape (steps, n)
+    slip, rotation : ndarray, shape (steps, joints)
+        Slip [m] and relative rotation [rad] of the joints from the ground up, in the order of
+        `column.joint_numbers`: joints 1 to n; beneath a footing joint 0 comes first, at a fixed
+        top joint n + 1 last.
+    shear, moment : ndarray, shape (steps, joints)
         Forces [N] and moments [N m] of their springs.
     base_shear, base_moment : ndarray, shape (steps,)
         What holds the column at the ground: horizontal force [N], and moment about the lowest joint
@@ -175,16 +177,18 @@ class Result:
         InputError
             If the joint has no layers, or the openings were not kept.
         """
-        if not 1 <= joint <= self.column.n:
-            raise InputError(f"joint = {joint} must be from 1 to n = {self.column.n}")
-        spring = self.column.joints("flexure")[joint - 1]
+        numbers = self.column.joint_numbers
+        if joint not in numbers:
+            raise InputError(f"joint = {joint} must be from {numbers[0]} to {numbers[-1]}")
+        at = numbers.index(joint)
+        spring = self.column.joints("flexure")[at]
         if not isinstance(spring, Layered):
             raise InputError(f"joint {joint} has no layers; its spring is {type(spring).__name__}")
         self._check_openings()
         assert self.rest is not None
-        turned = self.rotation[:, joint - 1] + self.rest[:, joint - 1]
+        turned = self.rotation[:, at] + self.rest[:, at]
         places = np.array([y for y, _ in spring.layers])
-        return np.asarray(self.opening[:, joint - 1, None] + turned[:, None] * places)
+        return np.asarray(self.opening[:, at, None] + turned[:, None] * places)
 
     def strains(self, joint: int = 1, *, gauge: Gauge | None = None) -> Strains:
         """Return the strains of the layers of a joint: bars, core and cover in each row.
@@ -499,7 +503,7 @@ def _last_zero(displacement: Array, force: Array) -> float:
 def _width(column: Column, with_base: bool) -> int:
     """Return the number of values in a row without the openings of layered joints."""
     names = _core.quantities(column.opens, with_base)[0]
-    return sum(column.n if name.endswith("*") else 1 for name in names)
+    return sum(len(column.joint_numbers) if name.endswith("*") else 1 for name in names)
 
 
 def result_from_rows(
@@ -514,10 +518,11 @@ def result_from_rows(
     at = 0
     with_base = column.damped and summary["analysis"] == "dynamic"
     with_openings = rows.shape[1] > _width(column, with_base)
+    joints = len(column.joint_numbers)
     for name in _core.quantities(column.opens, with_base, with_openings)[0]:
         if name.endswith("*"):
-            values[name[:-1]] = rows[:, at : at + column.n]
-            at += column.n
+            values[name[:-1]] = rows[:, at : at + joints]
+            at += joints
         else:
             values[name] = rows[:, at]
             at += 1

@@ -365,17 +365,20 @@ class Compression(Spring):
     Parameters
     ----------
     k : float
-        Stiffness in compression [N/m]. Opening and tension are positive: the force is k w for
-        w < 0 and 0 otherwise.
+        Stiffness in compression [N/m]. Opening and tension are positive: the force is k (w + gap)
+        for w < -gap and 0 otherwise.
+    gap : float, optional
+        Closing before the faces touch [m].
 
     Raises
     ------
     InputError
-        If the stiffness is not positive.
+        If the stiffness is not positive, or the gap is negative.
     """
 
     rule: ClassVar[str] = "compression"
     k: float
+    gap: float = 0.0
 
 
 @renamed(k_fall="k_soft")

@@ -117,7 +117,8 @@ contains
          fate = ', and the joint would rest after '//to_text(abs(summary%fall%drop))//' m'
       end if
       call fatal_error(error, column_collapsed, 'axial failure at '//place//': the layers of joint '// &
-                       to_text(summary%lost_joint)//' no longer carry the axial load of '// &
+                       to_text(case%column%joint_number(summary%lost_joint))//' no longer carry the '// &
+                       'axial load of '// &
                        to_text(summary%fall%axial_load)//' N; at that rotation they carry at most '// &
                        to_text(summary%fall%capacity)//' N'//fate//'. The rows up to there are in '// &
                        recorder%file%path)
@@ -238,7 +239,7 @@ contains
       call row_labels(column%n, column%opens, case%analysis%dynamic(), &
                       case%analysis%dynamic() .and. column%damped, recorder%openings, recorder%units, &
                           labels, &
-                      recorder%si)
+                      recorder%si, merge(0, 1, column%footing))
       call recorder%open(path, error)
       if (allocated(error)) return
       call remove_if_stopped(recorder%file%own)

@@ -145,7 +145,7 @@ subroutine rbs_to_namelist(statement, nn, number, most, text, length, status, me
    if (length <= most) text = sink%buffer%text(:length)
 end subroutine rbs_to_namelist
 
-subroutine rbs_modes(statement, nn, number, unknowns, omega, shapes, stable_step, status, message)
+subroutine rbs_modes(statement, nn, number, unknowns, count, omega, shapes, stable_step, status, message)
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_bindings_runs, only: tell
@@ -155,9 +155,9 @@ subroutine rbs_modes(statement, nn, number, unknowns, omega, shapes, stable_step
    use rbs_solve_modal_modes, only: modes_type, find_modes
    implicit none
    character(len=*), intent(in) :: statement
-   integer(c_int), intent(in) :: nn, unknowns
+   integer(c_int), intent(in) :: nn, unknowns, count
    real(c_double), intent(in) :: number(nn)
-   real(c_double), intent(out) :: omega(unknowns), shapes(unknowns, unknowns), stable_step
+   real(c_double), intent(out) :: omega(count), shapes(unknowns, count), stable_step
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe

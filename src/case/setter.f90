@@ -190,8 +190,6 @@ contains
          select case (self%keys(place)%name)
          case ('joint')
             entry%joint = nint(si)
-            ! joint = 0 means every joint.
-            if (all(entry%joint == 0)) deallocate (entry%joint)
          case ('id')
             entry%id = nint(si(1))
          case ('y')

@@ -20,7 +20,8 @@ module rbs_case_spring_entry
 
    type(key_type), parameter :: joint_key = &
       key_type('joint', kind=integer_kind, bound=not_negative, optional=.true., most=most_bodies, &
-               meaning='joints that have this spring, from the ground up; without it all that are not named')
+               meaning='joints that have this spring, from the ground up, 0 beneath a footing, n + 1 at '// &
+                        'a fixed top; without it all from 1 on that are not named')
    type(key_type), parameter :: rule_key = key_type('rule', kind=word_kind, meaning='name of the rule')
    type(key_type), parameter :: id_key = &
       key_type('id', kind=integer_kind, bound=above_zero, &
@@ -121,18 +122,42 @@ contains
       type(column_record), intent(inout) :: column
       type(message_list), intent(inout) :: messages
       type(entry_list) :: whole
-      integer :: known
+      character(len=40) :: range
+      integer :: first, known
 
       whole = list
+      column%footing = any_beneath(list)
       if (list%count > 0) then
          known = messages%count
          call check_ids(list, messages)
-         if (messages%count == known) call fill_layers(whole, column%n, messages)
+         if (messages%count == known) call fill_layers(whole, last_joint(column), messages)
       end if
-      call place_group(whole, 'shear', column%n, column%shear, messages)
-      call place_group(whole, 'flexure', column%n, column%flexure, messages)
-      call place_group(whole, 'axial_spring', column%n, column%axial_spring, messages)
+      first = merge(0, 1, column%footing)
+      range = to_text(first)//' to '//trim(merge('n + 1', 'n    ', column%top == 'fixed'))//' = '// &
+              to_text(last_joint(column))
+      call place_group(whole, 'shear', first, last_joint(column), range, column%shear, messages)
+      call place_group(whole, 'flexure', first, last_joint(column), range, column%flexure, messages)
+      call place_group(whole, 'axial_spring', first, last_joint(column), range, column%axial_spring, messages)
    end subroutine place_springs
+
+   !> Whether a spring is given for joint 0, beneath a footing.
+   pure logical function any_beneath(list)
+      type(entry_list), intent(in) :: list
+      integer :: i
+
+      any_beneath = .false.
+      do i = 1, list%count
+         if (.not. allocated(list%entry(i)%joint)) cycle
+         any_beneath = any_beneath .or. any(list%entry(i)%joint == 0)
+      end do
+   end function any_beneath
+
+   !> Number of the uppermost joint: that of the last body, or that of a fixed top.
+   pure integer function last_joint(column)
+      class(column_record), intent(in) :: column
+
+      last_joint = column%joint_number(column%joints())
+   end function last_joint
 
    !> Check the springs of layers: each number must belong to one spring, which must have a rule.
    subroutine check_ids(list, messages)
@@ -163,13 +188,15 @@ contains
    end subroutine check_ids
 
    !> Give springs of one kind to the joints: one for all joints, or one for each.
-   subroutine place_group(list, group, n, springs, messages)
+   subroutine place_group(list, group, first, last, range, springs, messages)
       type(entry_list), intent(in) :: list
       character(len=*), intent(in) :: group
-      integer, intent(in) :: n
+      !> Numbers of the joints, and the same for messages
+      integer, intent(in) :: first, last
+      character(len=*), intent(in) :: range
       type(spring_record), allocatable, intent(out) :: springs(:)
       type(message_list), intent(inout) :: messages
-      integer :: of_joint(max(n, 1)), i, j, rest, known
+      integer :: of_joint(first:max(last, 1)), i, j, rest, known
 
       if (list%count == 0) return
       if (.not. any(list%entry(:list%count)%group == group)) return
@@ -185,10 +212,9 @@ contains
                cycle
             end if
             do j = 1, size(entry%joint)
-               if (entry%joint(j) < 1 .or. entry%joint(j) > n) then
+               if (entry%joint(j) < first .or. entry%joint(j) > last) then
                   call messages%add(trim(entry%where)//' &'//group//' has joint = '// &
-                                    to_text(entry%joint(j))// &
-                                    '; joints are 1 to n = '//to_text(n))
+                                    to_text(entry%joint(j))//'; joints are '//trim(range))
                else if (of_joint(entry%joint(j)) > 0) then
                   call twice(entry, list%entry(of_joint(entry%joint(j))), group, messages, entry%joint(j))
                else
@@ -198,19 +224,24 @@ contains
          end associate
       end do
       if (messages%count > known) return
-      if (all(of_joint == 0)) then
+      if (all(of_joint == 0) .and. first > 0) then
          springs = [list%entry(rest)%spring]
          return
       end if
-      i = findloc(of_joint, 0, dim=1)
-      if (i > 0 .and. rest == 0) then
+      if (of_joint(first) == 0 .and. first == 0) then
+         call messages%add('the column stands on a footing, but there is no &'//group// &
+                           ' with joint = 0; give the footing one')
+         return
+      end if
+      i = findloc(of_joint, 0, dim=1) + first - 1
+      if (i >= first .and. rest == 0) then
          call messages%add('joint '//to_text(i)//' has no &'//group// &
                            '; give it one, or one without joint, which is for all others')
          return
       end if
-      allocate (springs(n))
-      do i = 1, n
-         springs(i) = list%entry(merge(of_joint(i), rest, of_joint(i) > 0))%spring
+      allocate (springs(last - first + 1))
+      do i = first, last
+         springs(i - first + 1) = list%entry(merge(of_joint(i), rest, of_joint(i) > 0))%spring
       end do
    end subroutine place_group
 
@@ -239,15 +270,21 @@ contains
       integer, intent(in) :: n
       type(message_list), intent(inout) :: messages
       type(entry_list) :: made
-      integer :: i, j
+      integer, allocatable :: named(:), order(:)
+      integer :: i, j, k
 
       if (.not. any(list%entry(:list%count)%group == 'layers')) return
-      do i = 1, list%count
+      ! Layers that name their joints before those for the rest.
+      order = [pack([(i, i=1, list%count)], [(allocated(list%entry(i)%joint), i=1, list%count)]), &
+               pack([(i, i=1, list%count)], [(.not. allocated(list%entry(i)%joint), i=1, list%count)])]
+      do k = 1, size(order)
+         i = order(k)
          if (list%entry(i)%group /= 'layers') cycle
          made = entry_list()
+         call joints_named(list, named)
          do j = 1, list%count
             if (list%entry(j)%group /= 'flexure' .or. list%entry(j)%spring%rule /= 'layered') cycle
-            call share_joints(list%entry(j), list%entry(i), n, made)
+            call share_joints(list%entry(j), list%entry(i), n, named, made)
          end do
          if (made%count == 0) then
             call messages%add(adjustl(trim(list%entry(i)%where)// &
@@ -263,11 +300,26 @@ contains
       end do
    end subroutine fill_layers
 
+   !> The joints that flexural springs name.
+   subroutine joints_named(list, named)
+      type(entry_list), intent(in) :: list
+      integer, allocatable, intent(out) :: named(:)
+      integer :: i
+
+      allocate (named(0))
+      do i = 1, list%count
+         if (list%entry(i)%group /= 'flexure' .or. .not. allocated(list%entry(i)%joint)) cycle
+         named = [named, list%entry(i)%joint]
+      end do
+   end subroutine joints_named
+
    !> Give the joints of a &layers group a copy of their spring, separate from the other joints.
-   subroutine share_joints(entry, layers, n, made)
+   subroutine share_joints(entry, layers, n, named, made)
       type(spring_entry), intent(inout) :: entry
       type(spring_entry), intent(in) :: layers
       integer, intent(in) :: n
+      !> Joints that flexural springs name
+      integer, intent(in) :: named(:)
       type(entry_list), intent(inout) :: made
       integer :: i
 
@@ -277,9 +329,11 @@ contains
       if (.not. allocated(layers%joint)) then
          entry%group = 'taken'
       else if (.not. allocated(entry%joint)) then
-         made%entry(made%count)%joint = layers%joint
-         entry%joint = pack([(i, i=1, n)], [(all(layers%joint /= i), i=1, n)])
-         if (size(entry%joint) == 0) entry%group = 'taken'
+         ! It is for the joints that no other spring names; what is left of them stays with it.
+         made%entry(made%count)%joint = pack(layers%joint, [(all(named /= layers%joint(i)), &
+                                                             i=1, size(layers%joint))])
+         if (size(made%entry(made%count)%joint) == 0) made%count = made%count - 1
+         if (all([(any(named == i) .or. any(layers%joint == i), i=1, n)])) entry%group = 'taken'
       else
          made%entry(made%count)%joint = pack(entry%joint, [(any(layers%joint == entry%joint(i)), &
                                                             i=1, size(entry%joint))])

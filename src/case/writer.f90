@@ -99,6 +99,7 @@ contains
       type(column_record) :: new
       type(key_visitor) :: v
       type(spring_list) :: layer_springs
+      integer :: beneath
 
       call v%collect('column')
       call new%visit(v)
@@ -110,17 +111,22 @@ contains
       call v%list()
       call column%damping%visit(v)
       if (v%listed > 0) call sink%group('damping', v%entry(:v%listed))
-      if (allocated(column%shear)) call write_springs('shear', column%shear, layer_springs, sink)
-      if (allocated(column%flexure)) call write_springs('flexure', column%flexure, layer_springs, sink)
+      beneath = merge(1, 0, column%footing)
+      if (allocated(column%shear)) call write_springs('shear', column%shear, beneath, layer_springs, sink)
+      if (allocated(column%flexure)) then
+         call write_springs('flexure', column%flexure, beneath, layer_springs, sink)
+      end if
       if (allocated(column%axial_spring)) then
-         call write_springs('axial_spring', column%axial_spring, layer_springs, sink)
+         call write_springs('axial_spring', column%axial_spring, beneath, layer_springs, sink)
       end if
    end subroutine write_column
 
    !> Write the springs of one kind.
-   subroutine write_springs(group, spring, layer_springs, sink)
+   subroutine write_springs(group, spring, beneath, layer_springs, sink)
       character(len=*), intent(in) :: group
       type(spring_record), intent(in) :: spring(:)
+      !> Number of joints beneath joint 1
+      integer, intent(in) :: beneath
       !> Springs of layers that have been written before
       type(spring_list), intent(inout) :: layer_springs
       class(sink_type), intent(inout) :: sink
@@ -137,30 +143,32 @@ contains
             exit
          end do
       end do
-      one_for_all = all(first == 1)
+      one_for_all = all(first == 1) .and. beneath == 0
       do i = 1, size(spring)
          if (first(i) /= i) cycle
          if (one_for_all) then
             call spring_entries(spring(i), 0, entry)
          else
             call spring_entries(spring(i), 1, entry)
-            call set_joints(entry(1), first, i)
+            call set_joints(entry(1), first, i, beneath)
          end if
          call sink%group(group, entry)
          if (.not. allocated(spring(i)%y)) cycle
-         call write_layers(spring(i), merge(0, i, one_for_all), first, layer_springs, sink)
+         call write_layers(spring(i), merge(0, i, one_for_all), first, beneath, layer_springs, sink)
       end do
    end subroutine write_springs
 
    !> The joints that have the same spring as joint i.
-   subroutine set_joints(entry, first, i)
+   subroutine set_joints(entry, first, i, beneath)
       type(entry_type), intent(inout) :: entry
       integer, intent(in) :: first(:), i
+      !> Number of joints beneath joint 1
+      integer, intent(in) :: beneath
       integer :: j
 
       entry%name = 'joint'
       entry%kind = integer_kind
-      entry%number = real(pack([(j, j=1, size(first))], first == i), wp)
+      entry%number = real(pack([(j - beneath, j=1, size(first))], first == i), wp)
    end subroutine set_joints
 
    !> The entries of rule and parameters of a spring.
@@ -210,10 +218,12 @@ contains
    end function is_written
 
    !> Write the springs of layers that have not been written before, then the layers.
-   subroutine write_layers(spring, joint, first, layer_springs, sink)
+   subroutine write_layers(spring, joint, first, beneath, layer_springs, sink)
       type(spring_record), intent(in) :: spring
       !> First of the joints that have the spring, 0: all
       integer, intent(in) :: joint, first(:)
+      !> Number of joints beneath joint 1
+      integer, intent(in) :: beneath
       type(spring_list), intent(inout) :: layer_springs
       class(sink_type), intent(inout) :: sink
       type(entry_type), allocatable :: entry(:)
@@ -236,7 +246,7 @@ contains
       end do
       if (allocated(entry)) deallocate (entry)
       allocate (entry(3))
-      if (joint > 0) call set_joints(entry(1), first, joint)
+      if (joint > 0) call set_joints(entry(1), first, joint, beneath)
       entry(2)%name = 'y'
       entry(2)%number = spring%y
       entry(3)%name = 'spring'

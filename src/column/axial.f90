@@ -113,6 +113,8 @@ contains
             stiffer(i) = column%initial_stiffness(n + i + 1)/flexure
          end associate
       end do
+      ! A held top takes the stiffness of its joint away from what turns the body below.
+      if (column%held) stiffer(n - 1) = -stiffer(n - 1)
       scale = max(maxval(abs(turning)), maxval(sliding))
       if (.not. scale > 0.0_wp) return
       turning = turning/scale
@@ -149,7 +151,8 @@ contains
    !> All bodies above joint i, in equilibrium on it, push over the one below it with a negative rotational
    !> stiffness -t_i. A body adds a l; a flexural spring in series makes of t the stiffness t k_M/(k_M - t)
    !> and must be stiffer than t; the slip of the joint adds b^2/k_V. With compression all terms have one
-   !> sign: nothing cancels. Here as tau_i = t_i/k_Mi.
+   !> sign: nothing cancels. Here as tau_i = t_i/k_Mi. What is held is infinitely stiff: t k_M/(k_M - t) tends
+   !> to -k_M.
    pure logical function carries(multiple, turning, sliding, stiffer)
       real(wp), intent(in) :: multiple
       !> a_i l_i/k_Mi, b_{i+1}^2/(k_V,i+1 k_Mi) and k_M,i+1/k_Mi
@@ -160,6 +163,12 @@ contains
       n = size(turning)
       carries = .false.
       tau = multiple*turning(n)
+      if (n > 1) then
+         if (stiffer(n - 1) < 0.0_wp) then
+            n = n - 1
+            tau = multiple*turning(n) + multiple**2*sliding(n) + stiffer(n)
+         end if
+      end if
       do i = n - 1, 1, -1
          if (.not. tau < 1.0_wp) return
          tau = multiple*turning(i) + multiple**2*sliding(i) + stiffer(i)*tau/(1.0_wp - tau)

@@ -15,7 +15,7 @@ module rbs_column_band
    implicit none
    private
 
-   public :: add_spring_band, add_geometric_band, add_mass_band, opening_stiffness
+   public :: add_spring_band, add_geometric_band, add_mass_band, hold_last, opening_stiffness
    public :: to_joints, from_joints
 
 contains
@@ -89,6 +89,21 @@ contains
          band(1, 2*i) = band(1, 2*i) + factor*column%inertia(i)
       end do
    end subroutine add_mass_band
+
+   !> Hold the last unknown of a band, the rotation of a held top: it couples with nothing.
+   pure subroutine hold_last(band, diagonal)
+      !> Lower band (half-width + 1 or more, unknowns)
+      real(wp), intent(inout) :: band(:, :)
+      !> What stands on the diagonal in its place
+      real(wp), intent(in) :: diagonal
+      integer :: i, last
+
+      last = size(band, 2)
+      do i = 2, min(size(band, 1), last)
+         band(i, last + 1 - i) = 0.0_wp
+      end do
+      band(1, last) = diagonal
+   end subroutine hold_last
 
    !> Stiffness of the axial springs, tridiagonal in y.
    pure subroutine opening_stiffness(column, k, diagonal, beside)

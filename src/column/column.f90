@@ -4,6 +4,10 @@
 !> take part only where the joints have axial springs. Joint i is at the bottom of body i; rotations are
 !> clockwise, so that a positive one moves the top to +x. A mass lumped at the top is part of the last
 !> body: it moves its centroid and adds to its inertia, and costs nothing.
+!>
+!> Ends other than a rigid ground and a free top are bodies of the same chain. A footing is its first body. A
+!> top fixed against rotation is its last one, without length, whose rotation is held: the joint between
+!> it and the body below turns by minus the rotation of that body, and its moment holds the top.
 module rbs_column_column
    use rbs_base_constants, only: unset
    use rbs_base_kinds, only: wp
@@ -19,6 +23,9 @@ module rbs_column_column
    !> Levels of kinematics.
    integer, parameter :: small = 1, pdelta = 2, finite = 3
 
+   !> Rotary inertia of a body that does not turn [kg m2]: any positive number.
+   real(wp), parameter :: of_held_body = 1.0_wp
+
    type :: column_type
       !> Number of bodies, number of unknowns 2 n or, with axial springs, 3 n
       integer :: n = 0, unknowns = 0
@@ -26,6 +33,9 @@ module rbs_column_column
       integer :: kinematics = small
       !> Whether joints have axial springs and open
       logical :: opens = .false.
+      !> Whether the first body is a footing, so that its joint is joint 0, and whether the last body is held
+      !> against rotation
+      logical :: footing = .false., held = .false.
       !> Lengths [m], masses [kg] and rotary inertias about the centroid [kg m2] of the bodies (n)
       real(wp), allocatable :: length(:), mass(:), inertia(:)
       !> Distance of the centroid from the bottom and from the top of its body (n) [m]
@@ -78,10 +88,15 @@ contains
    subroutine new_column(column, spec)
       type(column_type), intent(out) :: column
       type(column_record), intent(in) :: spec
-      integer :: n
+      integer :: first, last, n
 
-      n = spec%n
+      column%footing = spec%footing
+      column%held = spec%top == 'fixed'
+      n = spec%joints()
       column%n = n
+      ! The bodies of the column itself
+      first = merge(2, 1, column%footing)
+      last = first + spec%n - 1
       column%opens = allocated(spec%axial_spring)
       column%unknowns = merge(3, 2, column%opens)*n
       select case (spec%kinematics)
@@ -93,16 +108,20 @@ contains
          column%kinematics = small
       end select
 
-      allocate (column%length(n), column%mass(n))
+      allocate (column%length(n), column%mass(n), source=0.0_wp)
       if (allocated(spec%lengths)) then
-         column%length = spec%lengths
+         column%length(first:last) = spec%lengths
       else
-         column%length = spec%height/n
+         column%length(first:last) = spec%height/spec%n
       end if
       if (allocated(spec%masses)) then
-         column%mass = spec%masses
+         column%mass(first:last) = spec%masses
       else
-         column%mass = spec%mass*(column%length/spec%height)
+         column%mass(first:last) = spec%mass*(column%length(first:last)/spec%height)
+      end if
+      if (column%footing) then
+         column%length(1) = spec%footing_height
+         column%mass(1) = spec%footing_mass
       end if
       column%mass_damping = spec%damping%mass
       column%stiffness_damping = spec%damping%stiffness
@@ -115,7 +134,7 @@ contains
 
       call set_heights(column)
       call set_weights(column, spec)
-      call set_bodies(column, spec)
+      call set_bodies(column, spec, first, last)
       call set_mass_sums(column)
       call set_lifted_masses(column)
       call set_springs(column, spec)
@@ -167,20 +186,27 @@ contains
    end subroutine set_weights
 
    !> Centroids and rotary inertias, the lumped mass included.
-   subroutine set_bodies(column, spec)
+   subroutine set_bodies(column, spec, first, last)
       type(column_type), intent(inout) :: column
       type(column_record), intent(in) :: spec
+      !> Bodies of the column itself
+      integer, intent(in) :: first, last
       real(wp) :: own, shift
       integer :: i, n
 
       n = column%n
+      column%inertia = column%mass*(column%length**2 + spec%depth**2)/12.0_wp
       if (allocated(spec%rotary_inertia)) then
-         column%inertia = spec%rotary_inertia(min([(i, i=1, n)], size(spec%rotary_inertia)))
-      else
-         column%inertia = column%mass*(column%length**2 + spec%depth**2)/12.0_wp
+         column%inertia(first:last) = spec%rotary_inertia(min([(i, i=1, spec%n)], size(spec%rotary_inertia)))
       end if
       column%lower = column%length/2.0_wp
       column%upper = column%length/2.0_wp
+      if (column%footing) column%inertia(1) = spec%footing_inertia
+      if (column%held) then
+         column%mass(n) = spec%top_mass
+         column%inertia(n) = of_held_body
+         return
+      end if
       if (.not. spec%top_mass > 0.0_wp .and. .not. spec%top_inertia > 0.0_wp) return
       own = column%mass(n)
       shift = spec%top_mass/(own + spec%top_mass)*column%upper(n)
@@ -219,7 +245,11 @@ contains
       integer :: n
 
       n = column%n
-      column%lifted_body = column%mass*column%lower/column%length + column%mass_above(2:)
+      ! A body without length does not lean.
+      column%lifted_body = column%mass_above(2:)
+      where (column%length > 0.0_wp)
+         column%lifted_body = column%mass*column%lower/column%length + column%mass_above(2:)
+      end where
       column%lifted_joint = column%mass_above(:n)
    end subroutine set_lifted_masses
 
@@ -249,7 +279,7 @@ contains
       character(len=9), parameter :: kinds(3) = ['shear    ', 'flexural ', 'axial    ']
 
       name = 'the '//trim(kinds((i - 1)/column%n + 1))//' spring of joint '// &
-             to_text(mod(i - 1, column%n) + 1)
+             to_text(mod(i - 1, column%n) + merge(0, 1, column%footing))
    end function joint_name
 
 end module rbs_column_column

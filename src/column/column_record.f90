@@ -16,6 +16,7 @@ module rbs_column_column_record
    public :: column_record, damping_record, most_bodies, most_dense, most_modes
 
    character(len=*), parameter :: kinematics_names = 'small pdelta finite'
+   character(len=*), parameter :: top_names = 'free fixed'
 
    !> Every row holds four numbers or more for each body: more bodies are a slip of the pen.
    integer, parameter :: most_bodies = 10000
@@ -24,8 +25,8 @@ module rbs_column_column_record
    !> grows with its cube.
    integer, parameter :: most_dense = 500
 
-   !> A column that takes modal damping has no more modes.
-   integer, parameter :: most_modes = 3*most_dense
+   !> A column that takes modal damping has no more modes, head and footing included.
+   integer, parameter :: most_modes = 3*(most_dense + 2)
 
    !> Damping ratios are below critical.
    type(bound_type), parameter :: ratio = &
@@ -43,7 +44,9 @@ module rbs_column_column_record
       procedure :: visit => visit_damping
    end type damping_record
 
-   !> A column of `n` rigid bodies; joint i is at the bottom of body i, counted from the ground.
+   !> A column of `n` rigid bodies; joint i is at the bottom of body i, counted from the ground. Where the
+   !> top is fixed against rotation, joint n + 1 is between body n and what holds it; joint 0 is that
+   !> beneath a footing, on which joint 1 then stands.
    type :: column_record
       integer :: n = 1
       real(wp) :: height = unset
@@ -63,18 +66,26 @@ module rbs_column_column_record
       !> Whether the axial load, and the lateral force, turn with the top body (`finite` only)
       logical :: axial_follows = .false., force_follows = .false.
       real(wp) :: top_mass = 0.0_wp, top_inertia = 0.0_wp
+      !> 'free', or 'fixed' against rotation
+      character(len=16) :: top = 'free'
+      !> Whether the column stands on a footing, which is so if springs are given for joint 0; mass [kg],
+      !> rotary inertia about its centroid [kg m2] and height [m] of the footing
+      logical :: footing = .false.
+      real(wp) :: footing_mass = 0.0_wp, footing_inertia = 0.0_wp, footing_height = 0.0_wp
       real(wp) :: depth = 0.0_wp
       !> One for all bodies or n; not allocated: m (l^2 + depth^2)/12 [kg m2]
       real(wp), allocatable :: rotary_inertia(:)
       !> Which model made the column, and the version of its parameters; for the record only
       character(len=64) :: model = ''
       type(damping_record) :: damping
-      !> The springs, one for every joint, or n; axial ones are tension positive, without them joints do not
-      !> open
+      !> Springs: one for every joint, or one for each from the ground up; with a footing always one for
+      !> each. Axial ones are tension positive, without them joints do not open
       type(spring_record), allocatable :: shear(:), flexure(:), axial_spring(:)
    contains
       procedure :: visit
       procedure :: validate
+      procedure :: joints
+      procedure :: joint_number
    end type column_record
 
 contains
@@ -113,6 +124,13 @@ contains
       call v%key('top_mass', self%top_mass, 'kg', not_negative, &
                  'mass lumped at the top; its weight belongs to the axial load')
       call v%key('top_inertia', self%top_inertia, 'kg m2', not_negative, 'its rotary inertia about the top')
+      call v%word('top', self%top, 'whether the top can turn, or is fixed against rotation', top_names)
+      call v%key('footing_mass', self%footing_mass, 'kg', not_negative, &
+                 'mass of the footing, which stands on the springs of joint 0')
+      call v%key('footing_inertia', self%footing_inertia, 'kg m2', not_negative, &
+                 'its rotary inertia about its centroid')
+      call v%key('footing_height', self%footing_height, 'm', not_negative, &
+                 'height of the footing, between joint 0 and joint 1')
       call v%key('depth', self%depth, 'm', not_negative, &
                  'depth of the section: adds m depth^2/12 to the rotary inertia of every body')
       call v%key('rotary_inertia', self%rotary_inertia, 'kg m2', above_zero, &
@@ -134,6 +152,22 @@ contains
                  'damping ratios: one for all modes, or one for each of the first modes', most_modes)
    end subroutine visit_damping
 
+   !> Number of joints: one at the bottom of each body, one at a fixed top, one beneath a footing.
+   pure integer function joints(self)
+      class(column_record), intent(in) :: self
+
+      joints = self%n + merge(1, 0, self%top == 'fixed') + merge(1, 0, self%footing)
+   end function joints
+
+   !> Number by which a joint is known: from 1 at the bottom of the column, 0 beneath a footing.
+   elemental integer function joint_number(self, i)
+      class(column_record), intent(in) :: self
+      !> From 1 at the ground
+      integer, intent(in) :: i
+
+      joint_number = i - merge(1, 0, self%footing)
+   end function joint_number
+
    !> Add a message for everything that is wrong with the column.
    subroutine validate(self, messages)
       class(column_record), intent(inout) :: self
@@ -152,16 +186,48 @@ contains
       end if
       call check_axial_height(self, messages)
       call check_inertia(self, messages)
+      call check_top(self, messages)
+      call check_footing(self, messages)
       call v%start_check('damping')
       call self%damping%visit(v)
       call v%end_check(messages)
       call check_damping(self, messages)
-      call check_springs(self%shear, 'shear', in_shear, self%n, messages)
-      call check_springs(self%flexure, 'flexure', in_flexure, self%n, messages)
+      call check_springs(self, self%shear, 'shear', in_shear, messages)
+      call check_springs(self, self%flexure, 'flexure', in_flexure, messages)
       if (allocated(self%axial_spring)) then
-         call check_springs(self%axial_spring, 'axial', in_axial, self%n, messages)
+         call check_springs(self, self%axial_spring, 'axial', in_axial, messages)
       end if
    end subroutine validate
+
+   !> What has no meaning where the top does not turn.
+   subroutine check_top(self, messages)
+      class(column_record), intent(in) :: self
+      type(message_list), intent(inout) :: messages
+
+      if (self%top /= 'fixed') return
+      if (self%top_inertia > 0.0_wp) then
+         call messages%add('column: top_inertia = '//to_text(self%top_inertia)//' kg m2 has no effect '// &
+                           "with top = 'fixed', as the top does not turn; remove it")
+      end if
+      if (self%axial_follows .or. self%force_follows) then
+         call messages%add("column: with top = 'fixed' the top does not turn, and no load can turn with "// &
+                           'it; remove axial_follows and force_follows')
+      end if
+   end subroutine check_top
+
+   !> A footing stands on springs of its own.
+   subroutine check_footing(self, messages)
+      class(column_record), intent(in) :: self
+      type(message_list), intent(inout) :: messages
+
+      if (self%footing) return
+      if (self%footing_mass > 0.0_wp .or. self%footing_inertia > 0.0_wp .or. &
+          self%footing_height > 0.0_wp) then
+         call messages%add('column: footing_mass, footing_inertia and footing_height need springs '// &
+                           'beneath the footing; give &shear and &flexure with joint = 0 (Python: footing=), or '// &
+                           'remove them')
+      end if
+   end subroutine check_footing
 
    !> A lever of the axial load is known to the second-order moments of joints that do not open.
    subroutine check_axial_height(self, messages)
@@ -170,7 +236,10 @@ contains
 
       if (.not. ieee_is_finite(self%axial_height)) return
       if (.not. self%axial_height > unset) return
-      if (self%kinematics /= 'pdelta') then
+      if (self%footing .or. self%top == 'fixed') then
+         call messages%add('column: axial_height is the lever of the load on a cantilever; remove it, or '// &
+                           'the footing and the fixed top')
+      else if (self%kinematics /= 'pdelta') then
          call messages%add("column: axial_height needs kinematics = 'pdelta', not '"// &
                            trim(self%kinematics)//"'; remove it or change the kinematics")
       else if (allocated(self%axial_spring)) then
@@ -209,7 +278,7 @@ contains
          call messages%add('damping: tangent has no meaning without stiffness; give one')
       end if
       if (.not. allocated(self%damping%modal)) return
-      modes = merge(3, 2, allocated(self%axial_spring))*self%n
+      modes = merge(3, 2, allocated(self%axial_spring))*self%joints() - merge(1, 0, self%top == 'fixed')
       if (size(self%damping%modal) > modes) then
          call messages%add('damping: modal has '//to_text(size(self%damping%modal))// &
                            ' values for '//to_text(modes)//' modes; give one for all, or one for each '// &
@@ -247,30 +316,31 @@ contains
       end if
    end subroutine check_sum
 
-   subroutine check_springs(springs, name, place, n, messages)
+   subroutine check_springs(self, springs, name, place, messages)
+      type(column_record), intent(in) :: self
       type(spring_record), intent(in), allocatable :: springs(:)
       !> For messages: 'shear'
       character(len=*), intent(in) :: name
       !> Where they stand, see `rbs_hysteresis_rule`
       character(len=*), intent(in) :: place
-      integer, intent(in) :: n
       type(message_list), intent(inout) :: messages
       integer :: i
 
       if (.not. allocated(springs)) then
          call messages%add('column: the '//name//' spring is missing; give one for every joint')
-      else if (size(springs) == 1) then
+      else if (size(springs) == 1 .and. .not. self%footing) then
          call check_spring(springs(1), name//' spring', name, place, messages)
-      else if (size(springs) /= n) then
+      else if (size(springs) /= self%joints()) then
          call messages%add('column: '//to_text(size(springs))//' '//name//' springs for '// &
-                           to_text(n)//' joints; give one, or one for each joint')
+                           to_text(self%joints())//' joints; give one, or one for each joint')
       else
          do i = 1, size(springs)
             ! Equal springs have equal faults; they are told once.
             if (i > 1) then
                if (springs(i)%same_as(springs(i - 1))) cycle
             end if
-            call check_spring(springs(i), name//' spring of joint '//to_text(i), name, place, messages)
+            call check_spring(springs(i), name//' spring of joint '//to_text(self%joint_number(i)), name, &
+                              place, messages)
          end do
       end if
    end subroutine check_springs

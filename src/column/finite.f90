@@ -154,6 +154,7 @@ contains
          end if
          per_mass = 1.0_wp/column%mass(i)
          per_inertia = 1.0_wp/column%inertia(i)
+         if (i == n .and. column%held) per_inertia = 0.0_wp
          spin = spin_below + v(n + i)
          associate (lower => column%lower(i), upper => column%upper(i))
             ! Moments about the centroid, of joint i at its bottom and of joint i + 1.
@@ -235,6 +236,7 @@ contains
             turn = turn + q(i + 1)*above
          end if
          turn = -turn/column%inertia(i)
+         if (i == n .and. column%held) turn = 0.0_wp
          along = work%sine(i)/column%mass(i)
          a(i) = a(i) + above*along - column%lower(i)*work%cosine(i)*turn - below
          a(n + i) = a(n + i) + turn - turn_below

@@ -4,7 +4,7 @@
 module rbs_column_frequency
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: is_dominated
-   use rbs_column_band, only: add_spring_band, add_geometric_band, opening_stiffness
+   use rbs_column_band, only: add_spring_band, add_geometric_band, hold_last, opening_stiffness
    use rbs_column_column, only: column_type
    implicit none
    private
@@ -49,6 +49,8 @@ contains
          if (axial) pushed = pushed + column%axial_body(i)*column%length(i)
          softness = column%inertia_above(i)/column%initial_stiffness(n + i)
          total = total + softness
+         ! No joint turns alone where the top is held.
+         if (column%held) cycle
          greatest = max(greatest, column%inertia_above(i)/(column%initial_stiffness(n + i) - pushed))
       end do
       below = 1.0_wp/total
@@ -112,6 +114,13 @@ contains
          shear = column%initial_stiffness(i)
          p1 = shear - t11
          if (.not. p1 > 0.0_wp) return
+         if (column%held .and. i == n) then
+            ! What is held against rotation moves along only; its joint turns by minus what is below.
+            t12 = t11*(joint/p1)
+            t22 = joint*(joint/p1) - column%initial_stiffness(n + i)
+            t11 = t11*(shear/p1)
+            cycle
+         end if
          p2 = column%initial_stiffness(n + i) - (t22 + t12*(t12/p1))
          if (.not. p2 > 0.0_wp) return
          ! C after elimination of the slip
@@ -139,6 +148,7 @@ contains
       allocate (mass(2*n))
       call add_spring_band(column, column%initial_stiffness, band)
       if (axial) call add_geometric_band(column, column%axial_body, column%axial_joint, band)
+      if (column%held) call hold_last(band, 0.0_wp)
       below = 0.0_wp
       above = 0.0_wp
       do i = 1, n

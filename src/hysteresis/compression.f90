@@ -1,6 +1,7 @@
-!> A contact: elastic while the joint is closed, without force while it is open.
+!> A contact: elastic while the joint is closed, without force while it is open. With a gap it closes only
+!> after the joint has closed by that much.
 module rbs_hysteresis_compression
-   use rbs_base_keys, only: key_type, above_zero, stiffness
+   use rbs_base_keys, only: key_type, above_zero, not_negative, deformation, stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_memory, only: memory_type
    use rbs_base_constants, only: unbounded
@@ -13,11 +14,15 @@ module rbs_hysteresis_compression
 
    type(key_type), parameter :: parameters(*) = [ &
       key_type('k', unit=stiffness, bound=above_zero, &
-               meaning='stiffness in compression; there is none in tension')]
+               meaning='stiffness in compression; there is none in tension'), &
+      key_type('gap', unit=deformation, bound=not_negative, default=0.0_wp, &
+               meaning='closing before the faces touch')]
 
    type, extends(rule_type) :: compression_rule
       !> Stiffness of the closed joint [N/m]
       real(wp) :: k = 0.0_wp
+      !> Closing at which it begins to carry [m]
+      real(wp) :: gap = 0.0_wp
    contains
       procedure, nopass :: keys
       procedure, nopass :: places
@@ -47,6 +52,7 @@ contains
       real(wp), intent(in) :: value(:)
 
       self%k = value(1)
+      self%gap = value(2)
    end subroutine set
 
    pure real(wp) function initial_stiffness(self)
@@ -55,12 +61,16 @@ contains
       initial_stiffness = self%k
    end function initial_stiffness
 
-   !> The joint is closed at zero opening; openings are positive.
+   !> The joint is closed at zero opening, or with a gap at minus that; openings are positive.
    subroutine start(self, line)
       class(compression_rule), intent(inout) :: self
       type(segment), intent(out) :: line
 
-      line = segment(k=self%k, hi=0.0_wp, hi_closed=.true.)
+      if (self%gap > 0.0_wp) then
+         line = segment(k=0.0_wp, lo=-self%gap, hi=unbounded)
+      else
+         line = segment(k=self%k, hi=0.0_wp, hi_closed=.true.)
+      end if
    end subroutine start
 
    subroutine next(self, line, direction)
@@ -69,9 +79,9 @@ contains
       integer, intent(in) :: direction
 
       if (direction > 0) then
-         line = segment(k=0.0_wp, lo=0.0_wp, hi=unbounded)
+         line = segment(k=0.0_wp, lo=-self%gap, hi=unbounded)
       else
-         line = segment(k=self%k, lo=-unbounded, hi=0.0_wp, hi_closed=.true.)
+         line = segment(d0=-self%gap, k=self%k, lo=-unbounded, hi=-self%gap, hi_closed=.true.)
       end if
    end subroutine next
 

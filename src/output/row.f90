@@ -92,7 +92,8 @@ contains
    end function row_quantities
 
    !> Names of the values with their units, and the SI units themselves.
-   subroutine row_labels(n, opens, dynamic, with_base, with_openings, units, labels, si)
+   subroutine row_labels(n, opens, dynamic, with_base, with_openings, units, labels, si, first)
+      !> Number of joints
       integer, intent(in) :: n
       !> Whether the joints open, whether the first value is a time, and whether the row has the forces at the
       !> base and the openings of layered joints
@@ -102,8 +103,12 @@ contains
       !> (values of a row)
       character(len=32), allocatable, intent(out) :: labels(:)
       character(len=4), allocatable, intent(out) :: si(:)
-      integer :: i, j, at
+      !> Number by which the lowest joint is known; without it 1
+      integer, intent(in), optional :: first
+      integer :: i, j, at, lowest
 
+      lowest = 1
+      if (present(first)) lowest = first
       at = row_size(merge(3, 2, opens)*n, with_base, merge(n, 0, with_openings))
       allocate (labels(at), si(at))
       do i = 1, size(fixed)
@@ -133,7 +138,8 @@ contains
 
          do joint = 1, n
             at = at + 1
-            labels(at) = trim(quantity%name)//'_'//to_text(joint)//'_'//compact(units%name_of(quantity%unit))
+            labels(at) = trim(quantity%name)//'_'//to_text(lowest + joint - 1)//'_'// &
+                         compact(units%name_of(quantity%unit))
             si(at) = quantity%unit
          end do
       end subroutine label_joints

@@ -27,7 +27,8 @@ contains
       do i = 1, column%n
          associate (spring => column%spring(column%n + i))
             if (carries_axial_load(spring)) cycle
-            call fatal_error(error, bad_input, 'flexure spring of joint '//to_text(i)// &
+            call fatal_error(error, bad_input, 'flexure spring of joint '// &
+                             to_text(spec%joint_number(i))// &
                              ': its layers cannot '// &
                              'carry the axial load of '//to_text(spring%axial_load)//' N; lower it, or '// &
                              'give stronger layers')

@@ -109,7 +109,10 @@ def test_fields_of_a_column_are_the_keys_of_its_group():
     column = group("column")
     column["mass"] = {"name": "mass", "kind": "real"}  # Python asks for it, or for None
     column["model"] = column["model"] | {"default": ""}  # no text is an empty one
-    agree(rbsdem.Column, column, {"shear", "flexure", "axial_spring", "damping", "recipe"})
+    footing = {name: column.pop(f"footing_{name}") for name in ("mass", "inertia", "height")}
+    springs = {"shear", "flexure", "axial_spring"}
+    agree(rbsdem.Column, column, springs | {"damping", "recipe", "footing"})
+    agree(rbsdem.Footing, footing, springs)
 
 
 def test_fields_of_damping_are_the_keys_of_its_group():

@@ -53,9 +53,13 @@ ELASTIC = rbsdem.Elastic(1e8)
 DOORS = {
     "one joint": (groups(), (spring(),)),
     "without joint: every joint": (groups(column=TWO), (spring(), spring())),
-    "joint = 0 is every joint": (
-        groups(column=TWO, flexure=LAYERED + ", joint = 0", layers="joint = 0, " + LAYERS),
-        (spring(), spring()),
+    "layers of one joint, another rule for the other": (
+        groups(
+            column=TWO,
+            flexure=[LAYERED, "joint = 2, rule = 'elastic', k = 1e8"],
+            layers="joint = 1, " + LAYERS,
+        ),
+        (spring(), ELASTIC),
     ),
     "joints in a list": (
         groups(column=TWO, flexure=LAYERED + ", joint = 2, 1", layers="joint = 1, 2, " + LAYERS),

@@ -202,7 +202,8 @@ def variants(scene: Scene, axial: Spring | None) -> Iterator[Variant]:
             other = dataclasses.replace(column.damping, tangent=tangent)
             name = f"damping of {'tangent' if tangent else 'initial'} stiffness"
             yield Variant(name, _replacing(column, {"damping": other}))
-    yield Variant(f"{2 * column.n} bodies", lambda: split_bodies(column))
+    if column.top == "free" and column.footing is None:
+        yield Variant(f"{2 * column.n} bodies", lambda: split_bodies(column))
 
 
 def _replacing(column: Column, fields: dict[str, object]) -> Callable[[], Column]:

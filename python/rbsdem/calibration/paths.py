@@ -61,9 +61,10 @@ def paths(column: Column) -> dict[str, Way]:
         springs = getattr(column, kind)
         if springs is not None:
             found |= {f"{kind}{name}": (kind, *way) for name, way in _below(springs)}
-        if isinstance(springs, Spring) and column.n > 1:
+        joints = column.joint_numbers[-1]
+        if isinstance(springs, Spring) and joints > 1:
             # Joints with the same spring may get different ones.
-            several = (springs,) * column.n
+            several = (springs,) * joints
             found |= {f"{kind}{name}": (kind, *way) for name, way in _below(several)}
     return found
 
@@ -160,7 +161,7 @@ def _changed_part(column: Column, part: Any, changes: dict[Way, float]) -> Any:
     if isinstance(part, Spring) and single:
         common = {way: value for way, value in changes.items() if way not in single}
         spring = _changed(part, common) if common else part
-        return _changed((spring,) * column.n, single)
+        return _changed((spring,) * column.joint_numbers[-1], single)
     return _changed(part, changes)
 
 

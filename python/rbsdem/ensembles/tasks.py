@@ -191,8 +191,10 @@ def one_run(column: Column, motion: Motion, scale: float, settings: dict[str, An
 def watches(column: Column, states: tuple[str, ...]) -> Array:
     """Return what runs of a column are watched for, as `_core.run_ensemble` takes it."""
     numbers = {name: number for number, name in enumerate(("first_yield", *states), 1)}
+    # The rows of a run count the joints from the ground, a footing's included.
+    at = {joint: place for place, joint in enumerate(column.joint_numbers, 1)}
     rows = [
-        (numbers[c.name], c.joint, c.slip, c.rotation, c.opening, c.threshold)
+        (numbers[c.name], at[c.joint], c.slip, c.rotation, c.opening, c.threshold)
         for c in criteria(column, numbers)
     ]
     return np.array(rows) if rows else _NO_WATCH

@@ -55,8 +55,8 @@ def columns(result: Result) -> dict[str, Array]:
         elif values.ndim == 1:
             found[f"{name}_{unit}"] = values
         else:
-            for joint in range(values.shape[1]):
-                found[f"{name}_{joint + 1}_{unit}"] = values[:, joint]
+            for at, joint in enumerate(result.column.joint_numbers):
+                found[f"{name}_{joint}_{unit}"] = values[:, at]
     return found
 
 
@@ -82,7 +82,7 @@ def to_xarray(result: Result) -> Any:
         variables,
         {
             along: (along, time, {"units": "s"} if result.dynamic else {}),
-            "joint": np.arange(1, result.column.n + 1),
+            "joint": np.array(result.column.joint_numbers),
         },
         {"program": "rbsdem", "version": _core.version(), "column": result.column.to_namelist()}
         | {name: value for name, value in result.summary.items() if not isinstance(value, dict)},

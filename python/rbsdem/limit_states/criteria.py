@@ -77,7 +77,7 @@ class Criterion:
 
     def values(self, result: Result) -> Array:
         """Return what is compared with the threshold, shape (rows,)."""
-        at = self.joint - 1
+        at = result.column.joint_numbers.index(self.joint)
         if self.slip:
             return np.asarray(self.slip * result.slip[:, at])
         turned = result.rotation[:, at]
@@ -99,13 +99,16 @@ def criteria(column: Column, names: Collection[str] = tuple(WATCHED)) -> list[Cr
         The limit states that are wanted.
     """
     found: list[Criterion] = []
-    for joint, spring in enumerate(column.joints("flexure"), 1):
+    for joint, spring in zip(column.joint_numbers, column.joints("flexure"), strict=True):
+        if joint == 0:  # A footing is not the column.
+            continue
         if isinstance(spring, Layered):
             found += _of_layers(column, joint, spring, names)
         else:
             found += _of_spring(joint, spring, _TURNS, "rotation")
-    for joint, spring in enumerate(column.joints("shear"), 1):
-        found += _of_spring(joint, spring, _SLIPS, "slip")
+    for joint, spring in zip(column.joint_numbers, column.joints("shear"), strict=True):
+        if joint > 0:
+            found += _of_spring(joint, spring, _SLIPS, "slip")
     return [criterion for criterion in found if criterion.name in names]
 
 
@@ -207,5 +210,6 @@ def buckling_strain(section: Section, column: Column) -> float:
     """
     if section.hollow or section.ties is None:
         return math.inf
-    given = quantities(section, column.height, column.axial_load)
+    span = column.height / (2 if column.top == "fixed" else 1)
+    given = quantities(section, span, column.axial_load)
     return max(goodnight_buckling_strain(given), 0.01)

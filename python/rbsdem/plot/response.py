@@ -220,9 +220,11 @@ def section_state(result: Result, time: float, *, axes: Sequence[Axes] | None = 
 
 def _lengths(result: Result) -> Array:
     column = result.column
-    if column.lengths is None:
-        return np.full(column.n, column.height / column.n)
-    return np.asarray(column.lengths, dtype=np.float64)
+    lengths = column.lengths or (column.height / column.n,) * column.n
+    beneath = () if column.footing is None else (column.footing.height,)
+    # What holds a fixed top has no length.
+    above = (0.0,) if column.top == "fixed" else ()
+    return np.array([*beneath, *np.asarray(lengths), *above], dtype=np.float64)
 
 
 def _displacements(state: dict[str, Any], joints: Array) -> tuple[Array, Array]:

@@ -30,7 +30,7 @@ contains
       allocate (damping(m, m), source=0.0_wp)
       call symmetric_mass(column, mass)
       carried = matmul(mass, modes%shapes)
-      do j = 1, m
+      do j = 1, size(modes%omega)
          ratio = 0.0_wp
          if (size(column%modal_damping) == 1) then
             ratio = column%modal_damping(1)

@@ -7,6 +7,7 @@ module rbs_solve_modal_modes
    use rbs_column_axial, only: geometric_stiffness, critical_factor, check_stable
    use rbs_column_band, only: to_joints
    use rbs_column_column, only: column_type
+   use rbs_column_ends, only: check_inertia_of_ends
    use rbs_column_frequency, only: frequency_range
    use rbs_column_column_record, only: most_dense
    implicit none
@@ -57,7 +58,7 @@ contains
       type(modes_type), intent(out) :: modes
       type(error_type), allocatable, intent(out) :: error
       real(wp), allocatable :: a(:, :), root(:, :), scale(:)
-      integer :: m, n
+      integer :: i, m, n
       logical :: positive
 
       n = column%n
@@ -72,12 +73,14 @@ contains
       if (allocated(error)) return
       call set_condition(column, modes)
 
+      ! Where the top is held, the relative rotation of the last joint follows from the others.
       m = 2*n
+      if (column%held) m = m - 1
       call weighted_joints(column, a)
-      allocate (modes%omega(column%unknowns))
-      allocate (modes%shapes(column%unknowns, column%unknowns), source=0.0_wp)
-      if (column%axially_loaded) then
-         call factor_loaded(column, root, scale, positive)
+      allocate (modes%omega(size(a, 2)))
+      allocate (modes%shapes(column%unknowns, size(a, 2)), source=0.0_wp)
+      if (column%axially_loaded .or. column%held) then
+         call factor_loaded(column, m, root, scale, positive)
          if (.not. positive) then
             call fatal_error(error, analysis_failed, 'modes: the axial load is the critical one within '// &
                              'round-off, there is no lowest frequency; reduce axial_load')
@@ -89,56 +92,72 @@ contains
                           modes%shapes(:m, :m), error)
       end if
       if (allocated(error)) return
+      do i = n + 1, merge(m, 0, column%held)
+         modes%shapes(2*n, :m) = modes%shapes(2*n, :m) - modes%shapes(i, :m)
+      end do
       if (column%opens) then
-         call block_modes(a(m + 1:, m + 1:), sqrt(column%initial_stiffness(m + 1:)), modes%omega(m + 1:), &
-                          modes%shapes(m + 1:, m + 1:), error)
+         call block_modes(a(2*n + 1:, m + 1:), sqrt(column%initial_stiffness(2*n + 1:)), &
+                          modes%omega(m + 1:), modes%shapes(2*n + 1:, m + 1:), error)
          if (allocated(error)) return
       end if
-      call arrange(column, modes)
+      call arrange(column, m, modes)
    end subroutine find_modes
 
    !> Deformations of the joints per motion of the bodies, divided by the roots of their masses:
-   !> B diag(1/sqrt m) (unknowns, unknowns).
+   !> B diag(1/sqrt m) (unknowns, unknowns; one column less where a rotation is held).
    subroutine weighted_joints(column, a)
       type(column_type), intent(in) :: column
       real(wp), allocatable, intent(out) :: a(:, :)
       real(wp) :: x(column%unknowns), mass(column%unknowns)
-      integer :: j, n
+      integer :: at, j, n
 
       n = column%n
       mass(1:2*n:2) = column%mass
       mass(2:2*n:2) = column%inertia
       if (column%opens) mass(2*n + 1:) = column%mass
-      allocate (a(column%unknowns, column%unknowns))
+      allocate (a(column%unknowns, column%unknowns - merge(1, 0, column%held)))
       x = 0.0_wp
+      at = 0
       do j = 1, column%unknowns
+         if (column%held .and. j == 2*n) cycle
+         at = at + 1
          x(j) = 1.0_wp
-         call to_joints(column, x, a(:, j))
+         call to_joints(column, x, a(:, at))
          x(j) = 0.0_wp
-         a(:, j) = a(:, j)/sqrt(mass(j))
+         a(:, at) = a(:, at)/sqrt(mass(j))
       end do
    end subroutine weighted_joints
 
    !> Cholesky factor of the stiffness with axial forces, scaled to a diagonal of ones:
    !> diag(k) + K_G = diag(scale) root root' diag(scale).
-   subroutine factor_loaded(column, root, scale, positive)
+   subroutine factor_loaded(column, m, root, scale, positive)
       type(column_type), intent(in) :: column
-      !> Lower triangle (2 n, 2 n), zeros above
+      !> 2 n, or 2 n - 1 where the top is held: the last rotation is then minus the sum of the others
+      integer, intent(in) :: m
+      !> Lower triangle (m, m), zeros above
       real(wp), allocatable, intent(out) :: root(:, :)
-      !> (2 n)
+      !> (m)
       real(wp), allocatable, intent(out) :: scale(:)
       logical, intent(out) :: positive
       real(wp), allocatable :: stiffness(:, :)
-      integer :: i, m
+      integer :: i, j, n
 
-      m = 2*column%n
-      allocate (stiffness(column%unknowns, column%unknowns))
-      call geometric_stiffness(column, stiffness)
+      n = column%n
+      allocate (stiffness(column%unknowns, column%unknowns), source=0.0_wp)
+      if (column%axially_loaded) call geometric_stiffness(column, stiffness)
+      do i = 1, 2*n
+         stiffness(i, i) = stiffness(i, i) + column%initial_stiffness(i)
+      end do
+      if (m < 2*n) then
+         do j = 1, m
+            if (j > n) stiffness(:2*n, j) = stiffness(:2*n, j) - stiffness(:2*n, 2*n)
+            stiffness(n + 1:m, j) = stiffness(n + 1:m, j) - stiffness(2*n, j)
+         end do
+      end if
       allocate (root(m, m))
       allocate (scale(m))
       root = stiffness(:m, :m)
       do i = 1, m
-         root(i, i) = root(i, i) + column%initial_stiffness(i)
          scale(i) = sqrt(max(root(i, i), tiny(1.0_wp)))
       end do
       do i = 1, m
@@ -179,30 +198,32 @@ contains
    end subroutine block_modes
 
    !> Put the modes in ascending order, the top going to +x or, if it only goes along the column, up.
-   subroutine arrange(column, modes)
+   subroutine arrange(column, laterals, modes)
       type(column_type), intent(in) :: column
+      !> Number of modes of slips and rotations, which come first
+      integer, intent(in) :: laterals
       type(modes_type), intent(inout) :: modes
       real(wp), allocatable :: omega(:), shapes(:, :)
       real(wp) :: top
       integer :: i, lateral, m, n, opening, taken
 
-      m = column%unknowns
+      m = size(modes%omega)
       n = column%n
       allocate (omega, source=modes%omega)
       allocate (shapes, source=modes%shapes)
       ! Two descending lists, taken from their ends.
-      lateral = 2*n
+      lateral = laterals
       opening = m
       do i = 1, m
          taken = lateral
-         if (opening > 2*n) then
+         if (opening > laterals) then
             if (lateral == 0) then
                taken = opening
             else if (omega(opening) < omega(lateral)) then
                taken = opening
             end if
          end if
-         if (taken > 2*n) then
+         if (taken > laterals) then
             opening = opening - 1
          else
             lateral = lateral - 1
@@ -239,7 +260,8 @@ contains
 
       lowest = 0.0_wp
       highest = huge(1.0_wp)
-      call check_stable(column, error)
+      call check_inertia_of_ends(column, error)
+      if (.not. allocated(error)) call check_stable(column, error)
       if (.not. allocated(error)) call frequency_range(column, column%axially_loaded, lowest, highest)
    end subroutine frequency_bounds
 

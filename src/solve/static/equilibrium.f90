@@ -7,11 +7,13 @@
 !>
 !> A few bodies are solved in (slip, relative rotation) with full matrices. More are solved in (slip,
 !> absolute rotation), where K is a band of two diagonals beside the main one: k_M couples neighbouring
-!> rotations, the axial load only the slip of a joint and the rotation below it.
+!> rotations, the axial load only the slip of a joint and the rotation below it. A held top is solved there
+!> too: its rotation is the last unknown, and is left out.
 module rbs_solve_static_equilibrium
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: factor_positive, solve_positive, solve_general
    use rbs_column_axial, only: geometric_stiffness, geometric_forces
+   use rbs_column_band, only: hold_last
    use rbs_column_column, only: column_type
    use rbs_column_dead_loads, only: to_joints
    use rbs_solve_static_bordered, only: bordered_band
@@ -71,13 +73,18 @@ contains
       self%column = column
       self%arm = column%arm(:self%unknowns)
       self%initial_stiffness = column%initial_stiffness(:self%unknowns)
-      self%coupled = column%axially_loaded
+      self%coupled = column%axially_loaded .or. column%held
       if (.not. self%coupled) return
+      if (.not. column%axially_loaded) then
+         self%column%axial_body = 0.0_wp
+         self%column%axial_joint = 0.0_wp
+      end if
       allocate (self%wanted(self%unknowns, 2), self%found(self%unknowns, 2), &
                 self%missing(self%unknowns, 2), self%along(self%unknowns, 2), self%more(self%unknowns, 2), &
                 self%g(self%unknowns))
       self%banded = column%n > few_are
       if (present(full)) self%banded = .not. full
+      self%banded = self%banded .or. column%held
       if (self%banded) then
          call create_band(self, column)
       else
@@ -208,6 +215,7 @@ contains
             call self%residual(self%found(:, j), k*self%found(:, j), force(j), self%missing(:, j))
             if (j == 2) self%missing(:, j) = self%missing(:, j) + r
             call along_joints(self%column%n, self%missing(:, j), self%more(:, j))
+            if (self%column%held) self%more(self%unknowns, j) = 0.0_wp
          end do
          call self%tangent%solve(self%more, regular)
          call add_joints(self, self%more, self%found)
@@ -317,6 +325,7 @@ contains
             call self%residual(self%found(:, j), k*self%found(:, j), y(j), self%missing(:, j))
             self%missing(:, j) = self%missing(:, j) + self%wanted(:, j)
             call along_joints(self%column%n, self%missing(:, j), self%along(:, j))
+            if (self%column%held) self%along(self%unknowns, j) = 0.0_wp
             gap(j) = g(j) - sum(self%arm*self%found(:, j))
          end do
          call self%tangent%solve_bordered(self%along, gap, self%more, more_force, regular)
@@ -382,6 +391,7 @@ contains
             band(2, 2*i) = -column%axial_joint(i + 1)
             band(3, 2*i) = -k(n + i + 1)
          end do
+         if (column%held) call hold_last(band, self%tangent%stiffness(2*n))
       end associate
    end subroutine fill_tangent
 

@@ -7,6 +7,7 @@
 !> absolute rotations (see `rbs_column_dead_loads`).
 module rbs_solve_static_finite_equilibrium
    use rbs_base_kinds, only: wp
+   use rbs_column_band, only: hold_last
    use rbs_column_column, only: column_type
    use rbs_column_dead_loads, only: per_joint, dead_loads, add_springs, to_joints
    use rbs_hysteresis_springs, only: spring_array
@@ -156,6 +157,9 @@ contains
       call dead_loads(self%column, point%q, point%force, self%load(:, 1), self%arm, self%tangent%band, &
                       point%displacement)
       call add_springs(self%column, self%f, springs%k, self%load(:, 1), self%tangent%band)
+      if (.not. self%column%held) return
+      self%load(self%column%unknowns, 1) = 0.0_wp
+      call hold_last(self%tangent%band, self%tangent%stiffness(self%column%unknowns))
    end subroutine see
 
    !> One iteration: what takes the residuals away.
@@ -204,7 +208,7 @@ contains
       else if (spring > 2*n) then
          self%border(per*(joint - 1) + 2) = 1.0_wp
       else
-         self%border(per*joint) = 1.0_wp
+         if (joint < n .or. .not. self%column%held) self%border(per*joint) = 1.0_wp
          if (joint > 1) self%border(per*(joint - 1)) = -1.0_wp
       end if
    end subroutine find_border

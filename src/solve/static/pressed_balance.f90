@@ -19,7 +19,7 @@ module rbs_solve_static_pressed_balance
    implicit none
    private
 
-   public :: pressed_balance, pressed_point
+   public :: pressed_balance, pressed_point, hold
 
    !> A point of the path and how it goes on, per share of the way.
    type :: pressed_point
@@ -49,6 +49,7 @@ module rbs_solve_static_pressed_balance
    contains
       procedure :: create
       procedure :: assemble
+      procedure :: hold_top
       procedure :: to_deformations
       procedure :: solve_point
       procedure :: find_press
@@ -149,13 +150,53 @@ contains
       end do
    end subroutine assemble
 
+   !> Leave the relative rotation of the last joint out where the top is held: it is minus the sum of the
+   !> others. Here z is q without it.
+   pure subroutine hold_top(self, tangent, missing, pushed, axial)
+      class(pressed_balance), intent(in) :: self
+      real(wp), intent(inout) :: tangent(:, :)
+      real(wp), intent(inout) :: missing(:), pushed(:), axial(:)
+      integer :: first, last
+
+      first = self%column%n + 1
+      last = 2*self%column%n
+      missing(first:last - 1) = missing(first:last - 1) - missing(last)
+      pushed(first:last - 1) = pushed(first:last - 1) - pushed(last)
+      axial(first:last - 1) = axial(first:last - 1) - axial(last)
+      tangent(first:last - 1, first:last - 1) = tangent(first:last - 1, first:last - 1) + tangent(last, last) &
+                                                - spread(tangent(first:last - 1, last), 2, last - first) &
+                                                - spread(tangent(last, first:last - 1), 1, last - first)
+      tangent(first:last - 1, :first - 1) = tangent(first:last - 1, :first - 1) &
+                                            - spread(tangent(last, :first - 1), 1, last - first)
+      tangent(:first - 1, first:last - 1) = transpose(tangent(first:last - 1, :first - 1))
+      call hold(last, tangent, missing, pushed, axial)
+   end subroutine hold_top
+
+   !> Hold one unknown: it couples with nothing.
+   pure subroutine hold(i, tangent, missing, pushed, axial)
+      integer, intent(in) :: i
+      real(wp), intent(inout) :: tangent(:, :)
+      real(wp), intent(inout) :: missing(:), pushed(:), axial(:)
+
+      tangent(i, :) = 0.0_wp
+      tangent(:, i) = 0.0_wp
+      tangent(i, i) = 1.0_wp
+      missing(i) = 0.0_wp
+      pushed(i) = 0.0_wp
+      axial(i) = 0.0_wp
+   end subroutine hold
+
    !> Changes of the deformations from those of the unknowns.
    pure subroutine to_deformations(self, z, q)
       class(pressed_balance), intent(in) :: self
       real(wp), intent(in), contiguous :: z(:)
       real(wp), intent(out), contiguous :: q(:)
+      integer :: n
 
       q = z(:self%column%unknowns)
+      if (.not. self%column%held) return
+      n = self%column%n
+      q(2*n) = -sum(q(n + 1:2*n - 1))
    end subroutine to_deformations
 
    !> Rates at a point, and what takes its residual away, on the present lines.
@@ -177,6 +218,7 @@ contains
       if (self%by_force) point%force = driven
       call self%find_press(point)
       call self%assemble(springs, point, tangent, missing, arm, pushed, axial, point%displacement)
+      if (self%column%held) call self%hold_top(tangent, missing, pushed, axial)
       a = 0.0_wp
       a(:m, :m) = tangent
       b(:m, 1) = pushed*self%way(2)

@@ -8,7 +8,7 @@ module rbs_solve_static_pressed_finite
    use rbs_column_column, only: column_type
    use rbs_column_dead_loads, only: per_joint, dead_loads, add_springs, to_joints
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_solve_static_pressed_balance, only: pressed_balance, pressed_point
+   use rbs_solve_static_pressed_balance, only: pressed_balance, pressed_point, hold
    implicit none
    private
 
@@ -24,6 +24,7 @@ module rbs_solve_static_pressed_finite
    contains
       procedure :: create
       procedure :: assemble
+      procedure :: hold_top
       procedure :: to_deformations
    end type pressed_finite
 
@@ -78,6 +79,15 @@ contains
          end do
       end do
    end subroutine assemble
+
+   !> The rotation of a held top is the last unknown.
+   pure subroutine hold_top(self, tangent, missing, pushed, axial)
+      class(pressed_finite), intent(in) :: self
+      real(wp), intent(inout) :: tangent(:, :)
+      real(wp), intent(inout) :: missing(:), pushed(:), axial(:)
+
+      call hold(self%column%unknowns, tangent, missing, pushed, axial)
+   end subroutine hold_top
 
    pure subroutine to_deformations(self, z, q)
       class(pressed_finite), intent(in) :: self

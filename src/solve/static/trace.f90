@@ -268,7 +268,7 @@ contains
       n = self%column%n
       call top_height(self, height)
       axial_work = 0.0_wp
-      if (self%equilibrium%coupled) axial_work = axial_energy(self%column, self%springs%d)
+      if (self%column%axially_loaded) axial_work = axial_energy(self%column, self%springs%d)
       if (.not. self%column%opens) return
       height = height + sum(self%springs%d(2*n + 1:))
       axial_work = axial_work + sum(self%column%axial_joint*self%springs%d(2*n + 1:))

@@ -89,6 +89,7 @@ contains
       end associate
       call self%place(state)
       call self%body_velocities(state)
+      if (state%motion%column%held) self%v0(3, n) = 0.0_wp
       self%v1 = self%v0
       call self%see_end(state%motion%column, state%q)
       call find_forces_at(self, state, state%q, state%v, state%load, 1.0_wp, self%g0)
@@ -240,6 +241,11 @@ contains
       g(1, :) = g(1, :) - load(horizontal)*column%mass
       g(2, :) = g(2, :) - (load(vertical) + column%gravity)*column%mass
       call load_top(self, column, load, g(:, n))
+      if (column%held) then
+         ! What holds the top takes its moment.
+         g(3, n) = 0.0_wp
+         self%load_rate = 0.0_wp
+      end if
       self%scale = max(reach, [1.0_wp, column%upper(n)]*(abs(load(lateral)) + abs(column%axial_load)))
    end subroutine balance
 
@@ -351,6 +357,7 @@ contains
                place = place - share*self%load_rate(j)
             end associate
          end do
+         if (column%held) call hold_top(self%band, beside, of_mass*self%mass(3, n))
          call solve_general_band(self%band, beside, beside, self%right, regular, self%pivot)
          dn = 0.0_wp
          do i = 1, n
@@ -359,6 +366,24 @@ contains
          end do
       end associate
    end subroutine find_correction
+
+   !> Hold the last unknown of a general band: it couples with nothing.
+   pure subroutine hold_top(band, beside, diagonal)
+      !> (3 beside + 1, unknowns)
+      real(wp), intent(inout) :: band(:, :)
+      !> Half-width
+      integer, intent(in) :: beside
+      real(wp), intent(in) :: diagonal
+      integer :: i, last, main
+
+      last = size(band, 2)
+      main = 2*beside + 1
+      do i = max(1, last - beside), last - 1
+         band(main + last - i, i) = 0.0_wp
+         band(main + i - last, last) = 0.0_wp
+      end do
+      band(main, last) = diagonal
+   end subroutine hold_top
 
    !> The end of the step becomes the state, the springs excepted.
    subroutine finish(self, state, h, load)

@@ -65,6 +65,7 @@ contains
       end do
       call self%now%create(state%motion%column)
       call body_velocities(state%motion%column, state%v, self%v0)
+      if (state%motion%column%held) self%v0(2*n) = 0.0_wp
       call find_forces(state, self%mass, state%q, state%v, self%v0, state%load, self%now, self%g0)
       self%a0 = self%g0/self%mass
       call find_scale(n, m, self%mass, self%a0, self%g0, self%now%f, state%load(lateral), &
@@ -128,6 +129,8 @@ contains
             g(2*i - 1) = now%force(i) - motion%column%mass(i)*load(horizontal)
             g(2*i) = now%torque(i)
          end do
+         ! What holds the top takes its moment.
+         if (motion%column%held) g(2*n) = 0.0_wp
          if (motion%column%opens) g(2*n + 1:) = now%lift - motion%column%mass*load(vertical)
          if (motion%column%mass_damping > 0.0_wp) g = g - motion%column%mass_damping*mass*v
       end associate

@@ -4,7 +4,7 @@ module rbs_solve_time_implicit_tangent
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: solve_general_band, solve_tridiagonal
    use rbs_base_narrow_band, only: factor_narrow_band, solve_narrow_band
-   use rbs_column_band, only: add_spring_band, add_geometric_band, opening_stiffness
+   use rbs_column_band, only: add_spring_band, add_geometric_band, hold_last, opening_stiffness
    use rbs_column_column, only: column_type
    use rbs_solve_time_implicit_balance, only: step_balance
    use rbs_solve_time_loads, only: vertical, axial
@@ -120,6 +120,7 @@ contains
             self%diagonal = self%diagonal + of_mass*step%mass(2*n + 1:)
          end if
       end associate
+      if (state%motion%column%held) call hold_last(self%factor, of_mass*step%mass(2*n))
       self%stiffness = self%factor(1, :)
       if (springs_soften(state)) then
          self%band(:, :) = self%factor

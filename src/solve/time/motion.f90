@@ -119,6 +119,7 @@ contains
                                column%force_follows)
       self%inverse_mass = 1.0_wp/column%mass
       self%inverse_inertia = 1.0_wp/column%inertia
+      if (column%held) self%inverse_inertia(column%n) = 0.0_wp
    end subroutine create
 
    !> Accelerations of the joints at a state, and what they follow from.

@@ -7,6 +7,7 @@ module rbs_solve_time_run_dynamic
    use rbs_case_methods, only: method_type, methods, method_named, usual_tolerance, usual_rho_infinity
    use rbs_column_axial, only: check_stable
    use rbs_column_column, only: column_type, small, finite
+   use rbs_column_ends, only: check_inertia_of_ends, check_held_rotation
    use rbs_loading_signal, only: signal_type
    use rbs_output_observer, only: observer_type
    use rbs_output_recorder, only: recorder_type
@@ -51,6 +52,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       call check_times(time, error)
+      if (.not. allocated(error)) call check_inertia_of_ends(column, error)
       if (allocated(error)) return
       call check_stable(column, error)
       if (allocated(error)) return
@@ -199,9 +201,11 @@ contains
       call check_signal(loads%axial, 'axial_load', error)
       if (.not. allocated(error) .and. allocated(initial%deformation)) then
          call check_values(initial%deformation, 'initial deformation', error)
+         call check_held_rotation(column, 'initial deformation', initial%deformation, error)
       end if
       if (.not. allocated(error) .and. allocated(initial%velocity)) then
          call check_values(initial%velocity, 'initial velocity', error)
+         call check_held_rotation(column, 'initial velocity', initial%velocity, error)
       end if
       if (allocated(error)) return
       summary%stable_step = plan%limit

@@ -1,0 +1,113 @@
+"""Columns with other ends, from a cantilever."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any, TypeVar
+
+from rbsdem import _core
+from rbsdem.column import Column, checked_column
+from rbsdem.errors import InputError
+from rbsdem.springs import Layered, Spring, SteelSpring
+
+__all__ = ["double_curvature"]
+
+C = TypeVar("C", bound=Column)
+
+
+def double_curvature(column: C, *, top_mass: float = 0.0) -> C:
+    """Return the column in double curvature whose lower half is a cantilever.
+
+    The upper half is the lower one turned about the middle, where the moment is zero: 2 n - 1
+    bodies of twice the height, on 2 n joints, the last one at a top that is fixed against rotation.
+    At equal shear and axial load its top moves twice as far as that of the cantilever, as long as
+    both halves do the same.
+
+    Parameters
+    ----------
+    column : Column
+        The lower half, with a free top, without a footing and without a mass at its top.
+    top_mass : float, optional
+        Mass that moves with the top [kg]; a dynamic analysis needs it.
+
+    Returns
+    -------
+    Column
+        Of the same class, with all that is not said above as it was.
+
+    Raises
+    ------
+    InputError
+        If the column is no such cantilever, or a spring cannot be turned.
+    """
+    checked_column(column, "double_curvature: ")
+    refused = {
+        "top": column.top != "free",
+        "footing": column.footing is not None,
+        "top_mass": bool(column.top_mass or column.top_inertia),
+        "axial_height": column.axial_height is not None,
+        "axial_follows or force_follows": column.axial_follows or column.force_follows,
+    }
+    for name, given in refused.items():
+        if given:
+            raise InputError(
+                f"double_curvature: the column must be a plain cantilever, without {name}; "
+                "give the ends of the whole column afterwards, with dataclasses.replace"
+            )
+    n = 2 * column.n - 1
+    lengths = list(column.lengths or [column.height / column.n] * column.n)
+    changes: dict[str, Any] = {
+        "height": 2 * column.height,
+        "n": n,
+        "lengths": _doubled(lengths),
+        "top": "fixed",
+        "top_mass": _core.number(top_mass, "double_curvature: top_mass"),
+    }
+    if column.mass is not None:
+        changes["mass"] = 2 * column.mass
+    if column.masses is not None:
+        changes["masses"] = _doubled(list(column.masses))
+    inertia = column.rotary_inertia
+    if inertia is not None:
+        parts = list(inertia) * column.n if len(inertia) == 1 else list(inertia)
+        masses = list(column.masses or [column.mass * part / column.height for part in lengths])
+        # Two halves side by side, each half its length from the middle of the body that they make.
+        middle = 2 * (parts[-1] + masses[-1] * (lengths[-1] / 2) ** 2)
+        changes["rotary_inertia"] = [*parts[:-1], middle, *parts[-2::-1]]
+    for name in ("shear", "flexure", "axial_spring"):
+        springs = column.joints(name)
+        if springs:
+            turn = _turned if name == "flexure" else _same_at_the_top
+            changes[name] = (*springs, *(turn(spring) for spring in reversed(springs)))
+    return dataclasses.replace(column, **changes)
+
+
+def _doubled(parts: list[float]) -> list[float]:
+    """Return the parts of both halves; the two at the middle are one."""
+    return [*parts[:-1], 2 * parts[-1], *parts[-2::-1]]
+
+
+def _same_at_the_top(spring: Spring) -> Spring:
+    return spring
+
+
+def _turned(spring: Spring) -> Spring:
+    """Return a flexural spring that does for negative rotations what another does for positive."""
+    if isinstance(spring, Layered):
+        return Layered(tuple((-y, layer) for y, layer in spring.layers))
+    if isinstance(spring, SteelSpring) and spring.d_buckle is not None:
+        raise InputError(
+            "double_curvature: a flexural SteelSpring with d_buckle buckles on one side only, and "
+            "cannot be turned; give it no d_buckle"
+        )
+    sides = [part.name for part in dataclasses.fields(spring) if part.name.endswith("_neg")]
+    given = {name: getattr(spring, name) for name in sides}
+    if all(value is None for value in given.values()):
+        return spring
+    changes = {}
+    for name, value in given.items():
+        plain = name.removesuffix("_neg")
+        changes[name] = getattr(spring, plain)
+        if value is not None:
+            changes[plain] = value
+    return dataclasses.replace(spring, **changes)

@@ -1,0 +1,442 @@
+"""Ends of a column: a top fixed against rotation, and a footing on springs."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rbsdem
+from rbsdem import Compression, Elastic, Footing, Layered, PeakOriented, SteelSpring, Takeda
+
+pytestmark = pytest.mark.filterwarnings("ignore::rbsdem.AccuracyWarning")
+
+LEVELS = ("small", "pdelta", "finite")
+RIGID = Elastic(1e17)  # slips far below the last digit of a rotation times the height
+
+TAKEDA = Takeda(k_c=2.5e8, d_c=3e-4, k_y=6e7, d_y=2.7e-3, k_u=7e6, b1=0.3)
+TWO_SIDED = PeakOriented(
+    d_y=4e-3, f_y=2.3e5, d_cap=15e-3, f_cap=2.5e5, d_pc=0.06, f_res=4e4, lambda_s=60, d_y_neg=6e-3
+)
+CONTACTS = Layered([(y, Compression(1e9)) for y in (-0.2, -0.1, 0.0, 0.1, 0.2)])
+UNEVEN = Layered(
+    [
+        (-0.15, Compression(2e9)),
+        (0.0, Compression(1e9)),
+        (0.2, Compression(1e9)),
+        *((y, SteelSpring(k=8e8, f_y=7e5, k_post=8e6)) for y in (-0.1, 0.15)),
+    ]
+)
+PATH = np.concatenate([np.linspace(a, b, 5) for a, b in ((0, 0.02), (0.02, -0.03), (-0.03, 0.01))])
+
+
+def cantilever(flexure, *, kinematics="pdelta", shear=RIGID, n=1, **more):
+    return rbsdem.Column(
+        1.6,
+        600.0,
+        shear,
+        [flexure, *[Elastic(3e8)] * (n - 1)],
+        n=n,
+        kinematics=kinematics,
+        axial_load=4e5,
+        **more,
+    )
+
+
+@pytest.mark.parametrize("flexure", [TAKEDA, TWO_SIDED, UNEVEN], ids=lambda s: type(s).__name__)
+@pytest.mark.parametrize("kinematics", LEVELS)
+def test_double_curvature_is_two_cantilevers(kinematics, flexure):
+    """The same force at twice the displacement, and joints that do the same.
+
+    With small rotations slips do not lean, so they may be of any size.
+    """
+    shear = Elastic(2e7) if kinematics == "small" else RIGID
+    half = cantilever(flexure, kinematics=kinematics, n=3, shear=shear)
+    whole = rbsdem.double_curvature(half)
+    assert (whole.n, whole.height) == (5, 3.2)
+    assert list(whole.joint_numbers) == [1, 2, 3, 4, 5, 6]
+    one = rbsdem.cyclic(half, displacement=PATH)
+    both = rbsdem.cyclic(whole, displacement=2 * PATH)
+    scale = np.abs(one.force).max()
+    # Newton's method ends at 1e-10 of the change.
+    near = 1e-9 if kinematics == "finite" else 1e-11
+    np.testing.assert_allclose(both.force, one.force, rtol=0, atol=near * scale)
+    np.testing.assert_allclose(both.rotation[:, :3], one.rotation, rtol=0, atol=near * 0.02)
+    np.testing.assert_allclose(both.rotation[:, 5:2:-1], -one.rotation, rtol=0, atol=near * 0.02)
+    np.testing.assert_allclose(both.rotation.sum(axis=1), 0, atol=1e-16)
+    # What holds the top is the moment at the foot with the other sign: F 2L + P x = 2 M.
+    np.testing.assert_allclose(both.moment[:, -1], -both.moment[:, 0], rtol=0, atol=near * 1e6)
+    np.testing.assert_allclose(both.energy["input"], 2 * one.energy["input"], atol=1e-8 * scale)
+
+
+@pytest.mark.parametrize("kinematics", ["pdelta", "finite"])
+def test_double_curvature_under_axial_load_that_varies(kinematics):
+    """The same symmetry where the axial load has a history, and joints carry it."""
+    half = cantilever(UNEVEN, kinematics=kinematics, n=2)
+    load = 4e5 + 2e5 * np.sin(np.arange(PATH.size))
+    one = rbsdem.cyclic(half, displacement=PATH, axial_load=load)
+    both = rbsdem.cyclic(rbsdem.double_curvature(half), displacement=2 * PATH, axial_load=load)
+    np.testing.assert_allclose(both.force, one.force, rtol=0, atol=1e-8 * np.abs(one.force).max())
+
+
+def test_stiffness_and_frequency_of_a_column_held_at_both_ends():
+    """Springs k_i at levers h_i: F/x from x = F (sum h^2/k - (sum h/k)^2/(sum 1/k)) + F sum 1/k_V.
+
+    With a mass at the top and bodies that have hardly any, omega^2 is that stiffness over the mass;
+    the bodies move less than the top, and change it by no more than their share of the mass.
+    """
+    n, height, mass = 3, 3.0, 1e4
+    k, shear = np.array([4e8, 2e8, 2.5e8, 1e8]), 5e8
+    lever = height * np.arange(n, -1, -1) / n
+    flexibility = (lever**2 / k).sum() - (lever / k).sum() ** 2 / (1 / k).sum() + (n + 1) / shear
+    column = rbsdem.Column(
+        height, 1e-4, Elastic(shear), [Elastic(x) for x in k], n=n, top="fixed", top_mass=mass
+    )
+    result = rbsdem.cyclic(column, force=[1e3])
+    assert result.displacement[0] == pytest.approx(1e3 * flexibility, rel=1e-13)
+    modes = rbsdem.modes(column)
+    assert modes.omega.size == 2 * (n + 1) - 1
+    assert modes.omega[0] ** 2 * mass * flexibility == pytest.approx(1, abs=1e-8)
+    np.testing.assert_allclose(modes.shapes[n + 1 :].sum(axis=0), 0, atol=1e-12)
+
+
+def test_critical_load_and_frequency_of_a_held_column():
+    """One body on two joints: K of (u_1, u_2, theta) has -P between u_2 and theta and 2 k - P l.
+
+    It is singular where P l + P^2/k_V = 2 k. The mass at the top is all but alone.
+    """
+    length, k, shear, mass = 2.0, 1e8, 1e9, 2e4
+
+    def column(load):
+        return rbsdem.Column(
+            length,
+            1e-4,
+            Elastic(shear),
+            Elastic(k),
+            kinematics="pdelta",
+            axial_load=load,
+            top="fixed",
+            top_mass=mass,
+        )
+
+    critical = shear / 2 * (np.sqrt(length**2 + 8 * k / shear) - length)
+    load = 0.7 * critical
+    stiffness = np.array([[shear, 0, 0], [0, shear, -load], [0, -load, 2 * k - load * length]])
+    arm = np.array([1, 1, length])
+    flexibility = arm @ np.linalg.solve(stiffness, arm)
+    modes = rbsdem.modes(column(load))
+    assert modes.omega[0] ** 2 * mass * flexibility == pytest.approx(1, abs=1e-7)
+    assert modes.stable_step == pytest.approx(2 * np.sqrt(2) / modes.omega[-1], rel=1e-6)
+    rbsdem.modes(column((1 - 1e-9) * critical))
+    with pytest.raises(rbsdem.InputError, match="beyond the critical load"):
+        rbsdem.modes(column((1 + 1e-9) * critical))
+
+
+TIME = np.arange(0, 1.005, 0.01)
+SHAKE = 3.0 * np.sin(9 * TIME) + 2.0 * np.sin(23 * TIME)
+STEPS = {"newmark": 5e-4, "hht": 2e-4, "generalised_alpha": 2e-4}
+
+
+def shaken(column, method, **loads):
+    events = {"events": "located"} if method == "rk4" else {}
+    return rbsdem.time_history(column, TIME, method=method, dt=STEPS.get(method), **events, **loads)
+
+
+@pytest.mark.parametrize("kinematics", LEVELS)
+@pytest.mark.parametrize("opens", [False, True])
+def test_methods_agree_on_a_column_with_both_ends(kinematics, opens):
+    """Footing and fixed top at once, with joints that open or not: one response, one balance."""
+    axial = {"axial_spring": Elastic(3e9)} if opens else {}
+    column = cantilever(
+        TAKEDA,
+        kinematics=kinematics,
+        shear=Elastic(4e8),
+        footing=Footing(Elastic(6e8), CONTACTS, mass=3e3, inertia=2e3, height=0.4, **axial),
+        top_mass=3e4,
+        damping=rbsdem.Damping(mass=0.2, stiffness=1e-4),
+        **axial,
+    )
+    column = dataclasses.replace(column, top="fixed", flexure=[TAKEDA, Elastic(1.5e8)])
+    exact = shaken(column, "rk45", ground_acceleration=SHAKE)
+    peak = np.abs(exact.displacement).max()
+    assert exact.summary["events"] > 10
+    for method, near in {
+        "rk4": 1e-4,
+        "newmark": 3e-3,
+        "hht": 3e-3,
+        "generalised_alpha": 3e-3,
+    }.items():
+        result = shaken(column, method, ground_acceleration=SHAKE)
+        np.testing.assert_allclose(
+            result.displacement, exact.displacement, rtol=0, atol=near * peak
+        )
+        np.testing.assert_allclose(result.rotation.sum(axis=1), 0, atol=1e-15)
+        assert result.summary["relative_energy_residual"] < 1e-3
+
+
+def test_moment_that_holds_the_top_is_that_of_equilibrium():
+    """Of the whole column about the lowest joint: M_b = F h + P (x - u_1) + M_top."""
+    column = cantilever(TAKEDA, n=2, shear=Elastic(4e8))
+    column = dataclasses.replace(
+        column, top="fixed", flexure=[TAKEDA, Elastic(2e8), Elastic(1.5e8)]
+    )
+    result = rbsdem.cyclic(column, displacement=PATH)
+    second = 4e5 * (result.displacement - result.slip[:, 0])
+    moment = 1.6 * result.force + second + result.moment[:, -1]
+    np.testing.assert_allclose(result.moment[:, 0], moment, atol=1e-12 * np.abs(moment).max())
+
+
+def test_double_curvature_in_time_with_the_mass_at_the_top():
+    """A cantilever with 2 m under F(t) is the lower half of the column with m under F(t)."""
+    half = cantilever(TAKEDA, top_mass=4e4)
+    half = dataclasses.replace(half, mass=1e-4, shear=Elastic(1e12))
+    whole = rbsdem.double_curvature(dataclasses.replace(half, top_mass=0.0), top_mass=2e4)
+    force = 1.3e5 * np.sin(15 * TIME)
+    one, both = (shaken(column, "newmark", force=force) for column in (half, whole))
+    peak = np.abs(one.displacement).max()
+    assert peak > 0.01
+    np.testing.assert_allclose(both.displacement, 2 * one.displacement, rtol=0, atol=1e-4 * peak)
+
+
+def test_a_footing_is_one_body_more():
+    """The chain knows no difference: the same bits as a column whose first body is the footing."""
+    springs = [Elastic(6e8), Elastic(4e8)], [Takeda(4e8, 4e-4, 1e8, 3e-3, 1e7), TAKEDA]
+    common = {"kinematics": "pdelta", "axial_load": 4e5, "top_mass": 2e4, "self_weight": True}
+    column = rbsdem.Column(
+        1.6,
+        600.0,
+        springs[0][1],
+        springs[1][1],
+        footing=Footing(springs[0][0], springs[1][0], mass=900.0, inertia=100.0, height=0.4),
+        rotary_inertia=50.0,
+        **common,
+    )
+    chain = rbsdem.Column(
+        2.0,
+        None,
+        *springs,
+        n=2,
+        lengths=[0.4, 1.6],
+        masses=[900.0, 600.0],
+        rotary_inertia=[100.0, 50.0],
+        **common,
+    )
+    for one, other in (
+        (rbsdem.cyclic(c, displacement=PATH) for c in (column, chain)),
+        (shaken(c, "rk45", ground_acceleration=SHAKE) for c in (column, chain)),
+    ):
+        for name in ("displacement", "force", "rotation", "moment", "base_moment", "top"):
+            np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
+    assert list(column.joint_numbers) == [0, 1]
+    assert len(column.joints("flexure")) == 2
+
+
+@pytest.mark.parametrize("kinematics", LEVELS)
+def test_springs_beneath_a_footing_are_in_series(kinematics):
+    """x = F (1/k_0x + 1/k_V + h^2/k_0 + h^2/k_M), and no footing where they are rigid."""
+
+    def flexible(along, about):
+        footing = Footing(Elastic(along), Elastic(about))
+        column = rbsdem.Column(
+            2.0, 500.0, Elastic(3e8), Elastic(1e8), kinematics=kinematics, footing=footing
+        )
+        return rbsdem.cyclic(column, force=[1e2]).displacement[0] / 1e2
+
+    series = 1 / 2e8 + 1 / 3e8 + 4 / 5e7 + 4 / 1e8
+    assert flexible(2e8, 5e7) == pytest.approx(series, rel=1e-9)
+    assert flexible(2e16, 5e16) == pytest.approx(1 / 3e8 + 4 / 1e8, rel=1e-8)
+
+
+def rocking(kinematics="pdelta", **more):
+    """A stiff column of 4 m on a footing 1 m wide with two contacts at its edges."""
+    edges = Layered([(-0.5, Compression(1e12)), (0.5, Compression(1e12))])
+    return rbsdem.Column(
+        4.0,
+        1e-3,
+        Elastic(1e13),
+        Elastic(1e13),
+        kinematics=kinematics,
+        axial_load=2e5,
+        footing=Footing(Elastic(1e13), edges, **more.pop("inertia", {})),
+        **more,
+    )
+
+
+@pytest.mark.parametrize("kinematics", ["pdelta", "finite"])
+def test_rocking_footing_tips_where_the_load_passes_its_edge(kinematics):
+    """F = P (b/h - theta), or P (b - h sin theta)/(h cos theta), both ways; nothing is lost."""
+    drift = np.array([0.02, 0.06, 0.124, 0.0, -0.06, -0.02, 0.0])
+    result = rbsdem.cyclic(rocking(kinematics), displacement=4.0 * drift)
+    if kinematics == "finite":
+        force = 2e5 * (0.5 - 4.0 * np.abs(drift)) / (4.0 * np.sqrt(1 - drift**2))
+    else:
+        force = 2e5 * (0.125 - np.abs(drift))
+    moving = drift != 0
+    expected = np.sign(drift) * force
+    np.testing.assert_allclose(result.force[moving], expected[moving], rtol=0, atol=0.5)
+    np.testing.assert_allclose(result.rotation[moving, 0], np.arcsin(drift)[moving], rtol=3e-3)
+    # The work of the force is all given back where the column stands upright again.
+    assert abs(result.energy["input"][-1]) < 1e-6 * result.energy["input"].max()
+
+
+def test_rocking_has_housners_quarter_period():
+    """theta'' = p^2 (theta - alpha) from rest: upright after acosh(1/(1 - theta_0/alpha))/p."""
+    mass = 2e5 / 9.80665
+    inertia = {"mass": 1e-3, "inertia": 1e-3}
+    column = rocking(top_mass=mass, inertia=inertia)
+    p, alpha, start = np.sqrt(2e5 / (mass * 4.0)), 0.125, 0.05
+    quarter = np.arccosh(1 / (1 - start / alpha)) / p
+    time = np.linspace(0, quarter, 101)
+    result = rbsdem.time_history(
+        column, time, method="newmark", dt=quarter / 2000, initial={"rotation": [start, 0.0]}
+    )
+    theta = alpha - (alpha - start) * np.cosh(p * time)
+    np.testing.assert_allclose(result.displacement, 4.0 * theta, rtol=0, atol=2e-4 * 4.0 * start)
+
+
+def test_contact_with_a_gap():
+    """It carries k (w + gap) where it has closed by more than the gap; two of them in a joint."""
+    spring = Compression(1e8, gap=0.002)
+    w = np.array([0.0, -0.001, -0.002, -0.005, -0.001, 0.01, -0.003])
+    np.testing.assert_allclose(spring.response(w), 1e8 * np.minimum(w + 0.002, 0), atol=1e-6)
+    # Beside a middle that carries the load P = 1e5 N, stops at 0.4 m close after 0.005 rad; then
+    # the joint turns about the stop: the middle opens by 0.4 (theta - 0.005) less what it gave.
+    joint = Layered([(0.0, Elastic(1e10)), (0.4, Compression(1e8, gap=2e-3)), (-0.4, spring)])
+    moment = joint.response(np.array([0.0, 0.004, 0.006, -0.006, 0.0]), axial_load=1e5)
+    stop = 1e8 / (1 + 1e8 / 1e10) * (0.4 * 0.006 - 0.002 + 1e5 / 1e10)
+    np.testing.assert_allclose(moment, [0, 0, 0.4 * stop, -0.4 * stop, 0], rtol=1e-12, atol=1e-9)
+
+
+CASE = """
+&column n = 2, height = 3.0, mass = 900, kinematics = 'pdelta', axial_load = 2e5, top = 'fixed',
+   top_mass = 2e4, footing_mass = 3e3, footing_inertia = 2e3, footing_height = 0.3 /
+&shear rule = 'elastic', k = 4e8 /
+&shear joint = 0, rule = 'bilinear', k = 4e8, d_y = 1e-3, k_post = 1e6 /
+&flexure rule = 'elastic', k = 2e8 /
+&flexure joint = 3, rule = 'elastic', k = 1e8 /
+&flexure joint = 0, rule = 'layered' /
+&layer_spring id = 1, rule = 'compression', k = 1e9, gap = 1e-4 /
+&layer_spring id = 2, rule = 'compression', k = 2e9 /
+&layers joint = 0, y = -0.4, -0.2, 0.2, 0.4, spring = 1, 2, 2, 1 /
+&loading drive = 'displacement', amplitudes = 0.01, points = 3 /
+"""
+
+
+def test_ends_have_two_doors(tmp_path: Path):
+    """A case file gives the column of Python, comes back from it, and the csv names the joints."""
+    path = tmp_path / "ends.nml"
+    path.write_text(CASE, "utf-8")
+    case = rbsdem.read_case(path)
+    layers = [(-0.4, Compression(1e9, 1e-4)), (-0.2, Compression(2e9))]
+    column = rbsdem.Column(
+        3.0,
+        900.0,
+        Elastic(4e8),
+        [Elastic(2e8), Elastic(2e8), Elastic(1e8)],
+        n=2,
+        kinematics="pdelta",
+        axial_load=2e5,
+        top="fixed",
+        top_mass=2e4,
+        footing=Footing(
+            rbsdem.Bilinear(4e8, 1e-3, 1e6),
+            Layered([*layers, *((-y, spring) for y, spring in reversed(layers))]),
+            mass=3e3,
+            inertia=2e3,
+            height=0.3,
+        ),
+    )
+    assert case.column == column
+    path.write_text(column.to_namelist() + CASE[CASE.index("&loading") :], "utf-8")
+    assert rbsdem.read_case(path).column == column
+    result = case.run()
+    subprocess.run(["rbsdem", "run", "--quiet", str(path)], check=True, cwd=tmp_path)
+    with (tmp_path / "ends.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    assert float(rows[-1]["moment_3_Nm"]) == result.moment[-1, -1]
+    assert float(rows[-1]["rotation_0_rad"]) == result.rotation[-1, 0]
+
+
+HELD = {"top": "fixed"}
+SPRING = Elastic(1e8)
+FOOTING = Footing(SPRING, SPRING)
+REFUSED = {
+    "a footing without inertia in time": (
+        {"footing": FOOTING},
+        "footing_mass = 0 kg and footing_inertia = 0 kg m2 must be above zero",
+    ),
+    "a fixed top without mass in time": (HELD, "a dynamic analysis needs top_mass"),
+    "inertia of a top that does not turn": (
+        {"top": "fixed", "top_inertia": 5.0},
+        "top_inertia = 5 kg m2 has no effect",
+    ),
+    "loads that turn with it": (
+        {"top": "fixed", "kinematics": "finite", "axial_follows": True},
+        "remove axial_follows and force_follows",
+    ),
+    "a lever of the load": (
+        {"top": "fixed", "kinematics": "pdelta", "axial_height": 2.0},
+        "axial_height is the lever of the load on a cantilever",
+    ),
+    "another word for the top": (
+        {"top": "pinned"},
+        "top = 'pinned' is not known; it is one of free",
+    ),
+    "springs of one joint too few": (
+        {"top": "fixed", "flexure": [SPRING, SPRING], "n": 2},
+        "flexure has 2 springs",
+    ),
+    "a negative mass": (
+        {"footing": Footing(SPRING, SPRING, mass=-1.0)},
+        "footing_mass = -1 kg must not be negative",
+    ),
+    "joints that open on a footing that does not": (
+        {"footing": FOOTING, "axial_spring": SPRING},
+        "there is no &axial_spring with joint = 0",
+    ),
+    "an axial spring beneath the footing alone": (
+        {"footing": Footing(SPRING, SPRING, SPRING)},
+        "joint 1 has no &axial_spring",
+    ),
+    "contacts that only tension could hold": (
+        {"footing": Footing(SPRING, CONTACTS), "axial_load": -1e3},
+        "flexure spring of joint 0: its layers cannot carry the axial load of -1000 N",
+    ),
+}
+
+
+@pytest.mark.parametrize("given", REFUSED)
+def test_ends_that_make_no_sense_are_refused(given):
+    changes, message = REFUSED[given]
+    with pytest.raises(rbsdem.InputError) as caught:  # noqa: PT012
+        column = rbsdem.Column(
+            **({"height": 2.0, "mass": 9.0, "shear": SPRING, "flexure": SPRING} | changes)
+        )
+        rbsdem.time_history(column, [0.0, 1.0], ground_acceleration=[0.0, 1.0])
+    assert message in str(caught.value)
+
+
+def test_other_refusals():
+    column = rbsdem.Column(2.0, 9.0, SPRING, SPRING, top="fixed", top_mass=1e3)
+    with pytest.raises(rbsdem.InputError, match=r"must add up to zero, not to 0\.01"):
+        rbsdem.time_history(column, [0.0, 1.0], initial={"rotation": [0.01, 0.0]})
+    with pytest.raises(rbsdem.InputError, match="flexure = 3 must be a spring"):
+        Footing(SPRING, 3)
+    with pytest.raises(rbsdem.InputError, match="must be a Footing"):
+        rbsdem.Column(2.0, 9.0, SPRING, SPRING, footing=SPRING)
+    with pytest.raises(rbsdem.InputError, match="plain cantilever, without top_mass"):
+        rbsdem.double_curvature(rbsdem.Column(2.0, 9.0, SPRING, SPRING, top_mass=1.0))
+
+
+def test_footing_keys_need_a_footing(tmp_path: Path):
+    path = tmp_path / "case.nml"
+    path.write_text(CASE.replace("joint = 0", "joint = 1"), "utf-8")
+    with pytest.raises(rbsdem.InputError, match="footing_height need springs beneath the footing"):
+        rbsdem.read_case(path)
+    path.write_text(CASE.replace("joint = 3", "joint = 4"), "utf-8")
+    with pytest.raises(rbsdem.InputError, match=r"joint = 4; joints are 0 to n \+ 1 = 3"):
+        rbsdem.read_case(path)
