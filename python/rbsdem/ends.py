@@ -8,9 +8,9 @@ from typing import Any, TypeVar
 from rbsdem import _core
 from rbsdem.column import Column, checked_column
 from rbsdem.errors import InputError
-from rbsdem.springs import Layered, Spring, SteelSpring
+from rbsdem.springs import Layered, Spring, SteelSpring, whole_column
 
-__all__ = ["double_curvature"]
+__all__ = ["double_curvature", "turned"]
 
 C = TypeVar("C", bound=Column)
 
@@ -75,9 +75,10 @@ def double_curvature(column: C, *, top_mass: float = 0.0) -> C:
         middle = 2 * (parts[-1] + masses[-1] * (lengths[-1] / 2) ** 2)
         changes["rotary_inertia"] = [*parts[:-1], middle, *parts[-2::-1]]
     for name in ("shear", "flexure", "axial_spring"):
-        springs = column.joints(name)
+        # The spring of a whole cantilever is one of each half here.
+        springs = [part.split(1) if whole_column(part) else part for part in column.joints(name)]
         if springs:
-            turn = _turned if name == "flexure" else _same_at_the_top
+            turn = turned if name == "flexure" else _same_at_the_top
             changes[name] = (*springs, *(turn(spring) for spring in reversed(springs)))
     return dataclasses.replace(column, **changes)
 
@@ -91,8 +92,19 @@ def _same_at_the_top(spring: Spring) -> Spring:
     return spring
 
 
-def _turned(spring: Spring) -> Spring:
-    """Return a flexural spring that does for negative rotations what another does for positive."""
+def turned(spring: Spring) -> Spring:
+    """Return a flexural spring that does for negative rotations what another does for positive.
+
+    Parameters
+    ----------
+    spring : Spring
+        The other.
+
+    Raises
+    ------
+    InputError
+        If its rule has no such spring.
+    """
     if isinstance(spring, Layered):
         return Layered(tuple((-y, layer) for y, layer in spring.layers))
     if isinstance(spring, SteelSpring) and spring.d_buckle is not None:

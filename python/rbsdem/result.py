@@ -214,7 +214,7 @@ class Result:
                 f"joint {joint} was not made from a section, and over which lengths its layers "
                 "deform is not known; give gauge=rbsdem.Gauge(part=..., length=...)"
             )
-        spring = self.column.joints("flexure")[joint - 1]
+        spring = self.column.joints("flexure")[self.column.joint_numbers.index(joint)]
         assert isinstance(spring, Layered)
         return strains_of(joint, self.time, [y for y, _ in spring.layers], known, deformation)
 

@@ -15,7 +15,7 @@ contains
    !>
    !>     V = -sum a_k l_k th_k^2/2 - sum b_k u_k th_{k-1}
    !>
-   !> with a = `axial_body`, b = `axial_joint` and the absolute rotations th = sum of phi. For the load
+   !> with a = `axial_body`, b = `axial_slip` and the absolute rotations th = sum of phi. For the load
    !> alone it is P times the height of the top; slips above a joint belong to the lever arm too.
    subroutine geometric_stiffness(column, stiffness)
       type(column_type), intent(in) :: column
@@ -33,7 +33,7 @@ contains
       do j = 1, n
          do i = 1, n
             stiffness(n + i, n + j) = -above(max(i, j))
-            stiffness(i, n + j) = merge(-column%axial_joint(i), 0.0_wp, j < i)
+            stiffness(i, n + j) = merge(-column%axial_slip(i), 0.0_wp, j < i)
             stiffness(n + j, i) = stiffness(i, n + j)
          end do
       end do
@@ -53,10 +53,10 @@ contains
       if (column%opens) g(2*n + 1:) = 0.0_wp
       rotation = 0.0_wp
       do i = 1, n
-         g(i) = -column%axial_joint(i)*rotation
+         g(i) = -column%axial_slip(i)*rotation
          rotation = rotation + q(n + i)
          g(n + i) = -column%axial_body(i)*column%length(i)*rotation
-         if (i < n) g(n + i) = g(n + i) - column%axial_joint(i + 1)*q(i + 1)
+         if (i < n) g(n + i) = g(n + i) - column%axial_slip(i + 1)*q(i + 1)
       end do
       above = 0.0_wp
       do i = n, 1, -1
@@ -76,7 +76,7 @@ contains
       energy = 0.0_wp
       rotation = 0.0_wp
       do i = 1, column%n
-         energy = energy - column%axial_joint(i)*q(i)*rotation
+         energy = energy - column%axial_slip(i)*q(i)*rotation
          rotation = rotation + q(column%n + i)
          energy = energy - 0.5_wp*column%axial_body(i)*column%length(i)*rotation**2
       end do
@@ -109,7 +109,7 @@ contains
       do i = 1, n - 1
          associate (shear => column%initial_stiffness(i + 1), flexure => column%initial_stiffness(n + i))
             turning(i) = column%axial_body(i)*column%length(i)/flexure
-            sliding(i) = abs(column%axial_joint(i + 1))/sqrt(shear)/sqrt(flexure)
+            sliding(i) = abs(column%axial_slip(i + 1))/sqrt(shear)/sqrt(flexure)
             stiffer(i) = column%initial_stiffness(n + i + 1)/flexure
          end associate
       end do

@@ -7,7 +7,9 @@
 !>
 !> Ends other than a rigid ground and a free top are bodies of the same chain. A footing is its first body. A
 !> top fixed against rotation is its last one, without length, whose rotation is held: the joint between
-!> it and the body below turns by minus the rotation of that body, and its moment holds the top.
+!> it and the body below turns by minus the rotation of that body, and its moment holds the top. That joint
+!> is the lowest one turned about the middle of the column: it slips and opens along the directions of the
+!> body above it, which are fixed.
 module rbs_column_column
    use rbs_base_constants, only: unset
    use rbs_base_kinds, only: wp
@@ -63,6 +65,8 @@ module rbs_column_column
       !> Axial force of load and weight for the rotation of body i, and across the slip of joint i,
       !> compression positive (n) [N]; a load that follows the top has no potential and is not in them
       real(wp), allocatable :: axial_body(:), axial_joint(:)
+      !> The latter as far as it does second-order work on slips: not where they keep their direction (n) [N]
+      real(wp), allocatable :: axial_slip(:)
       !> Axial force of load and weight in the joints of the straight column, compression positive (n) [N]
       real(wp), allocatable :: compression(:)
       !> The same per vertical acceleration of the ground, from all masses (n) [kg]
@@ -180,6 +184,8 @@ contains
       column%weight = column%gravity*column%mass
       column%axial_body = dead + column%gravity*(column%mass/2.0_wp + above(2:))
       column%axial_joint = dead + column%gravity*above(:n)
+      column%axial_slip = column%axial_joint
+      if (column%held) column%axial_slip(n) = 0.0_wp
       column%compression = column%axial_load + column%gravity*above(:n)
       column%axially_loaded = column%kinematics /= small .and. &
                               (abs(dead) > 0.0_wp .or. column%gravity > 0.0_wp)

@@ -47,6 +47,11 @@ contains
       c = 1.0_wp
       opening = 0.0_wp
       do i = 1, n
+         if (i == n .and. column%held) then
+            ! What is held does not turn, and its joint moves along its directions.
+            s = 0.0_wp
+            c = 1.0_wp
+         end if
          ! Forces of the loads above, across and along the body below the joint.
          across = force*c + column%axial_joint(i)*s
          along = force*s - column%axial_joint(i)*c
@@ -59,7 +64,7 @@ contains
             load(j + 2) = along
             arm(j + 2) = s
          end if
-         if (i > 1) then
+         if (i > 1 .and. .not. (i == n .and. column%held)) then
             load(j) = load(j) - q(i)*along + opening*across
             arm(j) = arm(j) - q(i)*s + opening*c
             band(1, j) = band(1, j) + q(i)*across + opening*along

@@ -110,6 +110,8 @@ contains
       !> Acceleration of the bottom of the body, along t and e of the body below, and of the top of that
       real(wp) :: bottom(2), below(2)
       real(wp) :: per_mass, per_inertia, s, c, separation, flexibility, rotation
+      !> Sine and cosine of the last joint where the top is held, and its shear
+      real(wp) :: held(2), along
       integer :: i, n
 
       n = column%n
@@ -128,6 +130,7 @@ contains
       spin_below = 0.0_wp
       turn_below = 0.0_wp
       flexibility = 0.0_wp
+      held = [0.0_wp, 1.0_wp]
       ! Seen from a frame that falls, the ground is what accelerates, upwards by the weight.
       below = [load(2), load(3) + column%gravity]
       do i = 1, n
@@ -141,6 +144,15 @@ contains
             if (column%opens) then
                axial_above = f(2*n + i + 1)
                opening_above = q(2*n + i + 1)
+            end if
+            if (i == n - 1 .and. column%held) then
+               ! The last joint acts at the top of the body, along fixed directions.
+               held = [-sin(rotation), cos(rotation)]
+               slip_above = 0.0_wp
+               opening_above = 0.0_wp
+               along = shear_above
+               shear_above = along*held(2) + axial_above*held(1)
+               axial_above = axial_above*held(2) - along*held(1)
             end if
          else
             moment_above = 0.0_wp
@@ -176,6 +188,19 @@ contains
                work%diagonal(i) = flexibility + per_mass + (lower*s)**2*per_inertia
                work%beside(i) = lower*s*slip_above*per_inertia - c*per_mass
                flexibility = per_mass + slip_above**2*per_inertia
+               if (i == n - 1 .and. column%held) then
+                  work%beside(i) = -(c*held(2) - s*held(1))*per_mass - lower*s*upper*held(1)*per_inertia
+                  flexibility = per_mass + (upper*held(1))**2*per_inertia
+               end if
+            end if
+            if (i == n .and. column%held) then
+               bottom = bottom - below
+               a(i) = c*bottom(1) - s*bottom(2)
+               if (column%opens) then
+                  a(2*n + i) = s*bottom(1) + c*bottom(2)
+               else
+                  work%axial(i) = s*bottom(1) + c*bottom(2)
+               end if
             end if
             ! T'' = c'' + upper (om' t - om^2 e), along its own t and e.
             below(1) = (shear_above - shear*c + axial*s)*per_mass + upper*turn
@@ -229,6 +254,10 @@ contains
       turn_below = 0.0_wp
       below = 0.0_wp
       do i = 1, n
+         if (column%held .and. i >= n - 1) then
+            call add_last_reaction(column, work, i, turn_below, below, a)
+            cycle
+         end if
          turn = column%lower(i)*work%sine(i)*work%axial(i)
          above = 0.0_wp
          if (i < n) then
@@ -236,7 +265,6 @@ contains
             turn = turn + q(i + 1)*above
          end if
          turn = -turn/column%inertia(i)
-         if (i == n .and. column%held) turn = 0.0_wp
          along = work%sine(i)/column%mass(i)
          a(i) = a(i) + above*along - column%lower(i)*work%cosine(i)*turn - below
          a(n + i) = a(n + i) + turn - turn_below
@@ -244,6 +272,35 @@ contains
          turn_below = turn
       end do
    end subroutine add_reactions
+
+   !> The same at the two bodies that the joint of a held top is between. Its reaction acts along the fixed
+   !> vertical, at the top of the body below.
+   pure subroutine add_last_reaction(column, work, i, turn_below, below, a)
+      type(column_type), intent(in) :: column
+      type(finite_work), intent(in) :: work
+      !> n - 1 or n
+      integer, intent(in) :: i
+      !> Acceleration of the body below in rotation, and of its top along its normal, from the reactions
+      real(wp), intent(inout) :: turn_below, below
+      real(wp), intent(inout), contiguous :: a(:)
+      real(wp) :: turn, along
+      integer :: n
+
+      n = column%n
+      associate (s => work%sine, c => work%cosine, force => work%axial)
+         if (i < n) then
+            turn = (column%upper(i)*s(n)*force(n) - column%lower(i)*s(i)*force(i))/column%inertia(i)
+            a(i) = a(i) + force(n)*(c(i)*s(n) + s(i)*c(n))/column%mass(i) - column%lower(i)*c(i)*turn - below
+            a(n + i) = a(n + i) + turn - turn_below
+            below = (force(i)*s(i) + force(n)*s(n))/column%mass(i) + column%upper(i)*turn
+            turn_below = turn
+         else
+            along = (force(n)*c(n) - force(n - 1)*c(n - 1))/column%mass(n - 1)
+            a(n) = a(n) - c(n)*below + s(n)*along
+            a(2*n) = a(2*n) - turn_below
+         end if
+      end associate
+   end subroutine add_last_reaction
 
    !> Go up by one body: rotation and velocities of body i from those of body i - 1.
    pure subroutine climb(column, q, v, i, body)
@@ -255,6 +312,7 @@ contains
       integer :: n
 
       n = column%n
+      if (i == n .and. column%held) call stand_upright(body)
       along_t = v(i)
       along_e = -q(i)*body%spin
       if (column%opens) then
@@ -263,8 +321,10 @@ contains
       end if
       bottom(1) = body%top(1) + along_t*body%c + along_e*body%s
       bottom(2) = body%top(2) - along_t*body%s + along_e*body%c
-      body%rotation = body%rotation + q(n + i)
-      body%spin = body%spin + v(n + i)
+      if (.not. (i == n .and. column%held)) then
+         body%rotation = body%rotation + q(n + i)
+         body%spin = body%spin + v(n + i)
+      end if
       body%s = sin(body%rotation)
       body%c = cos(body%rotation)
       along_t = column%lower(i)*body%spin
@@ -274,6 +334,16 @@ contains
       body%top(1) = bottom(1) + along_t*body%c
       body%top(2) = bottom(2) - along_t*body%s
    end subroutine climb
+
+   !> Look at the body below a held top in the directions of that: they are fixed.
+   pure subroutine stand_upright(body)
+      type(moving_body), intent(inout) :: body
+
+      body%rotation = 0.0_wp
+      body%spin = 0.0_wp
+      body%s = 0.0_wp
+      body%c = 1.0_wp
+   end subroutine stand_upright
 
    !> Kinetic energy relative to the ground [J].
    pure real(wp) function finite_kinetic(column, q, v) result(energy)
@@ -308,6 +378,10 @@ contains
       s = 0.0_wp
       c = 1.0_wp
       do i = 1, n
+         if (i == n .and. column%held) then
+            s = 0.0_wp
+            c = 1.0_wp
+         end if
          rise = rise - q(i)*s
          if (column%opens) rise = rise + q(2*n + i)*c
          rotation = rotation + q(n + i)
@@ -366,6 +440,10 @@ contains
       s = 0.0_wp
       c = 1.0_wp
       do i = 1, n
+         if (i == n .and. column%held) then
+            s = 0.0_wp
+            c = 1.0_wp
+         end if
          top = top + q(i)*[c, -s]
          if (column%opens) top = top + q(2*n + i)*[s, c]
          rotation = rotation + q(n + i)

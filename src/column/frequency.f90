@@ -105,7 +105,7 @@ contains
          t22 = t22 + s*column%inertia(i)
          if (axial) then
             t22 = t22 + column%axial_body(i)*column%length(i)
-            joint = column%axial_joint(i)
+            joint = column%axial_slip(i)
          end if
          arm = column%lower(i)
          t22 = t22 + arm*(2.0_wp*t12 + arm*t11)
@@ -116,8 +116,8 @@ contains
          if (.not. p1 > 0.0_wp) return
          if (column%held .and. i == n) then
             ! What is held against rotation moves along only; its joint turns by minus what is below.
-            t12 = t11*(joint/p1)
-            t22 = joint*(joint/p1) - column%initial_stiffness(n + i)
+            t12 = 0.0_wp
+            t22 = -column%initial_stiffness(n + i)
             t11 = t11*(shear/p1)
             cycle
          end if
@@ -147,7 +147,7 @@ contains
       allocate (band(4, 2*n), source=0.0_wp)
       allocate (mass(2*n))
       call add_spring_band(column, column%initial_stiffness, band)
-      if (axial) call add_geometric_band(column, column%axial_body, column%axial_joint, band)
+      if (axial) call add_geometric_band(column, column%axial_body, column%axial_slip, band)
       if (column%held) call hold_last(band, 0.0_wp)
       below = 0.0_wp
       above = 0.0_wp

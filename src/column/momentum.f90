@@ -68,6 +68,12 @@ contains
       opening = 0.0_wp
       rising = 0.0_wp
       do i = 1, n
+         if (i == n .and. column%held) then
+            ! The joint of a held top moves along fixed directions.
+            axis = [0.0_wp, 1.0_wp]
+            normal = [1.0_wp, 0.0_wp]
+            spin = 0.0_wp
+         end if
          slip = q(i)
          slipping = v(i)
          if (column%opens) then
@@ -78,7 +84,7 @@ contains
          velocity = velocity + (slipping + opening*spin)*normal + (rising - slip*spin)*axis
          if (i == 1) foot = place
          rotation = rotation + q(n + i)
-         spin = spin + v(n + i)
+         if (.not. (i == n .and. column%held)) spin = spin + v(n + i)
          axis = [sin(rotation), cos(rotation)]
          normal = [axis(2), -axis(1)]
          lever = place + column%lower(i)*axis - foot

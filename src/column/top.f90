@@ -31,7 +31,7 @@ contains
          ! To second order: this is the way on which the axial load does its work.
          rotation = 0.0_wp
          do i = 1, n
-            top(2) = top(2) - q(i)*rotation
+            if (i < n .or. .not. column%held) top(2) = top(2) - q(i)*rotation
             rotation = rotation + q(n + i)
             top(2) = top(2) - 0.5_wp*column%length(i)*rotation**2
          end do

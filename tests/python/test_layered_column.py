@@ -375,9 +375,10 @@ KEPT = {
     "model": {"model": "mine"},
     "axial_follows": {"kinematics": "finite", "axial_follows": True},
     "force_follows": {"kinematics": "finite", "force_follows": True},
+    "footing": {"footing": rbsdem.Footing(rbsdem.Elastic(1e9), rbsdem.Elastic(1e9))},
 }
 # With the height and the number of bodies the springs are others; joints that open have no layers.
-OTHERS = {"height", "n", "recipe", "axial_spring"}
+OTHERS = {"height", "n", "recipe", "axial_spring", "top"}
 
 
 def test_every_field_of_a_column_is_tried():

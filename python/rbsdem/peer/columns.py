@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from difflib import get_close_matches
-from typing import Any, Literal, overload
+from typing import Any, Literal, get_args, overload
 
 from rbsdem.column import Column
 from rbsdem.errors import InputError
@@ -20,7 +20,10 @@ _OLD = {
     "shear_numbers": "model_parameters=rbsdem.section.parameters().with_values(shear_...=...)",
 }
 
-_OPTIONS = ("n", "version", "model_parameters", "restrained", "round_core")
+_OPTIONS = ("n", "version", "model_parameters", "restrained", "round_core", "ends", "footing")
+
+#: The equivalent cantilever of the table, or the form of the test.
+Ends = Literal["equivalent", "tested"]
 
 
 @overload
@@ -39,7 +42,11 @@ def column(specimen: Specimen, model: Model = DEFAULT, **options: Any) -> Column
     model : {"layered", "paper"}, optional
         As for `rbsdem.section.Section.column`.
     **options
-        As there: ``n``, ``version``, ``model_parameters``.
+        As there: ``n``, ``version``, ``model_parameters``. ``ends="tested"`` makes a double
+        curvature specimen (config DC) what it is, twice as long with a hinge at each end: its top
+        moves twice as far as the displacement of the test. The default, ``"equivalent"``, is the
+        cantilever that all lengths and displacements of the table belong to, which is the same by
+        symmetry and half the work. ``footing`` is what the column stands on.
 
     Returns
     -------
@@ -49,11 +56,13 @@ def column(specimen: Specimen, model: Model = DEFAULT, **options: Any) -> Column
     Raises
     ------
     InputError
-        If the model is not known, or if the section cannot be analysed.
+        If the model is not known, if the section cannot be analysed, or if the table does not say
+        enough of the ends of the test.
     """
     check_model(model)
     checked_specimen(specimen)
     check_options(options)
+    tested = _tested(specimen, options.pop("ends", "equivalent"), options.get("footing"))
     drawing = draw(specimen)
     if model == "layered":
         options = {
@@ -61,14 +70,35 @@ def column(specimen: Specimen, model: Model = DEFAULT, **options: Any) -> Column
             "round_core": drawing.shape == "square with spiral",
             **options,
         }
+    halves = 2 if tested and specimen.config == "DC" else 1
     return drawing.section().column(
-        specimen.length,
+        halves * specimen.length,
         axial_load=specimen.axial_load,
-        mass=specimen.mass,
+        mass=halves * specimen.mass,
         model=model,
-        axial_height=specimen.axial_height,
+        axial_height=None if halves == 2 else specimen.axial_height,
+        top="fixed" if halves == 2 else "free",
         **options,
     )
+
+
+def _tested(specimen: Specimen, ends: str, footing: object) -> bool:
+    """Return whether the ends are to be those of the test; refuse what the table does not give."""
+    if ends not in get_args(Ends):
+        raise InputError(f"ends = {ends!r} is not known; it is one of {', '.join(get_args(Ends))}")
+    if ends == "equivalent":
+        return False
+    if specimen.config == "CFB" and footing is None:
+        raise InputError(
+            f"{specimen.name}: the stiffness of its flexible base is not in the table; give "
+            "footing=, or take ends='equivalent'"
+        )
+    if specimen.config == "DC" and specimen.axial_height != specimen.length:
+        raise InputError(
+            f"{specimen.name}: its axial load acts at {specimen.axial_height:g} m, not at the "
+            f"length of {specimen.length:g} m; take ends='equivalent', which has that lever"
+        )
+    return True
 
 
 def checked_specimen(specimen: object) -> Specimen:

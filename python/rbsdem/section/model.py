@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _core
 from rbsdem.column import Column
+from rbsdem.ends import turned
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.parameter import Parameter
 from rbsdem.section.hinge import HingeJoint, hinge_joint
@@ -444,9 +445,10 @@ class LayeredColumn(Column):
     def gauge(self, joint: int) -> Gauge | None:
         """Return what the layers of a joint stand for; None unless it is the hinge of the model."""
         hinge = self._recipe.joint
-        if joint != 1 or self.joints("flexure")[0] != hinge.spring:
-            return None
-        return hinge.gauge
+        numbers, springs = self.joint_numbers, self.joints("flexure")
+        foot = joint == 1 and springs[numbers.index(1)] == hinge.spring
+        head = joint == self.n + 1 and self.top == "fixed" and springs[-1] == turned(hinge.spring)
+        return hinge.gauge if foot or head else None
 
     @property
     def outside(self) -> tuple[str, ...]:

@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, overload
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal, get_args, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rbsdem import _core, _views
 from rbsdem._core import Array
+from rbsdem.column import Top
+from rbsdem.ends import double_curvature
 from rbsdem.errors import InputError
+from rbsdem.footing import Footing
 from rbsdem.section.diagram import Diagram, make_diagram
 from rbsdem.section.drawn import DrawnSection
 from rbsdem.section.interaction import Code, InteractionDiagram, interaction_diagram
 from rbsdem.section.materials import Tension
 from rbsdem.section.model import DEFAULT, LayeredColumn, Model, make_column
 from rbsdem.section.parameters import ModelParameters
+from rbsdem.section.ranges import column_length
 from rbsdem.section.shear_diagram import ShearDiagram, shear_diagram
 from rbsdem.section.spring_fit import SectionSprings, fit_springs
 from rbsdem.section.strength import shear_strength_mcft
@@ -279,6 +283,8 @@ class Section(DrawnSection):
         axial_height: float | None = None,
         restrained: int | None = None,
         round_core: bool = False,
+        top: Top = "free",
+        footing: Footing | None = None,
     ) -> LayeredColumn: ...
     @overload
     def column(
@@ -290,6 +296,8 @@ class Section(DrawnSection):
         n: int | None = None,
         model: Literal["paper"],
         axial_height: float | None = None,
+        top: Top = "free",
+        footing: Footing | None = None,
     ) -> Column: ...
     def column(
         self,
@@ -304,13 +312,16 @@ class Section(DrawnSection):
         axial_height: float | None = None,
         restrained: int | None = None,
         round_core: bool = False,
+        top: Top = "free",
+        footing: Footing | None = None,
     ) -> Column:
         """Return the column with this section, with second-order effects of the axial load.
 
         Parameters
         ----------
         height : float
-            From the foot to the lateral load [m].
+            From the foot to the lateral load [m]; with a fixed top the clear height between both
+            ends.
         axial_load : float
             Compression positive [N].
         mass : float, optional
@@ -338,6 +349,11 @@ class Section(DrawnSection):
             layered model. By default the four corners, and four more for each leg beyond two.
         round_core : bool, optional
             Whether the ties of a rectangular section stand for a spiral around a round core.
+        top : {"free", "fixed"}, optional
+            "fixed": double curvature, with the hinge and the shear spring of half the height at
+            both ends (`rbsdem.double_curvature`); `n` is then the number of bodies of each half.
+        footing : Footing, optional
+            A footing on springs that the column stands on.
 
         Returns
         -------
@@ -371,11 +387,14 @@ class Section(DrawnSection):
                 f"model_parameters = {model_parameters!r} must be ModelParameters, as of "
                 "rbsdem.section.parameters()"
             )
-        return make_column(
+        if top not in get_args(Top):
+            raise InputError(f"top = {top!r} is not known; it is one of {', '.join(get_args(Top))}")
+        parts = 2 if top == "fixed" else 1
+        column = make_column(
             self,
-            height,
+            column_length(height, "height") / parts,
             axial_load=axial_load,
-            mass=mass,
+            mass=None if mass is None else _core.number(mass, "mass") / parts,
             n=n,
             model=model,
             version=version,
@@ -384,6 +403,9 @@ class Section(DrawnSection):
             restrained=restrained,
             round_core=round_core,
         )
+        if top == "fixed":
+            column = double_curvature(column)
+        return column if footing is None else replace(column, footing=footing)
 
     def shear_diagram(
         self,

@@ -77,7 +77,7 @@ contains
       if (.not. self%coupled) return
       if (.not. column%axially_loaded) then
          self%column%axial_body = 0.0_wp
-         self%column%axial_joint = 0.0_wp
+         self%column%axial_slip = 0.0_wp
       end if
       allocate (self%wanted(self%unknowns, 2), self%found(self%unknowns, 2), &
                 self%missing(self%unknowns, 2), self%along(self%unknowns, 2), self%more(self%unknowns, 2), &
@@ -388,7 +388,7 @@ contains
             band(1, 2*i) = k(n + i) - column%axial_body(i)*column%length(i)
             if (i == n) exit
             band(1, 2*i) = band(1, 2*i) + k(n + i + 1)
-            band(2, 2*i) = -column%axial_joint(i + 1)
+            band(2, 2*i) = -column%axial_slip(i + 1)
             band(3, 2*i) = -k(n + i + 1)
          end do
          if (column%held) call hold_last(band, self%tangent%stiffness(2*n))

@@ -327,7 +327,7 @@ contains
       turned = 0.0_wp
       lost = 0.0_wp
       do i = 1, n
-         lost = lost + path%springs%d(i)*turned
+         if (i < n .or. .not. path%column%held) lost = lost + path%springs%d(i)*turned
          turned = turned + path%springs%d(n + i)
          lost = lost + 0.5_wp*path%column%length(i)*turned**2
       end do

@@ -76,10 +76,12 @@ contains
       if (self%straight) return
       loaded = column
       loaded%axial_body = column%axial_lever
-      loaded%axial_joint = column%axial_lever
+      loaded%axial_slip = column%axial_lever
+      if (column%held) loaded%axial_slip(column%n) = 0.0_wp
       call geometric_stiffness(loaded, self%unit_stiffness)
       loaded%axial_body = column%axial_body - column%axial_lever*column%axial_load
-      loaded%axial_joint = column%axial_joint - column%axial_lever*column%axial_load
+      loaded%axial_slip = column%axial_slip - column%axial_lever*column%axial_load
+      if (column%held) loaded%axial_slip(column%n) = 0.0_wp
       call geometric_stiffness(loaded, self%weight_stiffness)
    end subroutine create
 

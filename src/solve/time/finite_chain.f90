@@ -51,6 +51,10 @@ contains
          self%joint(i)%above = column%lower(i)
          if (i > 1) self%joint(i)%below = column%upper(i - 1)
       end do
+      if (.not. column%held) return
+      ! The last joint turned about: it reaches from the held top to the top of the body below.
+      self%joint(n)%above = -column%upper(n - 1)
+      self%joint(n)%below = 0.0_wp
    end subroutine make_chain
 
    !> Where the step starts.
@@ -92,6 +96,10 @@ contains
             opens = state%v(2*n + i)
          end if
          call body_at(self%from(i), body)
+         if (i == n .and. state%motion%column%held) then
+            below = body
+            spin_below = 0.0_wp
+         end if
          top = top + (state%v(i) + opening*spin_below)*below%t1 + (opens - state%q(i)*spin_below)*below%e1
          top = top + (state%motion%column%lower(i)*spin)*body%t1
          self%v0(:, i) = [top(1), top(2), spin]
@@ -119,9 +127,17 @@ contains
             body = self%turned(0)
          end if
          if (state%motion%column%opens) opening = state%q(2*n + i)
-         call joint_at(body, state%q(i), opening, self%joint(i))
-         call joint_change(self%turned(i - 1), self%turned(i), moved_below, self%moved(:, i), self%joint(i), &
-                           change)
+         if (i == n .and. state%motion%column%held) then
+            call body_at(self%from(n), body)
+            call joint_at(body, -state%q(n), -opening, self%joint(n))
+            call joint_change(self%turned(n), self%turned(n - 1), self%moved(:, n), moved_below, &
+                              self%joint(n), change)
+            change = -change
+         else
+            call joint_at(body, state%q(i), opening, self%joint(i))
+            call joint_change(self%turned(i - 1), self%turned(i), moved_below, self%moved(:, i), &
+                              self%joint(i), change)
+         end if
          self%change(i) = change(1)
          self%change(n + i) = self%moved(3, i) - moved_below(3)
          if (state%motion%column%opens) then
@@ -151,8 +167,14 @@ contains
          rotation = rotation + q(n + i)
          call body_at(rotation, self%seen(i))
          if (column%opens) opening = q(2*n + i)
-         call joint_at(self%seen(i - 1), q(i), opening, self%joint(i))
-         call joint_rates(self%seen(i - 1), self%seen(i), below, self%v1(:, i), self%joint(i), rates)
+         if (i == n .and. column%held) then
+            call joint_at(self%seen(n), -q(n), -opening, self%joint(n))
+            call joint_rates(self%seen(n), self%seen(n - 1), self%v1(:, n), below, self%joint(n), rates)
+            rates = -rates
+         else
+            call joint_at(self%seen(i - 1), q(i), opening, self%joint(i))
+            call joint_rates(self%seen(i - 1), self%seen(i), below, self%v1(:, i), self%joint(i), rates)
+         end if
          self%w1(i) = rates(1)
          self%w1(n + i) = self%v1(3, i) - below(3)
          if (column%opens) self%w1(2*n + i) = rates(2)

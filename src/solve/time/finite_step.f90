@@ -231,7 +231,9 @@ contains
       do i = 1, n
          f = forces_of(self, column, i)
          reach = max(reach, [max(abs(f(1)), abs(f(3))), abs(f(2))])
-         if (i > 1) then
+         if (i == n .and. column%held) then
+            call joint_forces(self%seen(n), self%seen(n - 1), self%joint(n), -f, g(:, n), g(:, n - 1))
+         else if (i > 1) then
             call joint_forces(self%seen(i - 1), self%seen(i), self%joint(i), f, g(:, i - 1), g(:, i))
          else
             call joint_forces(self%seen(0), self%seen(1), self%joint(1), f, ground, g(:, 1))
@@ -323,8 +325,14 @@ contains
             f = forces_of(self, column, i)
             k = [self%k(i), self%k(n + i), 0.0_wp]
             if (column%opens) k(3) = self%k(2*n + i)
-            call joint_tangent(self%seen(i - 1), self%seen(i), self%joint(i), half, f, k, &
-                               .not. column%opens, tangent)
+            if (i == n .and. column%held) then
+               call joint_tangent(self%seen(n), self%seen(n - 1), self%joint(n), half, -f, k, &
+                                  .not. column%opens, tangent)
+               call turn_about(tangent)
+            else
+               call joint_tangent(self%seen(i - 1), self%seen(i), self%joint(i), half, f, k, &
+                                  .not. column%opens, tangent)
+            end if
             tangent = share*tangent
             tangent(4, :) = tangent(4, :)*(per_force/share)
             tangent(:, 4) = tangent(:, 4)*per_force
@@ -366,6 +374,17 @@ contains
          end do
       end associate
    end subroutine find_correction
+
+   !> The tangent of a joint that was looked at from above, as it is from below: the bodies change places, and
+   !> axial force and opening their signs.
+   pure subroutine turn_about(tangent)
+      real(wp), intent(inout) :: tangent(local, local)
+      integer, parameter :: order(local) = [5, 6, 7, 4, 1, 2, 3]
+
+      tangent = tangent(order, order)
+      tangent(4, :) = -tangent(4, :)
+      tangent(:, 4) = -tangent(:, 4)
+   end subroutine turn_about
 
    !> Hold the last unknown of a general band: it couples with nothing.
    pure subroutine hold_top(band, beside, diagonal)

@@ -91,7 +91,7 @@ contains
       allocate (self%force(column%n), self%torque(column%n), self%lift(column%n), self%along(column%n), &
                 self%turning(column%n), self%upward(column%n), self%second_order(column%n), source=0.0_wp)
       self%axial_body = column%axial_body
-      self%axial_joint = column%axial_joint
+      self%axial_joint = column%axial_slip
       if (column%kinematics == finite) call self%work%create(column%n)
    end subroutine create_result
 
@@ -178,8 +178,9 @@ contains
             if (self%acts(vertical) .or. self%acts(axial)) then
                result%axial_body = column%axial_body + load(axial)*column%axial_lever &
                                    + load(vertical)*column%lifted_body
-               result%axial_joint = column%axial_joint + load(axial)*column%axial_lever &
+               result%axial_joint = column%axial_slip + load(axial)*column%axial_lever &
                                     + load(vertical)*column%lifted_joint
+               if (column%held) result%axial_joint(n) = 0.0_wp
             end if
             call second_order_forces(n, column%length, result%axial_body, result%axial_joint, q(:n), &
                                      q(n + 1:2*n), result%f(:n), result%second_order)
@@ -392,6 +393,7 @@ contains
       do i = 1, n
          body = load(axial)*self%column%axial_lever + load(vertical)*self%column%lifted_body(i)
          joint = load(axial)*self%column%axial_lever + load(vertical)*self%column%lifted_joint(i)
+         if (i == n .and. self%column%held) joint = 0.0_wp
          if (self%second_order) watt = watt + joint*(v(i)*rotation + q(i)*turning)
          rotation = rotation + q(n + i)
          turning = turning + v(n + i)
