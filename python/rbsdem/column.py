@@ -225,6 +225,25 @@ class Column:
         """Whether the column has viscous damping."""
         return isinstance(self.damping, Damping) and self.damping.acts
 
+    def place_of(self, joint: int) -> int:
+        """Return the column of a joint in the arrays of a result.
+
+        Parameters
+        ----------
+        joint : int
+            One of `joint_numbers`.
+
+        Raises
+        ------
+        InputError
+            If there is no such joint.
+        """
+        numbers = self.joint_numbers
+        if joint not in numbers:
+            last = f"n = {self.n}" if self.top == "free" else f"n + 1 = {self.n + 1}"
+            raise InputError(f"joint = {joint} must be from {numbers[0]} to {last}")
+        return numbers.index(joint)
+
     def joints(self, name: Literal["shear", "flexure", "axial_spring"]) -> tuple[Spring, ...]:
         """Return the springs of one kind, one for each of `joint_numbers`.
 

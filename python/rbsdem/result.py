@@ -177,10 +177,7 @@ class Result:
         InputError
             If the joint has no layers, or the openings were not kept.
         """
-        numbers = self.column.joint_numbers
-        if joint not in numbers:
-            raise InputError(f"joint = {joint} must be from {numbers[0]} to {numbers[-1]}")
-        at = numbers.index(joint)
+        at = self.column.place_of(joint)
         spring = self.column.joints("flexure")[at]
         if not isinstance(spring, Layered):
             raise InputError(f"joint {joint} has no layers; its spring is {type(spring).__name__}")
@@ -214,7 +211,7 @@ class Result:
                 f"joint {joint} was not made from a section, and over which lengths its layers "
                 "deform is not known; give gauge=rbsdem.Gauge(part=..., length=...)"
             )
-        spring = self.column.joints("flexure")[self.column.joint_numbers.index(joint)]
+        spring = self.column.joints("flexure")[self.column.place_of(joint)]
         assert isinstance(spring, Layered)
         return strains_of(joint, self.time, [y for y, _ in spring.layers], known, deformation)
 

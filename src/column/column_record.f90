@@ -224,7 +224,8 @@ contains
       if (self%footing_mass > 0.0_wp .or. self%footing_inertia > 0.0_wp .or. &
           self%footing_height > 0.0_wp) then
          call messages%add('column: footing_mass, footing_inertia and footing_height need springs '// &
-                           'beneath the footing; give &shear and &flexure with joint = 0 (Python: footing=), or '// &
+                           'beneath the footing; give &shear and &flexure with joint = 0 '// &
+                           '(Python: footing=), or '// &
                            'remove them')
       end if
    end subroutine check_footing

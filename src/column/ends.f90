@@ -29,8 +29,8 @@ contains
          end if
       end if
       if (.not. column%held .or. column%mass(column%n) > 0.0_wp) return
-      call fatal_error(error, bad_input, "column: with top = 'fixed' a dynamic analysis needs top_mass, the "// &
-                       'mass that moves with the top without turning; give one above zero')
+      call fatal_error(error, bad_input, "column: with top = 'fixed' a dynamic analysis needs top_mass, "// &
+                       'the mass that moves with the top without turning; give one above zero')
    end subroutine check_inertia_of_ends
 
    !> Refuse an initial state in which a fixed top is turned, or turns.
@@ -48,8 +48,8 @@ contains
       n = column%n
       total = sum(value(n + 1:2*n))
       if (abs(total) <= no_rotation*maxval(abs(value(n + 1:2*n)))) return
-      call fatal_error(error, bad_input, name//": with top = 'fixed' the relative rotations must add up to "// &
-                       'zero, not to '//to_text(total)//'; change that of the last joint')
+      call fatal_error(error, bad_input, name//": with top = 'fixed' the relative rotations must add up "// &
+                       'to zero, not to '//to_text(total)//'; change that of the last joint')
    end subroutine check_held_rotation
 
 end module rbs_column_ends

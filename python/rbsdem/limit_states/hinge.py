@@ -90,8 +90,7 @@ class Hinge:
 def hinge(result: Result, joint: int, length: float | None) -> Hinge:
     """Return the response of a hinge; see `Result.hinge`."""
     joint = _core.whole(joint, "joint")
-    if not 1 <= joint <= result.column.n:
-        raise InputError(f"joint = {joint} must be from 1 to n = {result.column.n}")
+    at = result.column.place_of(joint)
     if length is not None:
         length = _core.number(length, "length")
         if not 0 < length < math.inf:
@@ -103,12 +102,12 @@ def hinge(result: Result, joint: int, length: float | None) -> Hinge:
                 over for part, over in zip(gauge.part, gauge.length, strict=True) if part != "bar"
             )
     yields = [each for each in criteria(result.column, ["first_yield"]) if each.joint == joint]
-    rotation = result.rotation[:, joint - 1]
+    rotation = result.rotation[:, at]
     return Hinge(
         joint,
         result.time,
         rotation,
-        result.moment[:, joint - 1],
+        result.moment[:, at],
         _yield_rotation(result, rotation, yields),
         length,
     )

@@ -158,18 +158,20 @@ contains
       class(pressed_balance), intent(in) :: self
       real(wp), intent(inout) :: tangent(:, :)
       real(wp), intent(inout) :: missing(:), pushed(:), axial(:)
-      integer :: first, last
+      integer :: first, last, m
 
       first = self%column%n + 1
       last = 2*self%column%n
+      m = last - first
       missing(first:last - 1) = missing(first:last - 1) - missing(last)
       pushed(first:last - 1) = pushed(first:last - 1) - pushed(last)
       axial(first:last - 1) = axial(first:last - 1) - axial(last)
-      tangent(first:last - 1, first:last - 1) = tangent(first:last - 1, first:last - 1) + tangent(last, last) &
-                                                - spread(tangent(first:last - 1, last), 2, last - first) &
-                                                - spread(tangent(last, first:last - 1), 1, last - first)
+      tangent(first:last - 1, first:last - 1) = tangent(first:last - 1, first:last - 1) &
+                                                + tangent(last, last) &
+                                                - spread(tangent(first:last - 1, last), 2, m) &
+                                                - spread(tangent(last, first:last - 1), 1, m)
       tangent(first:last - 1, :first - 1) = tangent(first:last - 1, :first - 1) &
-                                            - spread(tangent(last, :first - 1), 1, last - first)
+                                            - spread(tangent(last, :first - 1), 1, m)
       tangent(:first - 1, first:last - 1) = transpose(tangent(first:last - 1, :first - 1))
       call hold(last, tangent, missing, pushed, axial)
    end subroutine hold_top
