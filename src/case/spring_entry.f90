@@ -20,8 +20,8 @@ module rbs_case_spring_entry
 
    type(key_type), parameter :: joint_key = &
       key_type('joint', kind=integer_kind, bound=not_negative, optional=.true., most=most_bodies, &
-               meaning='joints that have this spring, from the ground up, 0 beneath a footing, n + 1 at '// &
-                        'a fixed top; without it all from 1 on that are not named')
+               meaning='joints that have this spring, from 1 up, 0 beneath a footing, n + 1 at a fixed '// &
+                        'top; without it all from 1 that are not named')
    type(key_type), parameter :: rule_key = key_type('rule', kind=word_kind, meaning='name of the rule')
    type(key_type), parameter :: id_key = &
       key_type('id', kind=integer_kind, bound=above_zero, &
