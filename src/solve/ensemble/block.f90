@@ -4,10 +4,10 @@ module rbs_solve_ensemble_block
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_output_summary, only: summary_type
-   use rbs_solve_ensemble_lane_entry, only: lane_task, takes_lanes
+   use rbs_solve_ensemble_lane_choice, only: takes_lanes, are_alike
    use rbs_solve_ensemble_lane_runs, only: run_in_lanes
    use rbs_solve_ensemble_outcome, only: outcome_type
-   use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, run_type
+   use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, run_type, lane_task
    use rbs_solve_ensemble_tally, only: tally_recorder, settle
    use rbs_solve_time_effort, only: expected_seconds
    use rbs_solve_time_loads, only: loads_type
@@ -53,6 +53,7 @@ contains
       !> Shared with other threads: 1: not zero to stop before the next run, 2: number of runs that are done
       integer, intent(inout), volatile :: control(2)
       type(lane_task), allocatable :: task(:), others(:)
+      logical, allocatable :: together(:)
       type(time_plan) :: plan
       type(error_type), allocatable :: error
       logical :: in_lanes
@@ -75,6 +76,7 @@ contains
                count = count + 1
                task(count)%run = i
                task(count)%parts = plan%parts(1)
+               task(count)%scale = run(i)%scale
                call keep_plan(plan, task(count)%plan)
                cycle
             end if
@@ -82,13 +84,18 @@ contains
          end associate
          control(2) = control(2) + 1
       end do
-      ! All lanes go by one method. Where the program chooses it, runs may differ.
+      ! The columns in lanes are of one kind, and go by one method.
       task = task(:count)
       do while (size(task) > 0)
-         others = pack(task, task%plan%method /= task(1)%plan%method)
-         call run_in_lanes(column, motion, run, pack(task, task%plan%method == task(1)%plan%method), level, &
-                           outcome, control)
+         allocate (together(size(task)))
+         do i = 1, size(task)
+            together(i) = task(i)%plan%method == task(1)%plan%method .and. &
+                          are_alike(column(run(task(i)%run)%column), column(run(task(1)%run)%column))
+         end do
+         others = pack(task, .not. together)
+         call run_in_lanes(column, motion, run, pack(task, together), level, outcome, control)
          call move_alloc(others, task)
+         deallocate (together)
       end do
    end subroutine run_block
 

@@ -4,10 +4,11 @@ module rbs_solve_ensemble_subject
    use rbs_base_kinds, only: wp
    use rbs_case_analysis_record, only: analysis_record
    use rbs_column_column, only: column_type
+   use rbs_solve_time_plan, only: time_plan
    implicit none
    private
 
-   public :: ensemble_column, ensemble_motion, run_type, watch_type
+   public :: ensemble_column, ensemble_motion, run_type, lane_task, watch_type
 
    !> A limit state is reached where a sum of a joint's deformations is at a threshold or beyond it.
    type :: watch_type
@@ -40,5 +41,14 @@ module rbs_solve_ensemble_subject
       integer :: column = 0, motion = 0
       real(wp) :: scale = 1.0_wp
    end type run_type
+
+   !> A run that lanes can take: its place among the runs, its steps, equal steps in each interval of the
+   !> motion, and the scale of the motion.
+   type :: lane_task
+      integer :: run = 0
+      type(time_plan) :: plan
+      integer :: parts = 1
+      real(wp) :: scale = 1.0_wp
+   end type lane_task
 
 end module rbs_solve_ensemble_subject

@@ -17,13 +17,14 @@ module rbs_solve_time_implicit_tangent
    type :: step_tangent
       !> Diagonal of the tangent (2 n), and that of the openings (n)
       real(wp), allocatable :: stiffness(:), diagonal(:)
-      !> Factor (4, 2 n), or the band itself where it is not positive definite; numbers beside the diagonal of
-      !> the openings (n - 1); what each joint adds (unknowns)
-      real(wp), allocatable, private :: factor(:, :), beside(:), k(:)
-      !> Step, lines and sign that the factor belongs to
+      !> Factor (4, 2 n), or the band itself where it is not positive definite
+      real(wp), allocatable :: factor(:, :)
+      logical :: positive = .true.
+      !> Numbers beside the diagonal of the openings (n - 1); what each joint adds (unknowns)
+      real(wp), allocatable, private :: beside(:), k(:)
+      !> Step and lines that the factor belongs to
       real(wp), private :: factor_step = -1.0_wp
       integer, private :: factor_version = -1
-      logical, private :: positive = .true.
       !> Work arrays: band (4, 2 n), band with room for pivots (10, 2 n), right-hand side (2 n, 1), diagonal
       !> and the numbers beside it, which a solution spoils
       real(wp), allocatable, private :: band(:, :), general(:, :), right(:, :)
@@ -31,6 +32,7 @@ module rbs_solve_time_implicit_tangent
    contains
       procedure :: create
       procedure :: find_correction
+      procedure :: fit
    end type step_tangent
 
 contains
@@ -60,7 +62,7 @@ contains
       integer :: n
 
       n = state%motion%column%n
-      if (is_stale(self, state, h)) call set_tangent(self, step, state, h)
+      call self%fit(step, state, h)
       dx = step%r
       if (self%positive) then
          call solve_narrow_band(2*n, self%factor, dx(:2*n))
@@ -76,6 +78,16 @@ contains
       self%spoilt_beside(:) = self%beside
       call solve_tridiagonal(self%spoilt_diagonal, self%spoilt_beside(:n - 1), dx(2*n + 1:), regular)
    end subroutine find_correction
+
+   !> Factor the tangent anew, if a line, the step or the axial load has changed.
+   subroutine fit(self, step, state, h)
+      class(step_tangent), intent(inout) :: self
+      type(step_balance), intent(in) :: step
+      type(state_type), intent(in) :: state
+      real(wp), intent(in) :: h
+
+      if (is_stale(self, state, h)) call set_tangent(self, step, state, h)
+   end subroutine fit
 
    pure logical function is_stale(self, state, h)
       type(step_tangent), intent(in) :: self

@@ -22,7 +22,7 @@ module rbs_solve_time_march
    implicit none
    private
 
-   public :: initial_state, march, start_state, report_state, step_of
+   public :: initial_state, march, start_state, report_state, step_of, keep
 
 contains
 

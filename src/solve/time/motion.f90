@@ -219,8 +219,21 @@ contains
       else
          f = f + self%joint_damping*v
       end if
-      if (allocated(self%modal)) f = f + matmul(self%modal, v)
+      if (allocated(self%modal)) f = f + modal_forces(size(v), self%modal, v)
    end subroutine joint_forces
+
+   !> Forces of the modal damping, summed in the order that lanes of ensembles have too.
+   pure function modal_forces(m, modal, v) result(f)
+      integer, intent(in) :: m
+      real(wp), intent(in) :: modal(m, m), v(m)
+      real(wp) :: f(m)
+      integer :: j
+
+      f = 0.0_wp
+      do j = 1, m
+         f = f + modal(:, j)*v(j)
+      end do
+   end function modal_forces
 
    !> Axial force in a joint from axial load, weight and vertical motion, compression positive [N].
    pure real(wp) function axial_force(self, joint, load)
@@ -370,7 +383,7 @@ contains
       else
          watt = sum(self%joint_damping*v**2)
       end if
-      if (allocated(self%modal)) watt = watt + inner_product(size(v), v, matmul(self%modal, v))
+      if (allocated(self%modal)) watt = watt + inner_product(size(v), v, modal_forces(size(v), self%modal, v))
       if (self%column%mass_damping > 0.0_wp) then
          watt = watt + 2.0_wp*self%column%mass_damping*kinetic_energy(self%column, q, v)
       end if

@@ -1,57 +1,126 @@
-!> Steps that lanes do not take side by side: where a spring leaves its line, where the method has to find
-!> something first, and where a step has to be cut. Each lane has the state of its run and its method beside
-!> it. The lane is put into them, goes on as every run does, and comes back. So a lane has the bits of a run
-!> alone, and all rules of the program.
-module rbs_solve_ensemble_lane_step
+!> Lanes for columns of one body without damping.
+module rbs_solve_ensemble_one_body_team
+   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_segment, only: segment
-   use rbs_loading_signal, only: signal_type
-   use rbs_solve_ensemble_lane_fields, only: one_body_lanes
+   use rbs_solve_ensemble_lane_fields, only: one_body_lanes, lanes
+   use rbs_solve_ensemble_motions, only: motion_table
+   use rbs_solve_ensemble_outcome, only: outcome_type, measure_count, fate_completed, fate_collapsed, &
+                                         at_peak_displacement, at_residual_displacement, &
+                                         at_peak_base_shear, at_peak_rotation, at_input, at_spring, &
+                                         at_damping, at_residual, at_relative_residual, at_first_yield, &
+                                         at_end, at_time_step, at_steps, at_events, at_cut, at_lost_joint
+   use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, lane_task
+   use rbs_solve_ensemble_team, only: team_type, lane_type, begin_run, show_motion
    use rbs_solve_time_implicit, only: implicit_stepper
    use rbs_solve_time_loads, only: horizontal
    use rbs_solve_time_march, only: report_state
-   use rbs_solve_time_state, only: state_type, stepper_type
+   use rbs_solve_time_rk4_one_body, only: inverse_of_mass
+   use rbs_solve_time_state, only: state_type
    implicit none
    private
 
-   public :: lane_type, go_on, from_state, show_motion
+   public :: one_body_team
 
-   !> What stands beside a lane.
-   type :: lane_type
-      !> Place of the task, 0: none
-      integer :: task = 0
-      type(state_type) :: state
-      class(stepper_type), allocatable :: stepper
-   end type lane_type
+   type, extends(team_type) :: one_body_team
+      type(one_body_lanes) :: x
+   contains
+      procedure :: enter
+      procedure :: advance
+      procedure :: go_on
+      procedure :: finish
+      procedure :: settle
+      procedure :: leave
+   end type one_body_team
 
 contains
 
-   !> Take a lane over the step that its neighbours have taken.
-   subroutine go_on(x, l, lane, error)
-      type(one_body_lanes), intent(inout) :: x
+   subroutine enter(self, l, column, motion, first, task, error)
+      class(one_body_team), intent(inout) :: self
       integer, intent(in) :: l
-      type(lane_type), intent(inout) :: lane
+      type(ensemble_column), intent(in) :: column
+      type(ensemble_motion), intent(in) :: motion
+      integer, intent(in) :: first
+      type(lane_task), intent(in) :: task
+      type(error_type), allocatable, intent(out) :: error
+
+      call begin_run(self, self%x, l, column, motion, first, task, error)
+      if (allocated(error)) return
+      associate (x => self%x, one => column%column)
+         call inverse_of_mass(self%lane(l)%state%motion, x%flexible(l), x%coupling(l), x%turning(l), &
+                              x%softening(l))
+         x%mass(l, 1) = one%mass(1)
+         x%mass(l, 2) = one%inertia(1)
+         x%lower(l) = one%lower(1)
+         x%upper(l) = one%upper(1)
+         x%length(l) = one%length(1)
+         x%ground_arm(l, :) = one%ground_arm
+         x%potential(l) = 0.0_wp
+         if (one%axially_loaded) x%potential(l) = 0.5_wp*one%axial_body(1)*one%length(1)
+         x%yield(l) = huge(1.0_wp)
+         if (size(column%watch) > 0) x%yield(l) = column%watch(1)%threshold/abs(column%watch(1)%rotation)
+         x%base(l) = 0.0_wp
+         x%rotation(l) = 0.0_wp
+         x%residual(l) = 0.0_wp
+         x%most(l) = 0.0_wp
+         x%first_yield(l) = huge(1.0_wp)
+         call from_state(x, l, self%lane(l)%state)
+      end associate
+   end subroutine enter
+
+   subroutine leave(self, l)
+      class(one_body_team), intent(inout) :: self
+      integer, intent(in) :: l
+
+      self%x%active(l) = 0.0_wp
+      self%x%ready(l) = 0.0_wp
+   end subroutine leave
+
+   subroutine advance(self, count, list)
+      class(one_body_team), intent(inout) :: self
+      integer, intent(out) :: count, list(lanes)
+
+      if (self%implicit) then
+         call self%kernel%implicit_lanes(self%x, self%method, count, list)
+      else
+         call self%kernel%rk4_lanes(self%x, count, list)
+      end if
+   end subroutine advance
+
+   subroutine finish(self, table, count, list)
+      class(one_body_team), intent(inout) :: self
+      type(motion_table), intent(in) :: table
+      integer, intent(out) :: count, list(lanes)
+
+      call self%kernel%finish_step(self%x, size(table%time), table%time, table%acceleration, count, list)
+   end subroutine finish
+
+   subroutine go_on(self, l, error)
+      class(one_body_team), intent(inout) :: self
+      integer, intent(in) :: l
       type(error_type), allocatable, intent(out) :: error
       logical :: taken
 
-      taken = .false.
-      if (x%tried(l) > 0.5_wp) then
-         select type (stepper => lane%stepper)
-         type is (implicit_stepper)
-            call follow_trial(x, l, lane%state, stepper, taken)
-         class default
-            call follow_body(x, l, lane%state)
-            taken = .true.
-         end select
-      end if
-      if (.not. taken) call step_alone(x, l, lane, error)
-      if (allocated(error)) return
-      if (lane%state%lost .or. lane%state%springs%stuck) then
-         call report_state(lane%state, error)
-         return
-      end if
-      x%ready(l) = 1.0_wp
+      associate (x => self%x, lane => self%lane(l))
+         taken = .false.
+         if (x%tried(l) > 0.5_wp) then
+            select type (stepper => lane%stepper)
+            type is (implicit_stepper)
+               call follow_trial(x, l, lane%state, stepper, taken)
+            class default
+               call follow_body(x, l, lane%state)
+               taken = .true.
+            end select
+         end if
+         if (.not. taken) call step_alone(x, l, lane, error)
+         if (allocated(error)) return
+         if (lane%state%lost .or. lane%state%springs%stuck) then
+            call report_state(lane%state, error)
+            return
+         end if
+         x%ready(l) = 1.0_wp
+      end associate
    end subroutine go_on
 
    !> The step of RK4 has ended, and only the springs have still to follow.
@@ -195,22 +264,6 @@ contains
       state%of_loads = x%of_loads(l)
    end subroutine into_state
 
-   !> Of its motion the state has the present interval and the next.
-   pure subroutine show_motion(x, l, ground)
-      type(one_body_lanes), intent(in) :: x
-      integer, intent(in) :: l
-      type(signal_type), intent(inout) :: ground
-      real(wp) :: time(3), value(3)
-
-      time(1) = x%begin(l)
-      time(2) = x%finish(l)
-      time(3) = x%next_finish(l)
-      value(1) = x%value(l)
-      value(2) = x%next_value(l)
-      value(3) = x%after_value(l)
-      call ground%replace(time, value)
-   end subroutine show_motion
-
    !> The state as a lane.
    pure subroutine from_state(x, l, state)
       type(one_body_lanes), intent(inout) :: x
@@ -280,4 +333,34 @@ contains
       stepper%one_body%bent%hears = state%springs%heard(1) > 0
    end subroutine from_balance
 
-end module rbs_solve_ensemble_lane_step
+   subroutine settle(self, l, task, outcome)
+      class(one_body_team), intent(in) :: self
+      integer, intent(in) :: l
+      type(lane_task), intent(in) :: task
+      type(outcome_type), intent(inout) :: outcome
+      real(wp) :: value(measure_count)
+
+      associate (x => self%x, lane => self%lane(l))
+         outcome%fate = merge(fate_collapsed, fate_completed, abs(x%displacement(l)) >= x%furthest(l))
+         value(at_peak_displacement) = x%peak(l)
+         value(at_residual_displacement) = x%displacement(l)
+         value(at_peak_base_shear) = x%base(l)
+         value(at_peak_rotation) = x%rotation(l)
+         value(at_input) = x%of_loads(l)
+         value(at_spring) = x%work(l, 1) + x%work(l, 2)
+         value(at_damping) = 0.0_wp
+         value(at_residual) = x%residual(l)
+         value(at_relative_residual) = x%residual(l)/max(x%most(l), tiny(1.0_wp))
+         value(at_first_yield) = ieee_value(1.0_wp, ieee_quiet_nan)
+         if (x%first_yield(l) < huge(1.0_wp)) value(at_first_yield) = x%first_yield(l)
+         value(at_end) = x%t(l)
+         value(at_time_step) = task%plan%dt
+         value(at_steps) = x%steps(l) + real(lane%stepper%steps, wp)
+         value(at_events) = x%events(l) + real(lane%state%springs%events, wp)
+         value(at_cut) = real(lane%stepper%cut_steps, wp)
+         value(at_lost_joint) = 0.0_wp
+      end associate
+      outcome%value = value
+   end subroutine settle
+
+end module rbs_solve_ensemble_one_body_team
