@@ -94,6 +94,33 @@ def lanes(program: Path | None, repeats: int, runs: int) -> list[Row]:
     return rows
 
 
+def other_lanes(repeats: int, runs: int) -> list[Row]:
+    """Time lanes of damped columns and of chains, over single runs."""
+    time_, motion = record_20_s()
+    place = np.zeros(runs, dtype=np.int32)
+    rayleigh = rbsdem.Damping(mass=0.3, stiffness=1e-4)
+    cases = {
+        "one body, Rayleigh": dataclasses.replace(pier(), damping=rayleigh),
+        "one body, modal": dataclasses.replace(pier(), damping=0.03),
+        "three bodies": dataclasses.replace(pier(), n=3),
+    }
+    rows = []
+    for name, column in cases.items():
+        for method, settings in (("rk4", {}), ("newmark", {"dt": 0.005})):
+            points = 200 if method == "rk4" else time_.size
+            motions = [Motion("made up", time_[:points], motion[:points])]
+            scales = np.linspace(0.2, 0.3, runs)
+            task = Task([column], motions, {"method": method, **settings}, place, place, scales)
+            few = dataclasses.replace(task, column=place[:8], motion=place[:8], scale=scales[:8])
+            row = Row(f"{method}, {name}, lanes over single runs", "x")
+            for _ in range(repeats):
+                alone, _ = processor(lambda few=few: compute(few, kernel=-1), 1)
+                lanes_, _ = processor(lambda task=task: compute(task), 1)
+                row.values.append(lanes_[0] / alone[0] * 8 / runs)
+            rows.append(row)
+    return rows
+
+
 def layered(repeats: int) -> Row:
     """Time an ensemble of the predicted column over single runs."""
     column = predicted()
@@ -183,6 +210,7 @@ def main() -> None:
     show(
         {
             "Lanes, one thread": lanes(newest("yardstick_lanes", given.build), repeats, 320),
+            "Other lanes, one thread": other_lanes(repeats, 128),
             "Layered columns": [layered(repeats), twenty_by_ten(1 if given.quick else 3)],
             "Many runs": threads(20_000 if given.quick else MANY, given.dask),
         }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,18 +15,16 @@ from rbsdem._core import Array
 from rbsdem._optional import need_scipy
 from rbsdem.analysis import Method
 from rbsdem.column import Column
+from rbsdem.ensembles.fragile import Fragile
 from rbsdem.ensembles.fragility import Fragility
 from rbsdem.ensembles.hazard import Hazard
 from rbsdem.ensembles.intensity import Name, make_intensity, motions_by_name
-from rbsdem.ensembles.limits import limit_states
+from rbsdem.ensembles.limits import is_switch
 from rbsdem.ensembles.measures import Measure
 from rbsdem.ensembles.regression import Logistic, PowerLaw, fit_line, fit_logistic
 from rbsdem.ensembles.runs import Collector, Runs, checked_drift, columns_by_name
 from rbsdem.errors import InputError
 from rbsdem.motions.motion import GroundMotion
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 _FEWEST = 3
 _REACH = 6.0
@@ -152,7 +150,7 @@ class CloudFragility(Fragility):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Cloud:
+class Cloud(Fragile[CloudFragility]):
     """Runs of records as they are.
 
     Attributes
@@ -174,27 +172,25 @@ class Cloud:
 
     def collapse_regression(self) -> Logistic:
         """Return the logistic curve of the collapses over ln IM."""
-        logistic = self._data("collapse", None).parts()[1]
+        logistic = self._data("collapse", np.inf).parts()[1]
         assert logistic is not None
         return logistic
 
     def fragility(self, edp: str = "peak_drift", threshold: float | None = None) -> CloudFragility:
         """Return the fragility curve of a limit state, collapses included (Jalayer et al. 2017).
 
-        Parameters
-        ----------
-        edp : str, optional
-            Measure of the response; "collapse" has no threshold.
-        threshold : float, optional
-            Value of the measure at the limit state.
+        The parameters are those of `IDA.fragility`; of measures without threshold there is only
+        "collapse", as the others have no size to regress.
 
         Raises
         ------
         InputError
             If there are too few runs for a line.
         """
-        name = next(iter(limit_states(edp, threshold)))
-        data = self._data(edp, threshold)
+        return self._one(edp, threshold)
+
+    def _fit(self, name: str, measure: str, limit: float) -> CloudFragility:
+        data = self._data(measure, limit)
         theta, beta = _theta_beta(data, data.parts())
         if not np.isfinite([theta, beta]).all():
             slope = next(part for part in data.parts() if part is not None)
@@ -208,31 +204,15 @@ class Cloud:
         samples = np.array(found.samples(200))
         return replace(found, covariance=np.cov(samples))
 
-    def fragilities(
-        self, limits: Mapping[str, Any], edp: str = "peak_drift"
-    ) -> dict[str, CloudFragility]:
-        """Return the fragility curves of several limit states; see `IDA.fragilities`."""
-        found = {}
-        for name, (measure, limit) in limit_states(edp, limits).items():
-            one = self.fragility(measure, None if measure == "collapse" else limit)
-            found[name] = replace(one, name=name)
-        return found
-
-    @property
-    def table(self) -> pd.DataFrame:
-        """A row for each run, as a DataFrame of pandas."""
-        return self.runs.table
-
     def plot(self, ax: Any = None, **line: Any) -> Any:
         """Draw the runs and the line through them; see `rbsdem.ensembles.figure`."""
         return _views.view(self, "plot", ax, **line)
 
-    def _data(self, edp: str, threshold: float | None) -> CloudData:
-        if edp == "first_yield":
-            raise InputError("cloud: first_yield has no size to regress; use stripes or ida")
-        response = self.runs.response(edp)
-        (_, limit) = next(iter(limit_states(edp, threshold).values()))
-        collapse = edp == "collapse"
+    def _data(self, measure: str, limit: float) -> CloudData:
+        collapse = measure == "collapse"
+        if is_switch(measure) and not collapse:
+            raise InputError(f"cloud: {measure} has no size to regress; use stripes or ida")
+        response = self.runs.response(measure)
         x = np.log(self.runs.intensity)
         kept = np.isinf(response) | (response > 0) | collapse
         stands = np.unique(x[kept & np.isfinite(response)])

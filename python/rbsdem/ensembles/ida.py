@@ -7,7 +7,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,17 +16,15 @@ from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem.analysis import Method
 from rbsdem.column import Column
+from rbsdem.ensembles.fragile import Fragile
 from rbsdem.ensembles.fragility import Capacities, Fragility, fit_fragility
 from rbsdem.ensembles.hunt import Hunt, hunt_and_fill
 from rbsdem.ensembles.intensity import Name, checked_levels, make_intensity, motions_by_name
-from rbsdem.ensembles.limits import limit_states
+from rbsdem.ensembles.limits import is_switch, limit_states
 from rbsdem.ensembles.measures import Measure
 from rbsdem.ensembles.runs import MEASURES, Collector, Runs, checked_drift, columns_by_name
 from rbsdem.errors import InputError
 from rbsdem.motions.motion import GroundMotion
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 #: Settings that change nothing in the answer.
 _OF_THE_RUN = ("jobs", "progress", "store")
@@ -35,7 +33,7 @@ FRACTILES = (16.0, 50.0, 84.0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class IDA:
+class IDA(Fragile[Fragility]):
     """Curves of response over intensity, one for each column and motion.
 
     Attributes
@@ -110,15 +108,18 @@ class IDA:
         Parameters
         ----------
         edp : str, optional
-            Measure of the response; "collapse" and "first_yield" have no threshold.
+            As for `fragility`.
         threshold : float, optional
             Value of the measure at the limit state.
         """
-        if edp == "collapse":
+        ((measure, limit),) = limit_states(edp, threshold).values()
+        return self._capacities(measure, limit)
+
+    def _capacities(self, measure: str, limit: float) -> Capacities:
+        if measure == "collapse":
             return Capacities(self.lower.ravel(), self.upper.ravel())
-        (_, limit) = next(iter(limit_states(edp, threshold).values()))
-        response = self.runs.response(edp)
-        smooth = edp != "first_yield"
+        response = self.runs.response(measure)
+        smooth = not is_switch(measure)
         ends = [_crossing(*self._curve(c, m, response), limit, smooth) for c, m in self._pairs()]
         lower, upper = np.array(ends).T
         return Capacities(lower, upper)
@@ -129,8 +130,8 @@ class IDA:
         Parameters
         ----------
         edp : str, optional
-            Measure of the response, as "peak_drift"; "collapse" and "first_yield" have no
-            threshold.
+            Measure of the response, as "peak_drift"; "collapse" and limit states, as "first_yield",
+            have no threshold.
         threshold : float, optional
             Value of the measure at the limit state.
 
@@ -139,33 +140,10 @@ class IDA:
         InputError
             If no record reached it.
         """
-        name = next(iter(limit_states(edp, threshold)))
-        label = self.runs.measure.label
-        return fit_fragility(name, self.capacities(edp, threshold), label)
+        return self._one(edp, threshold)
 
-    def fragilities(
-        self, limits: Mapping[str, Any], edp: str = "peak_drift"
-    ) -> dict[str, Fragility]:
-        """Return the fragility curves of several limit states.
-
-        Parameters
-        ----------
-        limits : mapping
-            By name a threshold of `edp`, or a pair of a measure and its threshold, as
-            ``{"yield": ("first_yield", None), "repair": 0.01, "collapse": ("collapse", None)}``.
-        edp : str, optional
-            Measure of the thresholds that come alone.
-        """
-        found = {}
-        for name, (measure, limit) in limit_states(edp, limits).items():
-            data = self.capacities(measure, _given(measure, limit))
-            found[name] = fit_fragility(name, data, self.runs.measure.label)
-        return found
-
-    @property
-    def table(self) -> pd.DataFrame:
-        """A row for each run, as a DataFrame of pandas."""
-        return self.runs.table
+    def _fit(self, name: str, measure: str, limit: float) -> Fragility:
+        return fit_fragility(name, self._capacities(measure, limit), self.runs.measure.label)
 
     def plot(self, ax: Any = None, **line: Any) -> Any:
         """Draw all curves and their fractiles; see `rbsdem.ensembles.figure`."""
@@ -288,10 +266,6 @@ def _hunt(levels: Any) -> Hunt | None:
 def _with_drift(measures: Sequence[str | Measure]) -> list[Any]:
     given = [measures] if isinstance(measures, str) or callable(measures) else list(measures)
     return given if "peak_drift" in given else ["peak_drift", *given]
-
-
-def _given(measure: str, limit: float) -> float | None:
-    return None if measure in ("collapse", "first_yield") else limit
 
 
 def _first(levels: Array, collapsed: NDArray[np.bool_]) -> tuple[Array, Array]:

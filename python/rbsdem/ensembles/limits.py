@@ -13,6 +13,11 @@ from rbsdem.limit_states.criteria import WATCHED
 _SWITCHES = dict.fromkeys(("collapse", *WATCHED), 1.0)
 
 
+def is_switch(edp: str) -> bool:
+    """Return whether a measure says only whether something has happened, not how far it went."""
+    return edp in _SWITCHES
+
+
 def limit_states(edp: str, threshold: Any) -> dict[str, tuple[str, float]]:
     """Return measure and threshold of each limit state.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +14,7 @@ from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem.analysis import Method
 from rbsdem.column import Column
+from rbsdem.ensembles.fragile import Fragile
 from rbsdem.ensembles.fragility import Counts, Fragility, fit_fragility
 from rbsdem.ensembles.intensity import Name, checked_levels, make_intensity, motions_by_name
 from rbsdem.ensembles.limits import limit_states
@@ -22,12 +23,9 @@ from rbsdem.ensembles.runs import MEASURES, Collector, Runs, checked_drift, colu
 from rbsdem.errors import InputError
 from rbsdem.motions.motion import GroundMotion
 
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Stripes:
+class Stripes(Fragile[Fragility]):
     """Runs at levels of intensity.
 
     Attributes
@@ -49,7 +47,10 @@ class Stripes:
 
     def counts(self, edp: str = "collapse", threshold: float | None = None) -> Counts:
         """Return which runs reached a limit state, by level and record."""
-        (measure, limit) = next(iter(limit_states(edp, threshold).values()))
+        ((measure, limit),) = limit_states(edp, threshold).values()
+        return self._counts(measure, limit)
+
+    def _counts(self, measure: str, limit: float) -> Counts:
         response = self.runs.response(measure)
         level = np.abs(np.subtract.outer(self.levels, self.runs.intensity)).argmin(axis=0)
         records = self.runs.column * len(self.runs.motions) + self.runs.motion
@@ -61,36 +62,17 @@ class Stripes:
     def fragility(self, edp: str = "collapse", threshold: float | None = None) -> Fragility:
         """Return the fragility curve of a limit state, of largest likelihood (Baker 2015, eq 11).
 
-        Parameters
-        ----------
-        edp : str, optional
-            Measure of the response; "collapse" and "first_yield" have no threshold.
-        threshold : float, optional
-            Value of the measure at the limit state.
+        The parameters are those of `IDA.fragility`.
 
         Raises
         ------
         InputError
             If no run reached it, or all did.
         """
-        name = next(iter(limit_states(edp, threshold)))
-        return fit_fragility(name, self.counts(edp, threshold), self.runs.measure.label)
+        return self._one(edp, threshold)
 
-    def fragilities(
-        self, limits: Mapping[str, Any], edp: str = "peak_drift"
-    ) -> dict[str, Fragility]:
-        """Return the fragility curves of several limit states; see `IDA.fragilities`."""
-        found = {}
-        for name, (measure, limit) in limit_states(edp, limits).items():
-            given = None if measure in ("collapse", "first_yield") else limit
-            data = self.counts(measure, given)
-            found[name] = fit_fragility(name, data, self.runs.measure.label)
-        return found
-
-    @property
-    def table(self) -> pd.DataFrame:
-        """A row for each run, as a DataFrame of pandas."""
-        return self.runs.table
+    def _fit(self, name: str, measure: str, limit: float) -> Fragility:
+        return fit_fragility(name, self._counts(measure, limit), self.runs.measure.label)
 
     def plot(self, ax: Any = None, **line: Any) -> Any:
         """Draw the responses at the levels; see `rbsdem.ensembles.figure`."""
