@@ -1,10 +1,10 @@
 """What the layered model was to reach, and what it reaches: the table of docs/peer.md.
 
-    python studies/goals.py FOLDER LEFT_OUT [--jobs 2]
+    python studies/goals.py FOLDER LEFT_OUT [LEFT_OUT_BEFORE] [--jobs 2]
 
 FOLDER holds the histories and the table of the tests; LEFT_OUT is the csv of the scores of tests
-that were left out (`studies/fit_model.py --out`). Scores are given as labelled and with doubtful
-labels mended (`rbsdem.peer.check`).
+that were left out (`studies/fit_model.py --out`), LEFT_OUT_BEFORE that of the version before.
+Scores are given as labelled and with doubtful labels mended (`rbsdem.peer.check`).
 """
 
 from __future__ import annotations
@@ -29,7 +29,8 @@ GOALS = {
     "round, Flexure-Shear": 0.12,
     "round, Shear": 0.12,
 }
-OLD, NEW = "2026.2", "2026.3"
+VERSIONS = ("2026.2", "2026.3", "2026.4")
+NEW = VERSIONS[-1]
 
 
 def series_scores(rows: list[tuple[str, float]]) -> tuple[float, float]:
@@ -41,80 +42,101 @@ def series_scores(rows: list[tuple[str, float]]) -> tuple[float, float]:
     return means, statistics.median(statistics.median(part) for part in parts.values())
 
 
+def read(path: Path) -> dict[str, dict[str, str]]:
+    """Return the rows of a csv of left-out scores by the names of the tests."""
+    with path.open(encoding="utf-8") as file:
+        return {row["name"]: row for row in csv.DictReader(file)}
+
+
 def main() -> None:
     """Predict, read, print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder")
     parser.add_argument("left_out", type=Path)
+    parser.add_argument("before", type=Path, nargs="?")
     parser.add_argument("--jobs", type=int, default=2)
     given = parser.parse_args()
 
     warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
-    with given.left_out.open(encoding="utf-8") as file:
-        left_out = {row["name"]: row for row in csv.DictReader(file)}
+    left_out = {NEW: read(given.left_out)}
+    if given.before:
+        left_out = {VERSIONS[-2]: read(given.before), **left_out}
     tests = peer.read_specimens(given.folder).with_history()
     mended = peer.check(tests).mended()
     found = {
-        (version, what): peer.predict(chosen, version=version, jobs=given.jobs)
-        for version in (OLD, NEW)
+        f"{version}, {what}": peer.predict(chosen, version=version, jobs=given.jobs)
+        for version in VERSIONS
         for what, chosen in (("labelled", tests), ("mended", mended))
+        if what == "mended" or version == NEW
     }
-    print(
-        f"| median nrmse | tests | {OLD}, labelled | {OLD}, mended | {NEW}, labelled | "
-        f"{NEW}, mended | {NEW}, left out | goal | peak, energy ratio left out |"
-    )
-    print("| --- |" + " ---: |" * 8)
-    for kind, goal in [*GOALS.items(), ("all", None)]:
-        cells = []
-        for rows in found.values():
-            values = [row.nrmse for row in rows if kind in (row.specimen.kind, "all")]
-            cells.append(f"{statistics.median(values):.3f}")
-        own = [row for row in left_out.values() if kind in (row["kind"], "all")]
-        medians = [
-            statistics.median(float(row[name]) for row in own)
-            for name in ("nrmse", "peak_ratio", "energy_ratio")
+    # Columns of the table: rows of (kind, series, nrmse).
+    columns = {
+        key: [(row.specimen.kind, row.specimen.series, row.nrmse) for row in rows]
+        for key, rows in found.items()
+    }
+    for version, rows in left_out.items():
+        columns[f"{version}, left out"] = [
+            (row["kind"], row["series"], float(row["nrmse"])) for row in rows.values()
         ]
-        print(
-            f"| {kind} | {len(own)} | {' | '.join(cells)} | {medians[0]:.3f} | "
-            f"{goal or '-'} | {medians[1]:.2f}, {medians[2]:.2f} |"
+    newest = list(left_out[NEW].values())
+    print(f"| median nrmse | tests | {' | '.join(columns)} | goal | peak, energy ratio left out |")
+    print("| --- |" + " ---: |" * (len(columns) + 3))
+    for kind, goal in [*GOALS.items(), ("all", None)]:
+        cells = [
+            f"{statistics.median(value for k, _, value in rows if kind in (k, 'all')):.3f}"
+            for rows in columns.values()
+        ]
+        own = [row for row in newest if kind in (row["kind"], "all")]
+        peak, energy = (
+            statistics.median(float(row[name]) for row in own)
+            for name in ("peak_ratio", "energy_ratio")
         )
-    cells, others = [], []
-    for rows in found.values():
-        means, medians_of = series_scores([(row.specimen.series, row.nrmse) for row in rows])
-        cells.append(f"{means:.4f}")
-        others.append(f"{medians_of:.4f}")
-    own = series_scores([(row["series"], float(row["nrmse"])) for row in left_out.values()])
-    size = len(left_out)
-    print(f"| mean of series means | {size} | {' | '.join(cells)} | {own[0]:.4f} | 0.125 | |")
-    print(f"| median of series medians | {size} | {' | '.join(others)} | {own[1]:.4f} | | |")
-    print(f"\n| tests that {OLD} was not fitted to | number | {OLD} | {NEW}, left out |")
-    print("| --- | ---: | ---: | ---: |")
-    older = {row.specimen.name: row for row in found[OLD, "mended"]}
-    for known, text in ((False, "not in its fit"), (True, "in its fit")):
-        for kind in (*GOALS, "all"):
-            rows = [
-                (older[name].nrmse, float(row["nrmse"]))
-                for name, row in left_out.items()
-                if kind in (row["kind"], "all")
-                and (older[name].specimen.file or "").startswith(NOT_FITTED) != known
-            ]
-            if rows:
-                a, b = (
-                    f"{np.median(side):.3f} ({np.mean(side):.3f})"
-                    for side in zip(*rows, strict=True)
-                )
-                print(f"| {text}: {kind} | {len(rows)} | {a} | {b} |")
+        print(
+            f"| {kind} | {len(own)} | {' | '.join(cells)} | {goal or '-'} | "
+            f"{peak:.2f}, {energy:.2f} |"
+        )
+    pairs = [series_scores([row[1:] for row in rows]) for rows in columns.values()]
+    for i, (text, goal) in enumerate(
+        (("mean of series means", "0.125"), ("median of series medians", ""))
+    ):
+        cells = [f"{pair[i]:.4f}" for pair in pairs]
+        print(f"| {text} | {len(newest)} | {' | '.join(cells)} | {goal} | |")
+    unseen(found[f"{VERSIONS[0]}, mended"], left_out)
     for key, rows in found.items():
         ended = sum(row.status == "completed" for row in rows)
         each = statistics.median(1e3 * row.seconds for row in rows)
-        print(f"{' '.join(key)}: {ended} of {len(rows)} to their end, {each:.1f} ms each (median)")
+        print(f"{key}: {ended} of {len(rows)} to their end, {each:.1f} ms each (median)")
     print("\nThe thirty worst, left out:")
-    worst = sorted(left_out.items(), key=lambda item: -float(item[1]["nrmse"]))[:30]
+    worst = sorted(left_out[NEW].items(), key=lambda item: -float(item[1]["nrmse"]))[:30]
     for name, row in worst:
         print(
             f"{row['nrmse']} {name} ({row['kind']}), peak {row['peak_ratio']}, "
             f"energy {row['energy_ratio']}"
         )
+
+
+def unseen(oldest: peer.Predictions, left_out: dict[str, dict[str, dict[str, str]]]) -> None:
+    """Print scores of the tests that the oldest version was not fitted to, and of the others."""
+    names = [VERSIONS[0], *(f"{version}, left out" for version in left_out)]
+    print(f"\n| tests that {VERSIONS[0]} was not fitted to | number | {' | '.join(names)} |")
+    print("| --- |" + " ---: |" * (len(names) + 1))
+    for known, text in ((False, "not in its fit"), (True, "in its fit")):
+        for kind in (*GOALS, "all"):
+            rows = [
+                (
+                    row.nrmse,
+                    *(float(part[row.specimen.name]["nrmse"]) for part in left_out.values()),
+                )
+                for row in oldest
+                if kind in (row.specimen.kind, "all")
+                and (row.specimen.file or "").startswith(NOT_FITTED) != known
+            ]
+            if rows:
+                cells = [
+                    f"{np.median(side):.3f} ({np.mean(side):.3f})"
+                    for side in zip(*rows, strict=True)
+                ]
+                print(f"| {text}: {kind} | {len(rows)} | {' | '.join(cells)} |")
 
 
 if __name__ == "__main__":

@@ -209,7 +209,7 @@ def test_broken_off_keeps_what_is_done(table):
         ({"model": "nonsense"}, "'nonsense' is not known; there are layered, paper"),
         (
             {"version": "1.0"},
-            "version = '1.0' of the layered model is not known; there are 2026.2, 2026.3",
+            "version = '1.0' of the layered model is not known; there are 2026.2, 2026.3, 2026.4",
         ),
         ({"jobs": 0}, "jobs = 0"),
     ],
@@ -369,7 +369,7 @@ def test_command(folder, tmp_path, capsys):
     assert run(folder, "--jobs", "1", "--out", out, "--loops", "--failure", "flexure") == 0
     text = capsys.readouterr().out
     assert "Me 1991 No. 1" in text
-    assert "Model layered 2026.3: 3 tests in" in text
+    assert "Model layered 2026.4: 3 tests in" in text
     assert "rectangular, Flexure" in text
     names = {path.name for path in out.iterdir()}
     assert names == {"results.csv", "summary.csv", "gallery.html", "loops.png", "loops"}

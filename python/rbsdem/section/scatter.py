@@ -54,5 +54,15 @@ SCATTER: dict[str, Scatter] = {
         energy=((0.741, 1.498), (0.539, 1.437)),
         drift=((0.619, 1.404), (0.508, 1.712)),
     ),
+    "2026.4": Scatter(
+        strength=(0.08, 0.09),
+        stiffness=(0.25, 0.214),
+        degradation=(0.141, 0.286),
+        twins=0.05,
+        force=(0.956, 1.29),
+        peak=((0.896, 1.213), (0.891, 1.296)),
+        energy=((0.762, 1.553), (0.587, 1.539)),
+        drift=((0.641, 1.407), (0.508, 1.912)),
+    ),
 }
 """Scatter by version of the parameters."""

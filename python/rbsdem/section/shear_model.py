@@ -156,6 +156,8 @@ def _shear(
     ties = (_ROUND if is_round else 1.0) * by_ties / f_y
     # Few ties do not hold a crack together: what the concrete carried is soon gone.
     lasts = min(1.0, max(2.0 * ties, 0.1) ** given.endurance_ties)
+    # The rule refuses what would fall faster than the spring is stiff.
+    soonest = 1.01 * f_cap**2 * (1.0 + (d_y + rise) / fall) / (whole * f_y * d_y)
     lambda_h, s_min = _decay(section, f_y, ties, given, joint)
     ratio = axial_load / (sizes.fc * sizes.gross_area)
     closed = math.exp(given.pinch_axial * (ratio - 0.1))
@@ -176,7 +178,7 @@ def _shear(
         f_cap=f_cap,
         d_pc=fall,
         f_res=min(given.residual * f_cap, 0.9 * f_y),
-        lambda_s=given.endurance * lasts,
+        lambda_s=max(given.endurance * lasts, soonest) if given.endurance > 0.0 else 0.0,
         b0=given.b0,
         kappa_f=min(given.pinch_force * closed, 1.0),
         kappa_d=given.pinch_slip,
