@@ -264,13 +264,17 @@ def damped() -> list[rbsdem.Column]:
 
 
 def chains() -> list[rbsdem.Column]:
-    """Return chains of two lengths, with and without damping and axial load."""
+    """Return chains, with and without damping and axial load, and with other ends."""
     plain = column()
+    elastic = rbsdem.Elastic(6e8), rbsdem.Elastic(2e8)
+    beneath = rbsdem.Footing(*elastic, mass=3e3, inertia=2e3, height=0.4)
     return [
         column(20e3, n=3),
         rbsdem.Column(1.6, 30e3, plain.shear, plain.flexure, n=3),
         column(20e3, n=3, damping=rbsdem.Damping(mass=0.3, stiffness=1e-4)),
         column(20e3, n=2, damping=0.03),
+        column(20e3, top="fixed"),
+        column(20e3, footing=beneath),
     ]
 
 

@@ -56,7 +56,7 @@ contains
             b%across(i, j) = 0.0_wp
             if (motion%second_order) then
                b%along(i, j) = column%axial_body(j)*column%length(j)
-               b%across(i, j) = column%axial_joint(j)
+               b%across(i, j) = column%axial_slip(j)
             end if
          end do
          do j = 1, 2*n
