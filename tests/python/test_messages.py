@@ -90,7 +90,7 @@ def test_values_of_no_kind_are_refused_by_name():
         (lambda: RectangularSection(0.4, 0.4, Concrete(30e6), bars=0, cover=0.02), "bars = 0"),
         (
             lambda: rbsdem.time_history(COLUMN, [0, 1], ground_acceleration=[0, 1], initial="x"),
-            "initial = 'x' must be a dict",
+            "initial: x: there is no such file",
         ),
     ):
         with pytest.raises(InputError, match=words):
