@@ -223,14 +223,17 @@ def keys() -> dict[str, Any]:
 
 @cache
 def quantities(
-    opens: bool, with_base: bool = False, with_openings: bool = False
+    opens: bool, with_base: bool = False, with_openings: bool = False, with_motion: bool = False
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return the names of the values of a row (joints: with an asterisk) and of a summary.
 
     `with_base`: whether the row has the forces at the base, as in time with damping;
-    `with_openings`: whether it has the openings of layered joints.
+    `with_openings`: whether it has the openings of layered joints; `with_motion`: whether it has
+    the motion of the top.
     """
-    rows, figures = _rbsdem.rbs_quantities(int(opens), int(with_base), int(with_openings))
+    rows, figures = _rbsdem.rbs_quantities(
+        int(opens), int(with_base), int(with_openings), int(with_motion)
+    )
     return tuple(_text(rows).split()), tuple(_text(figures).split())
 
 
@@ -253,8 +256,8 @@ def spring_response(statement: Statement, axial_load: float, deformation: Array)
 Run = tuple[Array, Array | None, dict[str, Any], SolveError | None, str]
 
 #: Number of bodies, and what the rows hold: openings of axial springs, forces at the base, openings
-#: of layered joints.
-Shape = tuple[int, bool, bool, bool]
+#: of layered joints, motion of the top.
+Shape = tuple[int, bool, bool, bool, bool]
 
 
 def check_column(column: Statement) -> list[str]:

@@ -176,7 +176,7 @@ def cyclic(
     settings = _settings(every, kept, collapse_drift=collapse_drift)
     run = _core.cyclic(
         column._statement + settings,
-        (len(column.joint_numbers), column.opens, False, kept),
+        (len(column.joint_numbers), column.opens, False, kept, False),
         by_force,
         values,
         _NONE if load is None else load,
@@ -212,6 +212,7 @@ def time_history(
     allow_unstable: bool = False,
     every: int | None = None,
     openings: bool = False,
+    motion: bool = False,
 ) -> Result:
     """Compute the response in time to forces at the top and motions of the ground.
 
@@ -269,6 +270,10 @@ def time_history(
     openings : bool, optional
         Whether to keep the openings of layered joints, for `Result.elongation` and
         `Result.layer_deformation`.
+    motion : bool, optional
+        Whether to keep how the top moves, for `Result.velocity`, `Result.acceleration` and
+        `Result.absolute_acceleration`; `summary` then has "peak_floor_acceleration" [m/s2], the
+        largest absolute acceleration of the top over the rows, in size.
 
     Returns
     -------
@@ -316,12 +321,13 @@ def time_history(
         "allow_unstable": _core.switch(allow_unstable, "allow_unstable") or None,
     }
     kept = not _checked(column).opens and _core.switch(openings, "openings")
-    settings = _settings(every, kept, **chosen)
+    moves = _core.switch(motion, "motion")
+    settings = _settings(every, kept, moves, **chosen)
     times = _core.vector(time, "time")
     from_end = initial is not None and not isinstance(initial, Mapping)
     run = _core.time_history(
         column._statement + settings,
-        (len(column.joint_numbers), column.opens, column.damped, kept),
+        (len(column.joint_numbers), column.opens, column.damped, kept, moves),
         times,
         loads,
         *((_NONE, False) if from_end else _initial_state(initial, column)),
@@ -347,14 +353,18 @@ def _checked(column: Column) -> Column:
     return checked_column(column)
 
 
-def _settings(every: int | None, openings: bool, **given: Any) -> _core.Statement:
+def _settings(
+    every: int | None, openings: bool, motion: bool = False, **given: Any
+) -> _core.Statement:
     """Return the groups analysis and output with the settings that are given."""
     statement = _core.settings({name: v for name, v in given.items() if v is not None})
-    if every is None and not openings:
+    if every is None and not openings and not motion:
         return statement
     if every is not None and _core.whole(every, "every") < 1:
         raise InputError(f"every = {every} must be 1 or more")
-    return statement + _core.group("output", {"every": every, "openings": int(openings) or None})
+    return statement + _core.group(
+        "output", {"every": every, "openings": int(openings) or None, "motion": int(motion) or None}
+    )
 
 
 def _loading(values: ArrayLike, name: str) -> Array:
@@ -369,10 +379,6 @@ def _initial_state(initial: Mapping[str, ArrayLike] | None, column: Column) -> t
 
     An empty array means a column at rest.
     """
-    if initial is not None and not isinstance(initial, Mapping):
-        raise InputError(
-            f"initial = {initial!r} must be a dict, as {{'slip': [0.001]}}, a result, or a path"
-        )
     if not initial:
         return _NONE, False
     n = len(column.joint_numbers)

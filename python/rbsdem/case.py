@@ -44,7 +44,8 @@ class Case:
         Axial load at the top in place of that of the column [N].
     settings : dict
         The settings of the analysis that were given, as keywords of `cyclic` or `time_history`: dt,
-        events, tolerance, rho_infinity, collapse_drift, allow_unstable, every, openings.
+        events, tolerance, rho_infinity, collapse_drift, allow_unstable, every, openings,
+        motion, initial (path of a state).
     """
 
     title: str
@@ -106,7 +107,9 @@ class Case:
             time = None if self.method == "static" else self.time
             parts.append(_core.group("loading", {"drive": name, "time": time, "values": values}))
         settings = dict(self.settings)
-        output = {name: settings.pop(name, None) for name in ("every", "openings")}
+        output = {name: settings.pop(name, None) for name in ("every", "openings", "motion")}
+        if "initial" in settings:
+            settings["initial"] = _core.Text(os.fspath(settings["initial"]))
         parts.append(_core.group("analysis", {"method": self.method} | settings))
         parts.append(_core.group("output", output))
         numbers = [float(number) for part in parts for number in part.numbers]
@@ -151,8 +154,10 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     settings = _typed("analysis", found.get("analysis", {}))
     settings |= _typed("output", found.get("output", {}))
     # The histories already end at the duration; the csv file is for the executable only.
-    for name in ("duration", "file"):
+    for name in ("duration", "file", "state"):
         settings.pop(name, None)
+    if "initial" in settings:
+        settings["initial"] = os.path.join(os.path.dirname(os.fspath(path)), settings["initial"])
     column = _typed("column", found["column"])
     column |= springs.of_joints(column.get("n", 1) + (column.get("top") == "fixed"))
     beneath = {name: column.pop(f"{name}_0", None) for name in ("shear", "flexure", "axial_spring")}

@@ -121,6 +121,9 @@ class Result:
         The state at the end, in numbers whose meaning is the program's own: what the springs
         remember, where the column is and how it moves. ``initial=result`` begins another analysis
         from it. None after a failure, and where a joint has lost its axial load.
+    motion : ndarray, shape (steps, 3), or None
+        Velocity [m/s] and acceleration [m/s2] of the top relative to the ground, and acceleration
+        of the ground [m/s2]; None if they were not kept (``motion=True``).
     rest : ndarray, shape (steps, n), or None
         Rotations of layered joints under their first axial load, from which `rotation` counts
         [rad]; zero but for unsymmetric sections. None if the openings were not kept.
@@ -145,6 +148,7 @@ class Result:
     case: Case | None = None
     rest: Array | None = None
     state: Array | None = None
+    motion: Array | None = None
 
     @property
     def elongation(self) -> Array:
@@ -231,6 +235,49 @@ class Result:
     def loop_force(self) -> Array:
         """Force of the loop [N], shape (steps,): `force`, in time `base_shear`."""
         return self.base_shear if self.dynamic else self.force
+
+    @property
+    def velocity(self) -> Array:
+        """Velocity of the top relative to the ground [m/s], shape (steps,).
+
+        Raises
+        ------
+        InputError
+            For a static path, and if the motion was not kept (``motion=True``).
+        """
+        return self._motion("velocity")[:, 0]
+
+    @property
+    def acceleration(self) -> Array:
+        """Acceleration of the top relative to the ground [m/s2], shape (steps,).
+
+        What the equation of motion gives for the state of each row.
+
+        Raises
+        ------
+        InputError
+            For a static path, and if the motion was not kept (``motion=True``).
+        """
+        return self._motion("acceleration")[:, 1]
+
+    @property
+    def absolute_acceleration(self) -> Array:
+        """Acceleration of the top in space [m/s2], that of a floor there, shape (steps,).
+
+        Raises
+        ------
+        InputError
+            For a static path, and if the motion was not kept (``motion=True``).
+        """
+        motion = self._motion("absolute_acceleration")
+        return np.asarray(motion[:, 1] + motion[:, 2])
+
+    def _motion(self, name: str) -> Array:
+        if not self.dynamic:
+            raise InputError(f"{name}: nothing moves in a static path; use time_history")
+        if self.motion is None:
+            raise InputError(f"{name} was not kept; run the analysis with motion=True")
+        return self.motion
 
     @property
     def drift(self) -> Array:
@@ -514,15 +561,24 @@ def result_from_rows(
     values: dict[str, Array] = {}
     at = 0
     with_base = column.damped and summary["analysis"] == "dynamic"
-    with_openings = rows.shape[1] > _width(column, with_base)
     joints = len(column.joint_numbers)
-    for name in _core.quantities(column.opens, with_base, with_openings)[0]:
+    # Openings are an even number of values, the motion of the top is three.
+    more = rows.shape[1] - _width(column, with_base)
+    with_motion = more % 2 == 1
+    with_openings = more > (3 if with_motion else 0)
+    for name in _core.quantities(column.opens, with_base, with_openings, with_motion)[0]:
         if name.endswith("*"):
             values[name[:-1]] = rows[:, at : at + joints]
             at += joints
         else:
             values[name] = rows[:, at]
             at += 1
+    motion = None
+    if with_motion:
+        names = ("velocity", "acceleration", "ground_acceleration")
+        motion = np.column_stack([values[name] for name in names])
+        floor = np.abs(motion[:, 1] + motion[:, 2])
+        summary["peak_floor_acceleration"] = float(floor.max()) if floor.size else math.nan
     return Result(
         time=values["time"],
         displacement=values["displacement"],
@@ -542,4 +598,5 @@ def result_from_rows(
         column=column,
         call=call,
         state=state,
+        motion=motion,
     )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -40,11 +39,13 @@ def state_of(initial: Any, call: str) -> Array:
         return _read_state(initial)
     if isinstance(initial, Result):
         return _of_result(initial)
-    other = ", or to time_history as a dict" if call == "cyclic" else ", a dict"
-    hint = other if isinstance(initial, Mapping) else ""
+    if isinstance(initial, np.ndarray):
+        # The state of a result, as `Result.call` keeps it.
+        return _core.vector(initial, "initial")
+    a_dict = " or a dict, as {'slip': [0.001]}" if call == "time_history" else ""
     raise InputError(
-        f"{call}: initial = {type(initial).__name__} must be a Result of this column, or the path "
-        f"of a state{hint}"
+        f"{call}: initial = {initial!r:.60} must be a Result of this column, the path of a state"
+        f"{a_dict}"
     )
 
 
@@ -61,7 +62,13 @@ def save_state(result: Result, path: str | os.PathLike[str]) -> None:
     state = _of_result(result)
     head = f"{_FIRST}\n# version: {_core.version()}\n{state.size}\n"
     with whole_file(path) as file:
-        file.write((head + "\n".join(f"{number:.16e}" for number in state) + "\n").encode())
+        file.write((head + "\n".join(map(_text, state)) + "\n").encode())
+
+
+def _text(number: float) -> str:
+    """Return a number as the executable writes it: all digits, three for the exponent."""
+    digits, _, exponent = f"{number:.16E}".partition("E")
+    return f"{digits}E{int(exponent):+04d}"
 
 
 def _of_result(result: Result) -> Array:

@@ -15,10 +15,12 @@ module rbs_app_commands
    use rbs_io_csv, only: csv_recorder
    use rbs_io_namelist, only: read_case
    use rbs_io_output_file, only: partial
+   use rbs_io_state_file, only: read_state, write_state
    use rbs_io_posix, only: is_standard_output, same_file, standard_input
    use rbs_output_notes, only: column_notes, rotation_note
    use rbs_output_row, only: row_labels
    use rbs_output_summary, only: summary_type, summary_names, summary_units
+   use rbs_solve_end_state, only: end_state
    use rbs_solve_make_column, only: make_column
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_solve_static_run_static, only: run_static
@@ -59,7 +61,7 @@ contains
       if (allocated(error)) return
       call check_output(file, path, case, error)
       if (allocated(error)) return
-      call solve(case, column, history, file, recorder, summary, quiet, error)
+      call solve(case, column, history, path, file, recorder, summary, quiet, error)
       call keep_if_stopped()
       call recorder%close(.not. allocated(error), closing)
       if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
@@ -214,11 +216,12 @@ contains
    end subroutine prepare
 
    !> Solve the case and write its rows to a csv.
-   subroutine solve(case, column, history, path, recorder, summary, quiet, error)
+   subroutine solve(case, column, history, case_path, path, recorder, summary, quiet, error)
       type(case_record), intent(in) :: case
       type(column_type), intent(in) :: column
       type(case_history), intent(in) :: history
-      character(len=*), intent(in) :: path
+      !> Paths of the case and of the csv
+      character(len=*), intent(in) :: case_path, path
       type(csv_recorder), intent(inout) :: recorder
       type(summary_type), intent(out) :: summary
       logical, intent(in) :: quiet
@@ -226,9 +229,15 @@ contains
       type(terminal_progress) :: progress
       type(time_plan) :: plan
       type(initial_state) :: at_rest
+      type(end_state) :: before, after
       character(len=32), allocatable :: labels(:)
 
       plan%method = 'static'
+      if (allocated(case%analysis%initial)) then
+         call read_state(beside(case_path, case%analysis%initial), before%tape, error)
+         if (.not. allocated(error)) call before%check(column, error)
+         if (allocated(error)) return
+      end if
       if (case%analysis%dynamic()) then
          call plan_dynamic(column, case%analysis, history%time, history%loads, plan, error)
          if (allocated(error)) return
@@ -236,10 +245,10 @@ contains
       end if
       recorder%units = case%units%system()
       recorder%openings = case%output%openings .and. .not. column%opens
+      recorder%motion = case%output%motion .and. case%analysis%dynamic()
       call row_labels(column%n, column%opens, case%analysis%dynamic(), &
                       case%analysis%dynamic() .and. column%damped, recorder%openings, recorder%units, &
-                          labels, &
-                      recorder%si, merge(0, 1, column%footing))
+                      labels, recorder%si, merge(0, 1, column%footing), recorder%motion)
       call recorder%open(path, error)
       if (allocated(error)) return
       call remove_if_stopped(recorder%file%own)
@@ -248,15 +257,25 @@ contains
       call progress%start(quiet)
       if (case%analysis%dynamic()) then
          call run_dynamic(column, case%analysis, plan, history%time, history%loads, at_rest, &
-                          case%output%every, recorder, summary, error, progress)
+                          case%output%every, recorder, summary, error, progress, before, after)
       else
          call run_static(column, any(case%loading(:case%loadings)%drive == 'force'), history%target, &
                          case%output%every, case%analysis%collapse_drift, recorder, summary, error, &
-                             progress, &
-                         history%axial_load)
+                         progress, history%axial_load, before, after)
       end if
       call progress%finish()
+      if (allocated(error) .or. .not. allocated(case%output%state)) return
+      if (after%is_given()) call write_state(beside(case_path, case%output%state), after%tape, error)
    end subroutine solve
+
+   !> A path from the folder of the case.
+   function beside(case_path, path) result(found)
+      character(len=*), intent(in) :: case_path, path
+      character(len=:), allocatable :: found
+
+      found = path
+      if (path(1:1) /= '/') found = case_path(:index(case_path, '/', back=.true.))//path
+   end function beside
 
    !> Say before a long run how long it will take.
    subroutine warn_of_long_run(column, plan)

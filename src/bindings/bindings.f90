@@ -210,17 +210,17 @@ subroutine rbs_mass_matrix(statement, nn, number, unknowns, paper, mass, status,
    end if
 end subroutine rbs_mass_matrix
 
-subroutine rbs_quantities(opens, with_base, with_openings, rows, figures)
+subroutine rbs_quantities(opens, with_base, with_openings, with_motion, rows, figures)
    ! Names of the columns of a row, `slip*` for one value per joint, and of the summary values of a run.
    use iso_c_binding, only: c_int
    use rbs_output_row, only: row_quantities
    use rbs_output_summary, only: figure_names
    implicit none
-   integer(c_int), intent(in) :: opens, with_base, with_openings
+   integer(c_int), intent(in) :: opens, with_base, with_openings, with_motion
    character(len=512), intent(out) :: rows, figures
    !f2py threadsafe
 
-   rows = row_quantities(opens /= 0, with_base /= 0, with_openings /= 0)
+   rows = row_quantities(opens /= 0, with_base /= 0, with_openings /= 0, with_motion /= 0)
    figures = figure_names()
 end subroutine rbs_quantities
 

@@ -173,6 +173,7 @@ contains
          initial%opening_given = opening_given
       end if
       recorder%rows => rows
+      recorder%motion = case%output%motion
       recorder%openings = case%output%openings .and. .not. column%opens
       call take_from(before, from)
       call run_dynamic(column, case%analysis, plan, time, loads, initial, case%output%every, recorder, &

@@ -34,6 +34,8 @@ module rbs_case_analysis_record
       real(wp) :: rho_infinity = unset
       real(wp) :: collapse_drift = unset
       logical :: allow_unstable = .false.
+      !> Path of the state that the analysis begins in; not allocated: at rest
+      character(len=:), allocatable :: initial
    contains
       procedure :: visit => visit_analysis
       procedure :: dynamic
@@ -48,6 +50,10 @@ module rbs_case_analysis_record
       integer :: every = unset_integer
       !> Whether the rows hold the openings of layered joints
       logical :: openings = .false.
+      !> Whether the rows of an analysis in time hold how the top moves
+      logical :: motion = .false.
+      !> Path for the state at the end; not allocated: it is not written
+      character(len=:), allocatable :: state
    contains
       procedure :: visit => visit_output
       procedure :: validate => validate_output
@@ -81,6 +87,8 @@ contains
                  optional=.true.)
       call v%key('allow_unstable', self%allow_unstable, &
                  'rk4: take a step beyond the stability limit all the same')
+      call v%long_text('initial', self%initial, &
+                       'path of the state that another analysis ended in, to begin there')
    end subroutine visit_analysis
 
    !> The keys of the output.
@@ -94,6 +102,10 @@ contains
                  optional=.true.)
       call v%key('openings', self%openings, &
                  'whether the rows hold the openings of layered joints, from which their layers follow')
+      call v%key('motion', self%motion, &
+                 'whether the rows in time hold velocity and acceleration of the top and that of the ground')
+      call v%long_text('state', self%state, &
+                       'path for the state at the end, from which another analysis can begin')
    end subroutine visit_output
 
    !> Whether the analysis runs in time.

@@ -138,6 +138,11 @@ contains
       call self%analysis%validate(messages)
       call check_static(self, messages)
       call self%output%validate(messages)
+      if (self%output%motion .and. self%analysis%known() .and. .not. self%analysis%dynamic()) then
+         call messages%add('output: motion = .true. has no meaning in a static path, where nothing '// &
+                           'moves; '// &
+                           "remove it, or set method = 'auto' in the group analysis")
+      end if
    end subroutine validate
 
    !> Refuse input that a static path cannot take before the path starts, with the message of the solver.

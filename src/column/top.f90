@@ -7,7 +7,7 @@ module rbs_column_top
    implicit none
    private
 
-   public :: top_position, top_displacement, largest_turn
+   public :: top_motion, top_position, top_displacement, largest_turn
 
 contains
 
@@ -38,6 +38,48 @@ contains
       end if
       if (column%opens) top(2) = top(2) + sum(q(2*n + 1:))
    end function top_position
+
+   !> Velocity and acceleration of the top along x, relative to the ground [m/s, m/s2].
+   pure subroutine top_motion(column, q, v, a, velocity, acceleration)
+      type(column_type), intent(in) :: column
+      !> Deformations and their first and second derivatives (unknowns)
+      real(wp), intent(in), contiguous :: q(:), v(:), a(:)
+      real(wp), intent(out) :: velocity, acceleration
+      real(wp) :: rotation, spin, turn, s, c, opening, opens, lifts
+      integer :: i, n
+
+      if (column%kinematics /= finite) then
+         velocity = inner_product(size(v), column%arm, v)
+         acceleration = inner_product(size(a), column%arm, a)
+         return
+      end if
+      n = column%n
+      velocity = 0.0_wp
+      acceleration = 0.0_wp
+      rotation = 0.0_wp
+      spin = 0.0_wp
+      turn = 0.0_wp
+      opening = 0.0_wp
+      opens = 0.0_wp
+      lifts = 0.0_wp
+      do i = 1, n
+         s = sin(rotation)
+         c = cos(rotation)
+         if (column%opens) then
+            opening = q(2*n + i)
+            opens = v(2*n + i)
+            lifts = a(2*n + i)
+         end if
+         velocity = velocity + (v(i) + opening*spin)*c + (opens - q(i)*spin)*s
+         acceleration = acceleration + (a(i) + 2.0_wp*opens*spin + opening*turn - q(i)*spin**2)*c &
+                        + (lifts - 2.0_wp*v(i)*spin - q(i)*turn - opening*spin**2)*s
+         rotation = rotation + q(n + i)
+         spin = spin + v(n + i)
+         turn = turn + a(n + i)
+         velocity = velocity + column%length(i)*cos(rotation)*spin
+         acceleration = acceleration + column%length(i)*(cos(rotation)*turn - sin(rotation)*spin**2)
+      end do
+   end subroutine top_motion
 
    !> Displacement of the top along x [m]; asked for in every step.
    pure real(wp) function top_displacement(column, q) result(x)

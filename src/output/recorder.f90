@@ -10,6 +10,8 @@ module rbs_output_recorder
    type, abstract :: recorder_type
       !> Whether the rows hold the openings of layered joints
       logical :: openings = .false.
+      !> Whether the rows of an analysis in time hold how the top moves
+      logical :: motion = .false.
    contains
       procedure(record_interface), deferred :: record
    end type recorder_type

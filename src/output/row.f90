@@ -25,12 +25,15 @@ module rbs_output_row
    !> Where the column is damped in an analysis in time, the row ends with shear and moment at the base
    !> [N, N m]. Else those are the forces of the lowest joint.
 
+   !> On demand the row of an analysis in time then has velocity and acceleration of the top relative to the
+   !> ground, and acceleration of the ground [m/s, m/s2, m/s2].
+
    !> On demand the row then has n openings of layered joints at the middle of their sections [m], and the n
    !> rotations at which they rest under their first axial load [rad].
 
    !> One value of a row, or one for each joint, with its SI unit.
    type :: quantity_type
-      character(len=12) :: name
+      character(len=19) :: name
       character(len=4) :: unit
    end type quantity_type
 
@@ -48,30 +51,37 @@ module rbs_output_row
    type(quantity_type), parameter :: of_base(2) = [ &
       quantity_type('base_shear', 'N'), quantity_type('base_moment', 'N m')]
 
+   type(quantity_type), parameter :: of_motion(3) = [ &
+      quantity_type('velocity', 'm/s'), quantity_type('acceleration', 'm/s2'), &
+      quantity_type('ground_acceleration', 'm/s2')]
+
    type(quantity_type), parameter :: of_layers(2) = [ &
       quantity_type('opening', 'm'), quantity_type('rest', 'rad')]
 
 contains
 
    !> Number of values in a row of a column.
-   pure integer function row_size(unknowns, with_base, layered)
+   pure integer function row_size(unknowns, with_base, layered, with_motion)
       !> Number of its joint deformations
       integer, intent(in) :: unknowns
       !> Whether the row ends with the forces at the base; without it, it does not
       logical, intent(in), optional :: with_base
       !> Number of joints whose openings are kept too; without it none
       integer, intent(in), optional :: layered
+      !> Whether the row holds how the top moves; without it, it does not
+      logical, intent(in), optional :: with_motion
 
       row_size = row_joints - 1 + 2*unknowns
       if (present(with_base)) row_size = row_size + merge(size(of_base), 0, with_base)
       if (present(layered)) row_size = row_size + size(of_layers)*layered
+      if (present(with_motion)) row_size = row_size + merge(size(of_motion), 0, with_motion)
    end function row_size
 
    !> Names of the quantities in their order, separated by blanks; an asterisk marks one value a joint.
-   pure function row_quantities(opens, with_base, with_openings) result(names)
+   pure function row_quantities(opens, with_base, with_openings, with_motion) result(names)
       !> Whether the joints open, whether the row has the forces at the base, and whether it has the openings
-      !> of layered joints
-      logical, intent(in) :: opens, with_base, with_openings
+      !> of layered joints and the motion of the top
+      logical, intent(in) :: opens, with_base, with_openings, with_motion
       character(len=512) :: names
       integer :: i
 
@@ -86,13 +96,16 @@ contains
       do i = 1, merge(size(of_base), 0, with_base)
          names = trim(names)//' '//of_base(i)%name
       end do
+      do i = 1, merge(size(of_motion), 0, with_motion)
+         names = trim(names)//' '//of_motion(i)%name
+      end do
       do i = 1, merge(size(of_layers), 0, with_openings)
          names = trim(names)//' '//trim(of_layers(i)%name)//'*'
       end do
    end function row_quantities
 
    !> Names of the values with their units, and the SI units themselves.
-   subroutine row_labels(n, opens, dynamic, with_base, with_openings, units, labels, si, first)
+   subroutine row_labels(n, opens, dynamic, with_base, with_openings, units, labels, si, first, with_motion)
       !> Number of joints
       integer, intent(in) :: n
       !> Whether the joints open, whether the first value is a time, and whether the row has the forces at the
@@ -105,11 +118,16 @@ contains
       character(len=4), allocatable, intent(out) :: si(:)
       !> Number by which the lowest joint is known; without it 1
       integer, intent(in), optional :: first
+      !> Whether the row holds how the top moves; without it, it does not
+      logical, intent(in), optional :: with_motion
       integer :: i, j, at, lowest
+      logical :: moves
 
       lowest = 1
       if (present(first)) lowest = first
-      at = row_size(merge(3, 2, opens)*n, with_base, merge(n, 0, with_openings))
+      moves = .false.
+      if (present(with_motion)) moves = with_motion
+      at = row_size(merge(3, 2, opens)*n, with_base, merge(n, 0, with_openings), moves)
       allocate (labels(at), si(at))
       do i = 1, size(fixed)
          labels(i) = trim(fixed(i)%name)//'_'//compact(units%name_of(fixed(i)%unit))
@@ -125,6 +143,11 @@ contains
          at = at + 1
          labels(at) = trim(of_base(i)%name)//'_'//compact(units%name_of(of_base(i)%unit))
          si(at) = of_base(i)%unit
+      end do
+      do i = 1, merge(size(of_motion), 0, moves)
+         at = at + 1
+         labels(at) = trim(of_motion(i)%name)//'_'//compact(units%name_of(of_motion(i)%unit))
+         si(at) = of_motion(i)%unit
       end do
       do j = 1, merge(size(of_layers), 0, with_openings)
          call label_joints(of_layers(j))

@@ -6,13 +6,14 @@
 module rbs_solve_end_state
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_fortran_env, only: int64
+   use rbs_base_check, only: is_given_number => is_given
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_keys, only: key_type
    use rbs_base_kinds, only: wp
    use rbs_base_memory, only: memory_type
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
-   use rbs_hysteresis_registry, only: keys_of
+   use rbs_hysteresis_registry, only: keys_of, rule_names
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: spring_array
    implicit none
@@ -227,29 +228,43 @@ contains
       call split(hash, stamp)
    end subroutine find_stamp
 
-   recursive subroutine mix_spring(hash, spring)
+   subroutine mix_spring(hash, spring)
       integer(int64), intent(inout) :: hash
       type(spring_record), intent(in) :: spring
       type(key_type), allocatable :: keys(:)
-      integer :: i, j
+      integer :: i, before
 
       do i = 1, len_trim(spring%rule)
          call mix(hash, real(iachar(spring%rule(i:i)), wp))
       end do
       call keys_of(spring%rule, keys)
-      do i = 1, size(keys)
-         call mix(hash, spring%value(i))
-      end do
+      call mix_values(hash, keys, spring%value)
       if (.not. allocated(spring%y)) return
+      before = 0
       do i = 1, size(spring%y)
          call mix(hash, spring%y(i))
          call mix(hash, real(spring%layer_rule(i), wp))
-         do j = 1, size(spring%layer_value, 1)
-            ! Parameters that a rule does not have all are the same number.
-            if (spring%layer_value(j, i) > -huge(1.0_wp)) call mix(hash, spring%layer_value(j, i))
-         end do
+         if (spring%layer_rule(i) /= before) call keys_of(rule_names(spring%layer_rule(i)), keys)
+         before = spring%layer_rule(i)
+         call mix_values(hash, keys, spring%layer_value(:, i))
       end do
    end subroutine mix_spring
+
+   !> Parameters; one that was not given counts as its default, as one door may give it and the other not.
+   pure subroutine mix_values(hash, keys, value)
+      integer(int64), intent(inout) :: hash
+      type(key_type), intent(in) :: keys(:)
+      real(wp), intent(in), contiguous :: value(:)
+      integer :: i
+
+      do i = 1, size(keys)
+         if (is_given_number(value(i))) then
+            call mix(hash, value(i))
+         else
+            call mix(hash, keys(i)%default)
+         end if
+      end do
+   end subroutine mix_values
 
    !> Two numbers that follow from all numbers of a list.
    pure subroutine find_sum(value, total)

@@ -306,3 +306,95 @@ def test_a_failed_analysis_has_no_state():
     on = rbsdem.cyclic(column(), displacement=[0.1], initial=collapsed)
     whole = rbsdem.cyclic(column(), displacement=[0.01, 0.05, 0.1])
     assert on.force[0] == whole.force[-1]
+
+
+CASE = """&column height = 1.6, mass = 6144.0, kinematics = 'pdelta', axial_load = 4e5 /
+&shear rule = 'bilinear', k = 7.0387e8, d_y = 1.296e-4, k_post = 8.3185e6 /
+&flexure rule = 'takeda', k_c = 2.5428e8, d_c = 3.1891e-4, k_y = 6.2937e7,
+         d_y = 2.7183e-3, k_u = 7.5772e6, b1 = 0.22 /
+"""
+
+
+def run_case(run_cli, folder, name, text, code=0):
+    (folder / f"{name}.nml").write_text(CASE + text)
+    done = run_cli(["run", "--quiet", f"{name}.nml"], cwd=folder)
+    assert done.returncode == code, done.stderr
+    return done.stderr
+
+
+def test_both_doors_write_and_begin_in_the_same_state(run_cli, tmp_path):
+    x = [0.01, -0.004, 0.02]
+    values = ", ".join(map(repr, x))
+    run_case(
+        run_cli,
+        tmp_path,
+        "first",
+        f"&loading drive = 'displacement', values = {values} /\n&output state = 'end.state' /\n",
+    )
+    first = rbsdem.cyclic(column(), displacement=x)
+    first.save_state(tmp_path / "python.state")
+    assert (tmp_path / "end.state").read_bytes() == (tmp_path / "python.state").read_bytes()
+    run_case(
+        run_cli,
+        tmp_path,
+        "second",
+        "&loading drive = 'displacement', values = 0.0, 0.03 /\n"
+        "&analysis initial = 'end.state' /\n",
+    )
+    on = rbsdem.cyclic(column(), displacement=[0.0, 0.03], initial=first)
+    rows = np.loadtxt(tmp_path / "second.csv", delimiter=",", skiprows=4)
+    assert np.array_equal(rows[:, 2], on.force)
+    case = rbsdem.read_case(tmp_path / "second.nml")
+    assert np.array_equal(case.run().force, on.force)
+    # What cannot be begun in is said before anything is solved.
+    (tmp_path / "end.state").write_text("nothing")
+    said = run_case(
+        run_cli,
+        tmp_path,
+        "third",
+        "&loading drive = 'force', values = 0.0 /\n&analysis initial = 'end.state' /\n",
+        code=2,
+    )
+    assert "is no state of rbsdem" in said
+
+
+@pytest.mark.parametrize("kinematics", ["pdelta", "finite"])
+def test_velocity_and_acceleration_are_derivatives_of_the_displacement(kinematics):
+    made = column(rbsdem.Elastic(k=1e8), kinematics, 2, shear=rbsdem.Elastic(k=7e8))
+    moved = rbsdem.time_history(
+        made,
+        np.arange(0, 0.2, 1e-4),
+        initial={"slip": [0.001, 0.0], "rotation": [0.05, 0.03]},
+        method="rk45",
+        tolerance=1e-10,
+        motion=True,
+    )
+    h = 1e-4
+    x, v, a = moved.displacement, moved.velocity, moved.acceleration
+    # Derivatives by differences of order 4.
+    first = (x[:-4] - 8 * x[1:-3] + 8 * x[3:-1] - x[4:]) / (12 * h)
+    second = (v[:-4] - 8 * v[1:-3] + 8 * v[3:-1] - v[4:]) / (12 * h)
+    assert np.abs(first - v[2:-2]).max() <= 1e-5 * np.abs(v).max()
+    assert np.abs(second - a[2:-2]).max() <= 1e-5 * np.abs(a).max()
+
+
+def test_the_motion_of_the_top_in_tables_files_and_summary(tmp_path):
+    t = np.arange(41) * 0.01
+    ground = 3 * np.sin(20 * t)
+    given = {"ground_acceleration": ground, "method": "newmark"}
+    moved = rbsdem.time_history(column(LAYERED), t, motion=True, openings=True, **given)
+    plain = rbsdem.time_history(column(LAYERED), t, openings=True, **given)
+    assert np.array_equal(moved.force, plain.force)
+    assert np.array_equal(moved.opening, plain.opening)
+    floor = moved.acceleration + ground
+    assert moved.absolute_acceleration == pytest.approx(floor, rel=1e-12, abs=1e-12)
+    assert moved.summary["peak_floor_acceleration"] == np.abs(moved.absolute_acceleration).max()
+    moved.save(tmp_path / "moved.npz")
+    assert rbsdem.load(tmp_path / "moved.npz") == moved
+    frame = moved.to_pandas()
+    assert np.array_equal(frame["velocity_m/s"], moved.velocity)
+    assert np.array_equal(frame["acceleration_m/s2"], moved.acceleration)
+    with pytest.raises(InputError, match="motion=True"):
+        plain.velocity  # noqa: B018
+    with pytest.raises(InputError, match="nothing moves in a static path"):
+        rbsdem.cyclic(column(), displacement=[0.01]).acceleration  # noqa: B018

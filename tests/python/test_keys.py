@@ -124,7 +124,9 @@ def keywords(function: Callable[..., Any]) -> dict[str, inspect.Parameter]:
 
 
 def test_keywords_of_the_analyses_are_the_keys_of_their_groups():
-    settings = group("analysis") | {name: group("output")[name] for name in ("every", "openings")}
+    settings = group("analysis") | {
+        name: group("output")[name] for name in ("every", "openings", "motion")
+    }
     loads = set(group("loading")["drive"]["choices"])
     known = keywords(rbsdem.cyclic) | keywords(rbsdem.time_history)
     # The end of the times is the duration; the rest has no key.

@@ -89,8 +89,8 @@ def test_values_of_no_kind_are_refused_by_name():
         (lambda: rbsdem.Takeda(2e8, 3e-4, 6e7, 3e-3, 7e6, inner=thing), "inner = <object"),
         (lambda: RectangularSection(0.4, 0.4, Concrete(30e6), bars=0, cover=0.02), "bars = 0"),
         (
-            lambda: rbsdem.time_history(COLUMN, [0, 1], ground_acceleration=[0, 1], initial="x"),
-            "initial: x: there is no such file",
+            lambda: rbsdem.time_history(COLUMN, [0, 1], ground_acceleration=[0, 1], initial=3),
+            "initial = 3 must be a Result of this column, the path of a state or a dict",
         ),
     ):
         with pytest.raises(InputError, match=words):

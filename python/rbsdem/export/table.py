@@ -28,6 +28,9 @@ UNITS = {
     "base_shear": "N",
     "base_moment": "N m",
     "rest": "rad",
+    "velocity": "m/s",
+    "acceleration": "m/s2",
+    "ground_acceleration": "m/s2",
 } | dict.fromkeys(ENERGIES, "J")
 """Units of the arrays of a result."""
 
@@ -38,8 +41,11 @@ def quantities(result: Result) -> dict[str, Array]:
     known = result.energy | {"top_height": result.top[:, 1]}
     with_openings = result.rest is not None and not column.opens
     with_base = column.damped and result.dynamic
+    with_motion = result.motion is not None
+    if result.motion is not None:
+        known["ground_acceleration"] = result.motion[:, 2]
     found = {}
-    for name in _core.quantities(column.opens, with_base, with_openings)[0]:
+    for name in _core.quantities(column.opens, with_base, with_openings, with_motion)[0]:
         plain = name.rstrip("*")
         found[plain] = known[plain] if plain in known else getattr(result, plain)
     return found

@@ -6,7 +6,7 @@ module rbs_solve_time_march
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
    use rbs_column_energy, only: kinetic_energy, potential_energy
-   use rbs_column_top, only: top_position, top_displacement, largest_turn
+   use rbs_column_top, only: top_motion, top_position, top_displacement, largest_turn
    use rbs_hysteresis_layer_fall, only: layer_fall
    use rbs_output_observer, only: observer_type
    use rbs_output_recorder, only: recorder_type
@@ -14,7 +14,8 @@ module rbs_solve_time_march
                               row_spring, row_damping, row_axial, row_residual, row_top, row_joints
    use rbs_output_summary, only: summary_type
    use rbs_solve_end_state, only: end_state, standing_type
-   use rbs_solve_time_loads, only: loads_type, lateral
+   use rbs_solve_time_loads, only: loads_type, lateral, horizontal
+   use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_plan, only: time_plan, same_step
    use rbs_solve_time_start, only: initial_state, start_state, resume_state, resume_steps, keep_state
    use rbs_solve_time_state, only: state_type, stepper_type, out_of_bounds
@@ -56,6 +57,7 @@ contains
       type(time_plan) :: plan
       type(state_type) :: state
       type(layer_fall) :: fall
+      type(motion_result) :: now
       real(wp), allocatable :: row(:)
       real(wp) :: begin, finish, displacement, furthest, h
       integer :: interval, part, parts, step, next_row
@@ -71,7 +73,9 @@ contains
       end if
       if (standing%kind == 0) call start_state(state, column, loads, initial, plan%begin, error)
       if (allocated(error)) return
-      allocate (row(row_size(column%unknowns, column%damped, merge(column%n, 0, recorder%openings))))
+      allocate (row(row_size(column%unknowns, column%damped, merge(column%n, 0, recorder%openings), &
+                             recorder%motion)))
+      if (recorder%motion) call now%create(column)
       furthest = huge(1.0_wp)
       if (is_given(collapse_drift)) furthest = collapse_drift*column%joint_height(column%n + 1)
       summary%time_step = plan%dt
@@ -80,7 +84,7 @@ contains
       displacement = top_displacement(state%motion%column, state%q)
       call summary%see_peak(displacement, state%load(lateral))
       call summary%see_turn(largest_turn(state%motion%column, state%q))
-      call keep(state, row, recorder, summary, error)
+      call keep(state, row, recorder, summary, error, now)
       if (allocated(error)) return
       finish = plan%begin
       step = 0
@@ -93,7 +97,7 @@ contains
             if (allocated(error)) then
                summary%steps = stepper%steps
                summary%cut_steps = stepper%cut_steps
-               call keep_last(state, row, recorder, summary)
+               call keep_last(state, now, row, recorder, summary)
                return
             end if
             step = step + 1
@@ -122,7 +126,7 @@ contains
                summary%steps = stepper%steps
                summary%cut_steps = stepper%cut_steps
                if (stepper%longest_step > 0.0_wp) summary%time_step = stepper%longest_step
-               call keep(state, row, recorder, summary, error)
+               call keep(state, row, recorder, summary, error, now)
                if (allocated(error)) return
                if (ends .or. step == plan%steps) then
                   if (present(after) .and. summary%lost_joint == 0) then
@@ -186,8 +190,9 @@ contains
    end subroutine report_state
 
    !> Record the last good state before a failure.
-   subroutine keep_last(state, row, recorder, summary)
+   subroutine keep_last(state, now, row, recorder, summary)
       type(state_type), intent(inout) :: state
+      type(motion_result), intent(inout) :: now
       real(wp), intent(inout) :: row(:)
       class(recorder_type), intent(inout) :: recorder
       type(summary_type), intent(inout) :: summary
@@ -195,16 +200,18 @@ contains
 
       state%clock = state%begin + state%time
       if (state%lost .or. .not. state%clock > row(row_time)) return
-      call keep(state, row, recorder, summary, ignored)
+      call keep(state, row, recorder, summary, ignored, now)
    end subroutine keep_last
 
    !> Record the present state.
-   subroutine keep(state, row, recorder, summary, error)
+   subroutine keep(state, row, recorder, summary, error, now)
       type(state_type), intent(in) :: state
       real(wp), intent(inout) :: row(:)
       class(recorder_type), intent(inout) :: recorder
       type(summary_type), intent(inout) :: summary
       type(error_type), allocatable, intent(inout) :: error
+      !> Needed, and created, if the rows hold how the top moves
+      type(motion_result), intent(inout), optional :: now
       real(wp) :: top(2), base
       integer :: m, at
 
@@ -231,6 +238,12 @@ contains
          base = row(row_joints + 2*m)
       end if
       at = row_joints + 2*m + merge(2, 0, state%motion%damped)
+      if (recorder%motion .and. present(now)) then
+         call state%motion%acceleration(state%springs, state%q, state%v, state%load, now)
+         call top_motion(state%motion%column, state%q, state%v, now%a, row(at), row(at + 1))
+         row(at + 2) = state%load(horizontal)
+         at = at + 3
+      end if
       call state%springs%fill_openings(state%motion%column%n, row(at:))
       call summary%see_base(base)
       summary%events = state%springs%events
