@@ -114,7 +114,7 @@ def test_signature_is_the_promised_one(one):
         "lengths=None, masses=None, self_weight=False, gravity=9.80665, axial_spring=None, "
         "top_mass=0.0, top_inertia=0.0, depth=0.0, "
         "rotary_inertia=None, axial_follows=False, force_follows=False, damping=None, "
-        "axial_height=None, axial_force_ratio=0.0, model='')",
+        "axial_height=None, axial_force_ratio=0.0, model='', top='free', footing=None)",
     }[one.__name__]
     signature = inspect.signature(one)
     bare = [
