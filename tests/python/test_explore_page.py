@@ -164,9 +164,10 @@ def test_keys_move_a_handle_and_a_field(page):
     keys = ActionChains(page.driver)
     keys.send_keys(Keys.ARROW_UP).send_keys(Keys.ARROW_UP).perform()
     page.wait(lambda: page.value("#f-section-width") == "420")
-    focused = page.driver.switch_to.active_element
-    assert focused.get_attribute("aria-label") == "Width"
-    assert focused.get_attribute("aria-valuetext") == "420 mm"
+    focused = (
+        "return ['label', 'valuetext'].map(n => document.activeElement.getAttribute('aria-' + n))"
+    )
+    page.wait(lambda: page.driver.execute_script(focused) == ["Width", "420 mm"])
     page.one("#f-column-axial_load").send_keys(Keys.ARROW_UP)
     page.wait(lambda: page.value("#f-column-axial_load") == "754")
     # Every field has a label, every button and handle a name.

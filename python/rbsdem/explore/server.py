@@ -23,6 +23,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 from urllib.parse import urlsplit
 
+from rbsdem._files import whole_file
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.explore import texts
 from rbsdem.explore.compute import Answers
@@ -208,7 +209,8 @@ class ExploreServer(ThreadingHTTPServer):
         try:
             with tempfile.TemporaryDirectory(prefix="rbsdem-") as folder:
                 path = Path(folder) / f"record{ending}"
-                path.write_text(text, encoding="utf-8", newline="")
+                with whole_file(path) as file:
+                    file.write(text.encode("utf-8"))
                 try:
                     motion = read_motion(path, units, dt)
                 except InputError as error:

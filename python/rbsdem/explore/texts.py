@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rbsdem import _core
+from rbsdem._files import whole_file
 from rbsdem.case import Case, read_case
 from rbsdem.errors import InputError
 from rbsdem.explore.state import ENDS, SIZES
@@ -81,7 +82,8 @@ def case_of_text(text: object) -> Case:
     _refuse_files(text)
     with tempfile.TemporaryDirectory(prefix="rbsdem-") as folder:
         path = Path(folder) / "case.nml"
-        path.write_text(text, encoding="utf-8", newline="")
+        with whole_file(path) as file:
+            file.write(text.encode("utf-8"))
         try:
             return read_case(path)
         except InputError as error:
@@ -143,9 +145,9 @@ def case_of_result(result: Result, title: str) -> Case:
 def csv_of(result: Result) -> str:
     """Return the rows of a result as the executable writes them."""
     with tempfile.TemporaryDirectory(prefix="rbsdem-") as folder:
-        path = Path(folder) / "rows.csv"
-        result.to_csv(path)
-        return path.read_text(encoding="utf-8")
+        rows = Path(folder) / "rows.csv"
+        result.to_csv(rows)
+        return rows.read_text(encoding="utf-8")
 
 
 def exported(form: str, found: Answered, given: Mapping[str, Any], state: Mapping[str, Any]) -> str:

@@ -121,12 +121,12 @@ def written(rows: Predictions, folder: Path) -> list[str]:
     rows.bands_to_csv(files[0])
     missing: list[str] = []
     for row, name in zip(rows, loop_names([row.specimen.name for row in rows]), strict=True):
-        path = folder / name.name
+        target = folder / name.name
         if row.band is not None:
-            row.band.to_csv(path)
-            files.append(path)
+            row.band.to_csv(target)
+            files.append(target)
         try:
-            files.append(_drawn(row, path.with_suffix(".png")))
+            files.append(_drawn(row, target.with_suffix(".png")))
         except ImportError as error:
             missing = [f"no figures: {error}"]
     return [*missing, *(f"wrote {file}" for file in files)]

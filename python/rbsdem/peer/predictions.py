@@ -238,9 +238,9 @@ class Predictions(Sequence[Prediction]):
         files = [row.specimen.file or f"test_{i + 1}" for i, row in enumerate(self._rows)]
         for row, name in zip(self._rows, loop_names(files), strict=True):
             if row.band is not None:
-                path = Path(folder) / name
-                path.parent.mkdir(parents=True, exist_ok=True)
-                row.band.to_csv(path)
+                target = Path(folder) / name
+                target.parent.mkdir(parents=True, exist_ok=True)
+                row.band.to_csv(target)
 
     def summary_to_csv(self, path: str | os.PathLike[str], by: str = "failure_mode") -> None:
         """Write `summary` as csv.
