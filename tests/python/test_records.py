@@ -102,7 +102,12 @@ def test_every_field_of_a_result_counts_for_equality():
         elif field.name == "call":
             other = value | {"time": value["time"] + 1.0}
         else:
-            other = {"column": COLUMN, "case": CASE, "rest": np.zeros((1, 1))}[field.name]
+            other = {
+                "column": COLUMN,
+                "case": CASE,
+                "rest": np.zeros((1, 1)),
+                "motion": np.zeros((1, 3)),
+            }[field.name]
         assert (replace(one, **{field.name: other}) == one) is False, field.name
 
 
