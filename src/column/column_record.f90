@@ -78,7 +78,7 @@ module rbs_column_column_record
       !> Which model made the column, and the version of its parameters; for the record only
       character(len=64) :: model = ''
       type(damping_record) :: damping
-      !> Springs: one for every joint, or one for each from the ground up; with a footing always one for
+      !> The springs, one for every joint or one for each from the ground up; with a footing always one for
       !> each. Axial ones are tension positive, without them joints do not open
       type(spring_record), allocatable :: shear(:), flexure(:), axial_spring(:)
    contains
