@@ -54,6 +54,8 @@ def methods() -> list[dict[str, str]]:
 
 def number(value: Any, name: str) -> float:
     """Return `value` as a float, or raise `InputError` naming it."""
+    if type(value) is float:
+        return value
     try:
         if isinstance(value, (bool, np.bool_, str, bytes)):
             raise TypeError
@@ -145,9 +147,12 @@ def group(name: str, values: Mapping[str, Any]) -> Statement:
     """Return the statement of one group: names and values; None and empty lists are left out."""
     words, numbers = [name], list[float]()
     for key, value in values.items():
-        if value is None:
+        if type(value) is float:
+            words.append(key)
+            numbers.append(value)
+        elif value is None:
             continue
-        if isinstance(value, str):
+        elif isinstance(value, str):
             text = _one_line(value) if isinstance(value, Text) else word(value)
             words.append(f"{key}={text}")
         elif isinstance(value, (tuple, list, np.ndarray)):

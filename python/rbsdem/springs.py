@@ -6,8 +6,8 @@ below are those of a shear spring.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import MISSING, dataclass, fields, replace
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeVar
 
@@ -43,13 +43,11 @@ class Spring:
     def __post_init__(self) -> None:
         if not self.rule:
             raise TypeError(f"Spring is the base of {', '.join(classes_for(''))}; use one of them")
-        for field in fields(self):
-            given = getattr(self, field.name)
-            if field.name in ("inner", "layers"):
-                continue
-            if not (given is None and field.default is None):
-                name = f"{self.rule} spring: {field.name}"
-                object.__setattr__(self, field.name, _core.number(given, name))
+        for field, may_lack in _numbers(type(self)):
+            given = getattr(self, field)
+            if type(given) is not float and not (given is None and may_lack):
+                given = _core.number(given, f"{self.rule} spring: {field}")
+                object.__setattr__(self, field, given)
         self._check()
 
     def _check(self) -> None:
@@ -172,6 +170,54 @@ def classes_for(place: str) -> list[str]:
 def _names(kind: type[Spring]) -> tuple[str, ...]:
     """Return the names of the parameters of a rule, in the order of its class."""
     return tuple(field.name for field in fields(kind) if field.name != "layers")
+
+
+@cache
+def _numbers(kind: type[Spring]) -> tuple[tuple[str, bool], ...]:
+    """Return the parameters of a rule that are numbers, and whether they may be None."""
+    return tuple(
+        (field.name, field.default is None)
+        for field in fields(kind)
+        if field.name not in ("inner", "layers")
+    )
+
+
+@cache
+def _defaults(kind: type[Spring]) -> dict[str, Any]:
+    """Return the parameters of a rule that have a default."""
+    return {field.name: field.default for field in fields(kind) if field.default is not MISSING}
+
+
+def unchecked(kind: type[AnySpring], **values: Any) -> AnySpring:
+    """Make a spring without asking its rule: a model makes twenty, and their column asks for all.
+
+    Parameters
+    ----------
+    kind : type
+        A class of springs without `inner`.
+    **values
+        Its parameters; those without a default must be there.
+
+    Returns
+    -------
+    Spring
+        The spring. Whoever makes it has to check it, see `check_springs`.
+    """
+    whole = {**_defaults(kind), **values}
+    for name, _ in _numbers(kind):
+        if type(whole[name]) is not float and whole[name] is not None:
+            whole[name] = float(whole[name])
+    spring = object.__new__(kind)
+    spring.__dict__.update(whole)
+    return spring
+
+
+def check_springs(springs: Iterable[Spring]) -> None:
+    """Raise `InputError` for the first spring, or layer of one, that its rule does not allow."""
+    for spring in dict.fromkeys(springs):
+        if isinstance(spring, Layered):
+            check_springs(layer for _, layer in spring.layers)
+        spring._check()
 
 
 @dataclass(frozen=True)
@@ -561,8 +607,15 @@ class Layered(Spring):
         **place
             `joint`, unless all joints have these layers.
         """
-        spring = [ids.setdefault(spring, len(ids) + 1) for _, spring in self.layers]
-        return _core.group("layers", place | {"y": [y for y, _ in self.layers], "spring": spring})
+        # Most layers have one and the same spring: what it is equal to is asked once.
+        known: dict[int, int] = {}
+        numbers = []
+        for _, spring in self.layers:
+            number = known.get(id(spring))
+            if number is None:
+                number = known[id(spring)] = ids.setdefault(spring, len(ids) + 1)
+            numbers.append(number)
+        return _core.group("layers", place | {"y": [y for y, _ in self.layers], "spring": numbers})
 
     def split(self, n: int) -> Self:
         """Return one of n equal springs in series: the layers are split and keep their places."""

@@ -17,6 +17,7 @@ from rbsdem.errors import InputError
 
 #: What a layer stands for: a bar, concrete inside the ties, concrete outside.
 Part = Literal["bar", "core", "cover"]
+_PARTS = get_args(Part)
 
 
 @dataclass(frozen=True)
@@ -49,10 +50,9 @@ class Gauge:
                 "for each layer"
             )
         for number, (part, length) in enumerate(zip(self.part, self.length, strict=True), 1):
-            if part not in get_args(Part):
+            if part not in _PARTS:
                 raise InputError(
-                    f"gauge: part of layer {number} is {part!r}; it is one of "
-                    f"{', '.join(get_args(Part))}"
+                    f"gauge: part of layer {number} is {part!r}; it is one of {', '.join(_PARTS)}"
                 )
             if not 0 < length < float("inf"):
                 raise InputError(f"gauge: length = {length:g} m of layer {number} must be above 0")

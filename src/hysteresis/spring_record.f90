@@ -291,6 +291,7 @@ contains
       real(wp) :: weight(size(self%y))
       !> The first equal spring at each layer's place, and anywhere
       integer, dimension(size(self%y)) :: here, anywhere
+      type(segment) :: line
       integer :: i, j
 
       weight = 0.0_wp
@@ -322,6 +323,8 @@ contains
             else
                layer = self%layer(i)
                call layer%make(slot(j)%rule)
+               ! What a rule prepares from its parameters is there for the equal layers that follow.
+               call slot(j)%rule%start(line)
             end if
          end do
       end associate

@@ -93,6 +93,8 @@ module rbs_hysteresis_steel
       !> Yield deformation [m]
       real(wp), private :: d_y = 0.0_wp
       type(table_type), private :: table
+      !> Whether table and what else follows from the parameters is there; copies of a spring have it too
+      logical, private :: prepared = .false.
       !> Elements that have limits: all, or all but that of hardening
       integer, private :: limited = yielding
       !> Stiffness of the elements [N/m], and their forces [N] at the last event
@@ -146,6 +148,7 @@ contains
       self%endurance = value(11)
       self%d_buckle = value(12)
       self%buckling = value(13)
+      self%prepared = .false.
    end subroutine set
 
    pure real(wp) function initial_stiffness(self)
@@ -195,11 +198,7 @@ contains
       class(steel_rule), intent(inout) :: self
       type(segment), intent(out) :: line
 
-      self%d_y = self%f_y/self%k
-      self%k_element = [(self%k - self%k_post)*share, self%k_post]
-      self%limited = merge(elements, yielding, is_given(self%f_u))
-      call make_table(self, self%table)
-      self%most_wear = max(1.0_wp, self%endurance/maxval(self%table%y(:self%limited, :self%table%rows)))
+      if (.not. self%prepared) call prepare(self)
       self%s = 0.0_wp
       self%rate = self%k_element
       self%d = 0.0_wp
@@ -209,6 +208,18 @@ contains
       self%wear_rate = 0.0_wp
       line = segment(k=self%k, lo=-self%d_y, hi=self%d_y)
    end subroutine start
+
+   !> What follows from the parameters alone.
+   pure subroutine prepare(self)
+      type(steel_rule), intent(inout) :: self
+
+      self%d_y = self%f_y/self%k
+      self%k_element = [(self%k - self%k_post)*share, self%k_post]
+      self%limited = merge(elements, yielding, is_given(self%f_u))
+      call make_table(self, self%table)
+      self%most_wear = max(1.0_wp, self%endurance/maxval(self%table%y(:self%limited, :self%table%rows)))
+      self%prepared = .true.
+   end subroutine prepare
 
    subroutine next(self, line, direction)
       class(steel_rule), intent(inout) :: self

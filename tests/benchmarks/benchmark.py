@@ -21,6 +21,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import warnings
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -213,6 +214,50 @@ def whole_folder(quick: bool) -> list[Row]:
     return [row]
 
 
+def each_prediction(quick: bool) -> list[Row]:
+    """Time the prediction of each test of the folder: its column, then the path of the test.
+
+    The fastest of a few calls for each test, as other work of the machine counts in the others;
+    the values are those of the tests, and the goal is for their mean.
+    """
+    rows = [
+        Row("predicted column, made of its test", "ms"),
+        Row("its cyclic path, with the loop", "ms"),
+        Row("mean of both over the tests", "ms", 5),
+    ]
+    folder = Path(os.environ.get("RBSDEM_PEER_DIR") or ROOT.parent / "shared" / "peer")
+    if not folder.is_dir():
+        rows[0].note = "RBSDEM_PEER_DIR is not set"
+        return rows
+    tests = list(peer.read_specimens(folder).with_history())[:: 10 if quick else 1]
+    # What is assumed of a test takes no part here.
+    warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
+    events = points = 0
+    for specimen in tests:
+        path = specimen.test().displacement
+        times = []
+        for _ in range(2 if quick else 4):
+            start = time.perf_counter()
+            column = peer.column(specimen)
+            made = time.perf_counter()
+            result = rbsdem.cyclic(column, displacement=path)
+            assert len(result.force) == len(result.displacement)
+            times.append((made - start, time.perf_counter() - made))
+        for row, values in zip(rows, zip(*times, strict=True), strict=False):
+            row.values.append(1e3 * min(values))
+        events += result.summary["events"]
+        points += len(path)
+    means = [sum(row.values) / len(tests) for row in rows[:2]]
+    rows[0].note = f"mean {means[0]:.2f}, {len(tests)} tests"
+    rows[
+        1
+    ].note = (
+        f"mean {means[1]:.2f}, {points / len(tests):.0f} points, {events / len(tests):.0f} events"
+    )
+    rows[2].values = [sum(means)]
+    return rows
+
+
 INSIDE = (
     ("joint_event", "joint of 30 layers, an event", "ns", 300),
     ("joint_step", "joint of 30 layers, a step without event", "ns", 60),
@@ -370,6 +415,7 @@ def main() -> None:
             *through_python(repeats),
             *predicted_column(repeats),
             *crossing(repeats),
+            *each_prediction(given.quick),
             *whole_folder(given.quick),
             *four_columns(repeats),
         ]

@@ -341,6 +341,20 @@ def test_values_that_parameters_refuse(values, text):
         parameters().with_values(**values)
 
 
+@pytest.mark.parametrize(
+    ("values", "text"),
+    [
+        ({"friction": 1.2}, "concrete spring: friction = 1.2 must be below 1"),
+        ({"cr1": 1.3}, "steel spring: cr1 = 1.3 must be below 1"),
+        ({"shear_b0": 2.0}, "pinching spring: b0 = 2 must be from 0 to 1"),
+    ],
+)
+def test_the_spring_that_refuses_a_parameter_says_so(values, text):
+    # The springs of a model are checked with their column, all at once.
+    with pytest.raises(InputError, match=text):
+        SECTION.column(1.6, axial_load=1.2e6).with_parameters(**values)
+
+
 @pytest.mark.parametrize("name", ["Hinge", "LayeredColumn", "MODELS", "ShearNumbers"])
 def test_old_names_say_the_new_one(name):
     with pytest.raises(AttributeError, match=rf"rbsdem.peer.{name} is now rbsdem.section"):

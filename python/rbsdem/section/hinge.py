@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from rbsdem.errors import InputError
 from rbsdem.section.materials import Steel
-from rbsdem.springs import ConcreteSpring, Layered, SteelSpring
+from rbsdem.springs import ConcreteSpring, Layered, SteelSpring, unchecked
 from rbsdem.strains import Gauge
 
 if TYPE_CHECKING:
@@ -146,7 +146,8 @@ def hinge_joint(
         area: float, stress: float, strain: float, softening: float, rest: float
     ) -> ConcreteSpring:
         secant = 1.3 * stress / strain
-        return ConcreteSpring(
+        return unchecked(
+            ConcreteSpring,
             k=max(modulus, secant) * area / concrete_length,
             f_peak=stress * area,
             d_peak=strain * concrete_length,
@@ -181,7 +182,8 @@ def hinge_joint(
     def bar(area: float, steel: Steel) -> SteelSpring:
         fy, fu = hinge.steel_strength * steel.fy, hinge.steel_strength * steel.fu
         stiffness = steel.es * area / (steel_length + slip)
-        return SteelSpring(
+        return unchecked(
+            SteelSpring,
             k=stiffness,
             f_y=fy * area,
             k_post=stiffness * max(_LEAST_HARDENING, hinge.hardening * (fu - fy) / 0.08 / steel.es),
@@ -198,7 +200,7 @@ def hinge_joint(
     of_bars = sum(steel.es * (area * y**2) for y, area, steel in section.bars)
     moment = _yield_moment(section, axial_load, ratio, yield_stress)
     return HingeJoint(
-        Layered(tuple(layers)),
+        unchecked(Layered, layers=tuple(layers)),
         concrete_length,
         min(_STIFFEST, by_axial(hinge.stiffness, hinge.stiffness_axial))
         * (modulus * strips.inertia + of_bars),

@@ -27,7 +27,7 @@ from rbsdem.section.scatter import Scatter
 from rbsdem.section.shear_model import shear_limits, shear_spring
 from rbsdem.section.spread import Spread, spread
 from rbsdem.section.spring_fit import fit_springs
-from rbsdem.springs import Elastic, Spring, Takeda
+from rbsdem.springs import Elastic, Spring, Takeda, check_springs, unchecked
 from rbsdem.strains import Gauge
 
 if TYPE_CHECKING:
@@ -302,7 +302,7 @@ class LayeredModel:
             self.parameters.shear,
             joint,
         )
-        rigid = Elastic(1e3 * joint.shear_stiffness / self.height)
+        rigid = unchecked(Elastic, k=1e3 * joint.shear_stiffness / self.height)
         return {
             "shear": (foot, *[rigid] * (n - 1)),
             "flexure": (joint.spring, *(self._above(stiffness, i) for i in range(n - 1))),
@@ -320,7 +320,7 @@ class LayeredModel:
         """
         cracked = self.parameters.hinge.cracked_above
         if not cracked > 0.0:
-            return Elastic(stiffness)
+            return unchecked(Elastic, k=stiffness)
         section, figures = self.section, self.section._figures
         tensile = 0.6e6 * math.sqrt(section.concrete.fc / 1e6)
         # Under tension the least moment keeps the lines of the spring apart.
@@ -332,8 +332,14 @@ class LayeredModel:
         d_c, k_y = m_c / stiffness, cracked * stiffness
         # More than the hinge carries, so that the joint never yields.
         most = 2.0 * max(self.joint.yield_moment, m_c)
-        return Takeda(
-            k_c=stiffness, d_c=d_c, k_y=k_y, d_y=d_c + (most - m_c) / k_y, k_u=0.9 * k_y, b0=0.0
+        return unchecked(
+            Takeda,
+            k_c=stiffness,
+            d_c=d_c,
+            k_y=k_y,
+            d_y=d_c + (most - m_c) / k_y,
+            k_u=0.9 * k_y,
+            b0=0.0,
         )
 
 
@@ -381,7 +387,13 @@ class LayeredColumn(Column):
             raise InputError(
                 "a LayeredColumn is made by rbsdem.section.Section.column or rbsdem.peer.column"
             )
-        super().__post_init__()
+        try:
+            super().__post_init__()
+        except InputError:
+            # What a spring of the model says, which was not asked before, is nearer the fault.
+            for name in ("flexure", "shear"):
+                check_springs(self.recipe.made[name])
+            raise
 
     def __repr__(self) -> str:
         return (

@@ -15,7 +15,7 @@ from rbsdem.section.strength import (
     shear_strength_mcft,
     shear_strength_sezen,
 )
-from rbsdem.springs import Pinching
+from rbsdem.springs import Pinching, unchecked
 
 if TYPE_CHECKING:
     from rbsdem.section.hinge import HingeJoint
@@ -169,7 +169,8 @@ def _shear(
         "endurance": (0.0, math.inf),
         "pinch_force": (0.0, 1.0 / closed),
     }
-    spring = Pinching(
+    spring = unchecked(
+        Pinching,
         d_c=d_c,
         f_c=f_c,
         d_y=d_y,

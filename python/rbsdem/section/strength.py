@@ -8,6 +8,7 @@ in tension, and 0.8 of the diameter for circles (ACI 318-19, 22.5.2.2).
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -161,20 +162,38 @@ def shear_strength_mcft(
     else:
         s_ze = max(35.0 * z * 1e3 / (16.0 + aggregate * 1e3), 0.85 * z * 1e3)
     arm = max(span - sizes.d, sizes.d)
+    d, width, pressed = sizes.d, sizes.width, 0.5 * axial_load
+    steel = 2.0 * _ES * sizes.tension_steel
+    size, turn = 1000.0 + s_ze, 0.88 + s_ze / 2500.0
+    tied, spacing = sizes.tie_area * sizes.tie_yield * z, sizes.spacing
+    crushed = 0.25 * sizes.fc * width * z
 
     def strength(v: float) -> float:
-        eps_x = (v * arm / sizes.d + v - 0.5 * axial_load) / (2.0 * _ES * sizes.tension_steel)
-        eps_x = max(eps_x, 0.0)
-        beta = 0.4 / (1.0 + 1500.0 * eps_x) * 1300.0 / (1000.0 + s_ze)
-        theta = math.radians(min((29.0 + 7000.0 * eps_x) * (0.88 + s_ze / 2500.0), 75.0))
-        v_c = beta * root * _MPA * sizes.width * z
-        v_s = sizes.tie_area * sizes.tie_yield * z / (math.tan(theta) * sizes.spacing)
-        return min(v_c + v_s, 0.25 * sizes.fc * sizes.width * z)
+        eps_x = max((v * arm / d + v - pressed) / steel, 0.0)
+        beta = 0.4 / (1.0 + 1500.0 * eps_x) * 1300.0 / size
+        theta = math.radians(min((29.0 + 7000.0 * eps_x) * turn, 75.0))
+        v_c = beta * root * _MPA * width * z
+        return min(v_c + tied / (math.tan(theta) * spacing), crushed)
 
     # More shear opens the cracks: strength(v) falls, so there is one v that equals it.
-    low, high = 0.0, strength(0.0)
+    return _crossing(strength, strength(0.0))
+
+
+def _crossing(falling: Callable[[float], float], most: float) -> float:
+    """Return where a falling function equals its argument, from 0 to `most`, to the last digit."""
+    low, high = 0.0, most
+    # Secants come near in a few steps; then only the last digits are halved.
+    before, at_before, v = 0.0, most, 0.5 * most
+    for _ in range(12):
+        at = falling(v) - v
+        if abs(v - before) <= 1e-9 * v or at == at_before:
+            break
+        before, at_before, v = v, at, v - at * (v - before) / (at - at_before)
+    for end in (v - 8e-15 * abs(v), v + 8e-15 * abs(v)):
+        if low < end < high:
+            low, high = (end, high) if falling(end) > end else (low, end)
     while low < (v := 0.5 * (low + high)) < high:
-        if strength(v) > v:
+        if falling(v) > v:
             low = v
         else:
             high = v
