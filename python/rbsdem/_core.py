@@ -413,18 +413,22 @@ def plan_ensemble(
     columns: Sequence[Statement],
     settings: Statement,
     watches: Sequence[Array],
+    before: Sequence[Array],
     motions: Motions,
 ) -> tuple[Array, list[tuple[int, str]]]:
     """Return the seconds that a run is expected to take, shape (motions, columns), and faults.
 
     A fault is the number of a column, from 0, and a message; `watches` are those of each column, of
     shape (watches, 6): number of the limit state, joint, factors of slip, rotation and opening,
-    threshold; at least one.
+    threshold; at least one. `before` are the states that the runs of each column begin in; an empty
+    one is at rest.
     """
     room = 1 << 16
     while True:
         seconds, text, length = _rbsdem.rbs_plan_ensemble(
-            *_columns_crossing(columns, settings, watches), *_motions_crossing(motions), room
+            *_columns_crossing(columns, settings, watches, before),
+            *_motions_crossing(motions),
+            room,
         )
         if length <= room:
             return seconds, list(_numbered(text[:length]))
@@ -435,6 +439,7 @@ def run_ensemble(
     columns: Sequence[Statement],
     settings: Statement,
     watches: Sequence[Array],
+    before: Sequence[Array],
     motions: Motions,
     runs: tuple[NDArray[np.int32], NDArray[np.int32], Array],
     control: NDArray[np.int32],
@@ -450,7 +455,7 @@ def run_ensemble(
     column, motion, scale = runs
     room = (1 << 16) + 300 * scale.size
     fates, values, text, length = _rbsdem.rbs_run_ensemble(
-        *_columns_crossing(columns, settings, watches),
+        *_columns_crossing(columns, settings, watches, before),
         *_motions_crossing(motions),
         column + np.int32(1),
         motion + np.int32(1),
@@ -464,21 +469,25 @@ def run_ensemble(
 
 
 def _columns_crossing(
-    columns: Sequence[Statement], settings: Statement, watches: Sequence[Array]
-) -> tuple[bytes, Array, NDArray[np.int32], Array]:
-    """Return statements, numbers, how many numbers and watches each has, and the watches."""
+    columns: Sequence[Statement],
+    settings: Statement,
+    watches: Sequence[Array],
+    before: Sequence[Array],
+) -> tuple[bytes, Array, NDArray[np.int32], Array, Array]:
+    """Return statements, numbers, how many of all each column has, the watches, the states."""
     whole = [column + settings for column in columns]
     return (
         "".join(statement.text + _AFTER for statement in whole).encode("utf-8", "replace"),
         np.array([number for statement in whole for number in statement.numbers]),
         np.array(
             [
-                (len(statement.numbers), len(watch))
-                for statement, watch in zip(whole, watches, strict=True)
+                (len(statement.numbers), len(watch), len(state))
+                for statement, watch, state in zip(whole, watches, before, strict=True)
             ],
             dtype=np.int32,
         ).T,
         np.concatenate(watches).T,
+        np.concatenate(before),
     )
 
 

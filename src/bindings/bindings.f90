@@ -805,41 +805,42 @@ subroutine rbs_measures(names)
    names = measure_names()
 end subroutine rbs_measures
 
-subroutine rbs_plan_ensemble(statements, nn, numbers, nc, counts, nw, watches, m, time, acceleration, nm, &
-                             points, most, seconds, text, length)
+subroutine rbs_plan_ensemble(statements, nn, numbers, nc, counts, nw, watches, nb, before, m, time, &
+                             acceleration, nm, points, most, seconds, text, length)
    ! `length` is that of the whole text, which is cut at `most`.
    use iso_c_binding, only: c_double, c_int
    use rbs_bindings_ensembles, only: plan_ensemble
    use rbs_case_text_buffer, only: text_buffer
    implicit none
    character(len=*), intent(in) :: statements
-   integer(c_int), intent(in) :: nn, nc, nw, m, nm, most, counts(2, nc), points(nm)
-   real(c_double), intent(in) :: numbers(nn), watches(6, nw), time(m), acceleration(m)
+   integer(c_int), intent(in) :: nn, nc, nw, nb, m, nm, most, counts(3, nc), points(nm)
+   real(c_double), intent(in) :: numbers(nn), watches(6, nw), before(nb), time(m), acceleration(m)
    real(c_double), intent(out) :: seconds(nm, nc)
    character(len=most), intent(out) :: text
    integer(c_int), intent(out) :: length
    !f2py threadsafe
    type(text_buffer) :: buffer
 
-   call plan_ensemble(statements, numbers, counts, watches, time, acceleration, points, seconds, buffer)
+   call plan_ensemble(statements, numbers, counts, watches, before, time, acceleration, points, seconds, &
+                      buffer)
    text = ''
    length = buffer%length
    if (length > 0) text = buffer%text(:min(length, most))
 end subroutine rbs_plan_ensemble
 
-subroutine rbs_run_ensemble(statements, nn, numbers, nc, counts, nw, watches, m, time, acceleration, nm, &
-                            points, nr, columns, motions, scales, level, control, nv, most, fates, values, &
-                            text, length)
+subroutine rbs_run_ensemble(statements, nn, numbers, nc, counts, nw, watches, nb, before, m, time, &
+                            acceleration, nm, points, nr, columns, motions, scales, level, control, nv, &
+                            most, fates, values, text, length)
    ! `length` is that of the whole text, which is cut at `most`. Another thread reads and sets `control`.
    use iso_c_binding, only: c_double, c_int
    use rbs_bindings_ensembles, only: run_ensemble
    use rbs_case_text_buffer, only: text_buffer
    implicit none
    character(len=*), intent(in) :: statements
-   integer(c_int), intent(in) :: nn, nc, nw, m, nm, nr, nv, most, counts(2, nc), points(nm), columns(nr)
-   integer(c_int), intent(in) :: motions(nr), level
+   integer(c_int), intent(in) :: nn, nc, nw, nb, m, nm, nr, nv, most, counts(3, nc), points(nm)
+   integer(c_int), intent(in) :: columns(nr), motions(nr), level
    integer(c_int), intent(inout) :: control(2)
-   real(c_double), intent(in) :: numbers(nn), watches(6, nw), time(m), acceleration(m), scales(nr)
+   real(c_double), intent(in) :: numbers(nn), watches(6, nw), before(nb), time(m), acceleration(m), scales(nr)
    integer(c_int), intent(out) :: fates(nr)
    real(c_double), intent(out) :: values(nv, nr)
    character(len=most), intent(out) :: text
@@ -847,8 +848,8 @@ subroutine rbs_run_ensemble(statements, nn, numbers, nc, counts, nw, watches, m,
    !f2py threadsafe
    type(text_buffer) :: buffer
 
-   call run_ensemble(statements, numbers, counts, watches, time, acceleration, points, columns, motions, &
-                     scales, level, control, fates, values, buffer)
+   call run_ensemble(statements, numbers, counts, watches, before, time, acceleration, points, columns, &
+                     motions, scales, level, control, fates, values, buffer)
    text = ''
    length = buffer%length
    if (length > 0) text = buffer%text(:min(length, most))

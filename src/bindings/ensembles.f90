@@ -24,12 +24,14 @@ module rbs_bindings_ensembles
 contains
 
    !> Expected seconds of each motion for each column, and what is wrong with the columns.
-   subroutine plan_ensemble(statements, numbers, counts, watches, time, acceleration, points, seconds, text)
+   subroutine plan_ensemble(statements, numbers, counts, watches, before, time, acceleration, points, &
+                            seconds, text)
       !> Statements of the columns with their settings, each followed by `after`; all their numbers; how many
-      !> numbers and watches each has (2, columns); the watches (6, all columns): state, joint, factors of
-      !> slip, rotation and opening, threshold
+      !> numbers and watches each has, and numbers of the state that its runs begin in, 0 for rest (3,
+      !> columns); the watches (6, all columns): state, joint, factors of slip, rotation and opening,
+      !> threshold; all states
       character(len=*), intent(in) :: statements
-      real(c_double), intent(in) :: numbers(:), watches(:, :)
+      real(c_double), intent(in) :: numbers(:), watches(:, :), before(:)
       integer(c_int), intent(in) :: counts(:, :)
       !> All motions one after the other [s, m/s2], and the number of points of each (motions)
       real(c_double), intent(in) :: time(:), acceleration(:)
@@ -41,25 +43,25 @@ contains
       type(ensemble_column), allocatable :: column(:)
       type(ensemble_motion), allocatable :: motion(:)
       type(error_type), allocatable :: error
-      integer :: i, at(3)
+      integer :: i, at(4)
 
       seconds = 0.0_wp
       call take_motions(time, acceleration, points, motion)
       allocate (column(1))
       at = 1
       do i = 1, size(counts, 2)
-         call next_column(statements, numbers, counts(:, i), watches, at, motion(1), column(1), error)
+         call next_column(statements, numbers, counts(:, i), watches, before, at, motion(1), column(1), error)
          if (.not. allocated(error)) call plan_column(column(1), motion, seconds(:, i), error)
          if (allocated(error)) call text%append(to_text(i)//after_number//error%message//after)
       end do
    end subroutine plan_ensemble
 
    !> Runs, each of a column and a motion, into their fates and measures.
-   subroutine run_ensemble(statements, numbers, counts, watches, time, acceleration, points, columns, &
-                           motions, scales, level, control, fates, values, text)
+   subroutine run_ensemble(statements, numbers, counts, watches, before, time, acceleration, points, &
+                           columns, motions, scales, level, control, fates, values, text)
       !> As for `plan_ensemble`
       character(len=*), intent(in) :: statements
-      real(c_double), intent(in) :: numbers(:), watches(:, :)
+      real(c_double), intent(in) :: numbers(:), watches(:, :), before(:)
       integer(c_int), intent(in) :: counts(:, :)
       real(c_double), intent(in) :: time(:), acceleration(:)
       integer(c_int), intent(in) :: points(:)
@@ -80,13 +82,13 @@ contains
       type(run_type), allocatable :: run(:)
       type(outcome_type), allocatable :: outcome(:)
       type(error_type), allocatable :: error
-      integer :: i, at(3)
+      integer :: i, at(4)
 
       call take_motions(time, acceleration, points, motion)
       allocate (column(size(counts, 2)), run(size(columns)), outcome(size(columns)))
       at = 1
       do i = 1, size(column)
-         call next_column(statements, numbers, counts(:, i), watches, at, motion(1), column(i), error)
+         call next_column(statements, numbers, counts(:, i), watches, before, at, motion(1), column(i), error)
          column(i)%states = 1 + size(values, 1) - measure_count
          if (allocated(error)) call move_alloc(error, column(i)%error)
       end do
@@ -121,13 +123,14 @@ contains
    end subroutine take_motions
 
    !> The next column of the statements, with its settings.
-   subroutine next_column(statements, numbers, counts, watches, at, motion, column, error)
+   subroutine next_column(statements, numbers, counts, watches, before, at, motion, column, error)
       character(len=*), intent(in) :: statements
-      real(c_double), intent(in) :: numbers(:), watches(:, :)
-      !> Numbers and watches of the column
-      integer(c_int), intent(in) :: counts(2)
-      !> Where its statement, its numbers and its watches begin; on return those of the column after it
-      integer, intent(inout) :: at(3)
+      real(c_double), intent(in) :: numbers(:), watches(:, :), before(:)
+      !> Numbers and watches of the column, and numbers of its state
+      integer(c_int), intent(in) :: counts(3)
+      !> Where its statement, its numbers, its watches and its state begin; on return those of the column
+      !> after it
+      integer, intent(inout) :: at(4)
       !> Any of the motions
       type(ensemble_motion), intent(in) :: motion
       type(ensemble_column), intent(inout) :: column
@@ -147,7 +150,9 @@ contains
                                          rotation=given(4), opening=given(5), threshold=given(6))
          end associate
       end do
-      at = [last + 2, at(2) + counts(1), at(3) + counts(2)]
+      if (allocated(column%before)) deallocate (column%before)
+      if (counts(3) > 0) column%before = before(at(4):at(4) + counts(3) - 1)
+      at = [last + 2, at(2) + counts(1), at(3) + counts(2), at(4) + counts(3)]
       if (allocated(error)) return
       loads%ground%value = motion%acceleration(:1)
       call choose_method(case, loads, error)

@@ -73,6 +73,27 @@ def test_the_motion_of_the_case(case: Path, monkeypatch: pytest.MonkeyPatch) -> 
     assert len((case.parent / "out" / "runs.csv").read_text().splitlines()) == 2
 
 
+def test_the_state_of_the_case(
+    case: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """`&analysis initial` is where all runs begin; loads beside the motion are refused."""
+    state = rbsdem.cyclic(column(), displacement=[0.03, 0.01])
+    state.save_state(case.with_name("end.state"))
+    text = case.read_text()
+    case.write_text(text.replace("&analysis", "&analysis initial = 'end.state',"))
+    out = case.parent / "out"
+    assert command(monkeypatch, case, case.with_name("one.csv"), "--out", out, "--quiet") == 0
+    record = rbsdem.motions.read_motion(case.with_name("one.csv"))
+    given = {"method": "newmark", "collapse_drift": 0.05, "initial": state}
+    expected = rbsdem.time_history(column(), ground_acceleration=record, **given)
+    with (out / "runs.csv").open(newline="") as file:
+        row = next(csv.DictReader(file))
+    assert float(row["residual_displacement"]) == pytest.approx(expected.displacement[-1], 1e-5)
+    case.write_text(text + "&loading drive = 'force', values = 0, 1e3, time = 0, 1 /\n")
+    assert command(monkeypatch, case, "--out", out) == 2
+    assert "force has no place in an ensemble" in capsys.readouterr().err
+
+
 def test_parts(
     case: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

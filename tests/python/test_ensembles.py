@@ -150,11 +150,37 @@ def test_limit_states_are_those_of_the_history() -> None:
                 assert at == result.time[states[name].row]
                 reached.append(name)
     assert {"first_yield", "cracking", "nominal_moment", "cap", "shear_yield"} <= set(reached)
-    # The first yield does not depend on what else is asked for, nor on whether lanes run it.
-    alone = rbsdem.ensemble(
-        [layered, capped, column()], (time, acceleration), scales=4.0, method="newmark"
-    )
-    np.testing.assert_array_equal(alone.measures["first_yield"], found.measures["first_yield"])
+
+
+@pytest.mark.parametrize("method", ["newmark", "rk4"])
+def test_no_measure_depends_on_what_else_is_asked_for(method: str) -> None:
+    """What a column is watched for decides which lanes run it, if any."""
+    for columns in (bodies(), damped()[:2]):
+        given = {"columns": columns, "motions": motion(1), "scales": [0.5, 3.0], "method": method}
+        few = rbsdem.ensemble(**given)
+        more = rbsdem.ensemble(**given, measures=[*MEASURES, *LIMIT_STATES])
+        for name in MEASURES:
+            np.testing.assert_array_equal(few.measures[name], more.measures[name], name)
+
+
+def test_a_lost_joint_has_the_number_that_results_give_it() -> None:
+    """1 at the bottom of a column on a footing, 0 beneath it, NaN where none was lost."""
+    crushing = rbsdem.ConcreteSpring(k=1e7, f_peak=4e4, d_peak=6e-3, k_soft=5e6, f_res=1e4)
+    layers = rbsdem.Layered([(y, crushing) for y in (-0.15, -0.05, 0.05, 0.15)])
+    elastic = rbsdem.Elastic(1e8)
+    weight = {"axial_load": 1e5, "top_mass": 1e4, "kinematics": "pdelta"}
+    columns = [
+        rbsdem.Column(1.0, 1e3, elastic, hinge, footing=footing, **weight)
+        for hinge, footing in (
+            (layers, rbsdem.Footing(elastic, elastic, mass=1e3, inertia=1e2, height=0.3)),
+            (elastic, rbsdem.Footing(elastic, layers, mass=1e3, inertia=1e2, height=0.3)),
+        )
+    ]
+    given = (0.01, 6 * np.sin(0.08 * np.arange(100)))
+    found = rbsdem.ensemble(columns, given, scales=[0.01, 2.0], method="newmark")
+    assert list(found.status) == ["completed", "axial_failure"] * 2
+    np.testing.assert_array_equal(found.measures["lost_joint"], [np.nan, 1, np.nan, 0])
+    same_as_alone(found)
 
 
 def test_measures_of_functions() -> None:

@@ -12,6 +12,7 @@ from conftest import REPOSITORY
 
 import rbsdem
 from rbsdem import motions
+from rbsdem.ensembles import ida_command
 from rbsdem.ensembles.ida_command import main
 
 CASE = REPOSITORY / "examples" / "08-ida" / "case.nml"
@@ -54,6 +55,32 @@ def test_files_and_report(folder, tmp_path, capsys):
     assert "Sa(0.61 s, 5 %) (m/s²): 4 records, 12 runs" in printed
     assert "repair" in printed
     assert f"wrote {out / 'ida.csv'}" in printed
+
+
+def test_settings_of_the_case(folder, tmp_path, monkeypatch):
+    """All of them reach the analysis, but those of its method where another one is asked for."""
+    case = rbsdem.read_case(CASE)
+    state = rbsdem.cyclic(case.column, displacement=[0.02, 0.0])
+    state.save_state(tmp_path / "end.state")
+    text = case.column.to_namelist() + (
+        "&analysis method = 'hht', dt = 0.01, rho_infinity = 0.7, collapse_drift = 0.08, "
+        "initial = 'end.state' /\n"
+    )
+    (tmp_path / "pier.nml").write_text(text)
+    asked = []
+
+    def ask(*given, **settings):
+        asked.append(settings)
+        raise rbsdem.InputError("enough")
+
+    monkeypatch.setattr(ida_command, "ida", ask)
+    for words in ([], ["--method", "newmark"]):
+        assert main([str(tmp_path / "pier.nml"), str(folder), "--quiet", *words]) == 2
+    method = {"method": "hht", "dt": 0.01, "rho_infinity": 0.7}
+    common = {"collapse_drift": 0.08, "initial": str(tmp_path / "end.state")}
+    assert method | common | asked[0] == asked[0]
+    assert {"method": "newmark"} | common | asked[1] == asked[1]
+    assert not {"dt", "rho_infinity"} & set(asked[1])
 
 
 def test_hazard_adds_frequencies(folder, tmp_path, capsys):

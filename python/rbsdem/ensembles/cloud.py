@@ -246,6 +246,7 @@ def cloud(
     measures: Sequence[str | Measure] = ("peak_drift", "residual_drift", "peak_base_shear"),
     method: Method = "auto",
     dt: float | None = None,
+    initial: Any = None,
     jobs: int | None = None,
     progress: bool = False,
 ) -> Cloud:
@@ -259,7 +260,9 @@ def cloud(
         The records, many and of different strength.
     scales : array_like, shape () or (motions,), optional
         Factors of the records.
-    intensity, period, damping, collapse_drift, measures, method, dt, jobs, progress : optional
+    intensity, period, damping, collapse_drift, measures, method, dt, initial : optional
+        As for `rbsdem.ida`.
+    jobs, progress : optional
         As for `rbsdem.ida`.
 
     Returns
@@ -286,6 +289,7 @@ def cloud(
         "method": method,
         "dt": dt,
         "collapse_drift": checked_drift(collapse_drift),
+        "initial": initial,
         "jobs": jobs,
         "progress": progress,
     }

@@ -10,7 +10,6 @@ import numpy as np
 from rbsdem.ensembles.measures import STATUSES
 from rbsdem.ensembles.tasks import Plan, Task, TaskResult, compute
 from rbsdem.ensembles.threads import Piece
-from rbsdem.errors import InputError
 
 __all__ = ["check_client", "in_cluster"]
 
@@ -18,14 +17,16 @@ __all__ = ["check_client", "in_cluster"]
 _AHEAD = 3
 
 
-def check_client(client: Any) -> None:
-    """Raise `InputError` for what is not a client of a cluster with workers."""
+def check_client(client: Any, faults: list[str]) -> None:
+    """Add a fault for what is not a client of a cluster with workers; None is no client."""
+    if client is None:
+        return
     if not callable(getattr(client, "submit", None)) or not hasattr(client, "ncores"):
-        raise InputError(
+        faults.append(
             f"client = {client!r} must be a dask.distributed.Client (pip install distributed)"
         )
-    if not client.ncores():
-        raise InputError("client: its cluster has no workers; start some first")
+    elif not client.ncores():
+        faults.append("client: its cluster has no workers; start some first")
 
 
 def in_cluster(

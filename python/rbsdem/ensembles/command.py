@@ -19,8 +19,9 @@ from rbsdem.errors import InputError
 from rbsdem.motions import read_motion, read_motions
 
 DESCRIPTION = """\
-Run the column of a case under records of ground motions at several scales. Method, step and
-collapse drift are those of the case. Without records its own ground acceleration is the motion.
+Run the column of a case under records of ground motions at several scales. Method, step, collapse
+drift and the state to begin in are those of the case. Without records its own ground acceleration
+is the motion.
 """
 
 EPILOG = """\
@@ -39,6 +40,7 @@ _SETTINGS = (
     "rho_infinity",
     "collapse_drift",
     "allow_unstable",
+    "initial",
 )
 
 
@@ -102,6 +104,13 @@ def _motions(given: argparse.Namespace, case: Case) -> list[Any]:
             raise InputError(
                 f"{given.case} has no ground acceleration; give records: rbsdem ensemble "
                 f"{given.case} RECORD ..."
+            )
+        others = ("force", "vertical_acceleration", "axial_load")
+        acting = [name for name in others if getattr(case, name) is not None]
+        if acting:
+            raise InputError(
+                f"{given.case}: {acting[0]} has no place in an ensemble, whose motions are "
+                "horizontal; take it out of the case, or run the case by itself: rbsdem run"
             )
         return [(case.time, case.ground_acceleration)]
     motions: list[Any] = []

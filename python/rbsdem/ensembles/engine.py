@@ -22,6 +22,7 @@ from rbsdem.ensembles.inputs import (
     named_motions,
     raise_faults,
     scale_array,
+    states_of_columns,
 )
 from rbsdem.ensembles.measures import STATUSES, Measure, checked_measures, limit_states_among
 from rbsdem.ensembles.progress import telling
@@ -47,6 +48,7 @@ def ensemble(
     tolerance: float | None = None,
     rho_infinity: float | None = None,
     collapse_drift: float | None = None,
+    initial: Any = None,
     allow_unstable: bool = False,
     jobs: int | None = None,
     store: str | os.PathLike[str] | None = None,
@@ -82,6 +84,11 @@ def ensemble(
         As for `time_history`.
     events : {"step", "located"}, optional
         As for `time_history`.
+    initial : Result, path, or sequence or mapping of them, optional
+        The state that the runs begin in, which another analysis has ended in, as for
+        `time_history`: one for all columns, or one for each, in their order or by their names
+        (None: at rest). A column that begins in several states is given once for each, under names
+        of its own.
     allow_unstable : bool, optional
         As for `time_history`.
     jobs : int, optional
@@ -124,6 +131,7 @@ def ensemble(
     faults: list[str] = []
     column_names, column_items = named_columns(columns, faults)
     given, motion_items = named_motions(motions, faults)
+    before = states_of_columns(initial, column_names, faults)
     full = scale_array(scales, len(column_names), given, faults)
     check_jobs(jobs, faults)
     names: tuple[str, ...] = ()
@@ -133,11 +141,7 @@ def ensemble(
     except InputError as error:
         faults.append(str(error))
     part = _checked_part(shard, store, faults)
-    if client is not None:
-        try:
-            check_client(client)
-        except InputError as error:
-            faults.append(str(error))
+    check_client(client, faults)
     raise_faults(faults)
     wanted = np.flatnonzero(~np.isnan(full).ravel())
     column, motion, _ = np.unravel_index(wanted, full.shape)
@@ -150,6 +154,7 @@ def ensemble(
         motion.astype(np.int32),
         full.ravel()[wanted],
         limit_states_among(names),
+        before,
     )
     seconds, wrong = expected(plan)
     raise_faults([f"column {column_names[i]!r}: {text}" for i, text in wrong])
@@ -182,6 +187,9 @@ def ensemble(
         columns=dict(zip(column_names, column_items, strict=True)),
         motions={item.name: item for item in motion_items},
         settings=settings,
+        initial={
+            name: state for name, state in zip(column_names, before, strict=True) if state.size
+        },
         column=plan.column,
         motion=plan.motion,
         scale=plan.scale,

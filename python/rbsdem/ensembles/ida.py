@@ -27,7 +27,7 @@ from rbsdem.errors import InputError
 from rbsdem.motions.motion import GroundMotion
 
 #: Settings that change nothing in the answer.
-_OF_THE_RUN = ("jobs", "progress", "store")
+_OF_THE_RUN = ("initial", "jobs", "progress", "store")
 #: Percentages of the fractile curves.
 FRACTILES = (16.0, 50.0, 84.0)
 
@@ -122,6 +122,12 @@ class IDA(Fragile[Fragility]):
         smooth = not is_switch(measure)
         ends = [_crossing(*self._curve(c, m, response), limit, smooth) for c, m in self._pairs()]
         lower, upper = np.array(ends).T
+        if (upper == 0).any():
+            at = float(response[self.runs.intensity == 0].max())
+            raise InputError(
+                f"{measure}: {limit:g} is reached in the initial state already, without any motion "
+                f"({at:.3g}); give a limit beyond it"
+            )
         return Capacities(lower, upper)
 
     def fragility(self, edp: str = "collapse", threshold: float | None = None) -> Fragility:
@@ -157,8 +163,10 @@ class IDA(Fragile[Fragility]):
         own = (self.runs.column == column) & (self.runs.motion == motion)
         level, values = self.runs.intensity[own], response[own]
         kept = level <= self.upper[column, motion] * (1 + 1e-12)
-        level = np.concatenate([[0.0], level[kept]])
-        return level, np.concatenate([[0.0], values[kept]])
+        level, values = level[kept], values[kept]
+        if level.size and level[0] == 0:
+            return level, values
+        return np.concatenate([[0.0], level]), np.concatenate([[0.0], values])
 
     def __repr__(self) -> str:
         found = self.collapse_intensity[np.isfinite(self.upper)]
@@ -182,6 +190,10 @@ def ida(
     method: Method = "auto",
     dt: float | None = None,
     tolerance: float | None = None,
+    events: Literal["step", "located"] | None = None,
+    rho_infinity: float | None = None,
+    allow_unstable: bool = False,
+    initial: Any = None,
     jobs: int | None = None,
     progress: bool = False,
     store: str | os.PathLike[str] | None = None,
@@ -208,7 +220,10 @@ def ida(
         Displacement of the top over the height that counts as a collapse.
     measures : sequence, optional
         What is kept of each run, as for `rbsdem.ensemble`.
-    method, dt, tolerance, jobs, progress : optional
+    initial : Result, path, or sequence or mapping of them, optional
+        The state that all runs of a column begin in, as for `rbsdem.ensemble`: what an aftershock
+        finds. The curves begin at what the column does in it without motion.
+    method, dt, tolerance, events, rho_infinity, allow_unstable, jobs, progress : optional
         As for `rbsdem.ensemble`. A run that fails is tried again with "rk45"; one that fails
         twice counts as a collapse, with a warning.
     store : path, optional
@@ -233,7 +248,11 @@ def ida(
         "method": method,
         "dt": dt,
         "tolerance": tolerance,
+        "events": events,
+        "rho_infinity": rho_infinity,
+        "allow_unstable": _core.switch(allow_unstable, "allow_unstable"),
         "collapse_drift": checked_drift(collapse_drift),
+        "initial": initial,
         "jobs": jobs,
         "progress": progress,
         "store": None if store is None else Path(store),
@@ -242,13 +261,18 @@ def ida(
     hunt = _hunt(levels)
     work = Collector(columns, found, measure, names, settings)
     shape = len(columns), len(found)
+    work.run_unshaken("ida")
     if hunt is not None:
         lower, upper = hunt_and_fill(work, hunt)
     else:
         at = checked_levels(levels)
         collapsed = work.run(np.broadcast_to(at, (*shape, at.size)).copy())
         lower, upper = _first(at, collapsed)
-    about = {n: v for n, v in settings.items() if v is not None and n not in _OF_THE_RUN}
+    about = {
+        n: v
+        for n, v in settings.items()
+        if v is not None and v is not False and n not in _OF_THE_RUN
+    }
     about["levels"] = "hunt" if hunt is not None else "given"
     return IDA(work.finish(), lower, upper, about, time.perf_counter() - begin)
 
@@ -293,6 +317,8 @@ def _crossing(level: Array, response: Array, limit: float, smooth: bool) -> tupl
     if not reached.size:
         return float(level[-1]), np.inf
     i = int(reached[0])
+    if i == 0:
+        return 0.0, 0.0
     low, high = float(level[i - 1]), float(level[i])
     if not (smooth and np.isfinite(response[i])):
         return low, high

@@ -41,6 +41,8 @@ Exit codes: 0 all went well, 1 the analysis failed, 2 the input is wrong, 130 in
 
 _DRIFT = 0.1
 _WORD = "synthetic"
+#: Settings of a case that go with its method.
+_OF_METHOD = ("dt", "events", "tolerance", "rho_infinity", "allow_unstable")
 
 
 def parser() -> CommandParser:
@@ -123,11 +125,13 @@ def _settings(case: Case, given: argparse.Namespace) -> dict[str, Any]:
     """Return method, step and collapse of the command line, else of the case."""
     own = "auto" if case.method == "static" else case.method
     settings: dict[str, Any] = {"method": given.method or own}
-    step = given.dt
-    if step is None and given.method is None:
-        step = case.settings.get("dt")
-    if step is not None:
-        settings["dt"] = step
+    # What belongs to the method of the case has no meaning for another one.
+    if given.method is None:
+        settings |= {name: case.settings[name] for name in _OF_METHOD if name in case.settings}
+    if given.dt is not None:
+        settings["dt"] = given.dt
+    if "initial" in case.settings:
+        settings["initial"] = case.settings["initial"]
     drift = given.collapse_drift
     settings["collapse_drift"] = (
         case.settings.get("collapse_drift", _DRIFT) if drift is None else drift

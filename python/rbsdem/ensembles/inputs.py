@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -13,11 +15,23 @@ from rbsdem import _core
 from rbsdem._core import Array
 from rbsdem.column import Column, checked_column
 from rbsdem.errors import InputError
+from rbsdem.result import Result
+from rbsdem.state_file import state_of
 
-__all__ = ["Motion", "named_columns", "named_motions", "scale_array"]
+__all__ = [
+    "AT_REST",
+    "Motion",
+    "named_columns",
+    "named_motions",
+    "scale_array",
+    "states_of_columns",
+]
 
 #: More faults than this are only counted.
 MOST_FAULTS = 25
+
+#: The state of a column at rest.
+AT_REST: Array = np.empty(0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +62,7 @@ def named_columns(columns: Any, faults: list[str]) -> tuple[list[str | int], lis
             checked_column(item)
         except InputError as error:
             faults.append(f"column {name!r}: {error}")
+    _check_names(names, "columns", "Column", faults)
     if not names and not faults:
         faults.append("columns is empty; give at least one Column")
     return names, items
@@ -71,10 +86,7 @@ def named_motions(motions: Any, faults: list[str]) -> tuple[int, list[Motion]]:
             found.append(_motion(name, item))
         except InputError as error:
             faults.append(f"motion {name!r}: {error}")
-    for name in sorted({str(name) for name in names if names.count(name) > 1}):
-        faults.append(
-            f"motions: two are called {name!r}; give them other names, as {{name: motion}}"
-        )
+    _check_names(names, "motions", "motion", faults)
     if not names and not faults:
         faults.append("motions is empty; give at least one motion")
     return len(names), found
@@ -89,6 +101,13 @@ def _named(given: Any, what: str, one: str, faults: list[str]) -> tuple[list[str
         faults.append(f"{what} = {type(given).__name__} must be a {one}, or several of them")
         return [], []
     return list(range(len(items))), items
+
+
+def _check_names(names: list[str | int], what: str, one: str, faults: list[str]) -> None:
+    """Add a fault for names that are the same text: in a table they could not be told apart."""
+    count = Counter(map(str, names))
+    for name in sorted(name for name, number in count.items() if number > 1):
+        faults.append(f"{what}: two are called {name!r}; give them other names, as {{name: {one}}}")
 
 
 def _own_name(item: Any, number: str | int) -> str | int:
@@ -134,6 +153,48 @@ def _motion(name: str | int, item: Any) -> Motion:
             f"before, {time[at]} s; times must ascend strictly"
         )
     return Motion(name, time, acceleration)
+
+
+def states_of_columns(initial: Any, names: list[str | int], faults: list[str]) -> list[Array]:
+    """Return the state that the runs of each column begin in; an empty one is at rest.
+
+    `initial` is one state for all columns, a sequence with one for each, or a mapping by their
+    names; None among them is at rest.
+    """
+    if initial is None:
+        return [AT_REST] * len(names)
+    if isinstance(initial, (str, os.PathLike, Result, np.ndarray)):
+        return [_state(initial, "", faults)] * len(names)
+    if isinstance(initial, Mapping):
+        unknown = [name for name in initial if name not in names]
+        if unknown:
+            faults.append(
+                f"initial: {unknown[0]!r} is no column; they are {', '.join(map(repr, names[:20]))}"
+            )
+        given = [initial.get(name) for name in names]
+    else:
+        try:
+            given = list(initial)
+        except TypeError:
+            return [_state(initial, "", faults)] * len(names)
+        if len(given) != len(names):
+            faults.append(
+                f"initial: {len(given)} states for {len(names)} columns; give one for each, or one "
+                "for all"
+            )
+            return [AT_REST] * len(names)
+    return [
+        AT_REST if state is None else _state(state, f"column {name!r}: ", faults)
+        for name, state in zip(names, given, strict=True)
+    ]
+
+
+def _state(initial: Any, who: str, faults: list[str]) -> Array:
+    try:
+        return state_of(initial, "ensemble")
+    except InputError as error:
+        faults.append(f"{who}{error}")
+        return AT_REST
 
 
 def scale_array(scales: ArrayLike, columns: int, motions: int, faults: list[str]) -> Array:

@@ -39,7 +39,7 @@ MEASURES = {
     "steps": "number of steps",
     "events": "how often a spring left its line",
     "cut_steps": "steps cut at an event, for accuracy, or because they did not converge",
-    "lost_joint": "number of the joint that lost its axial load, 0 for none",
+    "lost_joint": "number of the joint that lost its axial load, as in a `Result`; NaN: none did",
 }
 
 #: Limit states that are measures too if they are asked for: the time at which each is first reached
@@ -47,7 +47,7 @@ MEASURES = {
 LIMIT_STATES = {name: what for name, what in WATCHED.items() if name != "first_yield"}
 
 #: Measures that are whole numbers.
-COUNTS = ("steps", "events", "cut_steps", "lost_joint")
+COUNTS = ("steps", "events", "cut_steps")
 
 
 @cache

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem.column import Column
-from rbsdem.ensembles.inputs import Motion
+from rbsdem.ensembles.inputs import AT_REST, Motion
 from rbsdem.ensembles.measures import STATUSES
 from rbsdem.ensembles.tasks import one_run
 from rbsdem.errors import InputError
@@ -34,6 +34,8 @@ class Ensemble:
         The motions by their names, with `time` [s] and `acceleration` [m/s2].
     settings : dict
         The settings of the analysis that were given, as keywords of `time_history`.
+    initial : dict of ndarray
+        The states that runs of a column began in, by its name; the others began at rest.
     column, motion : ndarray of int, shape (runs,)
         Places of column and motion of each run in `columns` and `motions`.
     scale : ndarray, shape (runs,)
@@ -56,6 +58,7 @@ class Ensemble:
     columns: Mapping[str | int, Column]
     motions: Mapping[str | int, Motion]
     settings: dict[str, Any]
+    initial: dict[str | int, Array]
     column: NDArray[np.int32]
     motion: NDArray[np.int32]
     scale: Array
@@ -116,7 +119,8 @@ class Ensemble:
         """
         if not 0 <= _core.whole(run, "run") < len(self):
             raise InputError(f"run = {run} must be from 0 to {len(self) - 1}")
-        column = list(self.columns.values())[self.column[run]]
+        name, column = list(self.columns.items())[self.column[run]]
         motion = list(self.motions.values())[self.motion[run]]
-        result: Result = one_run(column, motion, float(self.scale[run]), self.settings)
+        state = self.initial.get(name, AT_REST)
+        result: Result = one_run(column, motion, float(self.scale[run]), self.settings, state)
         return result

@@ -178,6 +178,20 @@ class Collector:
         collapsed.ravel()[np.flatnonzero(~np.isnan(scales).ravel())] = np.isin(status, LOST)
         return collapsed
 
+    def run_unshaken(self, who: str) -> None:
+        """Run without motion, where columns begin in states that other analyses ended in.
+
+        These runs are the beginnings of the curves, which else begin in the origin.
+        """
+        if self.settings.get("initial") is None:
+            return
+        collapsed = self.run(np.zeros((len(self.columns), len(self.motions), 1)))
+        for column in np.flatnonzero(collapsed.any(axis=(1, 2))):
+            raise InputError(
+                f"{who}: column {list(self.columns)[column]!r} collapses from its initial state "
+                "without any motion; check initial and collapse_drift"
+            )
+
     def _ensemble(self, scales: Array, settings: dict[str, Any]) -> Any:
         self.rounds += 1
         store = settings.get("store")
@@ -223,7 +237,7 @@ class Collector:
 
 
 #: Settings that a second attempt by another method keeps.
-_KEPT = ("collapse_drift", "jobs", "progress", "store")
+_KEPT = ("collapse_drift", "initial", "jobs", "progress", "store")
 
 
 def columns_by_name(columns: Any, who: str) -> dict[str | int, Column]:

@@ -36,6 +36,8 @@ except ImportError:  # Windows
 __all__ = ["Store"]
 
 _MANIFEST = "manifest.json"
+#: Where a shard has the digest of what it holds.
+_SUM = b"rbsdem"
 
 #: Letters of a digest in the name of a shard.
 _LETTERS = 32
@@ -113,10 +115,14 @@ class Store:
                 "motions": _digest(_motion_bytes(plan, j) for j in range(len(plan.motions))),
                 "scales": _digest([plan.column, plan.motion, plan.scale]),
                 "settings": _digest([json.dumps(plan.settings, sort_keys=True)]),
+                "initial": _digest(plan.initial),
                 "measures": _digest([*plan.states, *map(_source, plan.functions.values())]),
             },
             "settings": plan.settings,
             "measures": list(plan.functions),
+            "initial": [
+                str(name) for name, state in zip(columns, plan.initial, strict=True) if state.size
+            ],
             "seeds": seeds,
             "runs": int(plan.scale.size),
             "shards": list(self.shards.values()),
@@ -184,23 +190,18 @@ class Store:
                     path.unlink()
 
     def read(self, piece: Piece) -> TaskResult | None:
-        """Return the result of a shard; None if it is not there, or cannot be read."""
+        """Return the result of a shard; None if it is not there, or is damaged."""
         parquet = need_parquet()
         path = self._path(piece)
         if not path.is_file():
             return None
         try:
-            table = parquet.read_table(path).to_pydict()
-            statuses = [STATUSES.index(status) for status in table["status"]]
-            fates = np.array(statuses, dtype=np.int8)
-            values = np.array([table[name] for name in self._plan.names], dtype=np.float64)
-            extra = {name: np.array(table[name], dtype=np.float64) for name in self._plan.functions}
-        except (OSError, KeyError, ValueError):  # Those of pyarrow are ValueErrors.
+            table = parquet.read_table(path)
+            found = _result_of(table, self._plan)
+            whole = (table.schema.metadata or {}).get(_SUM) == _sum(found)
+        except (OSError, KeyError, ValueError, TypeError):  # Those of pyarrow are among them.
             return None
-        if fates.size != piece[1] - piece[0]:
-            return None
-        errors = {run: text for run, text in enumerate(table["error"]) if text}
-        return TaskResult(fates, values, extra, errors)
+        return found if whole and found.fates.size == piece[1] - piece[0] else None
 
     def write(self, piece: Piece, result: TaskResult) -> None:
         """Write a shard, if all of its runs are done.
@@ -216,23 +217,27 @@ class Store:
         import pyarrow as pa  # noqa: PLC0415
 
         first, last = piece
-        columns, motions = ([str(name) for name in names] for names in self._names)
         rows = slice(first, last)
+        columns, motions = (list(map(_text, names)) for names in self._names)
+        coded = pa.DictionaryArray.from_arrays
+        errors = np.full(last - first, "", dtype=object)
+        errors[list(result.errors)] = list(result.errors.values())
         data: dict[str, Any] = {
             "run": pa.array(np.arange(first, last)),
-            "column": pa.array([columns[i] for i in self._plan.column[rows]]).dictionary_encode(),
-            "motion": pa.array([motions[j] for j in self._plan.motion[rows]]).dictionary_encode(),
+            "column": coded(self._plan.column[rows], columns),
+            "motion": coded(self._plan.motion[rows], motions),
             "scale": pa.array(self._plan.scale[rows]),
-            "status": pa.array([STATUSES[fate] for fate in result.fates]).dictionary_encode(),
+            "status": coded(result.fates, list(STATUSES)),
         }
         data |= {
             name: pa.array(values)
             for name, values in zip(self._plan.names, result.values, strict=True)
         }
         data |= {name: pa.array(values) for name, values in result.extra.items()}
-        data["error"] = pa.array([result.errors.get(run, "") for run in range(last - first)])
+        data["error"] = pa.array(errors)
+        table = pa.table(data).replace_schema_metadata({_SUM: _sum(result)})
         with _clear(self.folder), whole_file(self._path(piece)) as file:
-            parquet.write_table(pa.table(data), file)
+            parquet.write_table(table, file)
 
     def _path(self, piece: Piece) -> Path:
         return self.folder / "shards" / f"{self.shards[piece]}.parquet"
@@ -251,6 +256,32 @@ def _clear(folder: Path) -> Iterator[None]:
             f"store: {folder}: {os.strerror(error.errno)}; the shards that were written are kept, "
             "and a new start goes on from there",
         ) from error
+
+
+def _result_of(table: Any, plan: Plan) -> TaskResult:
+    """Return what a shard holds."""
+    status = table["status"].combine_chunks()
+    codes = np.array([STATUSES.index(word) for word in status.dictionary.to_pylist()], np.int8)
+    return TaskResult(
+        codes[status.indices.to_numpy()],
+        np.array([table[name].to_numpy() for name in plan.names]),
+        {name: table[name].to_numpy() for name in plan.functions},
+        {run: text for run, text in enumerate(table["error"].to_pylist()) if text},
+    )
+
+
+def _sum(result: TaskResult) -> bytes:
+    """Return the digest of a result, by which a shard knows that it is whole."""
+    digest = hashlib.sha256(result.fates.astype(np.int8).tobytes())
+    for values in (*result.values, *result.extra.values()):
+        digest.update(np.ascontiguousarray(values, dtype=np.float64).tobytes())
+    digest.update(json.dumps(sorted(result.errors.items())).encode())
+    return digest.hexdigest().encode()
+
+
+def _text(name: str | int) -> str:
+    """Return a name that a file takes: names of files may have bytes that are no text."""
+    return str(name).encode("utf-8", "replace").decode()
 
 
 def _compare(folder: Path, known: dict[str, Any], wanted: dict[str, Any]) -> None:
@@ -309,11 +340,12 @@ def _source(function: Measure) -> str:
 
 def _shard_name(task: Task, given: bytes) -> str:
     digest = hashlib.sha256(given)
-    for column in task.columns:
+    for column, before in zip(task.columns, task.initial, strict=True):
         statement = column._statement
         digest.update(f"{statement.text}\0{statement.numbers!r}\0".encode())
         # Limit states follow from the drawing, which the statement does not have.
         digest.update(watches(column, task.states).tobytes())
+        digest.update(b"initial" + before.tobytes())
     for motion in task.motions:
         digest.update(motion.time.tobytes() + motion.acceleration.tobytes())
     digest.update(task.column.tobytes() + task.motion.tobytes() + task.scale.tobytes())

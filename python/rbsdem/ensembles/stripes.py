@@ -97,6 +97,7 @@ def stripes(
     measures: Sequence[str | Measure] = MEASURES,
     method: Method = "auto",
     dt: float | None = None,
+    initial: Any = None,
     jobs: int | None = None,
     progress: bool = False,
 ) -> Stripes:
@@ -111,7 +112,9 @@ def stripes(
         to it.
     levels : array_like, shape (k,), optional
         Intensities of the runs [m/s2], unless the motions come by level.
-    intensity, period, damping, collapse_drift, measures, method, dt, jobs, progress : optional
+    intensity, period, damping, collapse_drift, measures, method, dt, initial : optional
+        As for `rbsdem.ida`.
+    jobs, progress : optional
         As for `rbsdem.ida`.
 
     Returns
@@ -143,6 +146,7 @@ def stripes(
         "method": method,
         "dt": dt,
         "collapse_drift": checked_drift(collapse_drift),
+        "initial": initial,
         "jobs": jobs,
         "progress": progress,
     }

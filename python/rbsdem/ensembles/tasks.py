@@ -13,7 +13,7 @@ from rbsdem import _core
 from rbsdem._core import Array
 from rbsdem.analysis import time_history
 from rbsdem.column import Column
-from rbsdem.ensembles.inputs import Motion
+from rbsdem.ensembles.inputs import AT_REST, Motion
 from rbsdem.ensembles.measures import STATUSES, Measure, core_measures
 from rbsdem.errors import RbsdemError
 from rbsdem.limit_states.criteria import criteria
@@ -33,7 +33,11 @@ _FAILED = STATUSES.index("failed")
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """Runs that are done at one go, with all that they need; it can be sent to another process."""
+    """Runs that are done at one go, with all that they need; it can be sent to another process.
+
+    `initial` are the states that the runs of each column begin in; an empty one is at rest, no list
+    that all are.
+    """
 
     columns: list[Column]
     motions: list[Motion]
@@ -43,6 +47,7 @@ class Task:
     scale: Array
     functions: dict[str, Measure] = field(default_factory=dict)
     states: tuple[str, ...] = ()
+    initial: list[Array] = field(default_factory=list)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -76,6 +81,7 @@ class Plan:
     motion: Integers
     scale: Array
     states: tuple[str, ...] = ()
+    initial: list[Array] = field(default_factory=list)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -95,6 +101,7 @@ class Plan:
             self.scale[first:last],
             self.functions,
             self.states,
+            [self.initial[i] for i in columns] if self.initial else [],
         )
 
 
@@ -115,6 +122,7 @@ def expected(plan: Plan) -> tuple[Array, list[tuple[int, str]]]:
         [column._statement for column in plan.columns],
         _core.settings(plan.settings),
         [_NO_WATCH] * len(plan.columns),
+        _before(plan),
         [(motion.time, motion.acceleration) for motion in plan.motions],
     )
 
@@ -130,16 +138,34 @@ def compute(task: Task, control: Integers | None = None, kernel: int = 0) -> Tas
         [column._statement for column in task.columns],
         _core.settings(task.settings),
         [watches(column, task.states) for column in task.columns],
+        _before(task),
         [(motion.time, motion.acceleration) for motion in task.motions],
         (task.column, task.motion, task.scale),
         control,
         len(task.names),
         kernel,
     )
+    _name_joints(task, values)
     extra = {name: np.full(len(task), np.nan) for name in task.functions}
     if extra:
         _call_functions(task, control, fates, errors, extra)
     return TaskResult(fates.astype(np.int8), values, extra, errors)
+
+
+def _before(work: Plan | Task) -> list[Array]:
+    """Return the states that the runs of each column begin in."""
+    return work.initial or [AT_REST] * len(work.columns)
+
+
+def _name_joints(task: Task, values: Array) -> None:
+    """Give the joints that were lost the numbers by which columns know them; NaN: none was.
+
+    The solver counts them from the ground, from 1, a footing's included.
+    """
+    lost = values[core_measures().index("lost_joint")]
+    lost[lost == 0] = np.nan
+    for run in np.flatnonzero(lost > 0):
+        lost[run] = task.columns[task.column[run]].joint_numbers[int(lost[run]) - 1]
 
 
 def _call_functions(
@@ -164,6 +190,7 @@ def _call_functions(
                     task.motions[task.motion[run]],
                     float(task.scale[run]),
                     task.settings,
+                    task.initial[task.column[run]] if task.initial else AT_REST,
                 )
         except RbsdemError as error:
             fates[run], errors[int(run)] = _FAILED, str(error)
@@ -176,13 +203,16 @@ def _call_functions(
                 errors[int(run)] = f"measure {name}: {type(error).__name__}: {error}"
 
 
-def one_run(column: Column, motion: Motion, scale: float, settings: dict[str, Any]) -> Any:
-    """Return the `Result` of one run, with its history."""
+def one_run(
+    column: Column, motion: Motion, scale: float, settings: dict[str, Any], initial: Array
+) -> Any:
+    """Return the `Result` of one run, with its history; an empty state is at rest."""
     layered = any(isinstance(spring, Layered) for spring in column.joints("flexure"))
     return time_history(
         column,
         motion.time,
         ground_acceleration=scale * motion.acceleration,
+        initial=initial if initial.size else None,
         openings=layered,
         **settings,
     )

@@ -4,6 +4,7 @@ module rbs_solve_ensemble_block
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_output_summary, only: summary_type
+   use rbs_solve_end_state, only: end_state, standing_type
    use rbs_solve_ensemble_lane_choice, only: takes_lanes, are_alike
    use rbs_solve_ensemble_lane_runs, only: run_in_lanes
    use rbs_solve_ensemble_outcome, only: outcome_type
@@ -14,6 +15,8 @@ module rbs_solve_ensemble_block
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: run_dynamic, plan_dynamic
+   use rbs_solve_time_start, only: resume_state
+   use rbs_solve_time_state, only: state_type
    implicit none
    private
 
@@ -40,7 +43,38 @@ contains
          if (allocated(error)) return
          seconds(j) = expected_seconds(column%column, plan)
       end do
+      call check_start(column, motion(size(motion)), plan, error)
    end subroutine plan_column
+
+   !> Whether runs of a column can begin in the state that it is given.
+   subroutine check_start(column, motion, planned, error)
+      type(ensemble_column), intent(in) :: column
+      type(ensemble_motion), intent(in) :: motion
+      type(time_plan), intent(in) :: planned
+      type(error_type), allocatable, intent(out) :: error
+      type(end_state) :: before
+      type(time_plan) :: plan
+      type(state_type) :: state
+      type(standing_type) :: standing
+      type(loads_type) :: loads
+
+      if (.not. allocated(column%before)) return
+      call take_before(column, before)
+      loads%ground%time = motion%time
+      loads%ground%value = motion%acceleration
+      plan = planned
+      call resume_state(state, column%column, loads, before, plan, standing, error)
+   end subroutine check_start
+
+   !> The state that runs of a column begin in, if it is given one.
+   pure subroutine take_before(column, before)
+      type(ensemble_column), intent(in) :: column
+      type(end_state), intent(inout) :: before
+
+      if (.not. allocated(column%before)) return
+      before%tape%value = column%before
+      before%tape%count = size(column%before)
+   end subroutine take_before
 
    !> Run them all.
    subroutine run_block(column, motion, run, level, outcome, control)
@@ -146,6 +180,7 @@ contains
       type(outcome_type), intent(inout) :: outcome
       type(loads_type) :: loads
       type(initial_state) :: at_rest
+      type(end_state) :: before
       type(tally_recorder) :: tally
       type(summary_type) :: summary
       type(error_type), allocatable :: error
@@ -157,10 +192,11 @@ contains
       end if
       loads%ground%time = motion%time
       loads%ground%value = scale*motion%acceleration
+      call take_before(column, before)
       call tally%begin(column%column%n, column%watch, column%states)
       allocate (outcome%reached(column%states))
       call run_dynamic(column%column, column%analysis, plan, motion%time, loads, at_rest, unset_integer, &
-                       tally, summary, error)
+                       tally, summary, error, before=before)
       call settle(tally, summary, error, outcome)
    end subroutine run_alone
 

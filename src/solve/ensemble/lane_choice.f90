@@ -16,8 +16,8 @@ module rbs_solve_ensemble_lane_choice
 
 contains
 
-   !> Whether lanes can take a run: small rotations, a free top, joints that do not open and are not layered,
-   !> all steps equal, lines changed at the end of a step; implicit methods with few bodies.
+   !> Whether lanes can take a run: from rest, small rotations, a free top, joints that do not open and are
+   !> not layered, all steps equal, lines changed at the end of a step; implicit methods with few bodies.
    pure logical function takes_lanes(of_runs, plan, time)
       type(ensemble_column), intent(in) :: of_runs
       type(time_plan), intent(in) :: plan
@@ -25,9 +25,12 @@ contains
       integer :: i
 
       takes_lanes = .false.
+      if (allocated(of_runs%before)) return
       associate (column => of_runs%column)
          if (column%opens .or. column%held .or. column%kinematics == finite) return
          if (any(column%spring%rule == 'layered')) return
+         ! Lanes of chains have not the bits of the steps that are made for one body without damping.
+         if (column%unknowns == 2 .and. .not. column%damped .and. .not. is_plain_body(of_runs)) return
       end associate
       select case (plan%method)
       case ('rk4')

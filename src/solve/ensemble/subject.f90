@@ -26,6 +26,8 @@ module rbs_solve_ensemble_subject
       !> What its runs are watched for, and the number of limit states of the ensemble
       type(watch_type), allocatable :: watch(:)
       integer :: states = 1
+      !> The state that its runs begin in, as `end_state` has it; not allocated: at rest
+      real(wp), allocatable :: before(:)
       !> What is wrong with it; all its runs fail
       type(error_type), allocatable :: error
    end type ensemble_column

@@ -63,7 +63,8 @@ contains
       call state%springs%go_under(press, standing%pressed)
       joint = state%springs%lost_joint() - column%n
       if (joint > 0) then
-         call fatal_error(error, analysis_failed, 'initial: the layers of joint '//to_text(joint)// &
+         call fatal_error(error, analysis_failed, 'initial: the layers of '// &
+                          trim(joint_name(column, column%n + joint))// &
                           ' cannot carry the axial load of '//to_text(press(joint))//' N in the '// &
                           'state that the first analysis ended in; give a smaller axial_load')
          return
