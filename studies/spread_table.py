@@ -12,6 +12,13 @@ of the tests. A test counts 1/sqrt(tests of its series), half-way between every 
 series alike. There are two sets of numbers: for columns far from their shear strength and for those
 at it, as far as the model says, whatever the test said.
 
+**Distance.** Left-out tests are the farther from their prediction the farther they are from the
+middle of the tests that were not left out, in five properties (`rbsdem.section.remote`). The band
+grows with this distance, by the slope of the logarithm of the distance that holds 80 % of a test's
+points. How much of the band is there without samples (`SHAPE`) is what makes the interval score of
+left-out tests least (Winkler 1972: the width, and ten times what a point is beyond); the table of
+the choice prints it.
+
 **Correction.** Quantiles of a few dozen series are too near for a series that is not among them. So
 the share of the tests that they are taken at is found on series left out again: it is such that
 quantiles without a group hold 80 % of that group, over all groups (conformal correction).
@@ -43,17 +50,19 @@ from typing import Any, NamedTuple
 
 import fit_model
 import numpy as np
+from spread_quantiles import LEVEL, Growth, Numbers, Points, Ratios, between, growth_of, weights
 
 import rbsdem
 from rbsdem import peer
 from rbsdem.comparison import secant_stiffness
 from rbsdem.comparison.metrics import PathPoints
 from rbsdem.section import Scatter, parameters
+from rbsdem.section.remote import place_of
 from rbsdem.section.spread import half_band, near_shear, numbers, path_force, sample
 
-#: What nominally equal specimens differ by, over their peak force.
-TWINS = 0.05
-LEVEL = 0.8
+#: What the band has without samples, over the largest force; and what else was tried.
+SHAPE = 0.15
+SHAPES = (0.05, 0.1, 0.15, 0.2, 0.3)
 #: Points along the path at which a band is judged.
 POINTS = 400
 ROOT = Path(__file__).resolve().parents[1]
@@ -86,25 +95,6 @@ def _column(number: int, judged: int | None) -> Any:
     return peer.column(case.specimen, model_parameters=fit_model.at(places))
 
 
-class Numbers(NamedTuple):
-    """A left-out test against its prediction.
-
-    Attributes
-    ----------
-    near : float
-        How near the model is to its shear strength.
-    logs : dict of str to float
-        ln of test over model. Of a drift at loss that the model does not come to along the path,
-        the largest drift stands for it; NaN where the test did not come to it.
-    beyond : bool
-        Whether the model does not lose its strength along the path, so that there is no upper end.
-    """
-
-    near: float
-    logs: dict[str, float]
-    beyond: bool
-
-
 def _numbers(task: tuple[int, int | None]) -> Numbers:
     number, judged = task
     case = fit_model._cases[number]
@@ -123,122 +113,47 @@ def _numbers(task: tuple[int, int | None]) -> Numbers:
     return Numbers(near_shear(column, float(np.max(np.abs(force)))), logs, beyond)
 
 
-def _band(task: tuple[int, int | None, int, Scatter]) -> tuple[np.ndarray, float]:
-    """Return distances from the prediction over the half band, and the mean width of the band."""
+class Band(NamedTuple):
+    """What the samples say of a left-out test, along the path and over its predicted peak.
+
+    Attributes
+    ----------
+    way : ndarray, shape (points,)
+        Test less prediction.
+    above, below : ndarray, shape (points,)
+        The half bands of the samples alone.
+    """
+
+    way: np.ndarray
+    above: np.ndarray
+    below: np.ndarray
+
+    def scores(self, shape: float) -> np.ndarray:
+        """Return the distances of the test over the half band, with what it has for the shape."""
+        return np.where(
+            self.way > 0, self.way / (self.above + shape), -self.way / (self.below + shape)
+        )
+
+    def width(self, shape: float) -> float:
+        """Return the mean width of the band before it is widened."""
+        return float(np.mean(self.above + self.below)) + 2 * shape
+
+    def interval_score(self, shape: float, widen: float) -> float:
+        """Return the mean width, and what points are beyond it, which costs 2/(1 - LEVEL)."""
+        above, below = widen * (self.above + shape), widen * (self.below + shape)
+        beyond = np.maximum(self.way - above, 0) + np.maximum(-self.way - below, 0)
+        return float(np.mean(above + below + 2 / (1 - LEVEL) * beyond))
+
+
+def _band(task: tuple[int, int | None, int, Scatter]) -> Band:
     number, judged, samples, scatter = task
     case, column = fit_model._cases[number], _column(number, judged)
     d = case.target.displacement
     force = path_force(column, d)
+    peak = float(np.max(np.abs(force)))
     up, down = half_band(force, sample(column, d, scatter, samples), scatter)
     at = PathPoints(d, POINTS, "displacement")
-    way, above, below = at(case.target.force) - at(force), at(up), at(down)
-    peak = float(np.max(np.abs(force)))
-    return np.where(way > 0, way / above, -way / below), float(np.mean(above + below)) / peak
-
-
-# ---- quantiles -----------------------------------------------------------------------------------
-
-
-def quantile(values: np.ndarray, weight: np.ndarray, share: float) -> float:
-    """Return the value with a share of the weight below."""
-    order = np.argsort(values, kind="stable")
-    below = np.cumsum(weight[order])
-    return float(values[order][np.searchsorted(below, share * below[-1], side="left")])
-
-
-def both(near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return which tests are far from the shear strength, and which at it."""
-    return near < 0.5, near >= 0.5
-
-
-def between(ends: np.ndarray, near: np.ndarray) -> np.ndarray:
-    """Return numbers between those far from the shear strength and at it, shape (tests, ...)."""
-    return ends[0] + near.reshape(-1, *(1 for _ in ends.shape[1:])) * (ends[1] - ends[0])
-
-
-class Tests:
-    """Left-out tests with what is needed for quantiles: of a number, or of the band."""
-
-    def __init__(self, series: np.ndarray, group: np.ndarray, near: np.ndarray) -> None:
-        self.group, self.near = group, near
-        self.weight = np.array([1 / math.sqrt(np.sum(series == name)) for name in series])
-
-    def ends(self, chosen: np.ndarray, tail: float) -> np.ndarray:
-        """Return the ends far from the shear strength and at it."""
-        raise NotImplementedError
-
-    def held(self, ends: np.ndarray) -> np.ndarray:
-        """Return the share of each test that is within the ends; NaN if it does not count."""
-        raise NotImplementedError
-
-    def tail(self, chosen: np.ndarray) -> float:
-        """Return the tail with which chosen groups hold each of them left out to 80 %."""
-        groups = sorted(set(self.group[chosen].tolist()))
-        share = 1 - LEVEL
-        while share > 0.02:
-            held = np.full(len(self.near), np.nan)
-            for one in groups:
-                own = chosen & (self.group == one)
-                held[own] = self.held(self.ends(chosen & ~own, share))[own]
-            known = np.isfinite(held)
-            if np.average(held[known], weights=self.weight[known]) >= LEVEL:
-                break
-            share -= 0.005
-        return share
-
-
-class Ratios(Tests):
-    """A number: ends are those of ln of test over model."""
-
-    def __init__(self, rows: list[Numbers], name: str, *about: np.ndarray) -> None:
-        super().__init__(*about)
-        self.log = np.array([row.logs[name] for row in rows])
-        self.beyond = np.array([row.beyond and name == "drift" for row in rows])
-        self.drift = name == "drift"
-
-    def ends(self, chosen: np.ndarray, tail: float) -> np.ndarray:
-        """Return the quantiles; a model without a loss tells nothing of the upper one."""
-        found = []
-        for place in both(self.near):
-            low = chosen & place & np.isfinite(self.log)
-            high = low & ~self.beyond
-            found.append(
-                (
-                    quantile(self.log[low], self.weight[low], tail / 2),
-                    -quantile(-self.log[high], self.weight[high], tail / 2),
-                )
-            )
-        return np.array(found)
-
-    def held(self, ends: np.ndarray) -> np.ndarray:
-        """Return which tests are within; one without a loss is, where there is no upper end."""
-        low, high = between(ends, self.near).T
-        # Beyond the path no more is said than that the loss comes after a part of it.
-        low = np.where(self.beyond, np.minimum(low, 0.0), low)
-        inside = (low <= self.log) & ((self.log <= high) | self.beyond)
-        held = np.where(np.isfinite(self.log), inside, np.nan)
-        return np.where(np.isnan(self.log) & self.drift, self.beyond, held)
-
-
-class Points(Tests):
-    """The force along the path: the end is what the band is widened by."""
-
-    def __init__(self, scores: list[np.ndarray], *about: np.ndarray) -> None:
-        super().__init__(*about)
-        self.scores = np.array(scores)
-
-    def ends(self, chosen: np.ndarray, tail: float) -> np.ndarray:
-        """Return the distance over the half band below which the points are."""
-        found = []
-        for place in both(self.near):
-            part = self.scores[chosen & place]
-            weight = np.repeat(self.weight[chosen & place], part.shape[1])
-            found.append(quantile(part.ravel(), weight, 1 - tail))
-        return np.array(found)
-
-    def held(self, ends: np.ndarray) -> np.ndarray:
-        """Return the share of the points of each test within the band."""
-        return np.mean(self.scores <= between(ends, self.near)[:, None], axis=1)
+    return Band((at(case.target.force) - at(force)) / peak, at(up) / peak, at(down) / peak)
 
 
 # ---- tables --------------------------------------------------------------------------------------
@@ -267,7 +182,8 @@ def scatter_of(rows: list[Numbers], series: np.ndarray, chosen: np.ndarray) -> S
         logs = [math.nan if name == "drift" and r.beyond else r.logs[name] for r in rows]
         parts[what] = components(np.array(logs)[chosen], series[chosen])
     one = ((1.0, 1.0), (1.0, 1.0))
-    return Scatter(**parts, twins=TWINS, force=(1.0, 1.0), peak=one, energy=one, drift=one)
+    # What the band has for the shape is added where bands are judged.
+    return Scatter(**parts, shape=0.0, force=(1.0, 1.0), peak=one, energy=one, drift=one)
 
 
 class Fold(NamedTuple):
@@ -276,12 +192,15 @@ class Fold(NamedTuple):
     scatter: Scatter
     inside: dict[str, np.ndarray]
     width: np.ndarray
+    #: Of each shape, without and with growth: interval scores, shares of points, widths.
+    choices: dict[tuple[float, bool], np.ndarray]
 
 
 def fold(
     judged: int | None,
     series: np.ndarray,
     group: np.ndarray,
+    places: np.ndarray,
     samples: int,
     run: Callable[[Any, list[Any]], Iterator[Any]],
     once: dict[str, Any] | None,
@@ -299,25 +218,45 @@ def fold(
         if once is not None:
             once |= {"rows": rows, "scatter": scatter, "bands": bands}
     about = series, group, np.array([row.near for row in rows])
-    points = Points([row[0] for row in bands], *about)
+    choices = {}
+    for shape in SHAPES:
+        scores = np.array([band.scores(shape) for band in bands])
+        for grows in (False, True):
+            found_growth = growth_of(scores, places, about[2], weights(series), chosen)
+            grown = found_growth.grown if grows else np.ones(len(series))
+            points = Points(scores, grown, *about)
+            ends = points.ends(chosen, 1 - LEVEL)
+            widen = between(ends, points.near) * grown
+            both_ways = list(zip(bands, widen.tolist(), strict=True))
+            choices[shape, grows] = np.array(
+                [
+                    [band.interval_score(shape, by) for band, by in both_ways],
+                    points.held(ends),
+                    [by * band.width(shape) for band, by in both_ways],
+                ]
+            )
+    scores = np.array([band.scores(SHAPE) for band in bands])
+    far = growth_of(scores, places, about[2], weights(series), chosen)
+    points = Points(scores, far.grown, *about)
     ends = points.ends(chosen, points.tail(chosen))
-    width = between(ends, points.near) * np.array([row[1] for row in bands])
+    widen = between(ends, points.near) * far.grown
+    width = widen * np.array([band.width(SHAPE) for band in bands])
     inside, found = {"force": points.held(ends)}, {"force": _rounded(ends)}
     for name in NUMBERS:
         ratios = Ratios(rows, name, *about)
         ends = ratios.ends(chosen, ratios.tail(chosen))
         inside[name] = ratios.held(ends)
         found[name] = tuple(_rounded(np.exp(pair)) for pair in ends)
-    return Fold(scatter=_with(scatter, found), inside=inside, width=width)
+    return Fold(_with(scatter, far, found), inside, width, choices)
 
 
 def _rounded(values: np.ndarray) -> tuple[float, ...]:
     return tuple(round(float(value), 3) for value in values)
 
 
-def _with(scatter: Scatter, found: dict[str, Any]) -> Scatter:
-    values = {name: getattr(scatter, name) for name in (*NAMES.values(), "twins")}
-    return Scatter(**values, **found)
+def _with(scatter: Scatter, far: Growth, found: dict[str, Any]) -> Scatter:
+    values = {name: getattr(scatter, name) for name in NAMES.values()}
+    return Scatter(**values, shape=SHAPE, growth=far.growth, middle=far.middle, **found)
 
 
 def residual_table(rows: list[Numbers], series: np.ndarray) -> list[str]:
@@ -371,11 +310,46 @@ def coverage_table(
     return lines
 
 
+def choice_table(choices: dict[tuple[float, bool], np.ndarray], series: np.ndarray) -> list[str]:
+    """Return the interval scores of what was tried, a test weighted as everywhere."""
+    lines = [
+        "| band without samples | growth with the distance | interval score | points | width |",
+        "| ---: | --- | ---: | ---: | ---: |",
+    ]
+    for (shape, grows), values in choices.items():
+        score, held, width = np.average(values, axis=1, weights=weights(series))
+        lines.append(
+            f"| {shape} | {'yes' if grows else 'no'} | {score:.3f} | {held:.2f} | {width:.2f} |"
+        )
+    return lines
+
+
+def by_chance(inside: dict[str, np.ndarray], series: np.ndarray) -> list[str]:
+    """Return how groups of series come out if the same series are put into eight by chance."""
+    rng = np.random.default_rng(1)
+    names = np.array(sorted(set(series.tolist())))
+    lines = [
+        "| of a group by chance | force | peak | energy | drift at loss |",
+        "| --- | ---: | ---: | ---: | ---: |",
+    ]
+    shares: dict[str, list[float]] = {what: [] for what in ("force", *NUMBERS)}
+    for _ in range(500):
+        rng.shuffle(names)
+        for number in range(8):
+            own = np.isin(series, names[number::8])
+            for what, found in shares.items():
+                found.append(float(np.nanmean(inside[what][own])))
+    for text, share in (("5 %", 0.05), ("median", 0.5), ("95 %", 0.95)):
+        cells = [f"{np.nanquantile(found, share):.2f}" for found in shares.values()]
+        lines.append(f"| {text} | {' | '.join(cells)} |")
+    return lines
+
+
 def write(version: str, scatter: Scatter, tables: dict[str, list[str]]) -> None:
     """Put numbers and tables where they belong."""
     path = ROOT / "python/rbsdem/section/scatter.py"
     text = path.read_text("utf-8")
-    names = (*NAMES.values(), "twins", "force", *NUMBERS)
+    names = (*NAMES.values(), "shape", "force", *NUMBERS, "growth", "middle")
     values = "".join(f"        {name}={getattr(scatter, name)!r},\n" for name in names)
     entry = f'    "{version}": Scatter(\n{values}    ),\n'
     text = re.sub(rf'    "{re.escape(version)}": Scatter\(\n.*?\n    \),\n', "", text, flags=re.S)
@@ -414,6 +388,13 @@ def main() -> None:
     kinds = np.array([case.specimen.kind for case in cases])
     inside = {name: np.full(len(cases), np.nan) for name in ("force", *NUMBERS)}
     width = np.empty(len(cases))
+    places = np.array(
+        [
+            place_of(case.column.recipe.section, case.specimen.length, case.specimen.axial_load)
+            for case in cases
+        ]
+    )
+    choices: dict[tuple[float, bool], np.ndarray] = {}
     with ProcessPoolExecutor(given.jobs, initializer=_begin, initargs=source) as pool:
 
         def run(function: Any, tasks: list[Any]) -> Iterator[Any]:
@@ -423,17 +404,21 @@ def main() -> None:
         once: dict[str, Any] | None = {} if given.once else None
         for judged in range(given.groups):
             own = group == judged
-            found = fold(judged, series, group, given.samples, run, once)
+            found = fold(judged, series, group, places, given.samples, run, once)
             width[own] = found.width[own]
+            for key, values in found.choices.items():
+                choices.setdefault(key, np.empty_like(values))[:, own] = values[:, own]
             for name, values in inside.items():
                 values[own] = found.inside[name][own]
             seconds = time.perf_counter() - began
             held = inside["force"][own].mean()
             print(f"group {judged + 1}: {held:.2f} within, {seconds:.0f} s", flush=True)
-        shipped = fold(None, series, group, given.samples, run, once).scatter
+        shipped = fold(None, series, group, places, given.samples, run, once).scatter
     tables = {
         "scatter": residual_table(rows, series),
         "coverage": coverage_table(inside, width, kinds, group, series),
+        "chance": by_chance(inside, series),
+        "choice": choice_table(choices, series),
     }
     for lines in tables.values():
         print("\n" + "\n".join(lines))

@@ -29,6 +29,7 @@ _TEXTS = ("status", "error", "note")
 _TIMES = ("seconds_model", "seconds_analysis")
 _CURVES = ("displacement", "force", "median", "lower", "upper")
 _INTERVALS = ("peak_force", "energy", "drift_at_loss")
+_SHARES = ("near_shear", "distance")
 
 
 class Journal:
@@ -173,7 +174,8 @@ def _band_line(band: Spread) -> dict[str, Any]:
     """Return a band as values of json; its samples are left out."""
     line: dict[str, Any] = {name: _packed(getattr(band, name)) for name in _CURVES}
     line |= {name: dataclasses.astuple(getattr(band, name)) for name in _INTERVALS}
-    return line | {"near_shear": band.near_shear, "remarks": list(band.remarks)}
+    line |= {name: getattr(band, name) for name in _SHARES}
+    return line | {"remarks": list(band.remarks)}
 
 
 def _band_of(line: dict[str, Any]) -> Spread:
@@ -183,7 +185,7 @@ def _band_of(line: dict[str, Any]) -> Spread:
         **curves,
         **intervals,
         samples=np.empty((0, curves["force"].size)),
-        near_shear=float(line["near_shear"]),
+        **{name: float(line[name]) for name in _SHARES},
         remarks=tuple(str(text) for text in line["remarks"]),
     )
 

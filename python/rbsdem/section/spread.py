@@ -6,7 +6,8 @@ laboratory and from test to test (`Scatter`). Samples of it (Sobol points) go th
 force times a factor, the displacement over a factor, and the parameters of degradation times one.
 The bands of the samples are then widened by one number so that 80 % of the points of left-out tests
 lie within (conformal prediction), because a model is wrong in more ways than three. The number is
-another for columns that come near their shear strength, which are predicted worse.
+another for columns that come near their shear strength, and grows with the distance from the middle
+of the tests: both are predicted worse.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ from rbsdem.column import Column
 from rbsdem.comparison import strength_loss
 from rbsdem.comparison.metrics import PathPoints, work
 from rbsdem.errors import AccuracyWarning, InputError, SolveError
+from rbsdem.section.remote import place_of
 from rbsdem.section.scatter import SCATTER, Scatter
 from rbsdem.section.sobol import sobol
 
@@ -125,6 +127,9 @@ class Spread:
         Largest force [N], work [J], drift ratio at which 20 % of the strength is lost.
     near_shear : float
         How near the column is to its shear strength, 0 to 1, on which the width depends.
+    distance : float
+        How far it is from the middle of the tests that the model was fitted to, in their standard
+        deviations, on which the width depends too; NaN where the version does not know it.
     remarks : tuple of str
         Where the column is outside the range of the tests that the parameters were fitted to.
     """
@@ -139,6 +144,7 @@ class Spread:
     energy: Interval
     drift_at_loss: Interval
     near_shear: float
+    distance: float
     remarks: tuple[str, ...]
 
     def __repr__(self) -> str:
@@ -253,7 +259,10 @@ def spread(
     peak = float(np.max(np.abs(force)))
     near = near_shear(column, peak)
     up, down = half_band(force, sampled, scatter)
+    distance = _distance(column, scatter)
     widen = between(scatter.force, near)
+    if scatter.middle is not None:
+        widen *= math.exp(scatter.growth * distance)
     values = numbers(d, force, column.height)
     return Spread(
         displacement=d,
@@ -268,6 +277,7 @@ def spread(
             values["drift"], scatter.drift, near, float(np.max(np.abs(d))) / column.height
         ),
         near_shear=near,
+        distance=distance,
         remarks=remarks,
     )
 
@@ -317,10 +327,10 @@ def half_band(force: Array, samples: Array, scatter: Scatter) -> tuple[Array, Ar
     samples : ndarray, shape (n, m)
         Its samples [N].
     scatter : Scatter
-        What nominally equal specimens differ by is in the band even so.
+        What it has for the shape of loops is in the band even without samples.
     """
     low, high = np.quantile(samples, (_LOW, _HIGH), axis=0)
-    least = scatter.twins * float(np.max(np.abs(force)))
+    least = scatter.shape * float(np.max(np.abs(force)))
     return np.maximum(high - force, 0.0) + least, np.maximum(force - low, 0.0) + least
 
 
@@ -354,6 +364,14 @@ def near_shear(column: Column, peak: float) -> float:
     strength = getattr(column.shear[0], "f_y", math.inf)
     low, high = _NEAR
     return min(max((peak / strength - low) / (high - low), 0.0), 1.0)
+
+
+def _distance(column: LayeredColumn, scatter: Scatter) -> float:
+    """Return how far a column is from the middle of the tests; NaN where that is not known."""
+    recipe = column.recipe
+    if scatter.middle is None or recipe is None:
+        return math.nan
+    return scatter.middle.distance(place_of(recipe.section, recipe.height, column.axial_load))
 
 
 def between(ends: tuple[float, float], share: float) -> float:

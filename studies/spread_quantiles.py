@@ -1,0 +1,171 @@
+"""Quantiles of left-out tests, and how bands grow with the distance from the tests.
+
+Used by `studies/spread_table.py`, which says what they are for.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from rbsdem.section.remote import Middle
+
+#: What bands and intervals are to hold.
+LEVEL = 0.8
+
+
+class Numbers(NamedTuple):
+    """A left-out test against its prediction.
+
+    Attributes
+    ----------
+    near : float
+        How near the model is to its shear strength.
+    logs : dict of str to float
+        ln of test over model. Of a drift at loss that the model does not come to along the path,
+        the largest drift stands for it; NaN where the test did not come to it.
+    beyond : bool
+        Whether the model does not lose its strength along the path, so that there is no upper end.
+    """
+
+    near: float
+    logs: dict[str, float]
+    beyond: bool
+
+
+def quantile(values: np.ndarray, weight: np.ndarray, share: float) -> float:
+    """Return the value with a share of the weight below."""
+    order = np.argsort(values, kind="stable")
+    below = np.cumsum(weight[order])
+    return float(values[order][np.searchsorted(below, share * below[-1], side="left")])
+
+
+def both(near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return which tests are far from the shear strength, and which at it."""
+    return near < 0.5, near >= 0.5
+
+
+def between(ends: np.ndarray, near: np.ndarray) -> np.ndarray:
+    """Return numbers between those far from the shear strength and at it, shape (tests, ...)."""
+    return ends[0] + near.reshape(-1, *(1 for _ in ends.shape[1:])) * (ends[1] - ends[0])
+
+
+def weights(series: np.ndarray) -> np.ndarray:
+    """Return what each test counts."""
+    return np.array([1 / math.sqrt(np.sum(series == name)) for name in series])
+
+
+class Tests:
+    """Left-out tests with what is needed for quantiles: of a number, or of the band."""
+
+    def __init__(self, series: np.ndarray, group: np.ndarray, near: np.ndarray) -> None:
+        self.group, self.near = group, near
+        self.weight = weights(series)
+
+    def ends(self, chosen: np.ndarray, tail: float) -> np.ndarray:
+        """Return the ends far from the shear strength and at it."""
+        raise NotImplementedError
+
+    def held(self, ends: np.ndarray) -> np.ndarray:
+        """Return the share of each test that is within the ends; NaN if it does not count."""
+        raise NotImplementedError
+
+    def tail(self, chosen: np.ndarray) -> float:
+        """Return the tail with which chosen groups hold each of them left out to 80 %."""
+        groups = sorted(set(self.group[chosen].tolist()))
+        share = 1 - LEVEL
+        while share > 0.02:
+            held = np.full(len(self.near), np.nan)
+            for one in groups:
+                own = chosen & (self.group == one)
+                held[own] = self.held(self.ends(chosen & ~own, share))[own]
+            known = np.isfinite(held)
+            if np.average(held[known], weights=self.weight[known]) >= LEVEL:
+                break
+            share -= 0.005
+        return share
+
+
+class Ratios(Tests):
+    """A number: ends are those of ln of test over model."""
+
+    def __init__(self, rows: list[Numbers], name: str, *about: np.ndarray) -> None:
+        super().__init__(*about)
+        self.log = np.array([row.logs[name] for row in rows])
+        self.beyond = np.array([row.beyond and name == "drift" for row in rows])
+        self.drift = name == "drift"
+
+    def ends(self, chosen: np.ndarray, tail: float) -> np.ndarray:
+        """Return the quantiles; a model without a loss tells nothing of the upper one."""
+        found = []
+        for place in both(self.near):
+            low = chosen & place & np.isfinite(self.log)
+            high = low & ~self.beyond
+            found.append(
+                (
+                    quantile(self.log[low], self.weight[low], tail / 2),
+                    -quantile(-self.log[high], self.weight[high], tail / 2),
+                )
+            )
+        return np.array(found)
+
+    def held(self, ends: np.ndarray) -> np.ndarray:
+        """Return which tests are within; one without a loss is, where there is no upper end."""
+        low, high = between(ends, self.near).T
+        # Beyond the path no more is said than that the loss comes after a part of it.
+        low = np.where(self.beyond, np.minimum(low, 0.0), low)
+        inside = (low <= self.log) & ((self.log <= high) | self.beyond)
+        held = np.where(np.isfinite(self.log), inside, np.nan)
+        return np.where(np.isnan(self.log) & self.drift, self.beyond, held)
+
+
+class Points(Tests):
+    """The force along the path: the end is what the band is widened by at the middle."""
+
+    def __init__(self, scores: np.ndarray, grown: np.ndarray, *about: np.ndarray) -> None:
+        super().__init__(*about)
+        #: Distances over the half band that has grown with the distance from the middle.
+        self.scores = scores / grown[:, None]
+
+    def ends(self, chosen: np.ndarray, tail: float) -> np.ndarray:
+        """Return the distance over the half band below which the points are."""
+        found = []
+        for place in both(self.near):
+            part = self.scores[chosen & place]
+            weight = np.repeat(self.weight[chosen & place], part.shape[1])
+            found.append(quantile(part.ravel(), weight, 1 - tail))
+        return np.array(found)
+
+    def held(self, ends: np.ndarray) -> np.ndarray:
+        """Return the share of the points of each test within the band."""
+        return np.mean(self.scores <= between(ends, self.near)[:, None], axis=1)
+
+
+class Growth(NamedTuple):
+    """How the band grows with the distance from the middle of some tests."""
+
+    middle: Middle
+    growth: float
+    grown: np.ndarray
+
+
+def growth_of(
+    scores: np.ndarray, places: np.ndarray, near: np.ndarray, weight: np.ndarray, chosen: np.ndarray
+) -> Growth:
+    """Find the middle of chosen tests and the growth; `grown` is the factor of every test."""
+    w = weight[chosen]
+    spread = np.cov(places[chosen].T, aweights=w)
+    axes = np.linalg.inv(np.linalg.cholesky(spread))
+    middle = Middle(
+        tuple(np.average(places[chosen], axis=0, weights=w).round(4).tolist()),
+        tuple(tuple(row[: i + 1].round(4).tolist()) for i, row in enumerate(axes)),
+    )
+    distance = np.array([middle.distance(tuple(place)) for place in places.tolist()])
+    held = np.log(np.quantile(scores[chosen], LEVEL, axis=1))
+    known = np.column_stack([np.ones(len(w)), near[chosen], distance[chosen]])
+    root = np.sqrt(w)
+    found = np.linalg.lstsq(known * root[:, None], held * root, rcond=None)[0]
+    growth = round(max(float(found[2]), 0.0), 3)
+    return Growth(middle, growth, np.exp(growth * distance))
