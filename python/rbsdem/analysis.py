@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import threading
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -30,6 +32,9 @@ Method = Literal["auto", "rk4", "rk45", "newmark", "hht", "generalised_alpha"]
 _DEFORMATIONS = ("slip", "rotation", "opening")
 _NONE = np.empty(0)
 _NONE.flags.writeable = False
+
+#: Threads whose runs are told nothing about.
+_silent = threading.local()
 
 
 @dataclass(frozen=True)
@@ -334,11 +339,29 @@ def time_history(
         state_of(initial, "time_history") if from_end else _NONE,
         _room(column),
         every,
-        lambda note: warnings.warn(note, LongRunWarning, stacklevel=4),
+        lambda note: _tell(note, LongRunWarning, 5),
     )
     kept_initial = named_state(initial) if from_end else initial
     call = {"time": times, **loads, "initial": kept_initial, **chosen, "every": every}
     return _return(column, run, {"analysis": "dynamic"}, call)
+
+
+@contextmanager
+def without_notes() -> Iterator[None]:
+    """Issue no warnings about runs of this thread: they are some of many.
+
+    The filters of warnings are those of all threads and cannot say so.
+    """
+    _silent.now = True
+    try:
+        yield
+    finally:
+        _silent.now = False
+
+
+def _tell(note: str, kind: type[Warning], stacklevel: int) -> None:
+    if not getattr(_silent, "now", False):
+        warnings.warn(note, kind, stacklevel=stacklevel)
 
 
 def _room(column: Column) -> int:
@@ -410,5 +433,5 @@ def _return(column: Column, run: _core.Run, about: dict[str, str], call: dict[st
         error.result = result
         raise error
     if note:
-        warnings.warn(note, AccuracyWarning, stacklevel=3)
+        _tell(note, AccuracyWarning, 4)
     return result

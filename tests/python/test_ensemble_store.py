@@ -64,6 +64,27 @@ def test_a_second_start_computes_what_is_missing(tmp_path: Path) -> None:
     assert {name for name in before if before[name] != after[name]} == set(lost)
 
 
+def test_damage_is_noticed(tmp_path: Path) -> None:
+    """Of bits that change a number, and of a whole shard under the name of another."""
+    first = run(tmp_path)
+    one, other = sorted((tmp_path / "shards").iterdir())[:2]
+    number = first.measures["residual_displacement"][5].tobytes()
+    (hit,) = (path for path in (tmp_path / "shards").iterdir() if number in path.read_bytes())
+    hit.write_bytes(hit.read_bytes().replace(number, (0.01).hex().encode()[:8]))
+    same(first, run(tmp_path))
+    one.write_bytes(other.read_bytes())
+    again = run(tmp_path)
+    assert again.resumed < 24
+    same(first, again)
+
+
+def test_a_lost_manifest_is_written_again(tmp_path: Path) -> None:
+    run(tmp_path)
+    (tmp_path / "manifest.json").unlink()
+    assert run(tmp_path).resumed == 24
+    assert json.loads((tmp_path / "manifest.json").read_text())["runs"] == 24
+
+
 def test_a_shard_is_a_table(tmp_path: Path) -> None:
     found = run(tmp_path)
     tables = [parquet.read_table(path) for path in (tmp_path / "shards").iterdir()]
@@ -140,6 +161,14 @@ def test_a_folder_of_other_files_is_refused(tmp_path: Path) -> None:
         run(tmp_path / "thesis.docx")
 
 
+def test_what_a_manifest_takes(tmp_path: Path) -> None:
+    """Numbers of numpy in settings are those of Python; seeds are what JSON takes."""
+    run(tmp_path, dt=np.float32(0.0078125))
+    assert run(tmp_path, dt=0.0078125).resumed == 24
+    with pytest.raises(InputError, match=r"seeds: the manifest .* takes what JSON takes"):
+        run(tmp_path / "other", seeds={1, 2})
+
+
 @pytest.mark.parametrize("shard", [(0, 2), (3, 2), 2, ("1", "2")])
 def test_bad_parts(tmp_path: Path, shard: object) -> None:
     with pytest.raises(InputError, match="shard = "):
@@ -168,6 +197,18 @@ def test_two_processes_at_one_part(tmp_path: Path) -> None:
             run(tmp_path)
         other.kill()
     assert run(tmp_path).resumed == 24
+
+
+def test_parts_of_two_sizes_do_not_meet(tmp_path: Path) -> None:
+    """They would compute the same shards."""
+    fcntl = pytest.importorskip("fcntl")
+    run(tmp_path, shard=(2, 3))
+    with (tmp_path / "part-2-of-3.lock").open("ab") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        with pytest.raises(InputError, match="another process is at work on part 2 of 3"):
+            run(tmp_path)
+        run(tmp_path, shard=(1, 3))
+    assert "" not in run(tmp_path).status
 
 
 def test_a_full_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
@@ -199,9 +200,13 @@ def test_measures_of_functions() -> None:
     )
     assert list(found.measures) == ["peak_drift", "mean_force"]
     assert found.measures["mean_force"][1] == mean_force(found.history(1))
-    found = rbsdem.ensemble(column(), motion(1), measures=[broken], method="newmark")
-    assert list(found.status) == ["failed"]
+    filters = list(warnings.filters)
+    found = rbsdem.ensemble(
+        column(), motion(1), scales=np.ones(20), measures=[broken], method="newmark", jobs=4
+    )
+    assert set(found.status) == {"failed"}
     assert found.errors[0].startswith("measure broken: IndexError")
+    assert warnings.filters == filters
 
 
 def test_table() -> None:
@@ -251,6 +256,10 @@ def test_columns_that_cannot_be_run_are_named_before_the_start() -> None:
     [
         ({"columns": []}, "columns is empty"),
         ({"motions": {}}, "motions is empty"),
+        ({"columns": {"1": column(), 1: column()}}, "columns: two are called '1'"),
+        ({"columns": {None: column()}}, "columns: the name None must be a text"),
+        ({"motions": {"\udc80": motion(1)}}, "has characters that no file takes"),
+        ({"store": 3}, "store = 3 must be the path"),
         ({"scales": [np.nan]}, "no run is asked for"),
         ({"scales": "x"}, "scales must be numbers"),
         ({"scales": np.inf}, "must be a finite number"),

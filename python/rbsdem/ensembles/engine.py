@@ -6,6 +6,7 @@ import os
 import time
 from collections.abc import Sequence
 from contextlib import ExitStack
+from types import NoneType
 from typing import Any, Literal
 
 import numpy as np
@@ -127,7 +128,7 @@ def ensemble(
         "collapse_drift": collapse_drift,
         "allow_unstable": _core.switch(allow_unstable, "allow_unstable") or None,
     }
-    settings = {name: value for name, value in settings.items() if value is not None}
+    settings = {name: _plain(value) for name, value in settings.items() if value is not None}
     faults: list[str] = []
     column_names, column_items = named_columns(columns, faults)
     given, motion_items = named_motions(motions, faults)
@@ -142,6 +143,7 @@ def ensemble(
         faults.append(str(error))
     part = _checked_part(shard, store, faults)
     check_client(client, faults)
+    _core.switch(progress, "progress")
     raise_faults(faults)
     wanted = np.flatnonzero(~np.isnan(full).ravel())
     column, motion, _ = np.unravel_index(wanted, full.shape)
@@ -202,8 +204,15 @@ def ensemble(
     )
 
 
+def _plain(value: Any) -> Any:
+    """Return a value of Python in place of one of numpy, which a manifest does not take."""
+    return value.item() if isinstance(value, np.generic) else value
+
+
 def _checked_part(shard: Any, store: Any, faults: list[str]) -> tuple[int, int]:
     """Return which part of how many this process does; without parts the first of one."""
+    if not isinstance(store, (str, os.PathLike, NoneType)):
+        faults.append(f"store = {store!r:.40} must be the path of a folder")
     if shard is None:
         return 1, 1
     try:

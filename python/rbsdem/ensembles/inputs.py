@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
+from unicodedata import category
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -104,7 +105,12 @@ def _named(given: Any, what: str, one: str, faults: list[str]) -> tuple[list[str
 
 
 def _check_names(names: list[str | int], what: str, one: str, faults: list[str]) -> None:
-    """Add a fault for names that are the same text: in a table they could not be told apart."""
+    """Add a fault for names that a table cannot have, or could not tell apart."""
+    for name in names:
+        if isinstance(name, bool) or not isinstance(name, (str, int, np.integer)):
+            faults.append(f"{what}: the name {name!r} must be a text or a whole number")
+        elif any(category(letter) in ("Cc", "Cs") for letter in str(name)):
+            faults.append(f"{what}: the name {name!r} has characters that no file takes")
     count = Counter(map(str, names))
     for name in sorted(name for name, number in count.items() if number > 1):
         faults.append(f"{what}: two are called {name!r}; give them other names, as {{name: {one}}}")

@@ -12,8 +12,9 @@ import hashlib
 import inspect
 import json
 import os
+import re
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +37,10 @@ except ImportError:  # Windows
 __all__ = ["Store"]
 
 _MANIFEST = "manifest.json"
+_LOCK = "manifest.lock"
+_PART = "part-{}-of-{}.lock"
+#: What a store without its manifest may hold.
+_OWN = re.compile(r"shards|manifest\.lock|part-\d+-of-\d+\.lock")
 #: Where a shard has the digest of what it holds.
 _SUM = b"rbsdem"
 
@@ -84,21 +89,28 @@ class Store:
         self.shards = {piece: _shard_name(plan.task(*piece), given) for piece in pieces}
         self._check_folder()
         manifest = self._manifest(seeds)
-        known = self._known()
-        if known is None:
-            self._write_manifest(manifest)
-        else:
-            _compare(self.folder, known, manifest)
+        text = _manifest_text(manifest)
+        with self._alone():
+            shards = self.folder / "shards"
+            if shards.exists() and not shards.is_dir():
+                raise InputError(f"store: {shards} is no folder; give another store")
+            shards.mkdir(exist_ok=True)
+            known = self._known()
+            if known is None:
+                self._write_manifest(text)
+            else:
+                _compare(self.folder, known, manifest)
 
     def _check_folder(self) -> None:
         if self.folder.exists() and not self.folder.is_dir():
             raise InputError(f"store: {self.folder} is no folder; give another path")
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            others = [path.name for path in self.folder.iterdir() if path.suffix != ".partial"]
+            names = [path.name for path in self.folder.iterdir() if path.suffix != ".partial"]
         except OSError as error:
             raise InputError(f"store: {self.folder}: {error.strerror}") from None
-        if others and _MANIFEST not in others and not set(others) <= {"shards"}:
+        others = [name for name in names if not _OWN.fullmatch(name)]
+        if others and _MANIFEST not in others:
             raise InputError(
                 f"store: {self.folder} holds other files ({others[0]}) and no {_MANIFEST}; give an "
                 "empty folder"
@@ -143,13 +155,24 @@ class Store:
             return None
         except (OSError, ValueError):
             pass
-        raise InputError(f"store: {path} is no manifest of an ensemble; give another folder")
+        raise InputError(
+            f"store: {path} is no manifest of an ensemble, or is damaged; give another folder, or "
+            "remove this file: the shards beside it are known by their names"
+        )
 
-    def _write_manifest(self, manifest: dict[str, Any]) -> None:
-        with _clear(self.folder):
-            (self.folder / "shards").mkdir(exist_ok=True)
-            with whole_file(self.folder / _MANIFEST) as file:
-                file.write(json.dumps(manifest, indent=1).encode())
+    def _write_manifest(self, text: bytes) -> None:
+        for path in self.folder.glob(f"{_MANIFEST}.*.partial"):
+            path.unlink()
+        with whole_file(self.folder / _MANIFEST) as file:
+            file.write(text)
+
+    @contextmanager
+    def _alone(self) -> Iterator[None]:
+        """Let processes begin one after the other: what one of them finds or writes stays so."""
+        with _clear(self.folder), (self.folder / _LOCK).open("ab") as file:
+            if fcntl is not None:
+                fcntl.flock(file, fcntl.LOCK_EX)
+            yield
 
     @contextmanager
     def locked(self, part: tuple[int, int]) -> Iterator[None]:
@@ -160,22 +183,33 @@ class Store:
         Raises
         ------
         InputError
-            If another process has the lock.
+            If another process has the lock, or is at work on parts of another size.
         """
-        path = self.folder / f"part-{part[0]}-of-{part[1]}.lock"
-        with _clear(self.folder), path.open("ab") as file:
-            if fcntl is not None:
-                try:
-                    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                except OSError as error:
-                    if error.errno not in (errno.EAGAIN, errno.EACCES):
-                        raise
-                    raise InputError(
-                        f"store: another process is at work on part {part[0]} of {part[1]} of "
-                        f"{self.folder}; wait for it, or give another folder"
-                    ) from None
-            self._sweep(part)
+        with ExitStack() as stack:
+            with self._alone():
+                self._lock(part, stack)
+                for path in self.folder.glob(_PART.format("*", "*")):
+                    place, parts = map(int, re.findall(r"\d+", path.name))
+                    if parts != part[1]:
+                        with ExitStack() as moment:
+                            self._lock((place, parts), moment)
+                self._sweep(part)
             yield
+
+    def _lock(self, part: tuple[int, int], stack: ExitStack) -> None:
+        """Lock a part until the stack is left; raise `InputError` if another process has it."""
+        file = stack.enter_context((self.folder / _PART.format(*part)).open("ab"))
+        if fcntl is None:
+            return
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            if error.errno not in (errno.EAGAIN, errno.EACCES):
+                raise
+            raise InputError(
+                f"store: another process is at work on part {part[0]} of {part[1]} of "
+                f"{self.folder}; wait for it, or give another folder"
+            ) from None
 
     def part(self, part: tuple[int, int]) -> list[Piece]:
         """Return the pieces of part i of n: every n-th, from the i-th on."""
@@ -198,7 +232,7 @@ class Store:
         try:
             table = parquet.read_table(path)
             found = _result_of(table, self._plan)
-            whole = (table.schema.metadata or {}).get(_SUM) == _sum(found)
+            whole = (table.schema.metadata or {}).get(_SUM) == _sum(self.shards[piece], found)
         except (OSError, KeyError, ValueError, TypeError):  # Those of pyarrow are among them.
             return None
         return found if whole and found.fates.size == piece[1] - piece[0] else None
@@ -218,7 +252,7 @@ class Store:
 
         first, last = piece
         rows = slice(first, last)
-        columns, motions = (list(map(_text, names)) for names in self._names)
+        columns, motions = (list(map(str, names)) for names in self._names)
         coded = pa.DictionaryArray.from_arrays
         errors = np.full(last - first, "", dtype=object)
         errors[list(result.errors)] = list(result.errors.values())
@@ -235,7 +269,7 @@ class Store:
         }
         data |= {name: pa.array(values) for name, values in result.extra.items()}
         data["error"] = pa.array(errors)
-        table = pa.table(data).replace_schema_metadata({_SUM: _sum(result)})
+        table = pa.table(data).replace_schema_metadata({_SUM: _sum(self.shards[piece], result)})
         with _clear(self.folder), whole_file(self._path(piece)) as file:
             parquet.write_table(table, file)
 
@@ -270,18 +304,23 @@ def _result_of(table: Any, plan: Plan) -> TaskResult:
     )
 
 
-def _sum(result: TaskResult) -> bytes:
-    """Return the digest of a result, by which a shard knows that it is whole."""
-    digest = hashlib.sha256(result.fates.astype(np.int8).tobytes())
+def _sum(name: str, result: TaskResult) -> bytes:
+    """Return the digest of a result, by which a shard knows that it is whole and in its place."""
+    digest = hashlib.sha256(name.encode() + result.fates.astype(np.int8).tobytes())
     for values in (*result.values, *result.extra.values()):
         digest.update(np.ascontiguousarray(values, dtype=np.float64).tobytes())
     digest.update(json.dumps(sorted(result.errors.items())).encode())
     return digest.hexdigest().encode()
 
 
-def _text(name: str | int) -> str:
-    """Return a name that a file takes: names of files may have bytes that are no text."""
-    return str(name).encode("utf-8", "replace").decode()
+def _manifest_text(manifest: dict[str, Any]) -> bytes:
+    try:
+        return json.dumps(manifest, indent=1).encode()
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"seeds: the manifest of a store takes what JSON takes ({error}); give numbers, texts, "
+            "lists and dicts of Python"
+        ) from None
 
 
 def _compare(folder: Path, known: dict[str, Any], wanted: dict[str, Any]) -> None:

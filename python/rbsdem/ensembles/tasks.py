@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,7 +10,7 @@ from numpy.typing import NDArray
 
 from rbsdem import _core
 from rbsdem._core import Array
-from rbsdem.analysis import time_history
+from rbsdem.analysis import time_history, without_notes
 from rbsdem.column import Column
 from rbsdem.ensembles.inputs import AT_REST, Motion
 from rbsdem.ensembles.measures import STATUSES, Measure, core_measures
@@ -183,8 +182,7 @@ def _call_functions(
         if fates[run] == _FAILED:
             continue
         try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
+            with without_notes():
                 result = one_run(
                     task.columns[task.column[run]],
                     task.motions[task.motion[run]],
@@ -197,10 +195,16 @@ def _call_functions(
             continue
         for name, function in task.functions.items():
             try:
-                extra[name][run] = float(function(result))
+                extra[name][run] = _number(function(result))
             except Exception as error:  # A fault in a measure is that of a run and ends no batch.
                 fates[run] = _FAILED
                 errors[int(run)] = f"measure {name}: {type(error).__name__}: {error}"
+
+
+def _number(value: Any) -> float:
+    if isinstance(value, (str, bytes)):
+        raise TypeError(f"{value!r:.40} is a text; return a number")
+    return float(value)
 
 
 def one_run(

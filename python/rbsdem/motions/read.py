@@ -48,7 +48,8 @@ def read_motion(
     """
     name = os.fspath(path)
     lines = _lines(name)
-    stem = Path(name).stem
+    # The name of a file may have bytes that are no text.
+    stem = Path(name).stem.encode("utf-8", "replace").decode()
     if is_at2(lines) or name.lower().endswith(".at2"):
         if dt is not None:
             raise InputError(f"{name}: dt = {dt} was given, and an AT2 file has its own; remove it")
