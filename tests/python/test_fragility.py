@@ -173,7 +173,20 @@ def test_band_holds_the_curve():
         (lambda: fit_fragility("x", counts([1, 2], [9, 9], [0, 0])), "no run reached the limit st"),
         (lambda: fit_fragility("x", counts([1, 2], [9, 9], [9, 9])), "all reached the limit state"),
         (lambda: fit_fragility("x", counts([1], [9], [3])), "one level does not give a curve"),
+        (lambda: fit_fragility("x", counts([1, 2], [9, 0], [3, 0])), "one level does not give a c"),
+        (
+            lambda: fit_fragility("x", counts([1, 2], [9, 9], [9, 0])),
+            "does not grow with the inten",
+        ),
+        (
+            lambda: fit_fragility("x", counts([1, 2], [9, 9], [4, 4])),
+            "does not grow with the inten",
+        ),
         (lambda: fit_fragility("x", Capacities(np.ones(3), np.full(3, np.inf))), "no record reach"),
+        (
+            lambda: fit_fragility("x", Capacities(np.full(3, 2.0), np.ones(3))),
+            "the lower one first",
+        ),
         (lambda: fit_fragility("x", Capacities(np.ones(1), np.ones(1))), "1 records; give two"),
         (lambda: FOUND.band([1.0], 90), "level = 90 must be above 0 and below 1"),
         (lambda: FOUND.samples(3), "n = 3 must be 10 or more"),

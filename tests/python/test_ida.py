@@ -53,6 +53,10 @@ def softening() -> rbsdem.Column:
     )
 
 
+def broken(result: rbsdem.Result) -> float:
+    raise KeyError(result.summary["status"])
+
+
 # ---- incremental dynamic analysis ----------------------------------------------------------------
 
 
@@ -326,6 +330,8 @@ def test_figures(hunted, column, records, tmp_path):
         (lambda c, m: rbsdem.ida(c, m, levels=[-1.0]), "levels must be intensities above 0"),
         (lambda c, m: rbsdem.ida(c, m, collapse_drift=10), "collapse_drift = 10 must be above 0"),
         (lambda c, m: rbsdem.ida(c, m, jobs=0), "jobs = 0 must be 1 or more"),
+        (lambda c, m: rbsdem.ida(c, m[0].scaled(1e-30), levels=[1.0]), "motions without intensity"),
+        (lambda c, m: rbsdem.ida(c, m[0], levels=[1.0], measures=[broken], **SETTINGS), "KeyError"),
         (lambda c, m: Hunt(growth=1.0, points=0), "growth = 1 must be.*\nhunt: points = 0"),
         (rbsdem.stripes, "levels are missing"),
         (lambda c, m: rbsdem.stripes(c, {1.0: m}, [1.0]), "leave levels out"),

@@ -12,7 +12,7 @@ from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem._optional import need_scipy
 from rbsdem.ensembles.hazard import Hazard
-from rbsdem.ensembles.lognormal import LEAST_BETA, fit_brackets, fit_counts, fit_points
+from rbsdem.ensembles.lognormal import LEAST_BETA, MOST_BETA, fit_brackets, fit_counts, fit_points
 from rbsdem.errors import InputError
 
 #: Bounds of a capacity that differ by less than this count as one value, their geometric mean.
@@ -249,8 +249,10 @@ def fit_fragility(name: str, data: Counts | Capacities, intensity_name: str = ""
             raise InputError(
                 f"{who}{which} the limit state, of {runs}; add {other} levels of intensity"
             )
-        if data.intensity.size < 2:
+        if (data.number > 0).sum() < 2:
             raise InputError(f"{who}one level does not give a curve; give two or more")
+    elif not ((data.lower >= 0) & (data.upper >= data.lower)).all():
+        raise InputError(f"{who}bounds of capacities must be 0 or more, the lower one first")
     elif not np.isfinite(data.upper).any():
         raise InputError(
             f"{who}no record reached the limit state; raise the highest level of intensity"
@@ -263,6 +265,11 @@ def fit_fragility(name: str, data: Counts | Capacities, intensity_name: str = ""
     mu, beta = (float(value) for value in data.fit())
     if not np.isfinite(mu):
         raise InputError(f"{who}the data do not determine a curve; add levels of intensity")
+    if isinstance(data, Counts) and beta >= MOST_BETA:
+        raise InputError(
+            f"{who}the share of the runs that reach it does not grow with the intensity; add "
+            "levels or records"
+        )
     return Fragility(
         name, float(np.exp(mu)), beta, _covariance(data, mu, beta), data, intensity_name
     )

@@ -18,7 +18,8 @@ _MOST_STEPS = 200
 _CLOSE = 1e-10
 #: Least spread that is told from none, as the logarithm of an intensity.
 LEAST_BETA = 1e-3
-_MOST_BETA = 20.0
+#: Where the search for one ends.
+MOST_BETA = 20.0
 
 
 def fit_points(values: Array) -> tuple[Array, Array]:
@@ -85,7 +86,7 @@ def fit_counts(level: Array, number: NDArray[Any], failures: NDArray[Any]) -> tu
         done = np.abs(step[0]) + np.abs(step[1]) <= _CLOSE * (np.abs(a) + np.abs(b))
         if np.all(done | over | ~able):
             break
-    mu, beta = -a / b, np.clip(1 / b, LEAST_BETA, _MOST_BETA)
+    mu, beta = -a / b, np.clip(1 / b, LEAST_BETA, MOST_BETA)
     return np.where(able, mu, np.nan).reshape(shape), np.where(able, beta, np.nan).reshape(shape)
 
 
@@ -120,7 +121,7 @@ def fit_brackets(lower: Array, upper: Array) -> tuple[Array, Array]:
             np.maximum((second - 2 * first * new[..., None]).mean(axis=-1) + new**2, LEAST_BETA**2)
         )
         moved = np.abs(new - mu) + np.abs(spread - sigma)
-        mu, sigma = new, np.minimum(spread, _MOST_BETA)
+        mu, sigma = new, np.minimum(spread, MOST_BETA)
         if np.all((moved <= 1e-9 * (sigma + 1e-3)) | ~able):
             break
     return np.where(able, mu, np.nan), np.where(able, sigma, np.nan)

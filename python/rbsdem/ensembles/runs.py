@@ -16,6 +16,7 @@ from rbsdem._core import Array
 from rbsdem.column import Column, checked_column
 from rbsdem.ensembles.engine import ensemble
 from rbsdem.ensembles.intensity import Intensity
+from rbsdem.ensembles.tasks import FAULT_OF_MEASURE
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.limit_states.criteria import WATCHED
 from rbsdem.motions.motion import GroundMotion
@@ -30,6 +31,8 @@ COLLAPSES = ("collapsed", "axial_failure")
 #: Fates that count as one.
 LOST = (*COLLAPSES, "failed")
 _AGAIN = "rk45"
+#: Least intensity [m/s2] from which a motion is scaled.
+_LEAST_UNIT = 1e-20
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,9 +141,13 @@ class Collector:
 
     def __post_init__(self) -> None:
         self.unit = np.array([self.measure.of(motion) for motion in self.motions.values()])
-        bad = [name for name, value in zip(self.motions, self.unit, strict=True) if not value > 0]
+        units = zip(self.motions, self.unit, strict=True)
+        bad = [name for name, value in units if not value > _LEAST_UNIT]
         if bad:
-            raise InputError(f"motions without intensity {self.measure.label}: {', '.join(bad)}")
+            raise InputError(
+                f"motions without intensity {self.measure.label}, above {_LEAST_UNIT:g}: "
+                f"{', '.join(bad)}"
+            )
 
     def run(self, levels: Array) -> NDArray[np.bool_]:
         """Run at levels of intensity, shape (columns, motions, k), NaN for no run.
@@ -207,6 +214,10 @@ class Collector:
         )
         if found.interrupted:
             raise KeyboardInterrupt
+        for text in found.errors.values():
+            # Else the runs would count as collapses.
+            if text.startswith(FAULT_OF_MEASURE):
+                raise InputError(f"{text}; where it has no value it can return nan")
         return found
 
     def finish(self) -> Runs:

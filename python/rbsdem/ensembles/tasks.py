@@ -29,6 +29,9 @@ _NO_WATCH: Array = np.array(
 
 _FAILED = STATUSES.index("failed")
 
+#: How the error of a run begins whose measure raised one.
+FAULT_OF_MEASURE = "measure "
+
 
 @dataclass(frozen=True, eq=False)
 class Task:
@@ -198,7 +201,7 @@ def _call_functions(
                 extra[name][run] = _number(function(result))
             except Exception as error:  # A fault in a measure is that of a run and ends no batch.
                 fates[run] = _FAILED
-                errors[int(run)] = f"measure {name}: {type(error).__name__}: {error}"
+                errors[int(run)] = f"{FAULT_OF_MEASURE}{name}: {type(error).__name__}: {error}"
 
 
 def _number(value: Any) -> float:
