@@ -296,6 +296,13 @@ def test_strength_loss_of_the_side_that_comes_first():
     assert cycles.strength_loss(d, f) == pytest.approx(1.5)
 
 
+def test_a_force_between_the_envelopes_is_no_strength():
+    """On the way back from 2 the force is 300; pushed on it goes from 100 to 70: 80 at 8/3."""
+    d = [0.0, 1.0, 2.0, 1.0, 0.0, 3.0]
+    f = [0.0, 100.0, 100.0, 300.0, 0.0, 70.0]
+    assert cycles.strength_loss(d, f) == pytest.approx(8 / 3)
+
+
 @pytest.mark.parametrize("rows", [0, 1, 2])
 def test_few_rows_lose_nothing(rows):
     d, f = np.arange(rows) * 1.0, np.arange(rows) * 1.0

@@ -113,6 +113,24 @@ def table(folder) -> peer.Specimens:
 # ---- rows ----------------------------------------------------------------------------------------
 
 
+def test_limit_states_are_columns(table, tmp_path):
+    """If asked for, also of what comes from the journal of an earlier start."""
+    kept = tmp_path / "journal"
+    for _ in range(2):
+        found = peer.predict(table, limit_states=True, journal=kept)
+        for row in found[:2]:
+            path = row.specimen.test().displacement
+            result = rbsdem.cyclic(peer.column(row.specimen), displacement=path, openings=True)
+            states = {state.name: abs(state.drift) for state in result.limit_states()}
+            assert row.limit_states == states
+            assert {"cracking", "first_yield"} <= states.keys()
+    assert found.resumed == 6
+    record = found.records()[0]
+    assert record["drift_first_yield"] == found[0].limit_states["first_yield"]
+    assert math.isnan(record["drift_axial_failure"])
+    assert "drift_first_yield" not in peer.predict(table[:1]).records()[0]
+
+
 def test_scores_of_a_model_that_is_a_factor_off(table):
     found = peer.predict(table, good)
     assert [row.status for row in found] == 5 * ["completed"] + ["no history"]
@@ -140,7 +158,7 @@ def test_what_goes_wrong_is_a_row(table):
 def test_an_early_end_keeps_what_was_reached(table, monkeypatch):
     whole = rbsdem.cyclic
 
-    def half(column, displacement):
+    def half(column, displacement, **_):
         result = whole(column, displacement=displacement[:150])
         broken = replace(result, summary={**result.summary, "status": "failed"})
         raise rbsdem.SolveError("step 150: no", broken)

@@ -280,7 +280,7 @@ def strength_loss(displacement: ArrayLike, force: ArrayLike, *, share: float = 0
         On the envelope of a side, the first displacement past the largest force at which the force
         is down to (1 - share) of it, interpolated between two points. The side at which this
         happens first is taken; the displacement is unsigned [m]. A side whose largest force is
-        less than half of that of the curve does not count. NaN if no side loses so much.
+        less than half of that of the other does not count. NaN if no side loses so much.
 
     Raises
     ------
@@ -316,10 +316,12 @@ def strength_loss_point(
         raise InputError(f"share = {share} must be above 0 and below 1")
     d, f = _columns(displacement, force)
     found: tuple[int | None, float] = (None, math.nan)
-    for side in (1, -1):
-        rows = envelope(d, f, side)
+    sides = {side: envelope(d, f, side) for side in (1, -1)}
+    # A force between the envelopes, as on the way back, is no strength.
+    largest = max((np.max(side * f[rows]) for side, rows in sides.items() if rows.size), default=0)
+    for side, rows in sides.items():
         x, y = side * d[rows], side * f[rows]
-        if not rows.size or 2 * np.max(y) < np.max(np.abs(f)) or not np.max(y) > 0:
+        if not rows.size or 2 * np.max(y) < largest or not np.max(y) > 0:
             continue
         peak = int(np.argmax(y))
         left = (1 - share) * y[peak]

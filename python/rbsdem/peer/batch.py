@@ -51,6 +51,7 @@ def predict(
     jobs: int = 1,
     progress: bool = False,
     journal: str | os.PathLike[str] | None = None,
+    limit_states: bool = False,
     **options: Any,
 ) -> Prediction: ...
 @overload
@@ -65,6 +66,7 @@ def predict(
     jobs: int = 1,
     progress: bool = False,
     journal: str | os.PathLike[str] | None = None,
+    limit_states: bool = False,
     **options: Any,
 ) -> Predictions: ...
 def predict(
@@ -78,6 +80,7 @@ def predict(
     jobs: int = 1,
     progress: bool = False,
     journal: str | os.PathLike[str] | None = None,
+    limit_states: bool = False,
     **options: Any,
 ) -> Prediction | Predictions:
     """Predict tests from their properties, and compare with what was measured.
@@ -115,6 +118,8 @@ def predict(
         of the same tests by the same model, options and version of rbsdem, are not done again, so
         that a batch that was ended in any way goes on from where it stopped. The model must be
         given by name. The file stays; remove it to predict everything anew.
+    limit_states : bool, optional
+        With the drifts at which limit states are reached, see `rbsdem.Result.limit_states`.
     **options
         Passed to `rbsdem.peer.column`, such as ``n=4``.
 
@@ -143,6 +148,7 @@ def predict(
         bands=_bands(bands, single or displacement is not None, model, options),
         samples=samples,
         displacement=None if displacement is None else tuple(_path(displacement)),
+        limit_states=_core.switch(limit_states, "limit_states"),
     )
     if displacement is not None and not how.bands:
         raise InputError(

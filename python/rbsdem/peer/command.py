@@ -91,6 +91,11 @@ def parser() -> CommandParser:
         action="store_true",
         help="with 80 %% bands, intervals of numbers, and the nearest tests (17 times the work)",
     )
+    parser.add_argument(
+        "--limit-states",
+        action="store_true",
+        help="with the drifts at which limit states are reached, as columns of results.csv",
+    )
     parser.add_argument("--quiet", action="store_true", help="print the summary only")
     return parser
 
@@ -126,6 +131,7 @@ def _run(given: argparse.Namespace) -> int:
         bands=given.bands,
         progress=not given.quiet and sys.stderr.isatty(),
         journal=journal,
+        limit_states=given.limit_states,
         **options,
     )
     # The files come first: whoever reads the report may stop reading.
@@ -133,7 +139,7 @@ def _run(given: argparse.Namespace) -> int:
     if given.out is not None:
         lines = written(found, given.out, given.by, given.loops)
     if journal is not None and not found.interrupted:
-        how = How(bands=given.bands)
+        how = How(bands=given.bands, limit_states=given.limit_states)
         Journal(journal, tests, found.model, how.given(options)).forget()
     _report(found, given.by, given.quiet)
     for line in lines:

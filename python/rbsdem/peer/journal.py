@@ -99,6 +99,7 @@ class Journal:
         if row.comparison is not None:
             line["model_force"] = _packed(row.comparison.model_force)
         line["remarks"] = list(row.remarks)
+        line["limit_states"] = row.limit_states
         if row.band is not None:
             line["band"] = _band_line(row.band)
         text = json.dumps(line) + "\n"
@@ -149,7 +150,10 @@ class Journal:
             remarks = tuple(str(text) for text in line["remarks"])
             texts = {name: str(line[name]) for name in _TEXTS}
             times = {name: float(line[name]) for name in _TIMES}
-        except (ValueError, TypeError, KeyError, RbsdemError):
+            states = line["limit_states"]
+            if states is not None:
+                states = {str(name): float(drift) for name, drift in states.items()}
+        except (ValueError, TypeError, KeyError, AttributeError, RbsdemError):
             return None
         return Prediction(
             specimen,
@@ -157,6 +161,7 @@ class Journal:
             comparison=comparison,
             band=band,
             remarks=remarks,
+            limit_states=states,
             **texts,
             **times,
         )

@@ -19,6 +19,7 @@ from rbsdem.peer.columns import check_options, checked_specimen
 from rbsdem.peer.columns import column as column_of
 from rbsdem.peer.prediction import Prediction
 from rbsdem.peer.specimen import Specimen
+from rbsdem.result import Result
 from rbsdem.section.model import DEFAULT, model_name
 from rbsdem.section.spread import Spread
 
@@ -44,6 +45,7 @@ class How:
     bands: bool = False
     samples: int = 16
     displacement: tuple[float, ...] | None = None
+    limit_states: bool = False
 
     def given(self, options: dict[str, Any]) -> dict[str, Any]:
         """Return the options of a journal: those of the model, and what differs from the usual."""
@@ -105,6 +107,7 @@ def predict_one(
         comparison=comparison,
         band=done.band,
         remarks=done.remarks,
+        limit_states=done.limit_states,
     )
 
 
@@ -117,6 +120,7 @@ class _Analysed(NamedTuple):
     seconds: tuple[float, float]
     band: Spread | None
     remarks: tuple[str, ...]
+    limit_states: dict[str, float] | None
 
 
 def _analyse(
@@ -133,7 +137,7 @@ def _analyse(
             column = column_of(specimen, model, **options)
         built = end = time.perf_counter()
         remarks = getattr(column, "outside", ())
-        result = cyclic(column, displacement=path)
+        result = cyclic(column, displacement=path, openings=how.limit_states)
         status, error = "completed", ""
     except SolveError as stop:
         known = stop.result is not None
@@ -143,11 +147,14 @@ def _analyse(
     except Exception as fault:
         # A fault in one model is a row of the table and does not end the others.
         status, error, result = "failed", f"{type(fault).__name__}: {fault}", nothing
+    states = None
+    if how.limit_states and isinstance(result, Result):
+        states = {state.name: abs(state.drift) for state in result.limit_states()}
     end = time.perf_counter()
     if how.bands and status != "failed":
         band = column.spread(path, samples=how.samples)
     built = max(built, begin)
-    return _Analysed(status, error, result, (built - begin, end - built), band, remarks)
+    return _Analysed(status, error, result, (built - begin, end - built), band, remarks, states)
 
 
 def light(row: Prediction) -> Prediction:

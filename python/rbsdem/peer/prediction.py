@@ -50,6 +50,9 @@ class Prediction:
         The tests that are most like it, with the errors of their predictions; with bands only.
     remarks : tuple of str
         Where the column is outside the range of the tests that the model was fitted to.
+    limit_states : dict of str to float, or None
+        Drifts at which limit states are reached, in the order in which they are, by the names of
+        `rbsdem.limit_states.LimitState`; None unless they were asked for and there is an analysis.
     """
 
     specimen: Specimen
@@ -63,6 +66,7 @@ class Prediction:
     band: Spread | None = None
     nearest: tuple[Neighbour, ...] = ()
     remarks: tuple[str, ...] = ()
+    limit_states: dict[str, float] | None = None
 
     @property
     def seconds(self) -> float:

@@ -198,8 +198,13 @@ class Predictions(Sequence[Prediction]):
         return _views.view(self, "summary_table", by)
 
     def records(self) -> list[dict[str, Any]]:
-        """Return a dict for each test: properties that group tests, scores, times."""
-        return [score_record(row) for row in self._rows]
+        """Return a dict for each test: properties that group tests, scores, times.
+
+        If limit states were asked for, "drift_first_yield", "drift_spalling", ... are the drifts at
+        which they are reached; NaN where they are not.
+        """
+        states = any(row.limit_states is not None for row in self._rows)
+        return [score_record(row, states) for row in self._rows]
 
     def to_pandas(self) -> Any:
         """Return `records` as a DataFrame; needs pandas."""

@@ -10,6 +10,7 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from rbsdem.comparison import SCORES
+from rbsdem.limit_states.criteria import WATCHED
 from rbsdem.section.spread import numbers
 
 if TYPE_CHECKING:
@@ -17,13 +18,26 @@ if TYPE_CHECKING:
 
 __all__ = ["band_record", "loop_names", "score_record"]
 
+#: Limit states that have a column.
+_STATES = (*WATCHED, "strength_loss", "axial_failure")
+
 #: Bytes of the longest part of a path that is written.
 _LONGEST_NAME = 120
 
 
-def score_record(row: Prediction) -> dict[str, Any]:
-    """Return properties that group tests, scores and times by the names of the columns."""
+def score_record(row: Prediction, limit_states: bool = False) -> dict[str, Any]:
+    """Return properties that group tests, scores and times by the names of the columns.
+
+    Parameters
+    ----------
+    row : Prediction
+        The test.
+    limit_states : bool, optional
+        With the drifts of all limit states; NaN for those that are not reached.
+    """
     s = row.specimen
+    drifts = row.limit_states or {}
+    reached = {f"drift_{name}": drifts.get(name, math.nan) for name in _STATES}
     return {
         "name": s.name,
         "file": s.file or "",
@@ -38,6 +52,7 @@ def score_record(row: Prediction) -> dict[str, Any]:
         **{name: row.score(name) for name in SCORES},
         "test_drift_at_loss": row.score("test_drift_at_loss"),
         "model_drift_at_loss": row.score("model_drift_at_loss"),
+        **(reached if limit_states else {}),
         "seconds_model": row.seconds_model,
         "seconds_analysis": row.seconds_analysis,
         "error": row.error,

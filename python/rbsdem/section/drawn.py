@@ -21,6 +21,12 @@ from rbsdem.section.strips import Strips, cut
 __all__ = ["DrawnSection"]
 
 
+class _LaidOut(tuple[Bar, ...]):
+    """Bars that follow from a layout, and the diameter of the outermost if it does too [m]."""
+
+    diameter: float | None = None
+
+
 @dataclass(frozen=True)
 class DrawnSection(ABC):
     """What a section of any shape is made of; `rbsdem.section.Section` adds what it can be asked.
@@ -112,13 +118,19 @@ class DrawnSection(ABC):
         if not isinstance(self.bars, Sequence):
             raise InputError(f"section: bars = {self.bars!r} must be a list of (y, area, Steel)")
         if self.layout is not None:
-            if len(self.bars) > 0:
+            if isinstance(self.bars, _LaidOut):
+                # Those of a section that this one was made from by `dataclasses.replace`.
+                if self.bar_diameter == self.bars.diameter:
+                    self._put("bar_diameter", None)
+            elif len(self.bars) > 0:
                 raise InputError("section: give bars or layout, not both")
             if not isinstance(self.layout, Layout):
                 raise InputError(f"section: layout = {self.layout!r} must be a Layout")
             inset = cover + (transverse.diameter if transverse else 0.0)
-            self._put("bars", tuple(self._lay_out(self.layout, inset)))
+            bars = _LaidOut(self._lay_out(self.layout, inset))
+            self._put("bars", bars)
             if self.bar_diameter is None:
+                bars.diameter = self.layout.diameter
                 self._put("bar_diameter", self.layout.diameter)
         else:
             self._put("bars", tuple(_bar(bar, i) for i, bar in enumerate(self.bars, 1)))
