@@ -10,7 +10,7 @@ module rbs_hysteresis_spring_lines
    implicit none
    private
 
-   public :: spring_lines, first_on, last_on, put_line
+   public :: spring_lines, first_on, last_on, put_line, most_lines
 
    !> Most lines within one move. More mean that a rule goes round in lines without length, which is an error
    !> of the rule. The longest correct move closes all open inner loops that a rule remembers.

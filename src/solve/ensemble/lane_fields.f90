@@ -69,6 +69,8 @@ module rbs_solve_ensemble_lane_fields
       real(wp) :: from(lanes, 2) = 0.0_wp, trial(lanes, 4) = 0.0_wp
       !> Inverse of the tangent of an implicit step (11, 12, 21, 22), and 1/(beta h**2)
       real(wp) :: inverse(lanes, 4) = 0.0_wp, per_h(lanes) = 0.0_wp
+      !> Of RK4, see `resistance_per_velocity` (11, 12, 21, 22)
+      real(wp) :: g(lanes, 4) = 0.0_wp
       !> Inverse of the mass in slip and rotation; moment of the axial force per rotation
       real(wp) :: flexible(lanes) = 0.0_wp, coupling(lanes) = 0.0_wp, turning(lanes) = 0.0_wp, &
                   softening(lanes) = 0.0_wp

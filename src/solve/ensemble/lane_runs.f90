@@ -8,7 +8,7 @@ module rbs_solve_ensemble_lane_runs
    use rbs_solve_ensemble_lane_choice, only: is_plain_body
    use rbs_solve_ensemble_lane_fields, only: lanes
    use rbs_solve_ensemble_motions, only: motion_table, fill_table
-   use rbs_solve_ensemble_one_body_team, only: one_body_team
+   use rbs_solve_ensemble_one_body_team, only: one_body_team, new_one_body_team
    use rbs_solve_ensemble_outcome, only: outcome_type, fate_failed
    use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, run_type, lane_task
    use rbs_solve_ensemble_team, only: team_type
@@ -32,13 +32,14 @@ contains
       integer, intent(inout), volatile :: control(2)
       ! Of both, which are large, one is made. A polymorphic team would need no choice here, but the compiler
       ! (gfortran 12) spoils the memory where it deallocates one.
-      type(one_body_team), allocatable :: bodies
+      type(one_body_team), allocatable, target :: bodies
       type(chain_team), allocatable :: chains
 
       if (size(task) == 0) return
       associate (first => column(run(task(1)%run)%column))
          if (is_plain_body(first)) then
             allocate (bodies)
+            call new_one_body_team(bodies)
             call run_team(bodies, column, motion, run, task, level, outcome, control)
          else
             allocate (chains)

@@ -1,9 +1,12 @@
 !> Lanes for columns of one body without damping.
 module rbs_solve_ensemble_one_body_team
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+   use, intrinsic :: iso_c_binding, only: c_f_pointer, c_intptr_t, c_loc
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
+   use rbs_hysteresis_lone_spring, only: lone_spring
    use rbs_hysteresis_segment, only: segment
+   use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_ensemble_lane_fields, only: one_body_lanes, lanes
    use rbs_solve_ensemble_motions, only: motion_table
    use rbs_solve_ensemble_outcome, only: outcome_type, measure_count, fate_completed, fate_collapsed, &
@@ -16,15 +19,17 @@ module rbs_solve_ensemble_one_body_team
    use rbs_solve_time_implicit, only: implicit_stepper
    use rbs_solve_time_loads, only: horizontal
    use rbs_solve_time_march, only: report_state
-   use rbs_solve_time_rk4_one_body, only: inverse_of_mass
+   use rbs_solve_time_rk4_one_body, only: inverse_of_mass, resistance_per_velocity
    use rbs_solve_time_state, only: state_type
    implicit none
    private
 
-   public :: one_body_team
+   public :: one_body_team, new_one_body_team
 
    type, extends(team_type) :: one_body_team
-      type(one_body_lanes) :: x
+      type(one_body_lanes), pointer :: x => null()
+      !> Where they are
+      real(wp), allocatable :: room(:)
    contains
       procedure :: enter
       procedure :: advance
@@ -35,6 +40,21 @@ module rbs_solve_ensemble_one_body_team
    end type one_body_team
 
 contains
+
+   !> Lanes without runs. They begin where a line of the cache does, as an access to several lanes that
+   !> crosses the border of two lines takes twice the time.
+   subroutine new_one_body_team(team)
+      type(one_body_team), intent(inout), target :: team
+      integer, parameter :: numbers = 8
+      integer(c_intptr_t) :: address
+      integer :: first
+
+      allocate (team%room(storage_size(team%x)/storage_size(1.0_wp) + numbers))
+      address = transfer(c_loc(team%room), address)/(storage_size(1.0_wp)/8)
+      first = 1 + int(modulo(-address, int(numbers, c_intptr_t)))
+      call c_f_pointer(c_loc(team%room(first)), team%x)
+      team%x = one_body_lanes()
+   end subroutine new_one_body_team
 
    subroutine enter(self, l, column, motion, first, task, error)
       class(one_body_team), intent(inout) :: self
@@ -109,7 +129,8 @@ contains
             type is (implicit_stepper)
                call follow_trial(x, l, lane%state, stepper, taken)
             class default
-               call follow_body(x, l, lane%state)
+               call follow_body(x, l, lane%state%springs, lane%state%springs%stuck)
+               lane%state%time = x%t(l) + x%h(l)
                taken = .true.
             end select
          end if
@@ -124,22 +145,32 @@ contains
    end subroutine go_on
 
    !> The step of RK4 has ended, and only the springs have still to follow.
-   subroutine follow_body(x, l, state)
+   subroutine follow_body(x, l, springs, stuck)
       type(one_body_lanes), intent(inout) :: x
       integer, intent(in) :: l
-      type(state_type), intent(inout) :: state
-      integer :: i
+      type(spring_array), intent(inout) :: springs
+      logical, intent(out) :: stuck
+      type(lone_spring) :: spring
+      integer :: i, events
 
+      stuck = .false.
       do i = 1, 2
-         state%springs%d(i) = x%from(l, i)
-         state%springs%work(i) = x%work(l, i)
-         state%springs%first(i) = x%first(l, i)
-         state%springs%last(i) = x%last(l, i)
-         state%q(i) = x%q(l, i)
+         call take_spring(x, l, i, x%from(l, i), spring)
+         if (spring%side(x%q(l, i)) == 0) then
+            call spring%walk(x%q(l, i))
+         else
+            ! The first spring is told what the second has done up to the start of the step.
+            if (springs%heard(i) > 0) call springs%slot(i)%rule%hear(x%work(l, 2))
+            call spring%move(springs%slot(i)%rule, x%q(l, i), events, stuck)
+            if (stuck) return
+            x%events(l) = x%events(l) + events
+            call put_line(x, l, i, spring%line)
+         end if
+         x%work(l, i) = spring%work
+         x%first(l, i) = spring%first
+         x%last(l, i) = spring%last
       end do
-      state%time = x%t(l) + x%h(l)
-      call state%springs%move_all(state%q)
-      if (.not. state%springs%stuck) call from_springs(x, l, state)
+      call fit_resistance(x, l)
    end subroutine follow_body
 
    !> Follow the trial of an implicit step along the lines of the springs.
@@ -161,13 +192,7 @@ contains
             bent%a0(i) = x%a0(l, i)
             bent%g0(i) = x%g0(l, i)
             bent%largest(i) = x%largest(l, i)
-            associate (spring => bent%spring(i))
-               spring%line = line_of(x, l, i)
-               spring%first = x%first(l, i)
-               spring%last = x%last(l, i)
-               spring%d = x%q(l, i)
-               spring%work = x%work(l, i)
-            end associate
+            call take_spring(x, l, i, x%q(l, i), bent%spring(i)%lone_spring)
          end do
          call bent%solve(lane%springs%slot, stepper%one_body%kept, taken)
          if (.not. taken) return
@@ -193,6 +218,20 @@ contains
          end do
       end associate
    end subroutine follow_trial
+
+   !> A spring of a lane, at d.
+   pure subroutine take_spring(x, l, i, d, spring)
+      type(one_body_lanes), intent(in) :: x
+      integer, intent(in) :: l, i
+      real(wp), intent(in) :: d
+      type(lone_spring), intent(inout) :: spring
+
+      spring%line = line_of(x, l, i)
+      spring%first = x%first(l, i)
+      spring%last = x%last(l, i)
+      spring%d = d
+      spring%work = x%work(l, i)
+   end subroutine take_spring
 
    !> The line of a spring, in the form that its rule takes.
    pure type(segment) function line_of(x, l, i) result(line)
@@ -293,7 +332,22 @@ contains
          x%first(l, i) = state%springs%first(i)
          x%last(l, i) = state%springs%last(i)
       end do
+      call fit_resistance(x, l)
    end subroutine from_springs
+
+   !> What a step of RK4 needs of the present lines.
+   pure subroutine fit_resistance(x, l)
+      type(one_body_lanes), intent(inout) :: x
+      integer, intent(in) :: l
+      real(wp) :: g(4)
+      integer :: i
+
+      g = resistance_per_velocity(x%flexible(l), x%coupling(l), x%turning(l), x%softening(l), x%k(l, 1), &
+                                  x%k(l, 2), 0.5_wp*x%h(l))
+      do i = 1, 4
+         x%g(l, i) = g(i)
+      end do
+   end subroutine fit_resistance
 
    pure subroutine into_balance(x, l, stepper)
       type(one_body_lanes), intent(in) :: x

@@ -6,8 +6,7 @@
 module rbs_solve_time_bent_step
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_journal, only: rule_slot, save_rule, return_rule
-   use rbs_hysteresis_segment, only: segment
-   use rbs_hysteresis_spring_lines, only: first_on, last_on
+   use rbs_hysteresis_lone_spring, only: lone_spring
    use rbs_solve_time_state, only: out_of_bounds
    implicit none
    private
@@ -23,11 +22,8 @@ module rbs_solve_time_bent_step
    !> Share of the work of the residual on a correction by which the correction may overshoot.
    real(wp), parameter :: too_far = 0.9_wp
 
-   !> A spring on its line: the first and the last deformation that belong to it, present deformation and
-   !> work; how it has come to the line in this step: +1 or -1 by the end of another, 0 it was on it before.
-   type :: bent_spring
-      type(segment) :: line
-      real(wp) :: first = 0.0_wp, last = 0.0_wp, d = 0.0_wp, work = 0.0_wp
+   !> How a spring has come to its line in this step: +1 or -1 by the end of another, 0 it was on it before.
+   type, extends(lone_spring) :: bent_spring
       integer :: way = 0
    end type bent_spring
 
@@ -92,7 +88,6 @@ contains
 
       self%spring(1)%way = 0
       self%spring(2)%way = 0
-      start = self%spring
       self%dx = self%moved
       taken = .false.
       self%changed = .false.
@@ -126,7 +121,7 @@ contains
       call self%fit()
       do i = 1, 2
          self%v1(i) = self%v0(i) + (self%h*(1.0_wp - self%gamma))*self%a0(i) + (self%h*self%gamma)*self%a1(i)
-         call walk(self%spring(i), self%q(i))
+         call self%spring(i)%walk(self%q(i))
       end do
    end subroutine solve
 
@@ -160,7 +155,7 @@ contains
    !> false position (Illinois).
    subroutine cut_correction(self, start, slot, kept, slope)
       class(bent_step), intent(inout) :: self
-      type(bent_spring), intent(in) :: start(2)
+      type(bent_spring), intent(inout) :: start(2)
       type(rule_slot), intent(inout) :: slot(2), kept(2)
       !> Work of the residual on the correction at its end
       real(wp), intent(inout) :: slope
@@ -194,7 +189,7 @@ contains
    !> of the balance, and its work on the correction.
    subroutine look(self, start, slot, kept, slope)
       class(bent_step), intent(inout) :: self
-      type(bent_spring), intent(in) :: start(2)
+      type(bent_spring), intent(inout) :: start(2)
       type(rule_slot), intent(inout) :: slot(2), kept(2)
       !> `huge`: out of bounds, or the springs go round in lines
       real(wp), intent(out) :: slope
@@ -206,8 +201,8 @@ contains
       if (.not. (is_on_line(self%spring(1), self%q(1)) .and. is_on_line(self%spring(2), self%q(2)))) then
          if (self%changed) call put_back(self, start, slot, kept)
          self%changed = .true.
-         call find_line(self, 1, slot(1), kept(1))
-         call find_line(self, 2, slot(2), kept(2))
+         call find_line(self, 1, start(1), slot(1), kept(1))
+         call find_line(self, 2, start(2), slot(2), kept(2))
          if (self%stuck) return
       end if
       call find_residual(self)
@@ -220,38 +215,32 @@ contains
       type(bent_spring), intent(in) :: spring
       real(wp), intent(in) :: q
 
-      is_on_line = q <= spring%last .and. q >= spring%first .and. spring%way*(q - spring%d) >= 0.0_wp
+      is_on_line = spring%side(q) == 0 .and. spring%way*(q - spring%d) >= 0.0_wp
    end function is_on_line
 
    !> Put a spring, which is at the start of the step, on the line that it is on at the end. It stays where
    !> that line begins.
-   subroutine find_line(self, i, slot, kept)
+   subroutine find_line(self, i, start, slot, kept)
       class(bent_step), intent(inout) :: self
       integer, intent(in) :: i
+      !> Where it was, once it has left its line
+      type(bent_spring), intent(inout) :: start
       type(rule_slot), intent(inout) :: slot, kept
-      integer :: lines
+      integer :: lines, way
 
       associate (spring => self%spring(i))
          do lines = 1, most_lines
-            if (self%q(i) > spring%last) then
-               spring%way = 1
-            else if (self%q(i) < spring%first) then
-               spring%way = -1
-            else
-               return
-            end if
-            if (.not. self%saved(i)) call save_rule(slot, kept)
-            self%saved(i) = .true.
-            if (spring%line%one_way > 0) spring%line%lo = spring%d
-            if (spring%line%one_way < 0) spring%line%hi = spring%d
-            if (spring%line%one_way /= -spring%way) then
-               call walk(spring, merge(spring%line%hi, spring%line%lo, spring%way > 0))
+            way = spring%side(self%q(i))
+            if (way == 0) return
+            spring%way = way
+            if (.not. self%saved(i)) then
+               start = spring
+               call save_rule(slot, kept)
+               self%saved(i) = .true.
             end if
             if (i == 1 .and. self%hears) call slot%rule%hear(self%spring(2)%work)
-            call slot%rule%next(spring%line, spring%way)
+            call spring%change_line(slot%rule, way)
             self%events = self%events + 1
-            spring%first = first_on(spring%line)
-            spring%last = last_on(spring%line)
             ! A new one-way line starts at the present deformation, to the last bit.
             if (spring%line%one_way > 0) spring%first = spring%d
             if (spring%line%one_way < 0) spring%last = spring%d
@@ -259,19 +248,6 @@ contains
       end associate
       self%stuck = .true.
    end subroutine find_line
-
-   !> Move along the line to d; the rear end of a one-way line follows.
-   pure subroutine walk(spring, d)
-      type(bent_spring), intent(inout) :: spring
-      real(wp), intent(in) :: d
-
-      associate (line => spring%line)
-         spring%work = spring%work + (line%f0 + line%k*(0.5_wp*(d + spring%d) - line%d0))*(d - spring%d)
-         spring%d = d
-         if (line%one_way > 0) spring%first = d
-         if (line%one_way < 0) spring%last = d
-      end associate
-   end subroutine walk
 
    !> Put the springs back to the start of the step.
    subroutine put_back(self, start, slot, kept)
@@ -281,10 +257,10 @@ contains
       type(rule_slot), intent(in) :: kept(2)
       integer :: i
 
-      self%spring = start
       self%events = 0
       do i = 1, 2
          if (.not. self%saved(i)) cycle
+         self%spring(i) = start(i)
          call return_rule(slot(i), kept(i))
          self%saved(i) = .false.
       end do
