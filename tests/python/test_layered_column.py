@@ -15,6 +15,7 @@ import rbsdem
 from rbsdem import peer
 from rbsdem.errors import InputError
 from rbsdem.section import parameters, versions
+from rbsdem.section.directions import DIRECTIONS
 from rbsdem.section.parameters import FACTORS, VERSIONS
 
 SPECIMEN = peer.Specimen(
@@ -326,6 +327,26 @@ def test_changed_parameters_are_named_as_changed():
     )
     back = changed.with_parameters(steel_strength=parameters().hinge.steel_strength)
     assert back == column
+
+
+def test_directions_are_factors_to_exponents():
+    """Two factors along one direction are their product; no parameter goes beyond its end."""
+    column = SECTION.column(1.6, axial_load=1.2e6)
+    assert list(column.parameters)[:6] == list(DIRECTIONS)
+    there = column.with_parameters(direction_2=1.1, direction_5=0.9)
+    for name, value in there.recipe.parameters.values.items():
+        power = 1.1 ** DIRECTIONS["direction_2"].get(name, 0.0)
+        power *= 0.9 ** DIRECTIONS["direction_5"].get(name, 0.0)
+        assert value == pytest.approx(power * parameters().values[name], rel=1e-12)
+    for end in (1e-6, 1e6):
+        far = column.with_parameters(**dict.fromkeys(DIRECTIONS, end))
+        assert all(math.isfinite(x) for x in far.recipe.parameters.values.values())
+    with pytest.raises(InputError, match="direction_1 = 0 is a factor; it must be above zero"):
+        column.with_parameters(direction_1=0.0)
+    other = replace(column, shear=column.shear[1])
+    assert "direction_1" not in other.parameters
+    with pytest.raises(InputError, match="direction_1 belongs to springs that were replaced"):
+        other.with_parameters(direction_1=1.1)
 
 
 @pytest.mark.parametrize(

@@ -20,6 +20,7 @@ from rbsdem.column import Column
 from rbsdem.ends import turned
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.parameter import Parameter
+from rbsdem.section.directions import DIRECTIONS
 from rbsdem.section.hinge import HingeJoint, hinge_joint
 from rbsdem.section.parameters import FACTORS, ModelParameters, parameters
 from rbsdem.section.ranges import axial_load_note, column_length, outside
@@ -270,7 +271,7 @@ class LayeredModel:
         """
         values, names = self.parameters.values, tuple(names)
         # Those of the shear spring are not worth their time where only the hinge changes.
-        of_shear = any(_made_from(name) == "shear" for name in names)
+        of_shear = any("shear" in _made_from(name) for name in names)
         limits = self.limits if of_shear else self.joint.limits
         for name in names:
             least, most = limits.get(name, (-math.inf, math.inf))
@@ -344,8 +345,9 @@ class LayeredModel:
 
 
 #: Parameters of the layered hinge that may be calibrated, and factors on several of them; bounds
-#: are factors of their values. The first six follow a loop best (studies/calibration_choice.py).
+#: are factors of their values. The first six follow a loop best (calibration_directions.py).
 _FREE = {
+    **dict.fromkeys(DIRECTIONS, (0.04, 25.0, "-", "")),
     "strength": (0.7, 1.5, "-", ""),
     "lengths": (0.2, 4.0, "-", ""),
     "softening": (0.1, 20.0, "-", ""),
@@ -415,9 +417,12 @@ class LayeredColumn(Column):
         values, limits = self._recipe.parameters.values, self._recipe.limits
         found = {}
         for name, (low, high, unit, what) in _FREE.items():
-            if self._kept(_made_from(name)):
+            if any(self._kept(field) for field in _made_from(name)):
                 continue
-            if name in FACTORS:
+            if name in DIRECTIONS:
+                several = ", ".join(DIRECTIONS[name])
+                found[name] = Parameter(1.0, low, high, unit, f"factor to exponents on {several}")
+            elif name in FACTORS:
                 found[name] = Parameter(1.0, low, high, unit, f"factor of {FACTORS[name][1]}")
             else:
                 least, most = limits.get(name, (0.0, math.inf))
@@ -442,15 +447,16 @@ class LayeredColumn(Column):
         """
         recipe = replace(self._recipe, parameters=self._recipe.parameters.with_values(**values))
         for name in values:
-            field = _made_from(name)
-            if self._kept(field):
-                raise InputError(
-                    f"parameters: {name} belongs to springs that were replaced: {field} of this "
-                    "column is not that of its model"
-                )
+            for field in _made_from(name):
+                if self._kept(field):
+                    raise InputError(
+                        f"parameters: {name} belongs to springs that were replaced: {field} of "
+                        "this column is not that of its model"
+                    )
         # What a factor makes of several is limited, not refused.
-        factors = [name for name in values if name in FACTORS]
-        recipe.check(set(values).difference(factors, *(FACTORS[name][0] for name in factors)))
+        several = {name: FACTORS[name][0] for name in values if name in FACTORS}
+        several |= {name: tuple(DIRECTIONS[name]) for name in values if name in DIRECTIONS}
+        recipe.check(set(values).difference(several, *several.values()))
         made = {name: value for name, value in recipe.made.items() if not self._kept(name)}
         return replace(self, recipe=recipe, **made)
 
@@ -510,6 +516,9 @@ class LayeredColumn(Column):
         return self.recipe
 
 
-def _made_from(name: str) -> str:
+def _made_from(name: str) -> tuple[str, ...]:
     """Return the springs that a parameter belongs to."""
-    return "shear" if name.startswith("shear_") and name != "shear_stiffness" else "flexure"
+    if name in DIRECTIONS:
+        return ("flexure", "shear")
+    of_shear = name.startswith("shear_") and name != "shear_stiffness"
+    return ("shear",) if of_shear else ("flexure",)

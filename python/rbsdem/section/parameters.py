@@ -6,11 +6,13 @@ as the laws that they were fitted with are there.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields, replace
 from difflib import get_close_matches
 
 from rbsdem import _core
 from rbsdem.errors import InputError
+from rbsdem.section.directions import DIRECTIONS, factors
 
 __all__ = [
     "FACTORS",
@@ -279,7 +281,7 @@ class ModelParameters:
         ----------
         **values
             Names as in `values`, such as ``steel_strength=1.0`` or ``shear_strength=1.1``; or one
-            of `FACTORS`, by which several are multiplied.
+            of `FACTORS` or `DIRECTIONS`, by which several are multiplied.
 
         Raises
         ------
@@ -291,14 +293,25 @@ class ModelParameters:
             factor = _core.number(values.pop(name), f"parameters: {name}")
             for one in FACTORS[name][0]:
                 values[one] = factor * values.get(one, getattr(self.hinge, one))
+        along = {name: _above_zero(values.pop(name), name) for name in DIRECTIONS if name in values}
+        now = self.values if along else {}
+        for one, factor in factors(along).items():
+            values[one] = factor * values.get(one, now[one])
         for name, value in values.items():
             if name in _HINGE_NAMES:
                 hinge[name] = value
             elif name.startswith(_SHEAR) and name[len(_SHEAR) :] in _SHEAR_NAMES:
                 shear[name[len(_SHEAR) :]] = value
             else:
-                raise _unknown(name, [*self.values, *FACTORS])
+                raise _unknown(name, [*self.values, *FACTORS, *DIRECTIONS])
         return replace(self, hinge=replace(self.hinge, **hinge), shear=replace(self.shear, **shear))
+
+
+def _above_zero(value: float, name: str) -> float:
+    factor = _core.number(value, f"parameters: {name}")
+    if not 0 < factor < math.inf:
+        raise InputError(f"parameters: {name} = {factor:g} is a factor; it must be above zero")
+    return factor
 
 
 def _take(given: HingeParameters | ShearParameters, what: str) -> None:
