@@ -1,7 +1,7 @@
 """Directions in the space of the parameters, along which a column follows a measured loop best.
 
 A factor f along a direction multiplies each of its parameters by f to an exponent. The directions
-were found on half of the flexural rectangular tests, and judged on the others
+were found on a fourth of the flexural rectangular tests, and judged on half of them
 (`studies/calibration_directions.py`, docs/calibration.md). They have no meaning of their own.
 """
 
