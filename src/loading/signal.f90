@@ -33,7 +33,8 @@ contains
       acts = allocated(self%value)
    end function acts
 
-   !> Value at a time; before the first point the first value, after the last the last.
+   !> Value at a time; before the first point the first value, after the last the last. At a point it is the
+   !> end of the interval before it, from wherever one comes: a run has the same bits with any neighbours.
    real(wp) function at_time(self, t) result(value)
       class(signal_type), intent(inout) :: self
       !> Time [s]
@@ -93,7 +94,7 @@ contains
          self%start = self%value(1)
          self%at = 1
          return
-      else if (t >= self%time(last)) then
+      else if (t > self%time(last)) then
          self%begin = self%time(last)
          self%finish = huge(1.0_wp)
          self%start = self%value(last)

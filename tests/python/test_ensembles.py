@@ -316,7 +316,7 @@ def chains() -> list[rbsdem.Column]:
 @pytest.mark.parametrize(
     ("columns", "settings"),
     [
-        (bodies, {"method": "newmark"}),
+        (bodies, {"method": "newmark", "dt": 0.02}),
         (bodies, {"method": "hht", "rho_infinity": 0.7, "dt": 5e-3}),
         (bodies, {"method": "generalised_alpha", "collapse_drift": 0.05}),
         (bodies, {"method": "rk4", "collapse_drift": 0.05}),
