@@ -119,11 +119,12 @@ class Store:
     def _manifest(self, seeds: Any) -> dict[str, Any]:
         plan = self._plan
         columns, motions = self._names
+        texts = [column.to_namelist() for column in plan.columns]
         return {
             "version": _version(),
             "code": code_digest().hex(),
             "digests": {
-                "columns": _digest(column.to_namelist() for column in plan.columns),
+                "columns": _digest(texts),
                 "motions": _digest(_motion_bytes(plan, j) for j in range(len(plan.motions))),
                 "scales": _digest([plan.column, plan.motion, plan.scale]),
                 "settings": _digest([json.dumps(plan.settings, sort_keys=True)]),
@@ -139,10 +140,7 @@ class Store:
             "runs": int(plan.scale.size),
             "shards": list(self.shards.values()),
             "motions": {str(name): motions.index(name) for name in motions},
-            "columns": {
-                str(name): column.to_namelist()
-                for name, column in zip(columns, plan.columns, strict=True)
-            },
+            "columns": dict(zip(map(str, columns), texts, strict=True)),
         }
 
     def _known(self) -> dict[str, Any] | None:
