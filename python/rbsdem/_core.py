@@ -415,23 +415,23 @@ def plan_ensemble(
     watches: Sequence[Array],
     before: Sequence[Array],
     motions: Motions,
-) -> tuple[Array, list[tuple[int, str]]]:
-    """Return the seconds that a run is expected to take, shape (motions, columns), and faults.
+) -> tuple[Array, NDArray[np.int32], list[tuple[int, str]]]:
+    """Return the seconds that a run is expected to take, whether lanes take it, and faults.
 
-    A fault is the number of a column, from 0, and a message; `watches` are those of each column, of
-    shape (watches, 6): number of the limit state, joint, factors of slip, rotation and opening,
-    threshold; at least one. `before` are the states that the runs of each column begin in; an empty
-    one is at rest.
+    The first two have shape (motions, columns). A fault is the number of a column, from 0, and a
+    message; `watches` are those of each column, of shape (watches, 6): number of the limit state,
+    joint, factors of slip, rotation and opening, threshold; at least one. `before` are the states
+    that the runs of each column begin in; an empty one is at rest.
     """
     room = 1 << 16
     while True:
-        seconds, text, length = _rbsdem.rbs_plan_ensemble(
+        seconds, in_lanes, text, length = _rbsdem.rbs_plan_ensemble(
             *_columns_crossing(columns, settings, watches, before),
             *_motions_crossing(motions),
             room,
         )
         if length <= room:
-            return seconds, list(_numbered(text[:length]))
+            return seconds, in_lanes, list(_numbered(text[:length]))
         room = length
 
 

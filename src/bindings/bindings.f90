@@ -806,7 +806,7 @@ subroutine rbs_measures(names)
 end subroutine rbs_measures
 
 subroutine rbs_plan_ensemble(statements, nn, numbers, nc, counts, nw, watches, nb, before, m, time, &
-                             acceleration, nm, points, most, seconds, text, length)
+                             acceleration, nm, points, most, seconds, in_lanes, text, length)
    ! `length` is that of the whole text, which is cut at `most`.
    use iso_c_binding, only: c_double, c_int
    use rbs_bindings_ensembles, only: plan_ensemble
@@ -816,13 +816,14 @@ subroutine rbs_plan_ensemble(statements, nn, numbers, nc, counts, nw, watches, n
    integer(c_int), intent(in) :: nn, nc, nw, nb, m, nm, most, counts(3, nc), points(nm)
    real(c_double), intent(in) :: numbers(nn), watches(6, nw), before(nb), time(m), acceleration(m)
    real(c_double), intent(out) :: seconds(nm, nc)
+   integer(c_int), intent(out) :: in_lanes(nm, nc)
    character(len=most), intent(out) :: text
    integer(c_int), intent(out) :: length
    !f2py threadsafe
    type(text_buffer) :: buffer
 
    call plan_ensemble(statements, numbers, counts, watches, before, time, acceleration, points, seconds, &
-                      buffer)
+                      in_lanes, buffer)
    text = ''
    length = buffer%length
    if (length > 0) text = buffer%text(:min(length, most))

@@ -25,7 +25,7 @@ contains
 
    !> Expected seconds of each motion for each column, and what is wrong with the columns.
    subroutine plan_ensemble(statements, numbers, counts, watches, before, time, acceleration, points, &
-                            seconds, text)
+                            seconds, in_lanes, text)
       !> Statements of the columns with their settings, each followed by `after`; all their numbers; how many
       !> numbers and watches each has, and numbers of the state that its runs begin in, 0 for rest (3,
       !> columns); the watches (6, all columns): state, joint, factors of slip, rotation and opening,
@@ -38,20 +38,27 @@ contains
       integer(c_int), intent(in) :: points(:)
       !> (motions, columns) [s]
       real(c_double), intent(out) :: seconds(:, :)
+      !> 1 where lanes take a run (motions, columns)
+      integer(c_int), intent(out) :: in_lanes(:, :)
       !> Number of the column and message of each fault
       type(text_buffer), intent(inout) :: text
       type(ensemble_column), allocatable :: column(:)
       type(ensemble_motion), allocatable :: motion(:)
       type(error_type), allocatable :: error
       integer :: i, at(4)
+      logical :: lanes_take(size(points))
 
       seconds = 0.0_wp
+      in_lanes = 0
       call take_motions(time, acceleration, points, motion)
       allocate (column(1))
       at = 1
       do i = 1, size(counts, 2)
          call next_column(statements, numbers, counts(:, i), watches, before, at, motion(1), column(1), error)
-         if (.not. allocated(error)) call plan_column(column(1), motion, seconds(:, i), error)
+         if (.not. allocated(error)) then
+            call plan_column(column(1), motion, seconds(:, i), lanes_take, error)
+            in_lanes(:, i) = merge(1, 0, lanes_take)
+         end if
          if (allocated(error)) call text%append(to_text(i)//after_number//error%message//after)
       end do
    end subroutine plan_ensemble

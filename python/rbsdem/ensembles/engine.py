@@ -10,7 +10,7 @@ from types import NoneType
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _core
 from rbsdem._core import Array
@@ -35,6 +35,9 @@ from rbsdem.errors import InputError
 
 #: Expected seconds of a task at the most. The lanes take less.
 _LONGEST = 2.0
+
+#: Runs that advance side by side.
+_LANES = 64
 
 
 def ensemble(
@@ -158,11 +161,11 @@ def ensemble(
         limit_states_among(names),
         before,
     )
-    seconds, wrong = expected(plan)
+    seconds, in_lanes, wrong = expected(plan)
     raise_faults([f"column {column_names[i]!r}: {text}" for i, text in wrong])
     threads = jobs or available_processors()
-    total = float(seconds[plan.motion, plan.column].sum())
-    longest = _LONGEST if store is not None else min(_LONGEST, total / (8 * threads))
+    # The shards of a store do not depend on who computes them.
+    longest = _LONGEST if store is not None else _longest(plan, seconds, in_lanes, threads)
     pieces = cut(plan, seconds, longest)
     collected = Collected(plan.scale.size, functions, len(plan.names))
     with ExitStack() as stack:
@@ -202,6 +205,16 @@ def ensemble(
         interrupted=interrupted,
         resumed=resumed,
     )
+
+
+def _longest(plan: Plan, seconds: Array, in_lanes: NDArray[np.int32], threads: int) -> float:
+    """Return the expected seconds of a task, so that threads end together and lanes are full."""
+    each = seconds[plan.motion, plan.column]
+    together = int(in_lanes[plan.motion, plan.column].sum())
+    most = 8 * threads
+    if 2 * together > each.size:
+        most = min(most, max(threads, together // _LANES))
+    return min(_LONGEST, float(each.sum()) / most)
 
 
 def _plain(value: Any) -> Any:

@@ -108,18 +108,22 @@ class Plan:
 
 
 def cut(plan: Plan, seconds: Array, longest: float) -> list[tuple[int, int]]:
-    """Return first run and the one after the last of each task, none much above `longest` [s].
+    """Return first run and the one after the last of each task, of about `longest` [s] or less.
 
     `seconds` are those expected of a run of each motion with each column (motions, columns).
     """
-    reached = np.cumsum(seconds[plan.motion, plan.column])
-    number = np.floor(reached / longest)
+    own = seconds[plan.motion, plan.column]
+    # By their middles, so that a last run does not stand alone for the round-off of a sum.
+    number = np.floor((np.cumsum(own) - 0.5 * own) / longest)
     ends = [*(np.flatnonzero(np.diff(number) > 0) + 1).tolist(), plan.scale.size]
     return list(zip([0, *ends[:-1]], ends, strict=True))
 
 
-def expected(plan: Plan) -> tuple[Array, list[tuple[int, str]]]:
-    """Return the seconds expected of a run (motions, columns), and what is wrong with columns."""
+def expected(plan: Plan) -> tuple[Array, Integers, list[tuple[int, str]]]:
+    """Return the seconds expected of a run, whether lanes take it, what is wrong with columns.
+
+    The first two have shape (motions, columns).
+    """
     return _core.plan_ensemble(
         [column._statement for column in plan.columns],
         _core.settings(plan.settings),

@@ -25,23 +25,30 @@ module rbs_solve_ensemble_block
    !> Tells `run_block` to run everything without lanes.
    integer, parameter :: without_lanes = -1
 
+   !> Fewer runs go faster one after the other: a step of the lanes takes about as long as that of these
+   !> alone, however many lanes are empty.
+   integer, parameter :: fewest = 4
+
 contains
 
-   !> What a run of each motion will take: expected seconds, within a factor of three (motions). Stops at the
-   !> first motion that the column cannot be run with.
-   subroutine plan_column(column, motion, seconds, error)
+   !> What a run of each motion will take: expected seconds, within a factor of three (motions), and whether
+   !> lanes take it. Stops at the first motion that the column cannot be run with.
+   subroutine plan_column(column, motion, seconds, in_lanes, error)
       type(ensemble_column), intent(in) :: column
       type(ensemble_motion), intent(in) :: motion(:)
       real(wp), intent(out) :: seconds(:)
+      logical, intent(out) :: in_lanes(:)
       type(error_type), allocatable, intent(out) :: error
       type(time_plan) :: plan
       integer :: j
 
       seconds = 0.0_wp
+      in_lanes = .false.
       do j = 1, size(motion)
          call plan_run(column, motion(j), plan, error)
          if (allocated(error)) return
          seconds(j) = expected_seconds(column%column, plan)
+         in_lanes(j) = takes_lanes(column, plan, motion(j)%time)
       end do
       call check_start(column, motion(size(motion)), plan, error)
    end subroutine plan_column
@@ -91,10 +98,10 @@ contains
       type(time_plan) :: plan
       type(error_type), allocatable :: error
       logical :: in_lanes
-      integer :: i, count
+      integer :: i, tasks
 
       allocate (task(size(run)))
-      count = 0
+      tasks = 0
       in_lanes = .false.
       do i = 1, size(run)
          if (control(1) /= 0) return
@@ -107,11 +114,11 @@ contains
                end if
             end if
             if (in_lanes) then
-               count = count + 1
-               task(count)%run = i
-               task(count)%parts = plan%parts(1)
-               task(count)%scale = run(i)%scale
-               call keep_plan(plan, task(count)%plan)
+               tasks = tasks + 1
+               task(tasks)%run = i
+               task(tasks)%parts = plan%parts(1)
+               task(tasks)%scale = run(i)%scale
+               call keep_plan(plan, task(tasks)%plan)
                cycle
             end if
             call run_alone(one, shaken, run(i)%scale, plan, error, outcome(i))
@@ -119,7 +126,7 @@ contains
          control(2) = control(2) + 1
       end do
       ! The columns in lanes are of one kind, and go by one method.
-      task = task(:count)
+      task = task(:tasks)
       do while (size(task) > 0)
          allocate (together(size(task)))
          do i = 1, size(task)
@@ -127,11 +134,38 @@ contains
                           are_alike(column(run(task(i)%run)%column), column(run(task(1)%run)%column))
          end do
          others = pack(task, .not. together)
-         call run_in_lanes(column, motion, run, pack(task, together), level, outcome, control)
+         if (count(together) >= fewest) then
+            call run_in_lanes(column, motion, run, pack(task, together), level, outcome, control)
+         else
+            call run_few(column, motion, run, pack(task, together), outcome, control)
+         end if
          call move_alloc(others, task)
          deallocate (together)
       end do
    end subroutine run_block
+
+   !> Runs that lanes could take, one after the other.
+   subroutine run_few(column, motion, run, task, outcome, control)
+      type(ensemble_column), intent(in) :: column(:)
+      type(ensemble_motion), intent(in) :: motion(:)
+      type(run_type), intent(in) :: run(:)
+      type(lane_task), intent(in) :: task(:)
+      type(outcome_type), intent(inout) :: outcome(:)
+      !> See `run_block`
+      integer, intent(inout), volatile :: control(2)
+      type(time_plan) :: plan
+      type(error_type), allocatable :: error
+      integer :: i
+
+      do i = 1, size(task)
+         if (control(1) /= 0) return
+         associate (this => run(task(i)%run), result => outcome(task(i)%run))
+            call plan_run(column(this%column), motion(this%motion), plan, error)
+            call run_alone(column(this%column), motion(this%motion), this%scale, plan, error, result)
+         end associate
+         control(2) = control(2) + 1
+      end do
+   end subroutine run_few
 
    !> Whether the column or the motion of a run is another one than before.
    pure logical function is_new(run, i)
