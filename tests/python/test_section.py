@@ -237,17 +237,20 @@ def test_layout_of_a_rectangle():
     )
 
 
-def test_a_changed_section_lays_its_bars_out_anew():
+def test_what_follows_from_others_follows_their_changes():
     layout, thicker = Layout(8, 0.02, STEEL), Layout(8, 0.025, STEEL)
     given = {"cover": 0.04, "layout": layout, "ties": Ties(0.01, 0.1, STEEL)}
     section = RectangularSection(0.4, 0.4, Concrete(30e6), **given)
-    for changes in ({"ties": None}, {"layout": thicker}):
+    for changes in ({"ties": None}, {"layout": thicker}, {"cover": 0.05}):
         assert dataclasses.replace(section, **changes) == RectangularSection(
             0.4, 0.4, Concrete(30e6), **given | changes
         )
     # What was given stays; bars and a layout contradict each other as before.
     own = dataclasses.replace(section, bar_diameter=0.018)
     assert dataclasses.replace(own, layout=thicker).bar_diameter == 0.018
+    assert dataclasses.replace(section, side_cover=0.03, cover=0.05).side_cover == 0.03
+    assert dataclasses.replace(Steel(400e6), fy=500e6) == Steel(500e6)
+    assert dataclasses.replace(Steel(400e6, 550e6), fy=500e6).fu == 550e6
     assert dataclasses.replace(section, layout=None).bars == section.bars
     with pytest.raises(InputError, match="give bars or layout"):
         dataclasses.replace(section, bars=[(0.1, 2e-4, STEEL)])

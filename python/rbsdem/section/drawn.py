@@ -13,6 +13,7 @@ import numpy as np
 from rbsdem import _core
 from rbsdem._core import Array
 from rbsdem.errors import InputError
+from rbsdem.section.derived import Derived, given
 from rbsdem.section.diagram import Confinement
 from rbsdem.section.materials import Concrete, Steel
 from rbsdem.section.reinforcement import Bar, Layout, Spiral, Ties
@@ -22,9 +23,9 @@ __all__ = ["DrawnSection"]
 
 
 class _LaidOut(tuple[Bar, ...]):
-    """Bars that follow from a layout, and the diameter of the outermost if it does too [m]."""
+    """Bars that follow from a layout."""
 
-    diameter: float | None = None
+    __slots__ = ()
 
 
 @dataclass(frozen=True)
@@ -118,29 +119,23 @@ class DrawnSection(ABC):
         if not isinstance(self.bars, Sequence):
             raise InputError(f"section: bars = {self.bars!r} must be a list of (y, area, Steel)")
         if self.layout is not None:
-            if isinstance(self.bars, _LaidOut):
-                # Those of a section that this one was made from by `dataclasses.replace`.
-                if self.bar_diameter == self.bars.diameter:
-                    self._put("bar_diameter", None)
-            elif len(self.bars) > 0:
+            # Those of a section that this one was made from by `dataclasses.replace` are laid anew.
+            if len(self.bars) > 0 and not isinstance(self.bars, _LaidOut):
                 raise InputError("section: give bars or layout, not both")
             if not isinstance(self.layout, Layout):
                 raise InputError(f"section: layout = {self.layout!r} must be a Layout")
             inset = cover + (transverse.diameter if transverse else 0.0)
-            bars = _LaidOut(self._lay_out(self.layout, inset))
-            self._put("bars", bars)
-            if self.bar_diameter is None:
-                bars.diameter = self.layout.diameter
-                self._put("bar_diameter", self.layout.diameter)
+            self._put("bars", _LaidOut(self._lay_out(self.layout, inset)))
+            follows: float | None = self.layout.diameter
         else:
             self._put("bars", tuple(_bar(bar, i) for i, bar in enumerate(self.bars, 1)))
-        if self.bar_diameter is not None:
-            value = _core.number(self.bar_diameter, "section: bar_diameter")
-            self._put("bar_diameter", value)
-        elif self.bars:
-            area = max(self.bars, key=lambda bar: bar[0])[1]
-            if area > 0.0:
-                self._put("bar_diameter", math.sqrt(4.0 * area / math.pi))
+            area = max(self.bars, key=lambda bar: bar[0])[1] if self.bars else 0.0
+            follows = math.sqrt(4.0 * area / math.pi) if area > 0.0 else None
+        diameter = given(self.bar_diameter)
+        if diameter is not None:
+            self._put("bar_diameter", _core.number(diameter, "section: bar_diameter"))
+        else:
+            self._put("bar_diameter", None if follows is None else Derived(follows))
 
     @property
     def web_width(self) -> float:

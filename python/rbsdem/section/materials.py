@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _core
 from rbsdem._core import Array
+from rbsdem.section.derived import Derived, given
 
 __all__ = ["Concrete", "Steel", "Tension"]
 
@@ -121,10 +122,11 @@ class Steel:
     eps_u: float = 0.1
 
     def __post_init__(self) -> None:
-        if self.fu is None:
-            object.__setattr__(self, "fu", 1.5 * _core.number(self.fy, "steel: fy"))
-        for name in ("fy", "fu", "es", "eps_sh", "eps_u"):
+        for name in ("fy", "es", "eps_sh", "eps_u"):
             object.__setattr__(self, name, _core.number(getattr(self, name), f"steel: {name}"))
+        fu = given(self.fu)
+        fu = Derived(1.5 * self.fy) if fu is None else _core.number(fu, "steel: fu")
+        object.__setattr__(self, "fu", fu)
         _core.steel_response(self.statement(), np.zeros(1))
 
     def statement(self, number: int | None = None) -> _core.Statement:

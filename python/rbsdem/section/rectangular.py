@@ -11,6 +11,7 @@ import numpy as np
 from rbsdem import _core
 from rbsdem._core import Array
 from rbsdem.errors import InputError
+from rbsdem.section.derived import Derived, given
 from rbsdem.section.materials import Concrete
 from rbsdem.section.reinforcement import Bar, Layout, Ties
 from rbsdem.section.section import Section
@@ -84,9 +85,11 @@ class RectangularSection(Section):
             raise InputError(f"section: ties = {self.ties!r} must be Ties")
         for name in ("width", "depth", "cover"):
             self._put(name, _core.number(getattr(self, name), f"section: {name}"))
-        if self.side_cover is None:
-            self._put("side_cover", self.cover)
-        self._put("side_cover", _core.number(self.side_cover, "section: side_cover"))
+        side = given(self.side_cover)
+        if side is None:
+            self._put("side_cover", Derived(self.cover))
+        else:
+            self._put("side_cover", _core.number(side, "section: side_cover"))
         self._finish()
 
     def _sizes(self) -> dict[str, float]:
