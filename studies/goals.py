@@ -29,7 +29,7 @@ GOALS = {
     "round, Flexure-Shear": 0.12,
     "round, Shear": 0.12,
 }
-VERSIONS = ("2026.2", "2026.3", "2026.4")
+VERSIONS = ("2026.2", "2026.3", "2026.4", "2026.5")
 NEW = VERSIONS[-1]
 
 

@@ -335,6 +335,9 @@ class PeakOriented(Spring):
         For shear springs: the strength falls to the share s_min + (1 - s_min)/(1 + W/(lambda_h f_y
         d_y)), W the work of the flexural spring of the same joint since cracking. 0 means that it
         does not.
+    fade : float, optional
+        How the strength falls with the energy share x = (E/(lambda_s f_y d_y))^c: its rate is minus
+        its power `fade`. 0: evenly, to nothing at x = 1; 1: exp(-x); 2: 1/(1 + x).
     d_y_neg, f_y_neg, d_cap_neg, f_cap_neg, d_pc_neg, f_res_neg, d_u_neg, d_c_neg, f_c_neg : float
         The backbone of the negative side, as positive numbers. A value that is not given is that of
         the positive side.
@@ -372,6 +375,7 @@ class PeakOriented(Spring):
     f_c_neg: float | None = None
     lambda_h: float = 0.0
     s_min: float = 0.0
+    fade: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -388,7 +392,7 @@ class Pinching(PeakOriented):
         above 0, up to 1.
     d_y, f_y, d_cap, f_cap, d_pc, f_res, d_u, d_c, f_c, b0 : float
         As for `PeakOriented`, by keyword.
-    lambda_s, lambda_c, lambda_k, lambda_a, c, lambda_h, s_min : float, optional
+    lambda_s, lambda_c, lambda_k, lambda_a, c, lambda_h, s_min, fade : float, optional
         As for `PeakOriented`.
     d_y_neg, f_y_neg, d_cap_neg, f_cap_neg, d_pc_neg, f_res_neg, d_u_neg, d_c_neg, f_c_neg : float
         As for `PeakOriented`.
@@ -457,6 +461,9 @@ class ConcreteSpring(Spring):
     friction : float, optional
         Share of the force by which the path of opening is below that of closing, once the spring
         was closed by `d_peak` or more; below 1.
+    seating : float, optional
+        Share of the early touch that opening does not follow, because faces that were pressed
+        together fit; 0 to 1.
 
     Raises
     ------
@@ -475,6 +482,7 @@ class ConcreteSpring(Spring):
     misfit: float = 0.0
     wear: float = 0.0
     friction: float = 0.0
+    seating: float = 0.0
 
 
 @renamed(

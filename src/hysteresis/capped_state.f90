@@ -183,7 +183,7 @@ contains
 
       associate (law => self%deterioration, energy => self%dissipated(-s), backbone => self%backbone(s), &
                  given => self%given(s))
-         backbone%strength = law%left(law%strength, energy)
+         backbone%strength = law%strength_left(energy)
          if (self%hinge_work > 0.0_wp) then
             worked = max(self%heard - self%heard_at_cracking, 0.0_wp)/self%hinge_work
             left = self%s_min + (1.0_wp - self%s_min)/(1.0_wp + worked)

@@ -16,7 +16,7 @@
 !> up energy, whether the crack opens or not.
 module rbs_hysteresis_concrete
    use rbs_base_error, only: message_list
-   use rbs_base_keys, only: key_type, above_zero, not_negative, share_below_one, &
+   use rbs_base_keys, only: bound_type, key_type, above_zero, not_negative, share_below_one, &
                            force, deformation, stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_memory, only: memory_type
@@ -57,7 +57,9 @@ module rbs_hysteresis_concrete
       key_type('wear', bound=share_below_one, default=0.0_wp, &
                meaning='share of the strength that a wide opening of the crack takes'), &
       key_type('friction', bound=share_below_one, default=0.0_wp, &
-               meaning='share of the force that opening gives up at once after closing to d_peak or more')]
+               meaning='share of the force that opening gives up at once after closing to d_peak or more'), &
+      key_type('seating', bound=bound_type(0.0_wp, 1.0_wp, reason='(it is a share)'), default=0.0_wp, &
+               meaning='share of the early touch that opening does not follow: what was pressed together fits')]
 
    type, extends(rule_type) :: concrete_rule
       !> Initial stiffness [N/m]
@@ -76,6 +78,9 @@ module rbs_hysteresis_concrete
       real(wp) :: wear = 0.0_wp
       !> Share of the force by which the path of opening is below that of closing
       real(wp) :: friction = 0.0_wp
+      !> Share of the gap that opening does not follow; whether opening and closing have paths of their own
+      real(wp) :: seating = 0.0_wp
+      logical, private :: rubs = .false.
       integer, private :: stage = envelope
       !> Largest closing so far and the force there without wear; plastic closing [m, N]
       real(wp), private :: c_u = 0.0_wp, f_u = 0.0_wp, c_p = 0.0_wp
@@ -125,6 +130,8 @@ contains
       self%misfit = value(8)
       self%wear = value(9)
       self%friction = value(10)
+      self%seating = value(11)
+      self%rubs = self%friction > 0.0_wp .or. self%seating > 0.0_wp
    end subroutine set
 
    pure real(wp) function initial_stiffness(self)
@@ -181,7 +188,11 @@ contains
             call unload(self, line)
          case (opening)
             call widen(self, c)
-            call close_up(self, c, line)
+            if (self%seating > 0.0_wp .and. c > self%c_p - self%gap) then
+               call rub(self, c, 0.0_wp, line)
+            else
+               call close_up(self, c, line)
+            end if
          case (releasing, parting)
             call rub(self, c, f, line)
          case (between)
@@ -194,7 +205,7 @@ contains
          case (envelope)
             if (c > 0.0_wp) then
                call leave_envelope(self, c, f/self%strength)
-               if (self%friction > 0.0_wp) then
+               if (self%rubs) then
                   call rub(self, c, f, line)
                else
                   call unload(self, line)
@@ -203,13 +214,13 @@ contains
                call open_up(self, c, line)
             end if
          case (unloading)
-            if (self%friction > 0.0_wp) then
+            if (self%rubs) then
                call rub(self, c, f, line)
             else
                call touch(self, line)
             end if
          case (contact)
-            if (self%friction > 0.0_wp .and. c > self%c_p - self%gap) then
+            if (self%rubs .and. c > self%c_p - self%gap) then
                call rub(self, c, f, line)
             else
                call open_up(self, c, line)
@@ -291,7 +302,7 @@ contains
       self%stage = unloading
       call full_closing(self, c_closed, f_closed)
       line = chord(c_closed, f_closed, self%c_u, self%strength*self%f_u)
-      if (self%friction > 0.0_wp) then
+      if (self%rubs) then
          call set_one_way(line)
       else
          line%hi_closed = .not. self%gap > 0.0_wp
@@ -311,7 +322,7 @@ contains
          line = chord(self%c_p - self%gap, 0.0_wp, c_closed, f_closed)
          line%lo_closed = .true.
          line%hi_closed = .true.
-         if (self%friction > 0.0_wp) call set_one_way(line)
+         if (self%rubs) call set_one_way(line)
       else if (self%stage == closing) then
          call unload(self, line)
       else
@@ -329,10 +340,10 @@ contains
 
       upper = c
       lower = c
-      if (self%stage == releasing .or. self%stage == parting) then
-         upper = min(max(meeting(self, 1.0_wp, c, f), c), self%c_u)
+      if (self%stage == releasing .or. self%stage == parting .or. self%stage == opening) then
+         upper = min(max(meeting(self, 1.0_wp, self%c_p - self%gap, c, f), c), self%c_u)
       else
-         lower = min(meeting(self, 1.0_wp - share_of_friction(self), c, f), c)
+         lower = min(meeting(self, 1.0_wp - share_of_friction(self), parting_end(self), c, f), c)
       end if
       self%stage = between
       line = segment(d0=-c, f0=-f, k=self%k, lo=-upper, hi=-lower)
@@ -342,14 +353,30 @@ contains
    elemental real(wp) function share_of_friction(self)
       type(concrete_rule), intent(in) :: self
 
-      share_of_friction = (self%c_u/self%d_peak - chord_ends(1))/(1.0_wp - chord_ends(1))
-      share_of_friction = self%friction*min(max(share_of_friction, 0.0_wp), 1.0_wp)
+      share_of_friction = self%friction*crushed(self)
    end function share_of_friction
 
-   !> Where the line of the initial stiffness through (c, f) meets a share of the path of closing [m].
-   real(wp) function meeting(self, share, c, f)
+   !> From 0, where the virgin spring is elastic, to 1 at the closing at the peak.
+   elemental real(wp) function crushed(self)
       type(concrete_rule), intent(in) :: self
-      real(wp), intent(in) :: share, c, f
+
+      crushed = (self%c_u/self%d_peak - chord_ends(1))/(1.0_wp - chord_ends(1))
+      crushed = min(max(crushed, 0.0_wp), 1.0_wp)
+   end function crushed
+
+   !> The closing at which the path of opening has no force any more [m].
+   elemental real(wp) function parting_end(self)
+      type(concrete_rule), intent(in) :: self
+
+      parting_end = self%c_p - self%gap
+      if (self%seating > 0.0_wp) parting_end = self%c_p - (1.0_wp - self%seating*crushed(self))*self%gap
+   end function parting_end
+
+   !> Where the line of the initial stiffness through (c, f) meets a path: a share of that of closing above
+   !> full closing, and a line from there to no force at the closing `c_none` [m].
+   real(wp) function meeting(self, share, c_none, c, f)
+      type(concrete_rule), intent(in) :: self
+      real(wp), intent(in) :: share, c_none, c, f
       real(wp) :: c_closed, f_closed, c_0, f_0, slope
 
       call full_closing(self, c_closed, f_closed)
@@ -361,10 +388,11 @@ contains
          if (.not. self%c_u > c_0) return
          slope = (share*self%strength*self%f_u - f_0)/(self%c_u - c_0)
       else
-         c_0 = self%c_p - self%gap
+         c_0 = c_none
          f_0 = 0.0_wp
          slope = 0.0_wp
-         if (c_closed > c_0) slope = share*f_closed/(c_closed - c_0)
+         ! Before it the path has no force.
+         if (c_closed > c_0 .and. f < self%k*(c - c_0)) slope = share*f_closed/(c_closed - c_0)
       end if
       ! Both lines from c_0 on.
       meeting = c_0
@@ -398,17 +426,17 @@ contains
       type(concrete_rule), intent(inout) :: self
       real(wp), intent(in) :: c
       type(segment), intent(out) :: line
-      real(wp) :: c_closed, f_closed, left, c_touch
+      real(wp) :: c_closed, f_closed, left, c_none
 
       call full_closing(self, c_closed, f_closed)
       left = 1.0_wp - share_of_friction(self)
-      c_touch = self%c_p - self%gap
+      c_none = parting_end(self)
       if (c > c_closed) then
          self%stage = releasing
          line = chord(c_closed, left*f_closed, self%c_u, left*self%strength*self%f_u)
-      else if (c > c_touch) then
+      else if (c > c_none) then
          self%stage = parting
-         line = chord(c_touch, 0.0_wp, c_closed, left*f_closed)
+         line = chord(c_none, 0.0_wp, c_closed, left*f_closed)
       else
          call open_up(self, c, line)
          return

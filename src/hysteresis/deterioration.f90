@@ -20,8 +20,11 @@ module rbs_hysteresis_deterioration
       real(wp) :: strength = 0.0_wp, softening = 0.0_wp, unloading = 0.0_wp, target = 0.0_wp
       !> Exponent
       real(wp) :: c = 1.0_wp
+      !> Of the strength: 0 as above, to nothing; 1: exponential; 2: a hyperbola
+      real(wp) :: fade = 0.0_wp
    contains
       procedure :: left
+      procedure :: strength_left
       procedure :: acts
    end type deterioration_type
 
@@ -40,6 +43,25 @@ contains
       left = 0.0_wp
       if (energy < capacity) left = 1.0_wp - (energy/capacity)**self%c
    end function left
+
+   !> Share that is left of the strength. With `fade` it begins to fall as fast as without and falls ever more
+   !> slowly, as that of cracks which have worn smooth already: with x = (E/E_t)^c its rate is -left^fade.
+   elemental real(wp) function strength_left(self, energy) result(share)
+      class(deterioration_type), intent(in) :: self
+      !> Energy dissipated [J]
+      real(wp), intent(in) :: energy
+      real(wp) :: x, more
+
+      share = self%left(self%strength, energy)
+      if (.not. self%fade > 0.0_wp .or. .not. share < 1.0_wp) return
+      x = (energy/self%strength)**self%c
+      more = self%fade - 1.0_wp
+      if (abs(more) < 1.0e-6_wp) then
+         share = exp(-x)
+      else
+         share = max(1.0_wp + more*x, 0.0_wp)**(-1.0_wp/more)
+      end if
+   end function strength_left
 
    !> Whether there is any deterioration.
    elemental logical function acts(self)

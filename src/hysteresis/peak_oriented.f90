@@ -23,7 +23,7 @@ module rbs_hysteresis_peak_oriented
 
    !> Parameters of this rule and of those that extend it: of the positive side, of both sides, of the
    !> negative side.
-   type(key_type), parameter :: shared_keys(8) = [ &
+   type(key_type), parameter :: shared_keys(9) = [ &
       key_type('b0', bound=bound_type(least=0.0_wp, most=1.0_wp), default=0.0_wp, &
                meaning='exponent of the unloading stiffness over ductility'), &
       key_type('lambda_s', bound=not_negative, default=0.0_wp, &
@@ -39,7 +39,9 @@ module rbs_hysteresis_peak_oriented
       key_type('lambda_h', bound=not_negative, default=0.0_wp, &
                meaning='work of the flexural spring over f_y d_y that halves what can decay; 0: none'), &
       key_type('s_min', bound=share_below_one, default=0.0_wp, &
-               meaning='share of the strength that stays, whatever the flexural spring has done')]
+               meaning='share of the strength that stays, whatever the flexural spring has done'), &
+      key_type('fade', bound=bound_type(least=0.0_wp, most=4.0_wp), default=0.0_wp, &
+               meaning='strength falls ever more slowly, its rate as its power fade; 0: evenly, to nothing')]
    !> Capacities are divided by the energy at yield and multiplied by it.
    real(wp), parameter :: round_off = 1.0e-9_wp
 
@@ -87,7 +89,7 @@ contains
          part%b0 = value(sides + 1)
          associate (energy => energy_of(part))
             part%deterioration = deterioration_type(lambda(1)*energy, lambda(2)*energy, lambda(3)*energy, &
-                                                    lambda(4)*energy, value(sides + 6))
+                                                    lambda(4)*energy, value(sides + 6), value(sides + 9))
             part%hinge_work = value(sides + 7)*energy
             part%s_min = value(sides + 8)
          end associate

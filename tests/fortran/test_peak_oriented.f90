@@ -27,6 +27,7 @@ contains
                unit_test('inner loops close at the turn where they began', inner_loops), &
                unit_test('pinching: the break, with and without a permanent deformation', pinching), &
                unit_test('strength deteriorates', strength), &
+               unit_test('the strength fades', fading), &
                unit_test('the softening line deteriorates', softening), &
                unit_test('the unloading stiffness deteriorates where the motion turns back', unloading), &
                unit_test('the target of reloading moves outward', target), &
@@ -171,6 +172,22 @@ contains
       end do
    end subroutine strength
 
+   subroutine fading(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_record) :: spec
+      real(wp), parameter :: left(2) = [exp(-energy/1000.0_wp), 1.0_wp/(1.0_wp + energy/1000.0_wp)]
+      integer :: i
+
+      spec = hand('peak_oriented')
+      call spec%set('lambda_s', 10.0_wp)
+      do i = 1, 2
+         call spec%set('fade', real(i, wp))
+         call expect(error, spec, [2.0_wp, -2.0_wp], &
+                     [110.0_wp, -left(i)*(100.0_wp + 10.0_wp*(2.0_wp - left(i)))], 'forces')
+      end do
+   end subroutine fading
+
+   !> The same of the softening line.
    subroutine softening(error)
       type(error_type), allocatable, intent(inout) :: error
       type(spring_record) :: spec

@@ -231,7 +231,7 @@ def test_a_section_makes_the_column_of_the_specimen(model):
     column = SECTION.column(1.6, axial_load=1.2e6, model=model)
     drawn = peer.column(SPECIMEN, model)
     assert (column.height, column.n, column.kinematics) == (1.6, drawn.n, "pdelta")
-    assert column.model == {"layered": "layered 2026.4", "paper": "paper"}[model]
+    assert column.model == {"layered": "layered 2026.5", "paper": "paper"}[model]
     assert column.axial_load == drawn.axial_load
     assert column.mass == pytest.approx(0.4 * 0.4 * 1.6 * 2400)
     force = rbsdem.cyclic(column, displacement=LOOP).force
@@ -260,7 +260,7 @@ def test_a_circular_section_makes_both_models():
     ("options", "text"),
     [
         ({"height": 1600.0}, "height = 1600 m must be between .*; 1600 mm is 1.6"),
-        ({"version": "1999.1"}, "version = '1999.1' .* there are 2026.2, 2026.3, 2026.4"),
+        ({"version": "1999.1"}, "version = '1999.1' .* there are 2026.2, 2026.3, 2026.4, 2026.5"),
         ({"version": "2026.1"}, "version = .2026.1. .* is gone: .* take 2026.2"),
         ({"version": "2026.2", "model_parameters": parameters()}, "not both"),
         ({"model": "paper", "version": "2026.2"}, "version is for model = 'layered'; remove it"),
@@ -307,6 +307,9 @@ def test_the_first_version_stands():
         "shear_pinch_axial": 0.0,
         "shear_cracked": 1.0,
         "shear_b0": 0.0,
+        "seating": 0.0,
+        "shear_fade": 0.0,
+        "shear_round_ties": 2.5,
     }
     assert {name: values.pop(name) for name in later} == later
     # Of no effect without them.
@@ -319,11 +322,11 @@ def test_the_first_version_stands():
 def test_changed_parameters_are_named_as_changed():
     column = SECTION.column(1.6, axial_load=1.2e6)
     changed = column.with_parameters(steel_strength=1.0)
-    assert (column.version, changed.version) == ("2026.4", "2026.4 changed")
-    assert (column.model, changed.model) == ("layered 2026.4", "layered 2026.4 changed")
-    assert "model = 'layered 2026.4'" in column.to_namelist()
+    assert (column.version, changed.version) == ("2026.5", "2026.5 changed")
+    assert (column.model, changed.model) == ("layered 2026.5", "layered 2026.5 changed")
+    assert "model = 'layered 2026.5'" in column.to_namelist()
     assert repr(column) == (
-        "LayeredColumn(height=1.6, n=2, axial_load=1.2e+06, model='layered 2026.4')"
+        "LayeredColumn(height=1.6, n=2, axial_load=1.2e+06, model='layered 2026.5')"
     )
     back = changed.with_parameters(steel_strength=parameters().hinge.steel_strength)
     assert back == column
@@ -446,7 +449,7 @@ def test_a_calibrated_column_keeps_what_was_replaced():
     fit = rbsdem.calibrate(column, test, ["steel_strength"], evaluations=40)
     assert fit.values["steel_strength"] == pytest.approx(1.0, rel=1e-3)
     assert (fit.column.top_mass, fit.column.damping) == (2e4, column.damping)
-    assert fit.column.version == "2026.4 changed"
+    assert fit.column.version == "2026.5 changed"
 
 
 @pytest.mark.parametrize(("springs", "name"), [("shear", "shear_strength"), ("flexure", "wear")])

@@ -387,7 +387,7 @@ def test_command(folder, tmp_path, capsys):
     assert run(folder, "--jobs", "1", "--out", out, "--loops", "--failure", "flexure") == 0
     text = capsys.readouterr().out
     assert "Me 1991 No. 1" in text
-    assert "Model layered 2026.4: 3 tests in" in text
+    assert "Model layered 2026.5: 3 tests in" in text
     assert "rectangular, Flexure" in text
     names = {path.name for path in out.iterdir()}
     assert names == {"results.csv", "summary.csv", "gallery.html", "loops.png", "loops"}

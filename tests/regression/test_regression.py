@@ -661,7 +661,7 @@ def other_make(name: str) -> Any:
 
 def numbers_of(spring: rbsdem.springs.Spring) -> dict[str, Any]:
     """Return the parameters of a spring without those that are off, which another make may lack."""
-    off = ("lambda_h", "s_min", "friction", "buckling")
+    off = ("lambda_h", "s_min", "fade", "friction", "seating", "buckling")
     given = {k: v for k, v in asdict(spring).items() if v is not None}
     assert not any(given.get(name) for name in off)
     return {k: v for k, v in given.items() if k not in off}

@@ -158,6 +158,7 @@ def hinge_joint(
             misfit=hinge.misfit,
             wear=hinge.wear,
             friction=hinge.friction,
+            seating=hinge.seating,
         )
 
     layers: list[tuple[float, ConcreteSpring | SteelSpring]] = []

@@ -375,7 +375,7 @@ class Section(DrawnSection):
         ... )
         >>> column = section.column(1.6, axial_load=744e3)
         >>> column.n, column.version
-        (2, '2026.4')
+        (2, '2026.5')
         """
         if restrained is not None:
             restrained = _core.whole(restrained, "restrained")

@@ -30,10 +30,6 @@ _ES = 200e9
 # stiffness and of the yield force that keep the lines of the spring apart.
 _LEAST = 0.01
 
-# Ties that spirals are worth, against those of rectangular hoops: their cracks are flatter than 45
-# degrees (30 degrees would be 1.73), and they hold a whole circle.
-_ROUND = 2.5
-
 
 def cracked_shear_stiffness(section: Section) -> float:
     """Return the shear stiffness of the truss of ties and concrete struts at 45 degrees.
@@ -153,7 +149,7 @@ def _shear(
         # What falls faster than the column above springs back has no equilibrium.
         above = 3 * section.concrete_law["ec"] * section._figures["inertia"] / length**3
         fall = max(fall, f_cap / (given.snap_back * above))
-    ties = (_ROUND if is_round else 1.0) * by_ties / f_y
+    ties = (given.round_ties if is_round else 1.0) * by_ties / f_y
     # Few ties do not hold a crack together: what the concrete carried is soon gone.
     lasts = min(1.0, max(2.0 * ties, 0.1) ** given.endurance_ties)
     # The rule refuses what would fall faster than the spring is stiff.
@@ -185,6 +181,7 @@ def _shear(
         kappa_d=given.pinch_slip,
         lambda_h=lambda_h / (f_y * d_y),
         s_min=s_min,
+        fade=given.fade,
     )
     return spring, limits
 
