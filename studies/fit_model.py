@@ -28,7 +28,7 @@ and of version 2026.4, each absent where its parameter is zero (or a factor one)
   softer than with ties that do not slip, *axial load closes the cracks*, so that they pinch less,
   and *round columns* may be stronger than the theory of webs says;
 
-and of version 2026.5, chosen in this order for reasons of mechanics
+and of version 2026.5
 
 - *round columns fail as a whole*: 13 tests say that their strength is 1.2 to 1.5 times that of the
   theory of webs (an arch of the axial force and spirals at 30 degrees: Kowalsky and Priestley
@@ -37,8 +37,8 @@ and of version 2026.5, chosen in this order for reasons of mechanics
 - *strength in shear fades*: energy wears cracks smooth, the smoother they are the more slowly. A
   hyperbola, as by the work of the hinge, in place of a line that ends at nothing;
 - *faces that were pressed together fit*: rubble and misfit carry while a crack closes, not while it
-  opens. Opening leaves from where the concrete is closed, so that a column under high axial load
-  dissipates more at zero displacement;
+  opens. Opening leaves from where the concrete is closed, so that loops under axial load are wider
+  at zero displacement (by less than those of high-strength concrete are too narrow);
 - numbers that were held before and are not where the loss is least any more: roundness, length of
   slip, strength of bars, and the shelter of confinement.
 
