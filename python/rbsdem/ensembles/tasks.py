@@ -27,6 +27,9 @@ _NO_WATCH: Array = np.array(
     [(1, 1, 0.0, side, 0.0, np.finfo(np.float64).max) for side in (1.0, -1.0)]
 )
 
+#: Runs of a task at the most: each takes about 1 kB while the task lasts.
+_MOST_RUNS = 16384
+
 _FAILED = STATUSES.index("failed")
 
 #: How the error of a run begins whose measure raised one.
@@ -115,7 +118,9 @@ def cut(plan: Plan, seconds: Array, longest: float) -> list[tuple[int, int]]:
     own = seconds[plan.motion, plan.column]
     # By their middles, so that a last run does not stand alone for the round-off of a sum.
     number = np.floor((np.cumsum(own) - 0.5 * own) / longest)
-    ends = [*(np.flatnonzero(np.diff(number) > 0) + 1).tolist(), plan.scale.size]
+    block = np.arange(own.size) // _MOST_RUNS
+    changes = (np.diff(number) > 0) | (np.diff(block) > 0)
+    ends = [*(np.flatnonzero(changes) + 1).tolist(), own.size]
     return list(zip([0, *ends[:-1]], ends, strict=True))
 
 
