@@ -70,7 +70,7 @@ def test_damage_is_noticed(tmp_path: Path) -> None:
     one, other = sorted((tmp_path / "shards").iterdir())[:2]
     number = first.measures["residual_displacement"][5].tobytes()
     (hit,) = (path for path in (tmp_path / "shards").iterdir() if number in path.read_bytes())
-    hit.write_bytes(hit.read_bytes().replace(number, (0.01).hex().encode()[:8]))
+    hit.write_bytes(hit.read_bytes().replace(number, np.float64(0.01).tobytes()))
     same(first, run(tmp_path))
     one.write_bytes(other.read_bytes())
     again = run(tmp_path)
