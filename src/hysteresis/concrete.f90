@@ -59,7 +59,8 @@ module rbs_hysteresis_concrete
       key_type('friction', bound=share_below_one, default=0.0_wp, &
                meaning='share of the force that opening gives up at once after closing to d_peak or more'), &
       key_type('seating', bound=bound_type(0.0_wp, 1.0_wp, reason='(it is a share)'), default=0.0_wp, &
-               meaning='share of the early touch that opening does not follow: what was pressed together fits')]
+               meaning='share of the early touch that opening does not follow: what was pressed '// &
+               'together fits')]
 
    type, extends(rule_type) :: concrete_rule
       !> Initial stiffness [N/m]
