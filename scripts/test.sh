@@ -11,6 +11,20 @@ RBSDEM_WITH_BROWSER=1
 . "$(dirname "${BASH_SOURCE[0]}")/build.sh"
 
 cd "$root"
+# Leaks and the build with checks go on behind the rest, where a core is free.
+result_of() {
+    local status=0
+    wait "$1" || status=$?
+    cat "build/$2.log"
+    return "$status"
+}
+trap 'jobs -p | xargs -r kill 2>/dev/null' EXIT
+install_rbsdem() { python -m pip install -q --disable-pip-version-check --no-build-isolation --no-deps "$@"; }
+build_with_checks() {
+    install_rbsdem --upgrade --target build/checked-site -Cbuild-dir=build/checked -Csetup-args=-Dchecked=true . &&
+        meson compile -C build/checked >/dev/null
+}
+
 say "linters"
 ruff check .
 ruff format --check -q .
@@ -24,8 +38,10 @@ say "the Fortran part alone can be set up"
 say "Fortran tests, optimised as for use"
 meson test -C build/python --quiet --print-errorlogs
 
-say "leaks, one run of each analysis"
-bash scripts/memory.sh build/python
+bash scripts/memory.sh build/python >build/memory.log 2>&1 &
+leaks=$!
+(renice -n 10 -p "$BASHPID" >/dev/null && build_with_checks) >build/checked.log 2>&1 &
+checks=$!
 
 say "Python tests, fuzzing, regression; examples of the documentation"
 export MPLBACKEND=Agg
@@ -33,12 +49,13 @@ wait "$browser"
 python -m pytest -q -n 2 --dist worksteal
 python scripts/check_docs.py
 
+say "leaks, one run of each analysis"
+result_of "$leaks" memory
+
 say "editable install"
-install_rbsdem() { python -m pip install -q --disable-pip-version-check --no-build-isolation --no-deps \
-    -Cbuild-dir="$root/build/python" "$@"; }
-install_rbsdem --editable .
+install_rbsdem -Cbuild-dir="$root/build/python" --editable .
 (cd / && rbsdem --version && python -c 'import rbsdem; rbsdem.paper_columns()')
-install_rbsdem .
+install_rbsdem -Cbuild-dir="$root/build/python" .
 
 # The tests in Python that bring numbers of all kinds to Fortran; the others see nothing new there.
 say "what calls Fortran once more, with bounds checks and floating-point traps"
@@ -48,7 +65,6 @@ for name in fuzz extremes_columns extremes_input extremes_rotations extremes_sca
     physics column ensembles motions strains doors base_forces section; do
     crossing+=("tests/python/test_$name.py")
 done
-python -m pip install -q --disable-pip-version-check --no-build-isolation --no-deps --upgrade \
-    --target build/checked-site -Cbuild-dir=build/checked -Csetup-args=-Dchecked=true .
+result_of "$checks" checked
 meson test -C build/checked --quiet --print-errorlogs
 PYTHONPATH="$root/build/checked-site" python -m pytest -q -n 2 --dist worksteal "${crossing[@]}"
