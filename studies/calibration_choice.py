@@ -29,36 +29,11 @@ import rbsdem
 from rbsdem import peer
 from rbsdem.calibration.misfit import Target, forces
 from rbsdem.errors import RbsdemError
+from rbsdem.section.directions import ENDS
 
 # Bounds as factors of the value, or as values where it may be zero.
 FACTORS = {
-    "steel_strength": (0.7, 1.5),
-    "hardening": (0.05, 5.0),
-    "r0": (0.2, 5.0),
-    "cr1": (0.3, 1.06),
-    "cr2": (0.1, 10.0),
-    "isotropic_hardening": (0.02, 5.0),
-    "fatigue": (0.02, 20.0),
-    "concrete_strength": (0.6, 1.7),
-    "peak_strain": (0.4, 3.0),
-    "confinement": (0.1, 5.0),
-    "core_softening": (0.1, 50.0),
-    "cover_softening": (0.1, 20.0),
-    "hinge_length": (0.2, 4.0),
-    "compression_length": (0.3, 3.0),
-    "slip_length": (0.1, 5.0),
-    "stiffness": (0.2, 4.0),
-    "shear_stiffness": (0.05, 5.0),
-    "plastic": (0.2, 3.0),
-    "misfit": (0.05, 3.0),
-    "contact": (0.1, 3.0),
-    "wear": (0.05, 8.0),
-    "friction": (0.02, 2.2),
-    "shear_strength": (0.5, 2.0),
-    "shear_softening": (0.1, 10.0),
-    "shear_endurance": (0.02, 50.0),
-    "shear_decay": (0.02, 10.0),
-    "shear_pinch_force": (0.1, 3.0),
+    **ENDS,
     # Several at once.
     "strength": (0.7, 1.5),
     "flexibility": (0.2, 4.0),

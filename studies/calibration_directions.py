@@ -29,16 +29,17 @@ from pathlib import Path
 
 import calibration_choice as choice
 import numpy as np
-from calibration_choice import FACTORS, TOGETHER
+from calibration_choice import TOGETHER
 
 from rbsdem.calibration.misfit import forces
 from rbsdem.errors import RbsdemError
+from rbsdem.section.directions import ENDS
 
 ROOT = Path(__file__).resolve().parents[1]
-NAMES = [name for name in FACTORS if name not in TOGETHER]
+NAMES = list(ENDS)
 #: Where the search begins.
 START = ("strength", "lengths", "softening", "r0", "core_softening", "plastic")
-LOW, HIGH = (np.log([FACTORS[name][side] for name in NAMES]) for side in (0, 1))
+LOW, HIGH = (np.log([ends[side] for ends in ENDS.values()]) for side in (0, 1))
 #: What a parameter counts in: a sixth of its range, as logarithms, or less.
 UNIT = np.minimum((HIGH - LOW) / 6, 0.5)
 EVERY = 4
@@ -153,16 +154,12 @@ def exponents(directions: np.ndarray, at: np.ndarray) -> list[dict[str, float]]:
 
 
 def write(found: list[dict[str, float]]) -> None:
-    """Put exponents and ends into their module."""
+    """Put the exponents into their module."""
     path = ROOT / "python/rbsdem/section/directions.py"
+    lines = "".join(f"    'direction_{k}': {one!r},\n" for k, one in enumerate(found, 1))
+    body = re.compile(r"^(DIRECTIONS: [^\n]* = ).*?^}", re.S | re.M)
     text = path.read_text("utf-8")
-    table = {f"direction_{k}": one for k, one in enumerate(found, 1)}
-    ends = {name: FACTORS[name] for name in NAMES}
-    for name, value in (("DIRECTIONS", table), ("ENDS", ends)):
-        body = re.compile(rf"^({name}: [^\n]* = ).*?^(}})", re.S | re.M)
-        lines = "".join(f"    {key!r}: {entry!r},\n" for key, entry in value.items())
-        new = f"{{\n{lines}}}"
-        text = body.sub(lambda match, new=new: match.group(1) + new, text, count=1)
+    text = body.sub(lambda match: f"{match.group(1)}{{\n{lines}}}", text, count=1)
     path.write_text(text, "utf-8")
 
 
