@@ -166,9 +166,7 @@ contains
             x%events(l) = x%events(l) + events
             call put_line(x, l, i, spring%line)
          end if
-         x%work(l, i) = spring%work
-         x%first(l, i) = spring%first
-         x%last(l, i) = spring%last
+         call give_spring(x, l, i, spring)
       end do
       call fit_resistance(x, l)
    end subroutine follow_body
@@ -208,10 +206,8 @@ contains
             x%a0(l, i) = bent%a1(i)
             x%g0(l, i) = bent%g(i)
             x%largest(l, i) = bent%scale(i)
-            x%work(l, i) = bent%spring(i)%work
             if (bent%spring(i)%way /= 0) call put_line(x, l, i, bent%spring(i)%line)
-            x%first(l, i) = bent%spring(i)%first
-            x%last(l, i) = bent%spring(i)%last
+            call give_spring(x, l, i, bent%spring(i)%lone_spring)
          end do
          do i = 1, 4
             x%inverse(l, i) = bent%inverse(i)
@@ -232,6 +228,17 @@ contains
       spring%d = d
       spring%work = x%work(l, i)
    end subroutine take_spring
+
+   !> What a spring leaves in its lane, on the line that is there.
+   pure subroutine give_spring(x, l, i, spring)
+      type(one_body_lanes), intent(inout) :: x
+      integer, intent(in) :: l, i
+      type(lone_spring), intent(in) :: spring
+
+      x%work(l, i) = spring%work
+      x%first(l, i) = spring%first
+      x%last(l, i) = spring%last
+   end subroutine give_spring
 
    !> The line of a spring, in the form that its rule takes.
    pure type(segment) function line_of(x, l, i) result(line)
