@@ -84,6 +84,9 @@ module rbs_column_column
       !> Springs (unknowns), shear first, and their initial stiffness
       type(spring_record), allocatable :: spring(:)
       real(wp), allocatable :: initial_stiffness(:)
+      !> The spring whose work a spring may ask for: of a shear spring the flexural one of its joint, else 0
+      !> (unknowns)
+      integer, allocatable :: told(:)
    end type column_type
 
 contains
@@ -266,6 +269,8 @@ contains
 
       n = column%n
       allocate (column%spring(column%unknowns))
+      allocate (column%told(column%unknowns), source=0)
+      column%told(:n) = [(n + i, i=1, n)]
       do i = 1, n
          column%spring(i) = spec%shear(min(i, size(spec%shear)))
          column%spring(n + i) = spec%flexure(min(i, size(spec%flexure)))

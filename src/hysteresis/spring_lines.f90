@@ -33,7 +33,7 @@ module rbs_hysteresis_spring_lines
       integer, allocatable :: one_way(:)
       !> Work done on each spring along its path, exact (count) [J]
       real(wp), allocatable :: work(:)
-      !> The flexural spring whose work the rule of a spring is told at its events, 0: none (count)
+      !> The spring whose work the rule of a spring is told at its events, 0: none (count)
       integer, allocatable :: heard(:)
       !> Work from before `work` was counted, where a step counts it from its own start (count) [J]
       real(wp), allocatable :: work_before(:)
@@ -67,10 +67,13 @@ module rbs_hysteresis_spring_lines
 contains
 
    !> Virgin springs.
-   subroutine create(self, specs)
+   subroutine create(self, specs, told)
       class(spring_lines), intent(out) :: self
       !> Validated parameters of each spring
       type(spring_record), intent(in) :: specs(:)
+      !> The spring whose work the rule of each spring is told if it asks for it, 0: none (size of specs);
+      !> without it, none
+      integer, intent(in), optional :: told(:)
       type(segment) :: line
       integer :: i, n
 
@@ -84,10 +87,10 @@ contains
          call self%slot(i)%rule%start(line)
          call put_line(self, i, line)
       end do
-      ! In a column the first half are the shear springs of the joints, the second their flexural springs.
       allocate (self%heard(n), source=0)
-      do i = 1, n/2
-         if (self%slot(i)%rule%hears()) self%heard(i) = i + n/2
+      if (.not. present(told)) return
+      do i = 1, n
+         if (self%slot(i)%rule%hears()) self%heard(i) = told(i)
       end do
    end subroutine create
 

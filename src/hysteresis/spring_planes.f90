@@ -40,13 +40,15 @@ module rbs_hysteresis_spring_planes
 contains
 
    !> Virgin springs; the axial loads of layered joints do not vary.
-   subroutine create(self, specs)
+   subroutine create(self, specs, told)
       class(spring_planes), intent(out) :: self
       !> Validated parameters of each spring
       type(spring_record), intent(in) :: specs(:)
+      !> See `spring_lines`
+      integer, intent(in), optional :: told(:)
       integer :: i
 
-      call self%spring_lines%create(specs)
+      call self%spring_lines%create(specs, told)
       self%layered = pack([(i, i=1, self%count)], specs%rule == 'layered')
    end subroutine create
 

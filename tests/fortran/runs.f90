@@ -124,7 +124,7 @@ contains
       call state%loads%find_acting()
       call state%motion%create(column, state%loads%acts, outcome)
       if (allocated(outcome)) error stop 'runs: a column without motion'
-      call state%springs%create(column%spring)
+      call state%springs%create(column%spring, column%told)
       call state%loads%at_time(0.0_wp, state%load)
       state%q = q
       state%v = v

@@ -145,7 +145,7 @@ contains
       self%column = column
       self%by_force = by_force
       self%moving = moving
-      call self%springs%create(column%spring)
+      call self%springs%create(column%spring, column%told)
       allocate (self%rate(column%unknowns), source=0.0_wp)
       allocate (self%changed(column%unknowns), source=0)
    end subroutine prepare

@@ -212,7 +212,7 @@ contains
       integer :: i
 
       if (.not. any(state%loads%acts([vertical, axial]))) then
-         call state%springs%create(column%spring)
+         call state%springs%create(column%spring, column%told)
          return
       end if
       spring = column%spring
@@ -222,7 +222,7 @@ contains
                                + state%load(vertical)*column%lifted_joint(i)
          end associate
       end do
-      call state%springs%create(spring)
+      call state%springs%create(spring, column%told)
       call state%springs%vary_axial_loads()
       call state%motion%press(state%springs, state%load)
    end subroutine create_springs
