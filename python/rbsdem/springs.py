@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import MISSING, dataclass, fields, replace
 from functools import cache
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,6 +27,30 @@ AnySpring = TypeVar("AnySpring", bound="Spring")
 
 #: Classes of springs by the name of their rule.
 SPRINGS: dict[str, type[Spring]] = {}
+
+_SIDES: tuple[Literal[1, -1], ...] = (1, -1)
+
+
+class Landmark(NamedTuple):
+    """A point of the virgin curve of a spring that limit states are told by.
+
+    Attributes
+    ----------
+    name : str
+        "cracking", where the first line ends before yield; "yield"; or "cap", from which on the
+        force falls.
+    side : int
+        1, or -1 for negative deformations.
+    deformation : float
+        In size, above 0 [m or rad].
+    source : str
+        The parameters that it follows from.
+    """
+
+    name: Literal["cracking", "yield", "cap"]
+    side: Literal[1, -1]
+    deformation: float
+    source: str
 
 
 @dataclass(frozen=True)
@@ -53,6 +77,10 @@ class Spring:
     def _check(self) -> None:
         """Raise `InputError` if the rule does not allow the parameters."""
         _core.check_spring(self.statement("flexure"), 0.0)
+
+    def landmarks(self) -> list[Landmark]:
+        """Return where the virgin spring cracks, yields and caps; each rule says it of itself."""
+        raise NotImplementedError(f"{type(self).__name__} does not say where it cracks and yields")
 
     def statement(self, group: str, **place: Any) -> _core.Statement:
         """Return the keys of the spring as a group of a case.
@@ -166,6 +194,13 @@ def classes_for(place: str) -> list[str]:
     ]
 
 
+def _both_sides(
+    name: Literal["cracking", "yield", "cap"], at: float, source: str
+) -> list[Landmark]:
+    """Return a landmark of a rule whose two sides are alike."""
+    return [Landmark(name, 1, at, source), Landmark(name, -1, at, source)]
+
+
 @cache
 def _names(kind: type[Spring]) -> tuple[str, ...]:
     """Return the names of the parameters of a rule, in the order of its class."""
@@ -233,6 +268,10 @@ class Elastic(Spring):
     rule: ClassVar[str] = "elastic"
     k: float
 
+    def landmarks(self) -> list[Landmark]:
+        """Return nothing: it neither cracks nor yields."""
+        return []
+
 
 @dataclass(frozen=True)
 class Bilinear(Spring):
@@ -257,6 +296,10 @@ class Bilinear(Spring):
     k: float
     d_y: float
     k_post: float
+
+    def landmarks(self) -> list[Landmark]:
+        """Return yield."""
+        return _both_sides("yield", self.d_y, "d_y")
 
 
 @dataclass(frozen=True)
@@ -298,6 +341,10 @@ class Takeda(Spring):
     b0: float = 0.4
     b1: float = 1.0
     inner: Literal["kc", "kr", "one"] = "kc"
+
+    def landmarks(self) -> list[Landmark]:
+        """Return cracking and yield."""
+        return _both_sides("cracking", self.d_c, "d_c") + _both_sides("yield", self.d_y, "d_y")
 
 
 @dataclass(frozen=True)
@@ -377,6 +424,20 @@ class PeakOriented(Spring):
     s_min: float = 0.0
     fade: float = 0.0
 
+    def landmarks(self) -> list[Landmark]:
+        """Return cracking, where the spring has it, yield and cap of each side."""
+        found: list[Landmark] = []
+        keys: dict[Literal["cracking", "yield", "cap"], str]
+        keys = {"cracking": "d_c", "yield": "d_y", "cap": "d_cap"}
+        for name, key in keys.items():
+            for side in _SIDES:
+                # A side without values of its own has those of the other.
+                own = f"{key}_neg"
+                known = own if side < 0 and getattr(self, own) is not None else key
+                if getattr(self, known) > 0:
+                    found.append(Landmark(name, side, getattr(self, known), known))
+        return found
+
 
 @dataclass(frozen=True, kw_only=True)
 class Pinching(PeakOriented):
@@ -429,6 +490,10 @@ class Compression(Spring):
     rule: ClassVar[str] = "compression"
     k: float
     gap: float = 0.0
+
+    def landmarks(self) -> list[Landmark]:
+        """Return nothing: a contact that opens has not failed."""
+        return []
 
 
 @renamed(k_fall="k_soft")
@@ -483,6 +548,10 @@ class ConcreteSpring(Spring):
     wear: float = 0.0
     friction: float = 0.0
     seating: float = 0.0
+
+    def landmarks(self) -> list[Landmark]:
+        """Return the cap, at its largest compression."""
+        return [Landmark("cap", -1, self.d_peak, "d_peak")]
 
 
 @renamed(
@@ -548,6 +617,10 @@ class SteelSpring(Spring):
     d_buckle: float | None = None
     buckling: float = 0.0
 
+    def landmarks(self) -> list[Landmark]:
+        """Return yield; where hardening ends, the force does not fall."""
+        return _both_sides("yield", self.f_y / self.k, "f_y/k")
+
 
 @renamed(axial_load="the axial load of the column: Column(axial_load=...)")
 @dataclass(frozen=True, repr=False)
@@ -598,6 +671,10 @@ class Layered(Spring):
     def _check(self) -> None:
         # The column checks whether the layers can carry its axial load.
         _core.check_spring(self._alone(), 0.0)
+
+    def landmarks(self) -> list[Landmark]:
+        """Return nothing: at which rotation a layer yields depends on the axial load."""
+        return []
 
     def _alone(self) -> _core.Statement:
         """Return the spring with its layers, as a case of one joint."""

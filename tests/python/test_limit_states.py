@@ -54,6 +54,36 @@ def test_each_side_has_its_own_lines():
     assert result.hinge().yield_rotation == (0.004, 0.002)
 
 
+def test_a_spring_without_a_cracking_point_does_not_crack():
+    """A rigid column on a capped hinge: its only states are yield and cap, at theirs."""
+    capped = {"d_y": 0.004, "f_y": 4e5, "d_cap": 0.02, "f_cap": 5e5, "d_pc": 0.03}
+    slip = {"d_y": 0.01, "f_y": 1e9, "d_cap": 0.02, "f_cap": 1e9, "d_pc": 0.1}
+    column = rbsdem.Column(2.0, 100.0, rbsdem.PeakOriented(**slip), rbsdem.PeakOriented(**capped))
+    path = np.linspace(0.0, 0.05, 30)
+    states = rbsdem.cyclic(column, displacement=path).limit_states()
+    assert states.names() == ["first_yield", "cap"]
+    cracked = replace(column, flexure=rbsdem.PeakOriented(**capped, d_c=0.001, f_c=2e5))
+    states = rbsdem.cyclic(cracked, displacement=path).limit_states()
+    assert states.names() == ["cracking", "first_yield", "cap"]
+    # Nor does concrete without tensile strength, under no load, crack at time 0.
+    plain = replace(SECTION, concrete=rbsdem.Concrete(SECTION.concrete.fc, ft=0.0))
+    rest = rbsdem.cyclic(plain.column(1.6, axial_load=0.0), displacement=[0.0, 1e-4], openings=True)
+    assert "cracking" not in rest.limit_states()
+
+
+def test_a_steel_spring_yields():
+    """At 6.2 times f_y/k the ductility is 6.2, in flexure and in shear."""
+    steel = rbsdem.SteelSpring(k=1e8, f_y=4e5, k_post=1e6)
+    column = rbsdem.Column(2.0, 100.0, rbsdem.Elastic(1e14), steel)
+    result = rbsdem.cyclic(column, displacement=[0.0, 6.2 * 0.008])
+    assert result.hinge().ductility == pytest.approx(6.2, rel=1e-4)
+    assert result.hinge().plastic_rotation[-1] == pytest.approx(5.2 * 0.004, rel=1e-4)
+    assert result.limit_states()["first_yield"].displacement == pytest.approx(0.008, rel=1e-4)
+    shear = rbsdem.Column(2.0, 100.0, steel, rbsdem.Elastic(1e14))
+    state = rbsdem.cyclic(shear, displacement=[0.0, 6.2 * 0.004]).limit_states()["shear_yield"]
+    assert state.displacement == pytest.approx(0.004, rel=1e-4)
+
+
 def test_layers_without_a_drawing_yield_where_their_steel_does():
     """Two bars 0.4 m apart that share nothing else: the rotation at yield is 2 f_y/k/0.4."""
     steel = rbsdem.SteelSpring(k=1e8, f_y=2e5, k_post=1e6, r0=20.0)

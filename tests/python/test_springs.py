@@ -844,3 +844,44 @@ def test_deformation_is_not_written_to(spring: Any) -> None:
     path.flags.writeable = False
     spring.response(path)
     assert np.array_equal(path, [0.1, 2.0, -1.0, 5.0])
+
+
+# ---- where a rule cracks, yields and caps --------------------------------------------------------
+
+#: A spring of each rule with every corner that it has; the sides of the capped ones differ.
+_CAPPED: dict[str, Any] = {
+    "d_y": 4.0, "f_y": 9.0, "d_cap": 6.0, "f_cap": 10.0, "d_pc": 9.0, "d_c": 1.0, "f_c": 4.0,
+    "d_y_neg": 3.0, "f_y_neg": 7.0, "d_cap_neg": 5.0, "f_cap_neg": 8.0, "d_c_neg": 0.0, "f_c_neg": 0.0,
+}  # fmt: skip
+CORNERS: dict[str, Any] = {
+    "elastic": rbsdem.Elastic(2.0),
+    "bilinear": rbsdem.Bilinear(k=2.0, d_y=3.0, k_post=0.1),
+    "takeda": rbsdem.Takeda(k_c=4.0, d_c=1.0, k_y=2.0, d_y=3.0, k_u=0.1),
+    "peak_oriented": rbsdem.PeakOriented(**_CAPPED),
+    "pinching": rbsdem.Pinching(kappa_f=0.4, kappa_d=0.6, **_CAPPED),
+    "compression": rbsdem.Compression(k=2.0),
+    "concrete": rbsdem.ConcreteSpring(k=8.0, f_peak=9.0, d_peak=4.0, k_soft=2.0),
+    "steel": rbsdem.SteelSpring(k=4.0, f_y=8.0, k_post=0.5, f_u=9.0, plateau=1.0),
+    "layered": rbsdem.Layered([(-1.0, rbsdem.Elastic(1.0)), (1.0, rbsdem.Elastic(1.0))]),
+}
+
+
+@pytest.mark.parametrize("rule", sorted(rbsdem.springs.SPRINGS.keys() - {""}))
+def test_a_rule_says_where_it_cracks_yields_and_caps(rule: str) -> None:
+    """Each landmark is a corner of the virgin curve; behind a cap, and only there, it falls."""
+    spring = CORNERS[rule]
+    marks = spring.landmarks()
+    assert all(mark.deformation > 0 for mark in marks)
+    step = 1e-3
+    for side in (1, -1):
+        d = np.arange(0.0, 8.0 + step / 2, step)
+        slopes = np.diff(side * response(spring, side * d)) / step
+        bends = d[1:-1][np.abs(np.diff(slopes)) > 1e-6]
+        own = {mark.name: mark.deformation for mark in marks if mark.side == side}
+        falls = d[:-1][slopes < -1e-6]
+        assert falls.min(initial=math.inf) == pytest.approx(own.get("cap", math.inf), abs=2 * step)
+        first = min((at for name, at in own.items() if name != "cap"), default=math.inf)
+        if rule != "concrete":  # A curve of many short lines from the start.
+            assert bends.min(initial=math.inf) == pytest.approx(first, abs=2 * step)
+        for at in own.values():
+            assert abs(bends - at).min() <= 2 * step

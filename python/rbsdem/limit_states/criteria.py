@@ -8,7 +8,7 @@ ensemble, which keep no rows.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +20,7 @@ from rbsdem.column import Column
 from rbsdem.result import Result
 from rbsdem.section.model import LayeredColumn
 from rbsdem.section.section import Section
-from rbsdem.springs import Layered, Spring, SteelSpring
+from rbsdem.springs import Layered, Spring
 from rbsdem.strains import Gauge
 
 __all__ = ["WATCHED", "Criterion", "buckling_strain", "criteria"]
@@ -35,16 +35,16 @@ WATCHED: dict[str, str] = {
     "bar_buckling": "a bar is stretched so far that it buckles on reversal",
     "hoop_fracture": "the core is at the strain at which its hoops fracture",
     "bar_fracture": "a bar in tension breaks",
-    "cap": "a flexural spring is at its largest moment",
+    "cap": "a flexural spring is at its largest moment, from which on it falls",
     "shear_cracking": "a shear spring leaves its first line",
     "shear_yield": "a shear spring yields",
-    "shear_failure": "a shear spring is at its largest force",
+    "shear_failure": "a shear spring is at its largest force, from which on it falls",
 }
 
 
-#: Limit states of springs, and the ends of the lines where they are reached.
-_TURNS = (("cracking", "d_c"), ("first_yield", "d_y"), ("cap", "d_cap"))
-_SLIPS = (("shear_cracking", "d_c"), ("shear_yield", "d_y"), ("shear_failure", "d_cap"))
+#: Limit states of springs by the landmarks at which they are reached.
+_TURNS = {"cracking": "cracking", "yield": "first_yield", "cap": "cap"}
+_SLIPS = {"cracking": "shear_cracking", "yield": "shear_yield", "cap": "shear_failure"}
 
 _OF_BARS = ("first_yield", "bar_buckling", "bar_fracture")
 
@@ -113,18 +113,14 @@ def criteria(column: Column, names: Collection[str] = tuple(WATCHED)) -> list[Cr
 
 
 def _of_spring(
-    joint: int, spring: Spring, names: tuple[tuple[str, str], ...], what: str
+    joint: int, spring: Spring, names: Mapping[str, str], what: str
 ) -> Iterator[Criterion]:
     """Yield where a spring leaves its lines, to either side."""
     kind = f"{type(spring).__name__}{' shear' if what == 'slip' else ''}"
-    for name, key in names:
-        for side, own in ((1.0, key), (-1.0, f"{key}_neg")):
-            # A side without values of its own has those of the other.
-            known = own if getattr(spring, own, None) is not None else key
-            at = getattr(spring, known, None)
-            if at is not None and math.isfinite(at):
-                source = f"{known} of the {kind} spring of joint {joint}"
-                yield Criterion(name, joint, float(at), source, **{what: side})
+    for mark in spring.landmarks():
+        source = f"{mark.source} of the {kind} spring of joint {joint}"
+        side = float(mark.side)
+        yield Criterion(names[mark.name], joint, mark.deformation, source, **{what: side})
 
 
 def _of_layers(
@@ -140,10 +136,13 @@ def _of_layers(
             yield from _of_fibres(section, joint, gauge)
         return
     for y, layer in spring.layers:
-        if isinstance(layer, SteelSpring):
-            source = f"f_y/k of a steel layer of joint {joint}, in tension"
-            at = layer.f_y / layer.k
-            yield Criterion("first_yield", joint, at, source, rotation=y, opening=1.0)
+        for mark in layer.landmarks():
+            if mark.name == "yield" and mark.side > 0:
+                source = (
+                    f"{mark.source} of a {type(layer).__name__} layer of joint {joint}, in tension"
+                )
+                at = mark.deformation
+                yield Criterion("first_yield", joint, at, source, rotation=y, opening=1.0)
 
 
 def _of_fibres(section: Section, joint: int, gauge: Gauge) -> Iterator[Criterion]:
@@ -159,8 +158,9 @@ def _of_fibres(section: Section, joint: int, gauge: Gauge) -> Iterator[Criterion
         return Criterion(name, joint, float(at), source, rotation=turn, opening=open_)
 
     for y in (half, -half):
-        source = "f_t/E_c at the extreme fibre, over the length of the hinge"
-        yield strain("cracking", y, law["ft"] / law["ec"], source)
+        if law["ft"] > 0:  # Without tensile strength there is nothing to crack.
+            source = "f_t/E_c at the extreme fibre, over the length of the hinge"
+            yield strain("cracking", y, law["ft"] / law["ec"], source)
         source = "0.003 at the extreme fibre (ACI 318-19, 22.2.2.1)"
         yield strain("nominal_moment", y, 0.003, source, -1.0)
         source = "eps_spall of the concrete"
