@@ -615,11 +615,14 @@ def check_section(section: Statement) -> dict[str, float]:
     return _named("section", figures)
 
 
-def axial_capacity(section: Statement) -> tuple[float, float]:
-    """Return least (tension) and largest axial load without bending."""
-    least, most, status, message = _rbsdem.rbs_axial_capacity(*section)
+def axial_capacity(
+    section: Statement, *, tension: str, confined: bool
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return least (tension) and largest axial load without curvature, and their moments."""
+    statement = section + group("diagram", {"tension": tension, "confined": confined})
+    load, moment, status, message = _rbsdem.rbs_axial_capacity(*statement)
     _raise(status, message)
-    return least, most
+    return tuple(load.tolist()), tuple(moment.tolist())
 
 
 def concrete_response(concrete: Statement, tension: str, strain: Array) -> Array:

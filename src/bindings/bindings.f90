@@ -490,33 +490,42 @@ subroutine rbs_check_section(statement, nn, number, nf, figures, status, message
    if (status == 0) figures = figures_of_section(section)
 end subroutine rbs_check_section
 
-subroutine rbs_axial_capacity(statement, nn, number, least, most, status, message)
+subroutine rbs_axial_capacity(statement, nn, number, load, moment, status, message)
+   ! Least and largest axial load without curvature, and the moments that go with them; tension law and
+   ! confinement are those of the group diagram.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_bindings_runs, only: tell
-   use rbs_bindings_section_statements, only: section_from_statements
+   use rbs_bindings_section_statements, only: section_from_statements, tension_place
    use rbs_section_balance, only: axial_capacity
-   use rbs_section_concrete_law, only: tension_bare
    use rbs_section_cross_section, only: section_type
-   use rbs_section_resultants, only: section_laws
+   use rbs_section_resultants, only: resultants_type, section_laws
    use rbs_section_section_setter, only: section_setter
    implicit none
    character(len=*), intent(in) :: statement
    integer(c_int), intent(in) :: nn
    real(c_double), intent(in) :: number(nn)
-   real(c_double), intent(out) :: least, most
+   real(c_double), intent(out) :: load(2), moment(2)
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
    type(section_setter) :: setter
    type(section_type) :: section
+   type(resultants_type) :: least, most
    type(error_type), allocatable :: error
+   real(c_double) :: strain(2)
 
-   least = 0.0_c_double
-   most = 0.0_c_double
+   load = 0.0_c_double
+   moment = 0.0_c_double
    call section_from_statements(statement, number, '', setter, section, error)
    call tell(error, status, message)
-   if (status == 0) call axial_capacity(section, section_laws(section, tension_bare, .false.), least, most)
+   if (status /= 0) return
+   associate (given => setter%diagram)
+      call axial_capacity(section, section_laws(section, tension_place(given%tension), given%confined), &
+                          least, most, strain)
+   end associate
+   load = [least%n, most%n]
+   moment = [least%m, most%m]
 end subroutine rbs_axial_capacity
 
 subroutine rbs_moment_curvature(statement, nn, number, m, curvature, moment, strain, status, message)

@@ -47,19 +47,26 @@ contains
       real(wp), intent(in) :: axial_load
       type(state_type), intent(out) :: state
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: most, least
+      type(resultants_type) :: least, most
+      real(wp) :: strain(2)
       logical :: found
 
       call settle(section, laws, axial_load, 0.0_wp, state, found)
       if (found) return
-      call axial_capacity(section, laws, least, most)
+      ! The search may step over a narrow peak: where the section carries more it goes back from there.
+      call axial_capacity(section, laws, least, most, strain)
+      if (least%n <= axial_load .and. axial_load <= most%n) then
+         state = state_type(eps0=strain(merge(2, 1, axial_load > 0.0_wp)))
+         call settle(section, laws, axial_load, 0.0_wp, state, found)
+         if (found) return
+      end if
       if (axial_load > 0.0_wp) then
          call fatal_error(error, bad_input, 'section: axial load = '//to_text(axial_load)// &
-                          ' N (compression) is above what the section carries, '//to_text(most)// &
+                          ' N (compression) is above what the section carries, '//to_text(most%n)// &
                           ' N; reduce it, or enlarge the section')
       else
          call fatal_error(error, bad_input, 'section: axial load = '//to_text(axial_load)// &
-                          ' N (tension) is above what the bars carry, '//to_text(-least)// &
+                          ' N (tension) is above what the bars carry, '//to_text(-least%n)// &
                           ' N; reduce it, or add bars')
       end if
    end subroutine begin
@@ -260,27 +267,34 @@ contains
       if (size(section%steels) > 0) largest_opening = maxval(section%steels%eps_u)
    end function largest_opening
 
-   !> Least (tension) and largest (compression) axial force of the section without curvature [N].
-   subroutine axial_capacity(section, laws, least, most)
+   !> The section without curvature under its least (tension) and largest (compression) axial force.
+   subroutine axial_capacity(section, laws, least, most, strain)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
-      real(wp), intent(out) :: least, most
+      type(resultants_type), intent(out) :: least, most
+      !> Strains at which it carries them, compression positive
+      real(wp), intent(out) :: strain(2)
       type(resultants_type) :: sums
-      real(wp) :: strain
+      real(wp) :: at
 
-      least = 0.0_wp
-      most = 0.0_wp
-      strain = longest_search
-      do while (strain < crushed)
-         sums = resultants(section, laws, strain, 0.0_wp)
-         most = max(most, sums%n)
-         strain = strain + longest_search
+      strain = 0.0_wp
+      at = longest_search
+      do while (at < crushed)
+         sums = resultants(section, laws, at, 0.0_wp)
+         if (sums%n > most%n) then
+            most = sums
+            strain(2) = at
+         end if
+         at = at + longest_search
       end do
-      strain = first_search
-      do while (strain < largest_opening(section))
-         sums = resultants(section, laws, -strain, 0.0_wp)
-         least = min(least, sums%n)
-         strain = strain + merge(first_search, longest_search, strain < 2.0e-4_wp)
+      at = first_search
+      do while (at < largest_opening(section))
+         sums = resultants(section, laws, -at, 0.0_wp)
+         if (sums%n < least%n) then
+            least = sums
+            strain(1) = -at
+         end if
+         at = at + merge(first_search, longest_search, at < 2.0e-4_wp)
       end do
    end subroutine axial_capacity
 

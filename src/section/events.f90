@@ -101,9 +101,9 @@ contains
          if (short .and. events%cracking%found) return
          call catch(seek_yield, 0.0_wp, events%yield)
          if (rule%ultimate /= ultimate_drop) call catch(seek_ultimate, 0.0_wp, events%ultimate)
-         ! The moment of a lightly reinforced section drops as early as cracking, and recovers.
-         if (events%peak%moment > 0.0_wp .and. &
-             (events%yield%found .or. compressed(section, here) > section%plain%eps0)) then
+         ! The moment drops at cracking too, and recovers: a section fails by crushing or rupture.
+         if (events%peak%moment > 0.0_wp .and. (compressed(section, here) > section%plain%eps0 .or. &
+                                                bar_ratio(section, here, at_rupture=.true.) >= 1.0_wp)) then
             call catch(seek_drop, failed_share*events%peak%moment, drop)
          end if
          if (drop%found .or. here%curvature*section%shape%depth > furthest) exit

@@ -411,20 +411,21 @@ contains
       type(section_type) :: section
       type(laws_type) :: laws
       type(error_type), allocatable :: outcome
-      real(wp) :: least, most, phi(2), moment(2), eps0(2)
+      type(resultants_type) :: least, most
+      real(wp) :: strain(2), phi(2), moment(2), eps0(2)
 
       section = beam(.true., 400)
       laws = section_laws(section, tension_bare, .false.)
-      call axial_capacity(section, laws, least, most)
-      call check_close(error, least, -2.0e-3_wp*600.0e6_wp, 1.0e-4_wp, 0.0_wp, 'all bars at f_u')
-      call check_true(error, most > 30.0e6_wp*0.198_wp .and. most < 30.0e6_wp*0.198_wp + 0.9e6_wp, &
+      call axial_capacity(section, laws, least, most, strain)
+      call check_close(error, least%n, -2.0e-3_wp*600.0e6_wp, 1.0e-4_wp, 0.0_wp, 'all bars at f_u')
+      call check_true(error, most%n > 30.0e6_wp*0.198_wp .and. most%n < 30.0e6_wp*0.198_wp + 0.9e6_wp, &
                       'f_c A_c < most < f_c A_c + f_y A_s')
       phi = [1.0e-3_wp, 5.0e-2_wp]
-      call follow(section, laws, 1.01_wp*most, phi, moment, eps0, outcome)
+      call follow(section, laws, 1.01_wp*most%n, phi, moment, eps0, outcome)
       call check_failed(error, outcome, bad_input, 'above what the section carries')
-      call follow(section, laws, 1.01_wp*least, phi, moment, eps0, outcome)
+      call follow(section, laws, 1.01_wp*least%n, phi, moment, eps0, outcome)
       call check_failed(error, outcome, bad_input, 'above what the bars carry')
-      call follow(section, laws, 0.9_wp*most, phi, moment, eps0, outcome)
+      call follow(section, laws, 0.9_wp*most%n, phi, moment, eps0, outcome)
       call check_failed(error, outcome, analysis_failed, 'no longer carries the axial load')
       call check_true(error, moment(1) > 0.0_wp, 'the moment before is there')
    end subroutine capacity

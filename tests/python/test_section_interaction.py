@@ -128,15 +128,64 @@ def test_circle_by_the_block_of_another_integration():
     )
 
 
-def test_own_laws_are_those_of_moment_curvature():
-    diagram = SQUARE.interaction(points=12)
-    for load, moment in list(zip(diagram.axial_load, diagram.moment, strict=True))[3:-1:3]:
-        assert moment == pytest.approx(SQUARE.diagram(float(load)).moment.max())
-    assert diagram.axial_load[-1] == SQUARE.axial_capacity[1]
+def largest_on_a_grid(section, load, confined=False):
+    """Return the largest moment at 300 curvatures until hoops or a bar break."""
+    largest = 0.0
+    for curvature in np.geomspace(1e-4, 0.4, 300) / section.depth:
+        try:
+            moment, strain = section.strains(load, curvature, confined=confined)
+        except rbsdem.SolveError:
+            break
+        edge = 0.5 * section.depth - section.cover - 0.5 * section.ties.diameter
+        stretched = max(curvature * y - strain for y, _, _ in section.bars)
+        if stretched > 0.1 or (confined and strain + curvature * edge > section.confinement.eps_cu):
+            break
+        largest = max(largest, moment)
+    return largest
+
+
+@pytest.mark.parametrize("confined", [False, True])
+def test_own_laws_are_those_of_moment_curvature(confined):
+    """From bars that break to concrete that is crushed."""
+    diagram = SQUARE.interaction(points=12, confined=confined)
+    for load, moment in list(zip(diagram.axial_load, diagram.moment, strict=True))[1:-1:3]:
+        assert moment == pytest.approx(largest_on_a_grid(SQUARE, load, confined), rel=5e-3)
+    # All bars at their strength, with what is left of the tension between the cracks at 0.1.
+    residual = SQUARE.concrete_law["ft"] / (1 + math.sqrt(500 * 0.1)) * 0.25
+    assert diagram.axial_load[0] == pytest.approx(-SQUARE.steel_area * 690e6 - residual, rel=2e-3)
+    assert diagram.moment[[0, -1]] == pytest.approx([0.0, 0.0], abs=1.0)
+    if confined:
+        # Without its cover the core carries more than the whole section does without hoops.
+        assert diagram.axial_load[-1] > SQUARE.axial_capacity[1]
+    else:
+        assert diagram.axial_load[-1] == SQUARE.axial_capacity[1]
     # Strain hardening and the fuller curve of concrete carry more than the block of the code.
     code = SQUARE.interaction("aci318")
     loads = np.linspace(0.0, 0.7 * code.axial_load[-1], 8)
     assert np.all(diagram.moment_at(loads) > 0.97 * code.moment_at(loads))
+
+
+def test_the_drop_after_cracking_is_no_end():
+    """A circle that hangs on bars that yield is bent until the first of them breaks."""
+    steel = rbsdem.Steel(460e6, 600e6)
+    section = rbsdem.CircularSection(
+        1.2,
+        rbsdem.Concrete(35e6),
+        layout=rbsdem.Layout(28, 0.032, steel),
+        spiral=rbsdem.Spiral(0.016, 0.09, steel),
+        cover=0.05,
+    )
+    end = section.diagram(-11e6).end
+    assert end.strain - end.curvature * section.bars[0][0] == pytest.approx(-0.1, rel=0.03)
+    assert section.interaction(points=40).moment_at(-11e6) == pytest.approx(end.moment, rel=0.02)
+
+
+def test_ends_of_a_section_that_is_not_symmetric():
+    """All bars at their strength have a moment about mid-depth."""
+    section = rbsdem.RectangularSection(0.3, 0.5, bars=[(0.2, 1e-3, STEEL)], **PLAIN)
+    diagram = section.interaction(points=5)
+    assert diagram.moment[0] == pytest.approx(690e6 * 1e-3 * 0.2, rel=2e-3)
+    assert diagram.moment[-1] < 0.0
 
 
 def test_utilisation():

@@ -17,7 +17,15 @@ if TYPE_CHECKING:
 
     from rbsdem.section.section import Section
 
-__all__ = ["Confinement", "Diagram", "Events", "Point", "make_diagram", "make_point"]
+__all__ = [
+    "Confinement",
+    "Diagram",
+    "Events",
+    "Point",
+    "largest_moment",
+    "make_diagram",
+    "make_point",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,8 +124,8 @@ class Diagram:
     events : Events
         Cracking, yielding, peak, ultimate.
     end : Point
-        Where the moment has fallen by 20 per cent of its peak, or the axial load is no longer
-        carried.
+        Where concrete is crushed or a bar has broken and the moment has fallen by 20 per cent of
+        its peak, or the axial load is no longer carried.
     lost : bool
         Whether the diagram ends because the axial load is no longer carried.
     """
@@ -178,11 +186,7 @@ def make_diagram(
         "eps_yield": _core.number(strains[0], "diagram: eps_yield"),
         "eps_cover": _core.number(strains[1], "diagram: eps_cover"),
     }
-    points_found, lost = _core.section_events(section._statement, settings)
-    *named_points, end = (make_point(point) for point in points_found)
-    events = Events(*named_points)
-    if end is None:
-        raise AssertionError("every diagram ends")
+    events, end, lost = _find(section, settings)
     if furthest is None:
         furthest = end.curvature
         if events.ultimate:
@@ -201,6 +205,29 @@ def make_diagram(
     return Diagram(
         section, axial_load, tension, confined, curvature, moment, strain, events, end, lost
     )
+
+
+def largest_moment(section: Section, axial_load: float, confined: bool) -> float:
+    """Return the largest moment of a diagram [N m], in a confined core until its hoops break."""
+    settings = {"axial_load": axial_load, "confined": confined}
+    rule = "mander" if confined and section.confinement.eps_cu < 1.0 else "cover"
+    events, _, _ = _find(section, settings | {"ultimate": rule})
+    broken, peak = events.ultimate, events.peak
+    if peak is None:
+        raise AssertionError("every diagram has a peak")
+    if rule == "cover" or broken is None or peak.curvature <= broken.curvature:
+        return peak.moment
+    until = section.diagram(axial_load, confined=True, ultimate="mander", furthest=broken.curvature)
+    return float(until.moment.max())
+
+
+def _find(section: Section, settings: dict[str, Any]) -> tuple[Events, Point, bool]:
+    """Return the named points, the end, and whether the axial load is lost there."""
+    points, lost = _core.section_events(section._statement, settings)
+    *named, end = (make_point(point) for point in points)
+    if end is None:
+        raise AssertionError("every diagram ends")
+    return Events(*named), end, lost
 
 
 def _points(events: Events) -> list[Point]:

@@ -165,7 +165,7 @@ class DrawnSection(ABC):
     @property
     def axial_capacity(self) -> tuple[float, float]:
         """Least (tension, negative) and largest axial load without bending or confinement [N]."""
-        return _core.axial_capacity(self._statement)
+        return _core.axial_capacity(self._statement, tension="bare", confined=False)[0]
 
     @property
     def concrete_law(self) -> dict[str, float]:

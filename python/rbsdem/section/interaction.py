@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem.errors import InputError
+from rbsdem.section.diagram import largest_moment
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -169,13 +170,12 @@ def interaction_diagram(
 def _own(section: Section, count: int, confined: bool) -> InteractionDiagram:
     """Return the largest moment of the moment-curvature diagram at each axial load.
 
-    From the load under which all bars yield in tension: beyond it only their hardening carries.
+    At the ends the section has one strain all over.
     """
-    least = -sum(area * steel.fy for _, area, steel in section.bars)
-    loads = np.linspace(least, section.axial_capacity[1], count)
-    moments = np.zeros(count)
-    for i, load in enumerate(loads[1:-1], 1):
-        moments[i] = max(0.0, section.diagram(float(load), confined=confined).moment.max())
+    ends, at_ends = _core.axial_capacity(section._statement, tension="ts", confined=confined)
+    loads = np.linspace(*ends, count)
+    inner = [largest_moment(section, load, confined) for load in loads[1:-1].tolist()]
+    moments = np.array([at_ends[0], *inner, at_ends[1]])
     unknown = np.full(count, np.nan)
     return InteractionDiagram(None, loads, moments, loads, moments, unknown, unknown)
 

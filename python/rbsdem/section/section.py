@@ -151,7 +151,7 @@ class Section(DrawnSection):
         ultimate : {"cover", "mander", "steel", "drop"}, optional
             Ultimate is where the extreme fibre is at `eps_cover`; the edge of the core is at the
             strain of hoop fracture (needs `confined`); the first bar breaks; the moment has fallen
-            by 20 per cent of its peak.
+            by 20 per cent of its peak, once concrete is crushed or a bar has broken.
         eps_yield, eps_cover : float, optional
             Strains of the extreme fibre, compression positive.
         points : int, optional
@@ -191,7 +191,8 @@ class Section(DrawnSection):
         code : {"aci318", "ec2"}, optional
             "aci318": ACI 318-19 with its factors phi and its limit of the axial load. "ec2":
             EN 1992-1-1 with gamma_c = 1.5, gamma_s = 1.15 and alpha_cc = 1, without a least
-            eccentricity. None: the largest moments of `moment_curvature` at each axial load.
+            eccentricity. None: the largest moments of `moment_curvature` at each axial load, with a
+            confined core until its hoops break.
         points : int, optional
             About how many points.
         confined : bool, optional
