@@ -381,7 +381,7 @@ class Result:
         A layered hinge that knows its drawing: cracking, first yield, nominal moment, yield of the
         hoops, spalling, the tensile strain before bars buckle, fracture of hoops and bars, by the
         strains of its layers (the analysis needs ``openings=True``); other layered joints: where a
-        layer yields in tension. Other springs: where they leave the lines of cracking, yield and cap.
+        layer yields in tension. Other springs: their `Spring.landmarks`, cracking, yield and cap.
         All: the same of shear springs, loss of 20 % of the strength, collapse, loss of the axial
         load. Nothing of the response is changed.
 

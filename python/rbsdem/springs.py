@@ -28,6 +28,8 @@ AnySpring = TypeVar("AnySpring", bound="Spring")
 #: Classes of springs by the name of their rule.
 SPRINGS: dict[str, type[Spring]] = {}
 
+LandmarkName = Literal["cracking", "yield", "cap"]
+
 _SIDES: tuple[Literal[1, -1], ...] = (1, -1)
 
 
@@ -47,7 +49,7 @@ class Landmark(NamedTuple):
         The parameters that it follows from.
     """
 
-    name: Literal["cracking", "yield", "cap"]
+    name: LandmarkName
     side: Literal[1, -1]
     deformation: float
     source: str
@@ -194,9 +196,7 @@ def classes_for(place: str) -> list[str]:
     ]
 
 
-def _both_sides(
-    name: Literal["cracking", "yield", "cap"], at: float, source: str
-) -> list[Landmark]:
+def _both_sides(name: LandmarkName, at: float, source: str) -> list[Landmark]:
     """Return a landmark of a rule whose two sides are alike."""
     return [Landmark(name, 1, at, source), Landmark(name, -1, at, source)]
 
@@ -427,7 +427,7 @@ class PeakOriented(Spring):
     def landmarks(self) -> list[Landmark]:
         """Return cracking, where the spring has it, yield and cap of each side."""
         found: list[Landmark] = []
-        keys: dict[Literal["cracking", "yield", "cap"], str]
+        keys: dict[LandmarkName, str]
         keys = {"cracking": "d_c", "yield": "d_y", "cap": "d_cap"}
         for name, key in keys.items():
             for side in _SIDES:

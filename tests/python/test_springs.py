@@ -851,7 +851,8 @@ def test_deformation_is_not_written_to(spring: Any) -> None:
 #: A spring of each rule with every corner that it has; the sides of the capped ones differ.
 _CAPPED: dict[str, Any] = {
     "d_y": 4.0, "f_y": 9.0, "d_cap": 6.0, "f_cap": 10.0, "d_pc": 9.0, "d_c": 1.0, "f_c": 4.0,
-    "d_y_neg": 3.0, "f_y_neg": 7.0, "d_cap_neg": 5.0, "f_cap_neg": 8.0, "d_c_neg": 0.0, "f_c_neg": 0.0,
+    "d_y_neg": 3.0, "f_y_neg": 7.0, "d_cap_neg": 5.0, "f_cap_neg": 8.0,
+    "d_c_neg": 0.0, "f_c_neg": 0.0,
 }  # fmt: skip
 CORNERS: dict[str, Any] = {
     "elastic": rbsdem.Elastic(2.0),
