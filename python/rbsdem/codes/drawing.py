@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
-from rbsdem import _core
 from rbsdem.errors import InputError
-from rbsdem.section.ranges import column_length
+from rbsdem.section.ranges import carried_load, column_length
+from rbsdem.section.reinforcement import Bar
 from rbsdem.section.section import Section
 
 __all__ = ["Quantities", "quantities"]
 
 _MPA = 1.0e6
-_NEAR = 0.1  # bars within this share of the depth from the outermost ones belong to their row
+#: Bars belong to the row of the outermost ones up to the first of these shares of the distance of
+#: both outermost rows, to the web from the second on; between them part of their area does.
+_ROW = (0.06, 0.18)
 
 
 @dataclass(frozen=True)
@@ -31,8 +34,13 @@ class Quantities:
         Shear span, from the base to the point without moment [mm].
     load : float
         Axial load, compression positive [N].
-    fc, fy, es, fyt : float
-        Strengths of concrete, bars and transverse bars, modulus of the bars [MPa].
+    fc, fyt : float
+        Strengths of concrete and transverse bars [MPa].
+    fy, fu, es : float
+        Yield stress, tensile strength and modulus of the bars in tension, means by area; the
+        tensile strength is NaN where a steel has none [MPa].
+    fy_compression, fy_web : float
+        Yield stresses of the bars in compression and between; 0 without such bars [MPa].
     tension, compression, web : float
         Areas of the bars in tension, in compression and between [mm2].
     bar : float
@@ -42,8 +50,10 @@ class Quantities:
         infinite without.
     core_width, core_depth : float
         Between centre lines of the hoops [mm]; 0 without.
+    corner_width : float
+        Between the bars in the corners, across the width [mm]; 0 without hoops.
     legs, legs_across : float
-        Legs in the direction of the depth and across it.
+        Legs in the direction of the depth, side by side over the width, and across it.
     hoop_ratio : float
         Volume of the transverse bars over that of the core; 0 without.
     gross_area : float
@@ -58,9 +68,12 @@ class Quantities:
     span: float
     load: float
     fc: float
-    fy: float
-    es: float
     fyt: float
+    fy: float
+    fu: float
+    es: float
+    fy_compression: float
+    fy_web: float
     tension: float
     compression: float
     web: float
@@ -69,6 +82,7 @@ class Quantities:
     spacing: float
     core_width: float
     core_depth: float
+    corner_width: float
     legs: float
     legs_across: float
     hoop_ratio: float
@@ -105,57 +119,90 @@ def quantities(section: Section, height: float, axial_load: float) -> Quantities
     height : float
         Shear span [m].
     axial_load : float
-        Compression positive [N].
+        Compression, from 0 to the capacity of the section [N].
 
     Raises
     ------
     InputError
         If a number is refused, or the section is hollow or has no bars near both faces.
     """
-    load = _core.number(axial_load, "axial_load")
-    if not math.isfinite(load):
-        raise InputError(f"axial_load = {load} N must be a finite number")
     span = column_length(height, "height")
     if section.hollow:
         raise InputError("code values: the formulas are for solid sections; this one is hollow")
     if not section.bars:
         raise InputError("code values: the section has no bars; give it some")
-    depth = section.depth
-    outer = max(y for y, _, _ in section.bars), min(y for y, _, _ in section.bars)
-    pulled = [bar for bar in section.bars if bar[0] >= outer[0] - _NEAR * depth]
-    pressed = [bar for bar in section.bars if bar[0] <= outer[1] + _NEAR * depth]
-    if outer[0] - outer[1] <= _NEAR * depth:
-        raise InputError("code values: the section needs bars near both faces")
-    areas = [sum(area for _, area, _ in bars) for bars in (section.bars, pulled, pressed)]
-    whole, tension, compression = areas
+    load = carried_load(axial_load, section, tension=False)
+    depth, bars = section.depth, section.bars
+    rows = _rows(section)
+    pulled, pressed, between = (
+        [(bar, share) for bar, share in zip(bars, row, strict=True) if share > 0] for row in rows
+    )
     ties, core = section.ties, section.confinement
-    strongest = max(pulled, key=lambda bar: bar[0])[2]
-    round_section = section.shape == "circle"
+    diameter = 1e3 * float(section.bar_diameter or 0.0)
+    tie = 1e3 * ties.diameter if ties else 0.0
+    core_width = 1e3 * core.width if core else 0.0
     # Depths of codes for circles are those of their bars' centroid on one side.
-    place = sum(y * a for y, a, _ in pulled) / tension
-    opposite = sum(y * a for y, a, _ in pressed) / compression
+    round_section = section.shape == "circle"
     return Quantities(
         round=round_section,
         width=1e3 * section.width,
         depth=1e3 * depth,
-        d=1e3 * (section.effective_depth if round_section else 0.5 * depth + place),
-        d2=1e3 * (0.5 * depth + opposite),
+        d=1e3 * (section.effective_depth if round_section else 0.5 * depth + _mean(pulled, _place)),
+        d2=1e3 * (0.5 * depth + _mean(pressed, _place)),
         span=1e3 * span,
         load=load,
         fc=section.concrete_law["fc"] / _MPA,
-        fy=strongest.fy / _MPA,
-        es=strongest.es / _MPA,
         fyt=ties.steel.fy / _MPA if ties else 0.0,
-        tension=1e6 * tension,
-        compression=1e6 * compression,
-        web=1e6 * (whole - tension - compression),
-        bar=1e3 * float(section.bar_diameter or 0.0),
-        tie_area=1e6 * ties.legs * 0.25 * math.pi * ties.diameter**2 if ties else 0.0,
+        fy=_mean(pulled, lambda bar: bar[2].fy) / _MPA,
+        fu=_mean(pulled, lambda bar: math.nan if bar[2].fu is None else bar[2].fu) / _MPA,
+        es=_mean(pulled, lambda bar: bar[2].es) / _MPA,
+        fy_compression=_mean(pressed, lambda bar: bar[2].fy) / _MPA,
+        fy_web=_mean(between, lambda bar: bar[2].fy) / _MPA,
+        tension=1e6 * _area(pulled),
+        compression=1e6 * _area(pressed),
+        web=1e6 * _area(between),
+        bar=diameter,
+        tie_area=0.25 * math.pi * tie**2 * ties.legs if ties else 0.0,
         spacing=1e3 * ties.spacing if ties else math.inf,
-        core_width=1e3 * core.width if core else 0.0,
+        core_width=core_width,
         core_depth=1e3 * core.depth if core else 0.0,
+        corner_width=max(core_width - tie - diameter, 0.0),
         legs=float(ties.legs) if ties else 0.0,
         legs_across=float(ties.legs_across or 0.0) if ties else 0.0,
         hoop_ratio=core.ratio if core else 0.0,
         gross_area=1e6 * section.gross_area,
     )
+
+
+_Parts = list[tuple[Bar, float]]
+
+
+def _rows(section: Section) -> tuple[list[float], list[float], list[float]]:
+    """Return the share of each bar in the rows in tension and in compression, and in the web."""
+    places = [_place(bar) for bar in section.bars]
+    low, high = min(places), max(places)
+    if high - low <= 0.1 * section.depth:
+        raise InputError("code values: the section needs bars near both faces")
+
+    def share(distance: float) -> float:
+        near, far = _ROW
+        return min(max((far - distance / (high - low)) / (far - near), 0.0), 1.0)
+
+    pulled = [share(high - y) for y in places]
+    pressed = [share(y - low) for y in places]
+    return pulled, pressed, [1.0 - a - b for a, b in zip(pulled, pressed, strict=True)]
+
+
+def _place(bar: Bar) -> float:
+    return bar[0]
+
+
+def _area(parts: _Parts) -> float:
+    return sum(share * bar[1] for bar, share in parts)
+
+
+def _mean(parts: _Parts, value: Callable[[Bar], float]) -> float:
+    """Return the mean of a value by area; 0 without bars."""
+    if not parts:
+        return 0.0
+    return sum(share * bar[1] * value(bar) for bar, share in parts) / _area(parts)

@@ -21,17 +21,21 @@ __all__ = [
 
 
 def confinement_factor(q: Quantities) -> float:
-    """Return alpha of (A.2); bars at the legs of the hoops, evenly spaced, are held."""
-    if not q.core_width > 0:
+    """Return alpha of (A.2); bars at the legs of the hoops, evenly spaced, are held.
+
+    Legs along the depth hold bars of the two faces along the width, legs across it those of the
+    sides.
+    """
+    if not min(q.core_width, q.core_depth) > 0:
         return 0.0
-    between = q.depth - q.d2 - (q.depth - q.d)
     sides = 0.0
-    for legs, length in ((q.legs, between), (q.legs_across, between)):
+    for legs, length in ((q.legs, q.corner_width), (q.legs_across, q.d - q.d2)):
         gaps = max(legs - 1.0, 1.0)
         sides += 2.0 * gaps * (length / gaps) ** 2
-    held = 1.0 - sides / (6.0 * q.core_width * q.core_depth)
-    along = (1.0 - 0.5 * q.spacing / q.core_width) * (1.0 - 0.5 * q.spacing / q.core_depth)
-    return max(held, 0.0) * max(along, 0.0)
+    held = max(1.0 - sides / (6.0 * q.core_width * q.core_depth), 0.0)
+    for core in (q.core_width, q.core_depth):
+        held *= max(1.0 - 0.5 * q.spacing / core, 0.0)
+    return held
 
 
 def ultimate_rotation(q: Quantities) -> float:
@@ -81,8 +85,9 @@ def cracks_in_shear(q: Quantities) -> bool:
     """Return whether the shear at yield is beyond V_R,c of EN 1992-1-1, 6.2.2 (mean)."""
     size = min(1.0 + math.sqrt(200.0 / q.d), 2.0)
     steel = min(q.tension / (q.width * q.d), 0.02)
-    pressed = min(max(q.load, 0.0) / q.gross_area, 0.2 * q.fc)
-    stress = 0.18 * size * (100.0 * steel * q.fc) ** (1.0 / 3.0) + 0.15 * pressed
+    pressed = min(q.load / q.gross_area, 0.2 * q.fc)
+    stress = 0.18 * size * (100.0 * steel * q.fc) ** (1.0 / 3.0)
+    stress = max(stress, 0.035 * size**1.5 * math.sqrt(q.fc)) + 0.15 * pressed
     return stress * q.width * q.d < yield_point(q)[1] / q.span
 
 
@@ -98,7 +103,7 @@ def shear_resistance(q: Quantities, plastic_ductility: float = 0.0) -> float:
     """
     area = q.width * q.d
     strut = (q.depth - yield_point(q)[2] * q.d) / (2.0 * q.span)
-    strut *= min(max(q.load, 0.0), 0.55 * area * q.fc)
+    strut *= min(q.load, 0.55 * area * q.fc)
     concrete = 0.16 * max(0.5, 100.0 * q.steel_ratio) * (1.0 - 0.16 * min(5.0, q.slenderness))
     ties = q.tie_area / q.spacing * (q.d - q.d2) * q.fyt
     falling = 1.0 - 0.05 * min(5.0, max(plastic_ductility, 0.0))
@@ -111,9 +116,9 @@ def _nu(q: Quantities) -> float:
 
 def _steel(q: Quantities) -> float:
     """Return max(0.01, omega')/max(0.01, omega) with the bars between counted in tension."""
-    area = q.width * q.d
-    omega = (q.tension + q.web) / area * q.fy / q.fc
-    return max(0.01, q.compression / area * q.fy / q.fc) / max(0.01, omega)
+    concrete = q.width * q.d * q.fc
+    pulled = (q.tension * q.fy + q.web * q.fy_web) / concrete
+    return max(0.01, q.compression * q.fy_compression / concrete) / max(0.01, pulled)
 
 
 def _confined(q: Quantities) -> float:

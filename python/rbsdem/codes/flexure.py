@@ -43,20 +43,16 @@ def yield_point(q: Quantities, modulus: float | None = None) -> tuple[float, flo
     return curvature, moment, deep
 
 
-def hinge_length_priestley(q: Quantities, ultimate: float) -> float:
+def hinge_length_priestley(q: Quantities) -> float:
     """Return the hinge length of Priestley, Calvi, Kowalsky 2007 [mm].
 
-    k L + L_sp, at least 2 L_sp; k = 0.2 (f_u/f_y - 1) up to 0.08, L_sp = 0.022 f_y d_b.
-
-    Parameters
-    ----------
-    q : Quantities
-        The column.
-    ultimate : float
-        Tensile strength of the bars [MPa].
+    k L + L_sp, at least 2 L_sp; k = 0.2 (f_u/f_y - 1) up to 0.08, L_sp = 0.022 f_y d_b. NaN where
+    the tensile strength of the bars is not known.
     """
     slip = 0.022 * q.fy * q.bar
-    return max(min(0.2 * (ultimate / q.fy - 1.0), 0.08) * q.span + slip, 2.0 * slip)
+    if math.isnan(q.fu):
+        return math.nan
+    return max(min(0.2 * (q.fu / q.fy - 1.0), 0.08) * q.span + slip, 2.0 * slip)
 
 
 def hinge_length_paulay(q: Quantities) -> float:

@@ -45,8 +45,17 @@ class Haselton:
 
     @property
     def capping_rotation(self) -> float:
-        """Plastic rotation up to the cap, theta_cap,pl (2016, eq 5) [rad]."""
+        """Plastic rotation up to the cap, theta_cap,pl (2016, eq 5) [rad].
+
+        Unlike bars in compression and in tension count with the factor of 2008,
+        (max(0.01, rho' f_y/f'c)/max(0.01, rho f_y/f'c))^0.225.
+        """
         q = self._q
+        concrete = q.width * q.d * q.fc
+        pressed, pulled = (
+            max(0.01, force / concrete)
+            for force in (q.compression * q.fy_compression, q.tension * q.fy)
+        )
         slender = q.spacing / q.bar * math.sqrt(q.fy / 100.0) if q.tie_area > 0 else 20.0
         return (
             0.12
@@ -56,6 +65,7 @@ class Haselton:
             * 0.54 ** (0.01 * q.fc)
             * 0.66 ** (0.1 * slender)
             * 2.27 ** (10.0 * q.steel_ratio)
+            * (pressed / pulled) ** 0.225
         )
 
     @property

@@ -13,6 +13,7 @@ from rbsdem.codes import asce_41, ec_8, flexure, regressions
 from rbsdem.codes.drawing import Quantities, quantities
 from rbsdem.errors import InputError
 from rbsdem.section import strength
+from rbsdem.section.interaction import nominal_moment
 from rbsdem.section.section import Section
 
 if TYPE_CHECKING:
@@ -126,24 +127,25 @@ class CodeValues:
 def code_values(section: Section, height: float, axial_load: float) -> CodeValues:
     """Return the values of codes and regressions for a column; see `Section.code_values`."""
     q = quantities(section, height, axial_load)
-    found = [*_yield(section, q), *_asce_41(section, q)]
+    moment, source = _moment(section, q)
+    found = [*_yield(q, moment, source), *_asce_41(q, moment)]
     if not q.round:
         found += _ec_8(q)
-    found += _regressions(section, q)
+    found += _regressions(section, q, moment)
     return CodeValues([value for value in found if math.isfinite(value.value)], q)
 
 
-def _moment(section: Section, q: Quantities) -> float:
-    """Return the moment at yield [N mm]: closed form of rectangles, first yield of circles."""
-    if not q.round:
-        return flexure.yield_point(q)[1]
-    point = section.diagram(q.load).events.yielding
-    return 1e3 * point.moment if point is not None else math.nan
+def _moment(section: Section, q: Quantities) -> tuple[float, str]:
+    """Return the moment at which the backbones of codes yield [N mm], and its source.
+
+    The closed form is for rectangles; circles yield at their nominal moment, as codes have it.
+    """
+    if q.round:
+        return 1e3 * nominal_moment(section, q.load), "ACI 318-19, 22.2, nominal moment"
+    return flexure.yield_point(q)[1], "Panagiotakos, Fardis 2001, eqs 1-6"
 
 
-def _yield(section: Section, q: Quantities) -> list[CodeValue]:
-    moment = _moment(section, q)
-    source = "first yield of the section" if q.round else "Panagiotakos, Fardis 2001, eqs 1-6"
+def _yield(q: Quantities, moment: float, source: str) -> list[CodeValue]:
     found = [
         CodeValue("yield.moment", "moment at yield", 1e-3 * moment, "N m", source),
         CodeValue("yield.shear", "its shear force", moment / q.span, "N", source),
@@ -151,17 +153,15 @@ def _yield(section: Section, q: Quantities) -> list[CodeValue]:
     if not q.round:
         curvature = 1e3 * flexure.yield_point(q)[0]
         found.append(CodeValue("yield.curvature", "curvature at yield", curvature, "1/m", source))
-    ultimate = max(section.bars, key=lambda bar: bar[0])[2].fu
-    if ultimate is not None:
-        length = 1e-3 * flexure.hinge_length_priestley(q, 1e-6 * ultimate)
-        source = "Priestley, Calvi, Kowalsky 2007"
-        found.append(CodeValue("hinge.priestley", "length of the hinge", length, "m", source))
+    length = 1e-3 * flexure.hinge_length_priestley(q)
+    source = "Priestley, Calvi, Kowalsky 2007"
+    found.append(CodeValue("hinge.priestley", "length of the hinge", length, "m", source))
     length = 1e-3 * flexure.hinge_length_paulay(q)
     source = "Paulay, Priestley 1992"
     return [*found, CodeValue("hinge.paulay", "length of the hinge", length, "m", source)]
 
 
-def _asce_41(section: Section, q: Quantities) -> list[CodeValue]:
+def _asce_41(q: Quantities, moment: float) -> list[CodeValue]:
     strength_ = asce_41.shear_strength(q)
     found = [
         CodeValue(
@@ -175,7 +175,7 @@ def _asce_41(section: Section, q: Quantities) -> list[CodeValue]:
     ]
     if q.tie_ratio < 0.0005:
         return found
-    ratio = _moment(section, q) / q.span / strength_
+    ratio = moment / q.span / strength_
     turned = asce_41.rotations(q.axial_load_ratio, q.tie_ratio, ratio, q.fc, q.fyt, circle=q.round)
     table = "ASCE 41-17, table 10-9" if q.round else "ASCE 41-17, table 10-8"
     for name, meaning, value, unit in (
@@ -208,9 +208,9 @@ def _ec_8(q: Quantities) -> list[CodeValue]:
     return found
 
 
-def _regressions(section: Section, q: Quantities) -> list[CodeValue]:
+def _regressions(section: Section, q: Quantities, moment: float) -> list[CodeValue]:
     haselton = regressions.Haselton(q)
-    force = _moment(section, q) / q.span
+    force = moment / q.span
     rows: list[tuple[str, str, float, str, str, bool]] = [
         (
             "elwood.stiffness",

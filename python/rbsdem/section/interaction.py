@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from rbsdem.section.section import Section
 
-__all__ = ["Code", "InteractionDiagram", "interaction_diagram"]
+__all__ = ["Code", "InteractionDiagram", "interaction_diagram", "nominal_moment"]
 
 Code = Literal["aci318", "ec2"]
 
@@ -221,24 +221,63 @@ def _axes(section: Section, ultimate: float, count: int, strains: list[float]) -
     return np.unique(np.concatenate((by_strain, beyond, [section.depth])))
 
 
+_ACI_STRAIN = 0.003
+
+
+def _aci_block(section: Section) -> _Block:
+    """Return the block of ACI 318-19, 22.2.2.4."""
+    fc = section.concrete_law["fc"]
+    share = min(max(0.85 - 0.05 * (fc / _MPA - 28.0) / 7.0, 0.65), 0.85)
+    return _Block(section, 0.85 * fc, share)
+
+
+def _aci_strains(section: Section, axis: float) -> Callable[[Array], Array]:
+    return lambda y: _ACI_STRAIN * (1.0 - (y + 0.5 * section.depth) / axis)
+
+
+def nominal_moment(section: Section, axial_load: float) -> float:
+    """Return the moment of ACI 318-19, without phi, that goes with an axial load [N m].
+
+    A point of `interaction_diagram`, to the last digits. NaN for an axial load that the block does
+    not carry.
+
+    Parameters
+    ----------
+    section : Section
+        The section, with bars.
+    axial_load : float
+        Compression positive [N].
+    """
+    block = _aci_block(section)
+
+    def at(axis: float) -> tuple[float, float]:
+        return block.point(axis, _aci_strains(section, axis))
+
+    low, high = 1e-6 * section.depth, 1e6 * section.depth
+    if not at(low)[0] <= axial_load <= at(high)[0]:
+        return math.nan
+    while high - low > 1e-14 * high:
+        # The axis goes over twelve powers of ten: halved by its logarithm first.
+        middle = math.sqrt(low * high) if high > 2.0 * low else 0.5 * (low + high)
+        low, high = (middle, high) if at(middle)[0] < axial_load else (low, middle)
+    return at(high)[1]
+
+
 def _aci_318(section: Section, count: int) -> InteractionDiagram:
     """ACI 318-19: 22.2.2.4 (block), 21.2.2 (phi), 22.4.2.1 (limit of the axial load)."""
-    fc, half = section.concrete_law["fc"], 0.5 * section.depth
-    ultimate = 0.003
-    share = min(max(0.85 - 0.05 * (fc / _MPA - 28.0) / 7.0, 0.65), 0.85)
-    block = _Block(section, 0.85 * fc, share)
+    block, ultimate = _aci_block(section), _ACI_STRAIN
     outermost, _, steel = max(section.bars, key=lambda bar: bar[0])
     yields = steel.fy / steel.es
     axes = _axes(section, ultimate, count, [0.0, yields, yields + 0.003, 0.005])
-
-    def strains(axis: float) -> Callable[[Array], Array]:
-        return lambda y: ultimate * (1.0 - (y + half) / axis)
-
-    rows = [block.point(axis, strains(axis)) for axis in axes]
+    rows = [block.point(axis, _aci_strains(section, axis)) for axis in axes]
     pulled, pressed = block.ends(math.inf)
     load, moment = np.array([pulled, *rows, pressed]).T
     tension = np.concatenate(
-        ([math.inf], [-strains(axis)(np.array([outermost]))[0] for axis in axes], [-ultimate])
+        (
+            [math.inf],
+            [-_aci_strains(section, axis)(np.array([outermost]))[0] for axis in axes],
+            [-ultimate],
+        )
     )
     spiral = section.ties is not None and section.ties.is_round and not section.ties.hoops
     pressed_factor, cap = (0.75, 0.85) if spiral else (0.65, 0.80)

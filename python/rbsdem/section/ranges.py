@@ -11,7 +11,7 @@ from rbsdem.errors import InputError
 if TYPE_CHECKING:
     from rbsdem.section.section import Section
 
-__all__ = ["RANGE", "axial_load_note", "column_length", "outside"]
+__all__ = ["RANGE", "axial_load_note", "carried_load", "column_length", "outside"]
 
 #: Least and largest length of a column [m]: a number in millimetres is outside.
 _SHORTEST, _LONGEST = 0.05, 100.0
@@ -77,6 +77,40 @@ def axial_load_note(axial_load: float, strength: float, area: float) -> str:
         f"axial_load = {axial_load:g} N is only {ratio:.1e} of f'c A; loads are in N: 744 kN is "
         "744e3"
     )
+
+
+def carried_load(value: Any, section: Section, *, tension: bool = True) -> float:
+    """Return an axial load that a section carries [N].
+
+    Parameters
+    ----------
+    value : float
+        The load, compression positive [N].
+    section : Section
+        The section.
+    tension : bool, optional
+        Whether it may be tension.
+
+    Raises
+    ------
+    InputError
+        If it is not a finite number, or beyond the capacity of the section without bending and
+        confinement.
+    """
+    load = _core.number(value, "axial_load")
+    if not math.isfinite(load):
+        raise InputError(f"axial_load = {load} N must be a finite number")
+    least, most = section.axial_capacity
+    if least <= load <= most and (tension or load >= 0.0):
+        return load
+    ends = f"{least:g} to {most:g} N" if tension else f"0 to {most:g} N"
+    if load >= 0.0:
+        fault = "is more compression than the section carries"
+    elif tension:
+        fault = "is more tension than the section carries"
+    else:
+        fault = "is tension, which the formulas are not for"
+    raise InputError(f"axial_load = {load:g} N {fault}; compression is positive: give {ends}")
 
 
 def outside(section: Section, height: float, axial_load: float) -> tuple[str, ...]:
