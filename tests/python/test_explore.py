@@ -11,6 +11,7 @@ import json
 import re
 import socket
 import threading
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -192,7 +193,7 @@ def test_two_columns_and_double_curvature(post):
     two["columns"].append(copy.deepcopy(two["columns"][0]))
     two["columns"][1]["column"] |= {"ends": "double", "height": 3.2}
     one, other = post("loops", state=two)["columns"]
-    # Half of it is the cantilever: the same force, twice the displacement between the ends.
+    # Along a path half of it is the cantilever: the same force, twice the displacement.
     assert one["force"] == other["force"]
     np.testing.assert_allclose(other["displacement"], 2 * np.array(one["displacement"]), rtol=1e-5)
     assert other["height"] == 3.2
@@ -211,6 +212,28 @@ def test_section_and_band_are_those_of_the_functions(post):
     (band,) = post("bands", state=state())["columns"]
     spread = section().column(1.6, axial_load=744e3).spread(1.6 * rbsdem.protocol([0.005, 0.02]))
     np.testing.assert_allclose(band["upper"], spread.upper, rtol=1e-5)
+
+
+def test_double_curvature_in_time_is_the_whole_column(post):
+    """With mass of its own half of it is no cantilever: both its bodies move with the foot."""
+    given = state(column_ends="double", column_height=3.2)
+    given["loading"] = {"kind": "synthetic", "seed": 3, "scale": 0.8}
+    (answer,) = post("loops", state=given)["columns"]
+    column = section().column(3.2, axial_load=744e3, top="fixed")
+    motion = rbsdem.motions.synthetic(1, 3, dt=0.01)[0].scaled(0.8)
+    result = rbsdem.time_history(
+        replace(column, top_mass=744e3 / 9.80665),
+        motion.time,
+        ground_acceleration=motion.acceleration,
+        collapse_drift=0.2,
+    )
+    np.testing.assert_allclose(answer["displacement"], result.displacement, rtol=1e-4, atol=1e-9)
+    assert answer["height"] == 3.2
+    assert answer["figures"]["energy"] == pytest.approx(result.energy["spring"][-1], rel=1e-5)
+    names: dict = {}
+    program = post("export", state=given, form="python")["text"]
+    exec(compile(program.replace("print(", "str("), "saved.py", "exec"), names)
+    np.testing.assert_array_equal(names["result"].displacement, result.displacement)
 
 
 @pytest.mark.parametrize(
@@ -260,6 +283,20 @@ def test_all_errors_come_at_once_and_leave_the_other_column(post):
     assert right["force"]
 
 
+def test_an_error_that_is_no_input_error_is_a_defect_and_says_so(post, monkeypatch):
+    def broken(*_, **__):
+        raise ZeroDivisionError("by zero")
+
+    monkeypatch.setattr(rbsdem.RectangularSection, "code_values", broken)
+    (answer,) = post("sections", state=state(), code="aci318")["columns"]
+    assert "A defect of rbsdem, not of the input (ZeroDivisionError" in answer["codes"]["fault"]
+    assert answer["code"]["moment"]  # the other panels stand
+    monkeypatch.setattr("rbsdem.explore.compute.cyclic", broken)
+    (answer,) = post("loops", state=state(section_width=0.41))["columns"]
+    assert "force" not in answer
+    assert "A defect of rbsdem" in answer["faults"][0]["text"]
+
+
 @pytest.mark.parametrize("shape", ["circle", "hollow_rectangle", "hollow_circle"])
 def test_other_shapes(post, shape):
     given = state(section_shape=shape, section_diameter=0.5, section_wall=0.12)
@@ -282,8 +319,6 @@ def test_records_are_texts_and_scales_follow(post):
     (answer,) = post("loops", state=given)["columns"]
     assert answer["dynamic"]
     column = section().column(1.6, axial_load=744e3)
-    from dataclasses import replace  # noqa: PLC0415
-
     result = rbsdem.time_history(
         replace(column, top_mass=744e3 / 9.80665),
         motion.time[:400],

@@ -6,7 +6,6 @@ columns and results that were just made are kept, as several answers stand on th
 
 from __future__ import annotations
 
-import math
 import time
 import warnings
 from collections import OrderedDict
@@ -22,21 +21,21 @@ from rbsdem._core import Array
 from rbsdem.analysis import cyclic, time_history
 from rbsdem.case import Case
 from rbsdem.errors import InputError, RbsdemError, SolveError
+from rbsdem.explore.diagrams import defect, figure_of, number, numbers, own_laws, section_answer
 from rbsdem.explore.state import (
     Drawn,
     Faults,
     Loading,
     column_of,
+    in_motion,
     key_of,
     loading_of,
     section_of,
-    with_top_mass,
 )
 from rbsdem.explore.texts import case_of_text
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.result import Result
 from rbsdem.section.model import LayeredColumn
-from rbsdem.section.section import Section
 
 __all__ = ["Answered", "Answers", "numbers"]
 
@@ -99,7 +98,10 @@ class Answers:
             self._kept.move_to_end(key)
             return self._kept[key]
         begun = time.perf_counter()
-        answered = self._solve(given, loading)
+        try:
+            answered = self._solve(given, loading)
+        except Exception as error:
+            answered = Answered(None, None, None, [{"field": "", "text": defect(error)}], [])
         answered = replace(answered, seconds=time.perf_counter() - begun)
         # What was refused may be right later: a record may be opened meanwhile.
         if answered.result is not None:
@@ -122,7 +124,7 @@ class Answers:
             drawn, notes = column_of(given, faults)
             loads = loading_of(loading, self.records, faults)
             if drawn is not None and loads is not None and loads.motion is not None:
-                drawn = with_top_mass(drawn, given, faults)
+                drawn = in_motion(drawn, given, faults)
             if drawn is None or loads is None or faults:
                 return Answered(None, None, None, faults.listed(), notes)
             run = _run_of(drawn, loads)
@@ -131,11 +133,12 @@ class Answers:
             warnings.simplefilter("always")
             try:
                 result = run()
-            except SolveError as error:
-                stopped, result = str(error), error.result
             except RbsdemError as error:
-                field = "case" if case is not None else "loading.kind"
-                return Answered(None, None, None, [{"field": field, "text": str(error)}], notes)
+                result = error.result if isinstance(error, SolveError) else None
+                if result is None:
+                    field = "case" if case is not None else "loading.kind"
+                    return Answered(None, None, None, [{"field": field, "text": str(error)}], notes)
+                stopped = str(error)
         notes = [*notes, *dict.fromkeys(str(one.message) for one in told)]
         return Answered(result, drawn, case, [], notes, stopped)
 
@@ -163,34 +166,18 @@ class Answers:
 
     def sections(self, state: Mapping[str, Any], code: str) -> list[dict[str, Any]]:
         """Return moment-curvature, interaction and code values of each column."""
-        return [self._section(given, state["loading"], code) for given in state["columns"]]
-
-    def _section(
-        self, given: Mapping[str, Any], loading: Mapping[str, Any], code: str
-    ) -> dict[str, Any]:
-        drawn = self.solved(given, loading).drawn
-        if drawn is None:
-            return {}
-        section, load = drawn.section, drawn.column.axial_load
-        span = drawn.height / drawn.factor
-        return {
-            "curvature": [
-                _tried(lambda confined=confined: _curvature(section, load, confined))
-                for confined in (False, True)
-            ],
-            "code": _tried(lambda: _interaction(section, code)),
-            "codes": _tried(lambda: _codes(section, span, load)),
-            "facts": _tried(lambda: _facts(section, span, load)),
-        }
+        return self._of_drawn(state, lambda drawn: section_answer(drawn, code))
 
     def own_interaction(self, state: Mapping[str, Any]) -> list[dict[str, Any]]:
         """Return the interaction diagram of each column by its own laws, which takes long."""
-        found = []
-        for given in state["columns"]:
-            drawn = self.solved(given, state["loading"]).drawn
-            section = None if drawn is None else drawn.section
-            found.append({} if section is None else _tried(lambda s=section: _interaction(s, None)))
-        return found
+        return self._of_drawn(state, own_laws)
+
+    def _of_drawn(
+        self, state: Mapping[str, Any], answer: Callable[[Drawn], dict[str, Any]]
+    ) -> list[dict[str, Any]]:
+        """Return an answer for each drawn column; nothing for a case or refused input."""
+        drawn = (self.solved(given, state["loading"]).drawn for given in state["columns"])
+        return [{} if one is None else answer(one) for one in drawn]
 
     # ---- how far it may be off ------------------------------------------------------------------
 
@@ -239,7 +226,7 @@ class Answers:
                 rows.append(
                     {
                         "scale": scale * now,
-                        "drift": _number(peak / other.result.column.height),
+                        "drift": number(peak / other.result.column.height),
                         "status": other.result.summary["status"],
                     }
                 )
@@ -254,12 +241,10 @@ def _run_of(drawn: Drawn, loads: Loading) -> Callable[[], Result]:
         return lambda: cyclic(column, displacement=path, openings=True)
     motion = loads.motion
     assert motion is not None
-    # Half of the acceleration where half of the column is computed.
-    ground = motion.acceleration / drawn.factor
     return lambda: time_history(
         column,
         motion.time,
-        ground_acceleration=ground,
+        ground_acceleration=motion.acceleration,
         collapse_drift=0.2,
         openings=True,
     )
@@ -284,23 +269,23 @@ def _response(found: Answered) -> dict[str, Any]:
         "states": [
             {
                 "name": state.name,
-                "displacement": _number(factor * state.displacement),
-                "force": _number(_at(force, result, state.time)),
-                "drift": _number(state.drift),
-                "threshold": _number(state.threshold),
+                "displacement": number(factor * state.displacement),
+                "force": number(_at(force, result, state.time)),
+                "drift": number(state.drift),
+                "threshold": number(state.threshold),
                 "source": state.source,
             }
             for state in _states(result)
         ],
         "figures": {
-            "peak_force": _number(float(np.max(np.abs(force), initial=0.0))),
-            "peak_moment": _number(float(np.max(np.abs(result.base_moment), initial=0.0))),
-            "peak_drift": _number(float(np.max(np.abs(result.drift), initial=0.0))),
-            "drift_at_loss": _number(abs(result.strength_loss()) / result.column.height)
+            "peak_force": number(float(np.max(np.abs(force), initial=0.0))),
+            "peak_moment": number(float(np.max(np.abs(result.base_moment), initial=0.0))),
+            "peak_drift": number(float(np.max(np.abs(result.drift), initial=0.0))),
+            "drift_at_loss": number(abs(result.strength_loss()) / result.column.height)
             if not result.dynamic
             else None,
-            "residual_drift": _number(result.residual_drift),
-            "energy": _number(factor * float(result.energy["spring"][-1]))
+            "residual_drift": number(result.residual_drift),
+            "energy": number(factor * float(result.energy["spring"][-1]))
             if result.time.size
             else None,
         },
@@ -333,114 +318,5 @@ def _at(values: Array, result: Result, when: float) -> float:
     return float(np.interp(when, result.time, values))
 
 
-def figure_of(section: Section) -> dict[str, Any]:
-    """Return the lines of a section as the program has them, y upward in tension."""
-    figure: dict[str, Any] = {
-        "outline": _points(section.outline()),
-        "void": _points(section.void()),
-        "bars": [
-            [_number(x), _number(y), _number(d)]
-            for x, y, d in section.place_bars(
-                [(y, 2.0 * math.sqrt(area / math.pi)) for y, area, _ in section.bars]
-            )
-        ],
-        "hoops": [],
-        "legs": [],
-        "steel_ratio": _number(section.steel_ratio),
-    }
-    ties = section.ties
-    if ties is not None:
-        bend = 0.5 * float(section.bar_diameter or 0.0)
-        figure["hoops"] = [
-            _points(section.hoop_line(inset, bend + ties.diameter - inset))
-            for inset in (0.0, ties.diameter)
-        ]
-        if section.hollow:
-            figure["hoops"] += [
-                _points(section.void(section.cover + inset)) for inset in (ties.diameter, 0.0)
-            ]
-        figure["legs"] = [_points(leg) for leg in section.inner_legs()]
-    return figure
-
-
-def _curvature(section: Section, load: float, confined: bool) -> dict[str, Any]:
-    options: dict[str, Any] = {"ultimate": "mander"} if confined else {}
-    diagram = section.diagram(load, confined=confined, **options)
-    events = {
-        name: [_number(point.curvature), _number(point.moment)]
-        for name in ("cracking", "yielding", "peak", "ultimate")
-        if (point := getattr(diagram.events, name)) is not None
-    }
-    return {
-        "curvature": numbers(diagram.curvature),
-        "moment": numbers(diagram.moment),
-        "events": events,
-    }
-
-
-def _interaction(section: Section, code: str | None) -> dict[str, Any]:
-    points = 24 if code is None else 60
-    diagram = section.interaction(code, points=points)  # type: ignore[arg-type]
-    found = {
-        "code": code,
-        "axial_load": numbers(diagram.axial_load),
-        "moment": numbers(diagram.moment),
-    }
-    if code is not None:
-        found["design_axial_load"] = numbers(diagram.design_axial_load)
-        found["design_moment"] = numbers(diagram.design_moment)
-    return found
-
-
-def _codes(section: Section, span: float, load: float) -> list[dict[str, Any]]:
-    return [
-        {
-            "name": value.name,
-            "meaning": value.meaning,
-            "value": _number(value.value),
-            "unit": value.unit,
-            "source": value.source,
-            "confirmed": value.confirmed,
-        }
-        for value in section.code_values(span, load)
-    ]
-
-
-def _facts(section: Section, span: float, load: float) -> dict[str, Any]:
-    confined = section.confinement
-    least, most = section.axial_capacity
-    return {
-        "axial_load_ratio": _number(load / (section.gross_area * section.concrete.fc)),
-        "steel_ratio": _number(section.steel_ratio),
-        "span_depth_ratio": _number(span / section.depth),
-        "tie_ratio": None if confined is None else _number(confined.ratio),
-        "confined_strength": None if confined is None else _number(confined.fcc),
-        "axial_capacity": [_number(least), _number(most)],
-    }
-
-
 def _interval(interval: Any, factor: float = 1.0) -> list[float | None]:
-    return [_number(factor * getattr(interval, end)) for end in ("lower", "value", "upper")]
-
-
-def _tried(make: Callable[[], Any]) -> Any:
-    """Return what a function makes, or the text of its error."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        try:
-            return make()
-        except RbsdemError as error:
-            return {"fault": str(error)}
-
-
-def numbers(values: Array) -> list[float | None]:
-    """Return an array for JSON with six digits; None where it is not finite."""
-    return [_number(value) for value in np.asarray(values, dtype=np.float64).tolist()]
-
-
-def _number(value: float) -> float | None:
-    return float(f"{value:.6g}") if math.isfinite(value) else None
-
-
-def _points(line: Array) -> list[list[float | None]]:
-    return [numbers(point) for point in np.asarray(line)]
+    return [number(factor * getattr(interval, end)) for end in ("lower", "value", "upper")]

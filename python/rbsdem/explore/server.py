@@ -14,7 +14,6 @@ import json
 import secrets
 import tempfile
 import threading
-import traceback
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -27,6 +26,7 @@ from rbsdem._files import whole_file
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.explore import texts
 from rbsdem.explore.compute import Answers
+from rbsdem.explore.diagrams import defect
 from rbsdem.explore.near import Near
 from rbsdem.explore.parts import TYPES, parts
 from rbsdem.explore.state import MOST_VALUES
@@ -346,8 +346,7 @@ class _Handler(BaseHTTPRequestHandler):
         except (ConnectionError, TimeoutError):
             self.close_connection = True  # nobody waits for the answer
         except Exception as error:  # one of the program, which must not end the server
-            traceback.print_exc()
-            self._refuse(500, f"an error of rbsdem, {type(error).__name__}: the terminal has more")
+            self._refuse(500, defect(error))
         finally:
             self.server.room.release()
 

@@ -19,6 +19,7 @@ import numpy as np
 from rbsdem import _core
 from rbsdem._core import Array
 from rbsdem.column import STANDARD_GRAVITY, Column
+from rbsdem.ends import double_curvature
 from rbsdem.errors import AccuracyWarning, InputError, RbsdemError
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.synthetic import synthetic
@@ -31,7 +32,17 @@ from rbsdem.section.rectangular import RectangularSection
 from rbsdem.section.reinforcement import Layout, Spiral, Ties
 from rbsdem.section.section import Section
 
-__all__ = ["DEFAULT", "ENDS", "Fault", "Faults", "Loading", "column_of", "key_of", "loading_of"]
+__all__ = [
+    "DEFAULT",
+    "ENDS",
+    "Fault",
+    "Faults",
+    "Loading",
+    "column_of",
+    "in_motion",
+    "key_of",
+    "loading_of",
+]
 
 #: The column that the page begins with: test No 1 of Soesianawati and others (1986).
 DEFAULT: dict[str, Any] = {
@@ -52,7 +63,7 @@ DEFAULT: dict[str, Any] = {
     },
 }
 
-#: How a column is held, and its height over that of the cantilever that is computed.
+#: How a column is held, and its height over the distance from an end to where its moment is zero.
 ENDS = {"cantilever": 1.0, "double": 2.0}
 
 #: What one looks at on a page: cycles of a path, bars of a section, values of a record.
@@ -141,18 +152,18 @@ class Drawn:
     Attributes
     ----------
     column : Column
-        The cantilever that is computed.
+        The column that is computed: along a path the lower half of one in double curvature.
     section : Section
         Its section.
-    height : float
-        Height of the column between its ends [m].
+    span : float
+        From an end to where the moment is zero [m].
     factor : float
-        Displacement between the ends over that of the cantilever.
+        Displacement between the ends over that of the column that is computed.
     """
 
     column: Column
     section: Section
-    height: float
+    span: float
     factor: float
 
 
@@ -198,15 +209,15 @@ def column_of(given: Mapping[str, Any], faults: Faults) -> tuple[Drawn | None, l
             warnings.simplefilter("always")
             column: Column = section.column(height / ENDS[ends], axial_load=load)
         notes = [str(one.message) for one in told if issubclass(one.category, AccuracyWarning)]
-        made = Drawn(column, section, height, ENDS[ends])
+        made = Drawn(column, section, column.height, ENDS[ends])
     return made, notes
 
 
-def with_top_mass(drawn: Drawn, given: Mapping[str, Any], faults: Faults) -> Drawn | None:
+def in_motion(drawn: Drawn, given: Mapping[str, Any], faults: Faults) -> Drawn | None:
     """Return the column with the mass that an earthquake moves; by default that of its axial load.
 
-    Of a column in double curvature half is computed: under half of the acceleration, twice the mass
-    of its upper end moves by half of the displacement.
+    A column in double curvature is then computed whole: with mass of their own its halves do not
+    move alike.
     """
     frame = _group(given, "column")
     found = None
@@ -214,9 +225,12 @@ def with_top_mass(drawn: Drawn, given: Mapping[str, Any], faults: Faults) -> Dra
         mass = frame.get("top_mass")
         if mass is None:
             mass = max(drawn.column.axial_load, 0.0) / STANDARD_GRAVITY
-        top = drawn.factor * _core.number(mass, "top_mass")
-        column = dataclasses.replace(drawn.column, top_mass=top)
-        found = dataclasses.replace(drawn, column=column)
+        mass = _core.number(mass, "top_mass")
+        if drawn.factor == 1.0:
+            column = dataclasses.replace(drawn.column, top_mass=mass)
+        else:
+            column = double_curvature(drawn.column, top_mass=mass)
+        found = dataclasses.replace(drawn, column=column, factor=1.0)
     return found
 
 

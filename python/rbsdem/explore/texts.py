@@ -197,8 +197,9 @@ def python(given: Mapping[str, Any], loading: Mapping[str, Any]) -> str:
     bars, ties, frame = given["bars"], given["ties"], given["column"]
     sizes = [f"{name}={given['section'][name]!r}" for name in SIZES[shape]]
     half = ENDS[frame.get("ends", "cantilever")]
+    moved = loading["kind"] in ("synthetic", "record")
     lines = [
-        *(["import dataclasses", ""] if loading["kind"] in ("synthetic", "record") else []),
+        *(["import dataclasses", ""] if moved and half == 1.0 else []),
         "import rbsdem",
         f"from rbsdem import Concrete, {kind}, Layout, Steel, {hoops}",
         "",
@@ -218,7 +219,8 @@ def python(given: Mapping[str, Any], loading: Mapping[str, Any]) -> str:
     height = repr(frame["height"])
     if half != 1.0:
         lines.append(
-            "# Half of a column in double curvature; it moves by half of what the ends do."
+            "# The lower half of a column in double curvature"
+            + ("." if moved else "; it moves by half of what the ends do.")
         )
         height += f" / {half:g}"
     lines.append(f"column = section.column({height}, axial_load={frame['axial_load']!r})")
@@ -241,21 +243,20 @@ def _loaded(loading: Mapping[str, Any], frame: Mapping[str, Any], half: float) -
         ]
     mass = frame.get("top_mass")
     mass = f"{frame['axial_load']!r} / 9.80665" if mass is None else repr(mass)
-    if half != 1.0:
-        mass = f"{half:g} * ({mass})"
     read = (
         f"rbsdem.motions.synthetic(1, seed={loading.get('seed', 1)!r})[0]"
         if kind == "synthetic"
         else f"rbsdem.motions.read_motion({loading.get('name')!r})"
     )
-    ground = "motion.acceleration" + ("" if half == 1.0 else f" / {half:g}")
     return [
         f"motion = {read}.scaled({loading.get('scale', 1.0)!r})",
-        f"column = dataclasses.replace(column, top_mass={mass})",
+        f"column = dataclasses.replace(column, top_mass={mass})"
+        if half == 1.0
+        else f"column = rbsdem.double_curvature(column, top_mass={mass})",
         "result = rbsdem.time_history(",
         "    column,",
         "    motion.time,",
-        f"    ground_acceleration={ground},",
+        "    ground_acceleration=motion.acceleration,",
         "    collapse_drift=0.2,",
         "    openings=True,",
         ")",

@@ -12,11 +12,22 @@ const get = id => document.getElementById(id);
 const inside = get("report");
 const report = inside ? JSON.parse(inside.textContent) : null;
 const fixed = report !== null;
-let state = null, active = 0, system = "mm", withTests = false, note = "";
-let loops = [], bands = null, scales = null, sections = [], own = null, near = null, scalesDrawn = [], chart = null, dragging = false;
+let state = null, active = 0, system = "mm", withTests = false, note = "", defect = "";
+let scalesDrawn = [], chart = null, dragging = false;
+// What stands on the page: answers to one accepted input. Each knows its input, and is old where that is not the present one.
+const stood = { loops: null, sections: null, bands: null, scales: null, own: null, near: null };
+// The newest answer of the loops, whose input may be refused.
+let latest = null;
+const PANELS = { loops: ["loops", "summary", "states", "history"], sections: ["curvature", "interaction", "codes"], near: ["near"] };
 
-const isMotion = () => loops.some(loop => loop?.dynamic) || (["synthetic", "record"].includes(state.loading.kind) && state.columns.some(one => !("case" in one)));
-const sent = () => ({ state: { columns: state.columns, loading: state.loading } });
+const keyOf = ({ columns, loading }) => JSON.stringify([columns, loading]);
+const sent = () => ({ state: JSON.parse(JSON.stringify({ columns: state.columns, loading: state.loading })) });
+const loops = () => stood.loops?.columns ?? [];
+// The columns of an answer that belongs to the loops that stand.
+const beside = name => stood[name]?.key === stood.loops?.key ? stood[name]?.columns ?? null : null;
+const codeOf = name => name === "sections" ? get("code").value : undefined;
+const isOld = name => Boolean(stood[name]) && (stood[name].key !== keyOf(state) || stood[name].code !== codeOf(name));
+const isMotion = () => loops().some(loop => loop.dynamic);
 
 function say(text) {
   if (get("live").textContent !== text) get("live").textContent = text;
@@ -25,71 +36,95 @@ function say(text) {
 // ---- what is asked ---------------------------------------------------------------------------------
 
 function gone(error) {
-  get("loopstate").textContent = error instanceof TypeError ? "No answer: the server has ended. Start rbsdem explore again." : error.message;
-  get("loopstate").classList.add("fault");
+  defect = error instanceof TypeError ? "No answer: the server has ended. Start rbsdem explore again." : error.message;
+  showStatus();
 }
 
+// All but the loops are asked of the input that was accepted.
+const slow = (name, delay, show, { asks = () => true, more = () => ({}) } = {}) => makeLane(name, {
+  question: () => stood.loops && asks() ? { state: stood.loops.state, ...more() } : null,
+  take: (answer, body) => { stand(LANES[name], answer, body); show(); },
+  fail: gone, delay,
+});
+const LANES = { sections: "sections", bands: "bands", scales: "scales", own: "own", nearest: "near" };
 const lanes = fixed ? {} : {
   loops: makeLane("loops", { question: sent, take: takeLoops, fail: gone, keep: true }),
-  sections: makeLane("sections", { question: () => ({ ...sent(), code: get("code").value }), take: answer => { sections = answer.columns; showSections(); }, fail: gone, delay: 60 }),
-  bands: makeLane("bands", { question: () => isMotion() ? null : sent(), take: answer => { bands = answer.columns; showLoops(); }, fail: gone, delay: 140 }),
-  scales: makeLane("scales", { question: () => isMotion() ? sent() : null, take: answer => { scales = answer.columns; showTime(); }, fail: gone, delay: 300 }),
-  own: makeLane("own", { question: sent, take: answer => { own = answer.columns; showSections(); }, fail: gone, delay: 450 }),
-  nearest: makeLane("nearest", { question: () => withTests ? sent() : null, take: answer => { near = answer; showNear(); }, fail: gone, delay: 250 }),
+  sections: slow("sections", 60, showSections, { more: () => ({ code: get("code").value }) }),
+  bands: slow("bands", 140, showLoops, { asks: () => !isMotion() }),
+  scales: slow("scales", 300, showTime, { asks: isMotion }),
+  own: slow("own", 450, showSections),
+  nearest: slow("nearest", 250, showNear, { asks: () => withTests }),
 };
 
 function askAll() {
-  bands = null;
-  scales = null;
-  own = null;
   lanes.loops.go();
-  for (const name of ["sections", "bands", "scales", "own", "nearest"]) lanes[name].go();
+  showAge();
+}
+
+function stand(name, answer, { state: of, code }) {
+  stood[name] = { ...answer, state: of, key: keyOf(of), code };
+  showAge();
 }
 
 function takeLoops(answer, body) {
-  get("loopstate").classList.remove("fault");
-  const now = body.state.columns.length === state.columns.length;
-  if (!now) return;
-  answer.columns.forEach((loop, i) => {
-    // What is refused leaves the last loop, marked as old.
-    const before = loops[i];
-    loops[i] = loop.displacement || !before?.displacement ? loop : { ...before, faults: loop.faults, notes: loop.notes, figure: loop.figure, stale: true };
-  });
-  loops.length = state.columns.length;
-  showLoops();
+  defect = "";
+  latest = { ...answer, state: body.state, key: keyOf(body.state) };
+  // One column that is refused leaves all as it was: what stands belongs to one input.
+  if (answer.columns.every(loop => loop.displacement)) {
+    stand("loops", answer, body);
+    showLoops();
+    for (const [lane, name] of Object.entries(LANES)) {
+      if (stood[name]?.key !== stood.loops.key || stood[name].code !== codeOf(name)) lanes[lane].go();
+      else lanes[lane].stop();
+    }
+  }
+  showAge();
+  showStatus();
   showDrawings();
   showMessages();
 }
 
 // ---- what is shown ---------------------------------------------------------------------------------
 
+// Marks what belongs to an earlier input.
+function showAge() {
+  for (const [name, panels] of Object.entries(PANELS)) for (const id of panels) get(id).classList.toggle("old", isOld(name));
+}
+
 function showLoops() {
-  chart = loopChart(get("loopfigure"), state, loops, bands, system);
-  stateTables(get("statetable"), get("figures"), state, loops, bands, system);
-  const words = [];
-  loops.forEach((loop, i) => {
-    if (!loop?.displacement) return;
-    const name = loops.length > 1 ? `${state.columns[i].name}: ` : "";
-    const seconds = loop.seconds ? ` in ${Math.max(1, Math.round(1e3 * loop.seconds))} ms` : "";
-    words.push(name + (loop.stale ? "the last loop that was possible" : `${loop.model ? loop.model + ", " : ""}${loop.displacement.length} points${seconds}`));
-  });
-  if (!isMotion() && words.length) {
-    const found = bands?.filter(band => band.lower) ?? [];
-    if (found.length) words.push("shaded: the band of 80 % of left-out tests");
-    else if (bands) words.push(bands[0].none ?? "");
-    else if (!fixed && loops.some(loop => loop?.displacement && !loop.stale)) words.push("the band follows");
-  }
-  get("loopstate").textContent = words.filter(Boolean).join(" · ");
-  const first = loops.find(loop => loop?.displacement);
+  if (!stood.loops) { get("loopfigure").replaceChildren(element("p", { className: "empty" }, "No loop: see the messages beside the fields.")); return; }
+  const bands = beside("bands"), of = stood.loops.state;
+  chart = loopChart(get("loopfigure"), of, loops(), bands, system);
+  stateTables(get("statetable"), get("figures"), of, loops(), bands, system);
   const scrub = get("scrub");
-  scrub.disabled = !first;
-  scrub.max = first ? first.displacement.length - 1 : 1;
-  if (first) showPoint(Number(scrub.value) > 0);
+  scrub.disabled = false;
+  scrub.max = loops()[0].displacement.length - 1;
+  showPoint(Number(scrub.value) > 0);
+  showStatus();
   showTime();
 }
 
+function showStatus() {
+  const words = [], bands = beside("bands");
+  if (latest && latest.key === keyOf(state) && latest.key !== stood.loops?.key) words.push(stood.loops ? "The input is refused: what stands here is of the last one that was possible" : "");
+  else {
+    loops().forEach((loop, i) => {
+      const name = loops().length > 1 ? `${stood.loops.state.columns[i].name}: ` : "";
+      const seconds = loop.seconds ? ` in ${Math.max(1, Math.round(1e3 * loop.seconds))} ms` : "";
+      words.push(`${name}${loop.model ? loop.model + ", " : ""}${loop.displacement.length} points${seconds}`);
+    });
+    if (!isMotion() && words.length) {
+      if (bands?.some(band => band.lower)) words.push("shaded: the band of 80 % of left-out tests");
+      else if (bands) words.push(bands[0].none ?? "");
+      else if (!fixed) words.push("the band follows");
+    }
+  }
+  get("loopstate").textContent = defect || words.filter(Boolean).join(" · ");
+  get("loopstate").classList.toggle("fault", Boolean(defect));
+}
+
 function showPoint(visible = true) {
-  const i = Math.max(0, loops.findIndex(loop => loop?.displacement)), loop = loops[i];
+  const [loop] = loops();
   if (!loop || !chart) return;
   const at = Math.min(Number(get("scrub").value), loop.displacement.length - 1);
   const [unit, factor] = unitOf(system, "force"), drift = 100 * loop.displacement[at] / loop.height, force = loop.force[at] / factor;
@@ -102,25 +137,29 @@ function showPoint(visible = true) {
 function showTime() {
   get("history").hidden = !isMotion();
   if (!isMotion()) return;
-  timeChart(get("timefigure"), state, loops);
-  const found = (scales ?? []).filter(one => one.scales);
-  scaleChart(get("scalefigure"), state, scales ?? []);
-  get("scales").hidden = state.columns.every(one => "case" in one);
-  get("scalestate").textContent = found.length ? "Crosses: collapse or axial failure" : "Other scales of the motion follow";
+  const of = stood.loops.state, scales = beside("scales") ?? [];
+  timeChart(get("timefigure"), of, loops());
+  scaleChart(get("scalefigure"), of, scales);
+  get("scales").hidden = of.columns.every(one => "case" in one);
+  get("scalestate").textContent = scales.some(one => one.scales) ? "Crosses: collapse or axial failure" : "Other scales of the motion follow";
 }
 
 function showSections() {
-  curvatureChart(get("curvaturefigure"), state, sections, system);
-  interactionChart(get("interactionfigure"), state, sections, own, loops, system, get("code").selectedOptions[0].textContent);
-  codeTable(get("codetable"), state, sections, system);
-  for (const name of ["curvature", "interaction", "codes"]) get(name).hidden = state.columns.every(one => "case" in one);
+  const found = stood.sections;
+  if (!found) return;
+  const same = name => stood[name]?.key === found.key ? stood[name].columns : null;
+  curvatureChart(get("curvaturefigure"), found.state, found.columns, system);
+  interactionChart(get("interactionfigure"), found.state, found.columns, same("own"), same("loops"), system, get("code").selectedOptions[0].textContent);
+  codeTable(get("codetable"), found.state, found.columns, system);
+  for (const name of ["curvature", "interaction", "codes"]) get(name).hidden = found.state.columns.every(one => "case" in one);
 }
 
 function showNear() {
+  const { near } = stood;
   get("near").hidden = !near?.columns;
   if (!near?.columns) return;
   get("nearstate").textContent = `Of ${near.tests} tests; grey: test, line: prediction`;
-  nearCards(get("neartests"), state, near, system);
+  nearCards(get("neartests"), near.state, near, system);
 }
 
 function showDrawings() {
@@ -133,30 +172,30 @@ function showDrawings() {
     if (!box) { box = element("div", { className: "drawbox" }); box.dataset.column = i; host.append(box); }
     if ("case" in column) { box.replaceChildren(element("p", { className: "empty" }, `Column ${column.name} is a case file: its springs have no drawing.`)); return; }
     if (!dragging) scalesDrawn[i] = scalesOf(column);
-    drawColumn(box, column, loops[i]?.figure, { system, scales: scalesDrawn[i] ?? scalesOf(column), kind: "ab"[i], title: column.name, fixed, stale: Boolean(loops[i]?.faults?.length),
+    const heard = latest?.columns[i];
+    drawColumn(box, column, heard?.figure, { system, scales: scalesDrawn[i] ?? scalesOf(column), kind: "ab"[i], title: column.name, fixed, stale: latest?.key !== keyOf(state) || Boolean(heard?.faults.length),
       move: (path, value, done) => { choose(i); edit(path, value, done, true); }, moved: (path, begins = false) => { dragging = begins; if (!begins) showDrawings(); } });
   });
   if (focused) host.querySelector(`[data-column="${focused[0]}"] [data-path="${focused[1]}"]`)?.focus();
 }
 
 function showMessages() {
-  const all = loops.flatMap((loop, i) => (loop?.faults ?? []).map(fault => ({ ...fault, column: i })));
+  const heard = latest?.columns ?? [], all = heard.flatMap((loop, i) => loop.faults.map(fault => ({ ...fault, column: i })));
   const left = showFaults(get("form"), all.filter(fault => fault.column === active));
-  const lines = [];
+  const lines = [], named = i => heard.length > 1 ? `Column ${latest.state.columns[i].name}: ` : "";
   for (const text of left) lines.push(element("p", { className: "fault" }, text));
-  for (const fault of all.filter(one => one.column !== active && !one.field.startsWith("loading."))) lines.push(element("p", { className: "fault" }, `Column ${state.columns[fault.column].name}: ${fault.text}`));
-  loops.forEach((loop, i) => {
-    const name = loops.length > 1 ? `Column ${state.columns[i].name}: ` : "";
-    if (loop?.stopped) lines.push(element("p", { className: "note" }, name + loop.stopped));
-    if (loop?.status === "axial_failure" && !loop.stale) lines.push(element("p", { className: "note" }, name + "the axial load is lost at the end of the loop"));
-    for (const text of loop?.notes ?? []) lines.push(element("p", { className: "note" }, name + text));
+  for (const fault of all.filter(one => one.column !== active && !one.field.startsWith("loading."))) lines.push(element("p", { className: "fault" }, named(fault.column) + fault.text));
+  heard.forEach((loop, i) => {
+    if (loop.stopped) lines.push(element("p", { className: "note" }, named(i) + loop.stopped));
+    if (loop.status === "axial_failure") lines.push(element("p", { className: "note" }, named(i) + "the axial load is lost at the end of the loop"));
+    for (const text of loop.notes) lines.push(element("p", { className: "note" }, named(i) + text));
   });
   if (note) lines.push(element("p", { className: "note" }, note));
   get("notes").replaceChildren(...lines);
   if (all.length) say(all.map(fault => fault.text).join("; "));
   else {
-    const last = loops.flatMap(loop => loop?.states ?? []).map(at => `${nameOfState(at.name)} at ${shown(100 * Math.abs(at.drift), 2)} %`);
-    if (!dragging && loops[0]?.figures) say(`Largest force ${shown(loops[0].figures.peak_force / unitOf(system, "force")[1])} ${unitOf(system, "force")[0]}. ${last.join(", ")}`);
+    const last = heard.flatMap(loop => loop.states ?? []).map(at => `${nameOfState(at.name)} at ${shown(100 * Math.abs(at.drift), 2)} %`);
+    if (!dragging && heard[0]?.figures) say(`Largest force ${shown(heard[0].figures.peak_force / unitOf(system, "force")[1])} ${unitOf(system, "force")[0]}. ${last.join(", ")}`);
   }
 }
 
@@ -172,7 +211,7 @@ function showTabs() {
   if (fixed) return;
   const add = element("button", { type: "button", id: "second" }, state.columns.length > 1 ? "Remove B" : "Compare with a second column");
   add.addEventListener("click", () => {
-    if (state.columns.length > 1) { state.columns.pop(); loops.length = 1; active = 0; }
+    if (state.columns.length > 1) { state.columns.pop(); active = 0; }
     else { state.columns.push({ ...JSON.parse(JSON.stringify(state.columns[0])), name: "B" }); active = 1; }
     changed(true);
     get("second").focus();
@@ -258,7 +297,6 @@ function restore(found) {
   if (!found) return;
   state = found;
   active = Math.min(active, state.columns.length - 1);
-  loops.length = Math.min(loops.length, state.columns.length);
   changed(false);
   putLink();
 }
@@ -266,8 +304,6 @@ function restore(found) {
 function load(found, units, words = "") {
   state = found;
   active = 0;
-  loops = [];
-  sections = [];
   note = words;
   if (units && SYSTEMS[units]) system = units;
   get("units").value = system;
@@ -285,17 +321,23 @@ function download(name, data, type) {
 async function save(form) {
   const svg = get("loopfigure").querySelector("svg");
   if (form === "svg" || form === "png") {
-    if (!svg) { say("There is no figure."); return; }
+    if (!svg || isOld("loops")) { refuseToSave(); return; }
     if (form === "svg") download("loops.svg", standalone(svg), "image/svg+xml");
     else download("loops.png", await asPng(svg));
     say(`Saved loops.${form}`);
     return;
   }
   const answer = fixed ? report.exports[form] : await ask("export", { ...sent(), form, column: active });
-  if (!answer?.text) { say("Nothing is saved: the input has errors."); note = "Nothing is saved: the input has errors."; showMessages(); return; }
+  if (!answer?.text) { refuseToSave(); return; }
   const ending = { namelist: "nml", python: "py", csv: "csv" }[form];
   download(`${answer.name}.${ending}`, answer.text, "text/plain");
   say(`Saved ${answer.name}.${ending}`);
+}
+
+function refuseToSave() {
+  note = "Nothing is saved: the input has errors.";
+  showMessages();
+  say(note);
 }
 
 async function openFile(file) {
@@ -316,9 +358,10 @@ async function openRecord(file) {
 }
 
 function setUp() {
+  for (const id of Object.values(PANELS).flat()) get(id).querySelector("h2").append(element("span", { className: "age" }, "of an earlier input"));
   for (const [key, { label }] of Object.entries(SYSTEMS)) get("units").append(element("option", { value: key }, label));
   get("units").addEventListener("change", () => { system = get("units").value; showAll(); if (!fixed) putLink(); });
-  get("code").addEventListener("change", () => { if (fixed) { sections = report.sections[get("code").value]; showSections(); } else lanes.sections.go(); });
+  get("code").addEventListener("change", () => { if (fixed) { standReport(); showSections(); } else { showAge(); lanes.sections.go(); } });
   get("scrub").addEventListener("input", () => showPoint());
   get("export").addEventListener("change", event => {
     const form = event.target.value;
@@ -352,12 +395,21 @@ function setUp() {
   });
 }
 
+// A report has the answers to its one input.
+function standReport() {
+  const code = get("code").value;
+  for (const [name, found] of Object.entries({ loops: report.loops, sections: report.sections[code], bands: report.bands, scales: report.scales, own: report.own }))
+    if (found) stand(name, { columns: found }, { state, code: codeOf(name) });
+  if (report.near) stand("near", report.near, { state });
+  latest = stood.loops;
+}
+
 async function start() {
   setUp();
   if (fixed) {
     document.body.classList.add("report");
-    ({ state, loops, bands, scales, own, near } = report);
-    sections = report.sections[get("code").value];
+    state = report.state;
+    standReport();
     get("units").value = system;
     get("subtitle").textContent = report.title;
     for (const id of ["undo", "redo", "open", "link", "drawhint"]) get(id).hidden = true;
@@ -372,7 +424,6 @@ async function start() {
   if (!linked) note = begin.state.note ?? "";
   if (linked?.units && SYSTEMS[linked.units]) system = linked.units;
   get("units").value = system;
-  near = null;
   past.begin({ columns: state.columns, loading: state.loading });
   showForm();
   showDrawings();

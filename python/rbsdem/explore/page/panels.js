@@ -19,12 +19,11 @@ const scaled = (values, factor) => values.map(value => value === null ? null : v
 export function loopChart(host, state, loops, bands, system) {
   const [unit, factor] = unitOf(system, "force"), lines = [], marks = [], areas = [], told = [];
   loops.forEach((loop, i) => {
-    if (!loop?.displacement) return;
     const drift = scaled(loop.displacement, loop.height / 100), force = scaled(loop.force, factor);
     const name = state.columns[i].name || "AB"[i];
-    lines.push({ x: drift, y: force, kind: KINDS[i] + (loop.stale ? " stale" : ""), label: loops.filter(Boolean).length > 1 ? name : "" });
+    lines.push({ x: drift, y: force, kind: KINDS[i], label: loops.length > 1 ? name : "" });
     const band = bands?.[i];
-    if (band?.lower && !loop.stale && band.lower.length === drift.length)
+    if (band?.lower && band.lower.length === drift.length)
       areas.push({ x: drift, lower: scaled(band.lower, factor), upper: scaled(band.upper, factor), kind: KINDS[i] });
     for (const at of loop.states) {
       const [text, shape, filled] = STATE_NAMES[at.name] ?? [at.name, "circle", false];
@@ -33,7 +32,6 @@ export function loopChart(host, state, loops, bands, system) {
     const figures = loop.figures;
     told.push(`column ${name}: largest force ${shown(figures.peak_force / factor)} ${unit}, largest drift ${shown(100 * figures.peak_drift, 3)} %`);
   });
-  if (!lines.length) { host.replaceChildren(element("p", { className: "empty" }, "No loop: see the messages beside the fields.")); return null; }
   const one = loops.length === 1 && loops[0], [length, metre] = unitOf(system, "length");
   return drawChart(host, { lines, bands: areas, marks, symmetric: true, zero: true, height: Math.round(Math.max(270, Math.min(0.92 * host.clientWidth, 560))), xLabel: "Drift (%)", yLabel: `Lateral force (${unit})`,
     top: one ? { factor: one.height / 100 / metre, label: `displacement (${length})` } : null, label: "Lateral force against drift; " + told.join("; ") });
@@ -80,7 +78,7 @@ export function interactionChart(host, state, sections, own, loops, system, code
       lines.push({ x: scaled(by.design_moment, factor), y: scaled(by.design_axial_load, per), kind: KINDS[i] + " thin dashed", label: name + "design" });
     }
     if (own?.[i]?.moment) lines.push({ x: scaled(own[i].moment, factor), y: scaled(own[i].axial_load, per), kind: KINDS[i], label: name + "own laws" });
-    const loop = loops[i], frame = state.columns[i].column;
+    const loop = loops?.[i], frame = state.columns[i].column;
     if (loop?.figures?.peak_moment && frame) marks.push({ x: loop.figures.peak_moment / factor, y: frame.axial_load / per, shape: "circle", filled: true, kind: KINDS[i], title: "largest moment of the loop" });
   });
   if (lines.length) drawChart(host, { lines, marks, fromZero: true, xLabel: `Moment (${unit})`, yLabel: `Axial load (${newton})`, legend: "inside", label: `Interaction of axial load and moment, ${code}; the dot is the largest moment of the loop` });
@@ -125,7 +123,7 @@ export function stateTables(host, below, state, loops, bands, system) {
     facts.push({ cells: [`${what}${u ? ", " + u : ""}`, ...loops.map((loop, i) => {
       const value = loop?.figures?.[key], interval = bands?.[i]?.[key];
       if (value === undefined || value === null) return "–";
-      return shown(value / f, digits) + (interval?.[0] != null && !loop.stale ? ` (${shown(interval[0] / f, 3)} to ${shown(interval[2] / f, 3)})` : "");
+      return shown(value / f, digits) + (interval?.[0] != null ? ` (${shown(interval[0] / f, 3)} to ${shown(interval[2] / f, 3)})` : "");
     })] });
   };
   add("largest force", "peak_force", "force");
@@ -133,7 +131,7 @@ export function stateTables(host, below, state, loops, bands, system) {
   add("drift at 20 % loss", "drift_at_loss", "drift", 3);
   add("residual drift", "residual_drift", "drift", 3);
   add("work of the springs", "energy", "energy");
-  below.replaceChildren(...(loops.some(loop => loop?.figures) ? [table(["", ...names], facts, bands?.some(band => band?.lower) ? "In brackets: 80 % of left-out tests" : "")] : []));
+  below.replaceChildren(table(["", ...names], facts, bands?.some(band => band?.lower) ? "In brackets: 80 % of left-out tests" : ""));
 }
 
 const CODE_UNITS = { "N": "force", "N m": "moment", "m": "length", "rad": "drift", "drift": "drift", "1/m": "curvature", "": "number" };
