@@ -188,6 +188,27 @@ def test_ends_of_a_section_that_is_not_symmetric():
     assert diagram.moment[-1] < 0.0
 
 
+def test_joint_of_a_column_carries_what_its_paths_do():
+    """First loading reaches the diagram; at its lower end all bars yield in tension."""
+    column = rbsdem.paper_sections()["soesianawati_1"].section.column(1.6, axial_load=744e3)
+    joint = column.joints("flexure")[0]
+    diagram = column.interaction(rotation=0.03)
+    pushed = rbsdem.cyclic(column, displacement=np.linspace(0.0, 0.06, 200))
+    moment = pushed.moment[:, 0][pushed.rotation[:, 0] <= 0.03]
+    assert diagram.moment_at(744e3) == pytest.approx(moment.max(), rel=5e-3)
+    bars = [spring for _, spring in joint.layers if isinstance(spring, rbsdem.SteelSpring)]
+    concrete = [spring for _, spring in joint.layers if not isinstance(spring, rbsdem.SteelSpring)]
+    yielding = sum(bar.f_y for bar in bars)
+    assert diagram.axial_load[0] == pytest.approx(-yielding)
+    assert diagram.axial_load[-1] <= yielding + sum(layer.f_peak for layer in concrete)
+    assert diagram.moment[-1] == pytest.approx(0.0, abs=1e3)
+    ax = diagram.plot()
+    assert ax.get_legend_handles_labels()[1] == ["joint of the model"]
+    plt.close(ax.figure)
+    with pytest.raises(InputError, match="rotation = 2 rad"):
+        column.interaction(rotation=2.0)
+
+
 def test_utilisation():
     diagram = SQUARE.interaction("aci318")
     strength = diagram.moment_at(1e6, design=True)

@@ -1,13 +1,17 @@
-"""Interaction of axial load and moment: by the own laws of a section, or by the block of a code.
+"""Interaction of axial load and moment: of a section, by its own laws or a code, and of a joint.
 
 A section fails where its extreme fibre in compression reaches the strain of the code. Each neutral
 axis then gives one axial load and one moment, from bars that all yield in tension to uniform
 compression. Bars displace the concrete of the block that they stand in.
+
+A layered joint of a column is another thing than its section: its layers have the fitted strengths
+and lengths of the model.
 """
 
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, get_args
@@ -19,13 +23,20 @@ from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem.errors import InputError
 from rbsdem.section.diagram import largest_moment
+from rbsdem.springs import Layered, SteelSpring
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from rbsdem.section.section import Section
 
-__all__ = ["Code", "InteractionDiagram", "interaction_diagram", "nominal_moment"]
+__all__ = [
+    "Code",
+    "InteractionDiagram",
+    "interaction_diagram",
+    "joint_interaction",
+    "nominal_moment",
+]
 
 Code = Literal["aci318", "ec2"]
 
@@ -38,22 +49,22 @@ class InteractionDiagram:
 
     Attributes
     ----------
-    code : {"aci318", "ec2"} or None
-        Whose stress block; None: the section's own laws.
+    code : {"aci318", "ec2", "joint"} or None
+        Whose stress block; "joint": the layers of a joint; None: the section's own laws.
     axial_load, moment : ndarray, shape (k,)
         Nominal strength: axial load [N], ascending, compression positive; moment about mid-depth
         [N m] with y > 0 in tension.
     design_axial_load, design_moment : ndarray, shape (m,)
         Strength with the factors of the code, and its limit of the axial load. Equal to the nominal
-        one for the section's own laws.
+        one for own laws and joints.
     neutral_axis : ndarray, shape (k,)
         Its distance from the extreme fibre in compression [m]; infinite in uniform compression, 0
-        in tension; NaN for the section's own laws.
+        in tension; NaN for own laws and joints.
     tension_strain : ndarray, shape (k,)
         Strain of the outermost bar in tension, elongation positive; NaN likewise.
     """
 
-    code: Code | None
+    code: Code | Literal["joint"] | None
     axial_load: Array
     moment: Array
     design_axial_load: Array
@@ -146,13 +157,58 @@ class InteractionDiagram:
         )
 
 
+def joint_interaction(
+    joint: Layered, closing: float, rotation: float, points: int
+) -> InteractionDiagram:
+    """Return the largest moments of a layered joint that turns for the first time.
+
+    Parameters
+    ----------
+    joint : Layered
+        The joint, with bars among its layers.
+    closing : float
+        Of all layers, within which they carry their largest axial load [m].
+    rotation : float
+        Up to which it turns, y > 0 in tension [rad].
+    points : int
+        Number of axial loads, from bars that yield in tension to that largest load.
+
+    Returns
+    -------
+    InteractionDiagram
+        With `code` "joint".
+    """
+    count = _points(points)
+    turned = _core.number(rotation, "interaction: rotation")
+    if not 0.0 < turned <= 1.0:
+        raise InputError(f"interaction: rotation = {turned:g} rad must be above 0, up to 1")
+    bars = [spring for _, spring in joint.layers if isinstance(spring, SteelSpring)]
+    if not bars:
+        raise InputError("interaction: the joint has no layers of steel")
+    apart = max(bar.f_y / bar.k for bar in bars)
+    together = -closing * np.linspace(0.0, 1.0, 400)
+    numbers = Counter(spring for _, spring in joint.layers)
+    least = -sum(n * bar.response([apart])[0] for bar, n in numbers.items())
+    most = max(-sum(n * layer.response(together) for layer, n in numbers.items()))
+    loads = np.linspace(least, most, count)
+    path = np.concatenate(([0.0], np.geomspace(1e-4, 1.0, 100) * turned))
+    moments = np.array([np.nanmax(joint.response(path, load)) for load in loads.tolist()])
+    unknown = np.full(count, np.nan)
+    return InteractionDiagram("joint", loads, moments, loads, moments, unknown, unknown)
+
+
+def _points(points: int) -> int:
+    count = _core.whole(points, "interaction: points")
+    if count < 5:
+        raise InputError(f"interaction: points = {count} must be 5 or more")
+    return count
+
+
 def interaction_diagram(
     section: Section, code: Code | None = None, points: int = 60, confined: bool = False
 ) -> InteractionDiagram:
     """Return the interaction diagram of a section; see `Section.interaction`."""
-    count = _core.whole(points, "interaction: points")
-    if count < 5:
-        raise InputError(f"interaction: points = {count} must be 5 or more")
+    count = _points(points)
     if code is None:
         return _own(section, count, confined)
     if code not in get_args(Code):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,12 +10,17 @@ from numpy.typing import ArrayLike
 from rbsdem._views import view_of
 from rbsdem.errors import InputError
 from rbsdem.plot import MODEL_LINE, TEST_LINE, TEST_POINTS, ZERO_LINE, axes_or_new
-from rbsdem.section.interaction import InteractionDiagram
+from rbsdem.section.interaction import Code, InteractionDiagram
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_CODES = {"aci318": "ACI 318-19", "ec2": "EN 1992-1-1"}
+_NAMES = {
+    "aci318": "ACI 318-19, nominal",
+    "ec2": "EN 1992-1-1, nominal",
+    "joint": "joint of the model",
+    None: "own laws of the section",
+}
 
 
 @view_of(InteractionDiagram, "plot")
@@ -30,16 +35,14 @@ def draw(
             "moment [N m]"
         )
     with axes_or_new(ax, (3.5, 3.4)) as drawn:
-        name = _CODES.get(diagram.code or "", "own laws of the section")
-        drawn.plot(
-            diagram.moment / 1e3, diagram.axial_load / 1e3, **MODEL_LINE, label=f"{name}, nominal"
-        )
-        if design and diagram.code is not None:
+        name = _NAMES[diagram.code]
+        drawn.plot(diagram.moment / 1e3, diagram.axial_load / 1e3, **MODEL_LINE, label=name)
+        if design and diagram.code in get_args(Code):
             drawn.plot(
                 diagram.design_moment / 1e3,
                 diagram.design_axial_load / 1e3,
                 **{**TEST_LINE, "color": "black"},
-                label=f"{name}, design",
+                label=name.replace("nominal", "design"),
             )
         if marks is not None:
             drawn.plot(np.abs(marks[:, 1]) / 1e3, marks[:, 0] / 1e3, **TEST_POINTS, label="demand")

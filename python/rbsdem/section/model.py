@@ -22,13 +22,14 @@ from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.parameter import Parameter
 from rbsdem.section.directions import DIRECTIONS
 from rbsdem.section.hinge import HingeJoint, hinge_joint
+from rbsdem.section.interaction import InteractionDiagram, joint_interaction
 from rbsdem.section.parameters import FACTORS, ModelParameters, parameters
 from rbsdem.section.ranges import axial_load_note, column_length, outside
 from rbsdem.section.scatter import Scatter
 from rbsdem.section.shear_model import shear_limits, shear_spring
 from rbsdem.section.spread import Spread, spread
 from rbsdem.section.spring_fit import fit_springs
-from rbsdem.springs import Elastic, Spring, Takeda, check_springs, unchecked
+from rbsdem.springs import Elastic, Layered, Spring, Takeda, check_springs, unchecked
 from rbsdem.strains import Gauge
 
 if TYPE_CHECKING:
@@ -467,6 +468,36 @@ class LayeredColumn(Column):
         foot = joint == 1 and springs[numbers.index(1)] == hinge.spring
         head = joint == self.n + 1 and self.top == "fixed" and springs[-1] == turned(hinge.spring)
         return hinge.gauge if foot or head else None
+
+    def interaction(self, *, points: int = 60, rotation: float = 0.05) -> InteractionDiagram:
+        """Return the interaction diagram of axial load and moment of the joint at the foot.
+
+        It differs from `Section.interaction`: the layers have the fitted strengths of the model,
+        and bars harden as long as the joint turns. In cycles they harden a little more.
+
+        Parameters
+        ----------
+        points : int, optional
+            Number of axial loads, from bars that yield in tension to the largest one carried.
+        rotation : float, optional
+            Rotation of the joint up to which the largest moment is looked for, y > 0 in tension
+            [rad].
+
+        Returns
+        -------
+        InteractionDiagram
+            With `code` "joint". The springs are those for the axial load of the column.
+
+        Raises
+        ------
+        InputError
+            If the foot has no layers of steel, or an argument is refused.
+        """
+        foot = self.joints("flexure")[self.joint_numbers.index(1)]
+        if not isinstance(foot, Layered):
+            raise InputError(f"interaction: the joint at the foot is a {type(foot).__name__}")
+        # Concrete is crushed at a strain of 0.02.
+        return joint_interaction(foot, 0.02 * self._recipe.joint.length, rotation, points)
 
     @property
     def outside(self) -> tuple[str, ...]:
