@@ -312,6 +312,38 @@ def test_a_response_beside_the_codes():
     plt.close(ax.figure)
 
 
+def test_double_curvature_is_as_stiff_as_its_halves_in_series():
+    """At the same force its top moves twice as far: all sources have half the stiffness."""
+    values = SECTION.code_values(1.5, 1750e3)
+    path = rbsdem.protocol([0.002, 0.01])
+    found = []
+    for height, top in ((1.5, "free"), (3.0, "fixed")):
+        column = SECTION.column(height, axial_load=1750e3, top=top)
+        response = rbsdem.cyclic(column, displacement=height * path, openings=True)
+        found.append(values.compare(response)["stiffness"])
+    free, fixed = found
+    assert set(free) == {"model", "ASCE 41", "EC 8-3", "Elwood", "Haselton"}
+    assert fixed == pytest.approx({source: 0.5 * value for source, value in free.items()}, rel=1e-3)
+
+
+OTHER = rbsdem.cyclic(
+    SECTION.column(1.5, axial_load=1750e3), displacement=[0.0, 0.001], openings=True
+)
+
+
+@pytest.mark.parametrize(
+    ("section", "height", "load", "words"),
+    [
+        (SECTION, 1.6, 1750e3, "span = 1500, here 1600"),
+        (SECTION, 1.5, 1.7e6, r"load = 1.75e\+06, here 1.7e\+06"),
+        (replace(SECTION, concrete=rbsdem.Concrete(30e6)), 1.5, 1750e3, "fc = 35, here 30"),
+    ],
+)
+def test_a_response_of_another_column_is_refused(section, height, load, words):
+    with pytest.raises(InputError, match=words):
+        section.code_values(height, load).compare(OTHER)
+
+
 def test_circles_have_the_values_of_circles():
     values = ROUND.code_values(1.8, 1e6)
     assert not any(name.startswith(("ec_8", "haselton")) for name in values.names())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -13,12 +13,15 @@ from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem._curve import Curve, loop_pair
 from rbsdem._views import view_of
+from rbsdem.codes.drawing import Quantities, quantities
 from rbsdem.codes.drifts import Backbone, backbones, drift_at_loss, yield_drift
 from rbsdem.codes.values import CodeValues
+from rbsdem.column import Column
 from rbsdem.comparison import strength_loss, summarise
 from rbsdem.envelopes import envelope
 from rbsdem.errors import InputError
 from rbsdem.result import Result
+from rbsdem.section.model import LayeredColumn
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -109,7 +112,33 @@ class CodeComparison:
 @view_of(CodeValues, "compare")
 def compare(values: CodeValues, result: Result, test: Curve | None) -> CodeComparison:
     """Return the comparison; see `CodeValues.compare`."""
+    _check_same(values.quantities, result.column)
     return CodeComparison(values, result, test)
+
+
+def _check_same(q: Quantities, column: Column) -> None:
+    """Refuse a response of another column: span, axial load, and section where it is known."""
+    span = column.height / (2 if column.top == "fixed" else 1)
+    load = column.axial_load
+    if column.kinematics == "small" and load == 0:
+        load = q.load  # It does nothing there, and need not be stated.
+    found = replace(q, span=1e3 * span, load=load)
+    if isinstance(column, LayeredColumn) and column.recipe is not None:
+        found = quantities(column.recipe.section, span, load)
+    other = [
+        f"{name} = {theirs:g}, here {ours:g}"
+        for name, ours in vars(q).items()
+        if not (ours == (theirs := getattr(found, name)) or _near(ours, theirs))
+    ]
+    if other:
+        raise InputError(
+            "compare: the response is of another column (N, mm, MPa): "
+            f"{'; '.join(other)}; take code_values of its section, shear span and axial load"
+        )
+
+
+def _near(one: float, other: float) -> bool:
+    return math.isclose(one, other, rel_tol=1e-9) or (math.isnan(one) and math.isnan(other))
 
 
 def _loop(curve: Curve) -> tuple[Array, Array]:
@@ -165,7 +194,7 @@ def _idealised(d: Array, f: Array) -> float:
 def _at_yield(found: CodeComparison, drift: float) -> float:
     """Return the secant stiffness to yield [N/m]."""
     force = found.values["yield.shear"] - found.leaning * drift
-    return force / (drift * found.span)
+    return force / (drift * found.result.column.height)
 
 
 def _value(name: str) -> Callable[[CodeComparison], float]:
