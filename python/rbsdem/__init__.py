@@ -20,6 +20,7 @@ from rbsdem.envelopes import Envelope, Idealisation, envelope
 from rbsdem.errors import (
     AccuracyWarning,
     InputError,
+    Interrupted,
     LongRunWarning,
     RbsdemError,
     RepairWarning,
@@ -82,6 +83,7 @@ __all__ = [
     "HollowRectangularSection",
     "Idealisation",
     "InputError",
+    "Interrupted",
     "Layered",
     "Layout",
     "LimitState",

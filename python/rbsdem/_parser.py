@@ -77,8 +77,8 @@ def run_command(name: str, work: Callable[[], int]) -> int:
         code, text = 1, "not enough memory; raise the limit of the process, or ask for less"
     except (RbsdemError, ImportError, OSError) as error:
         code, text = 1, str(error)
-    except KeyboardInterrupt:
-        code, text = INTERRUPTED, "broken off"
+    except KeyboardInterrupt as error:
+        code, text = INTERRUPTED, str(error) or "broken off"
     for line in text.splitlines():
         sys.stderr.write(f"{name}: {line}\n")
     _let_go_of_stdout()

@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rbsdem.analysis import Result
+    from rbsdem.ensembles import Ensemble
 
 __all__ = [
     "AccuracyWarning",
     "InputError",
+    "Interrupted",
     "LongRunWarning",
     "RbsdemError",
     "RepairWarning",
@@ -48,6 +50,33 @@ class SolveError(RbsdemError, RuntimeError):
     def __reduce__(self) -> tuple[type[SolveError], tuple[str, Result | None]]:
         """Keep `result` when the error is sent to another process (pickle)."""
         return type(self), (str(self), self.result)
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C ended work of many runs before all of them were done.
+
+    It is a `KeyboardInterrupt`: a program that does not ask for it ends.
+
+    Parameters
+    ----------
+    message : str
+        What was done, and how to go on.
+    ensemble : rbsdem.ensembles.Ensemble, optional
+        The runs that were done.
+
+    Attributes
+    ----------
+    ensemble : rbsdem.ensembles.Ensemble or None
+        The runs that were done; the status of the others is "".
+    """
+
+    def __init__(self, message: str = "", ensemble: Ensemble | None = None) -> None:
+        super().__init__(message)
+        self.ensemble = ensemble
+
+    def __reduce__(self) -> tuple[type[Interrupted], tuple[str, Ensemble | None]]:
+        """Keep `ensemble` when the exception is sent to another process (pickle)."""
+        return type(self), (str(self), self.ensemble)
 
 
 class LongRunWarning(UserWarning):

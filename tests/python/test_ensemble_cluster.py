@@ -69,6 +69,25 @@ def test_runs_at_which_workers_die_are_failed(cluster: Any, client: Any) -> None
     assert "worker processes died" in found.errors[0]
 
 
+@pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
+def test_ctrl_c_keeps_what_came_back(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """At the first result: the tasks that have not ended are taken back."""
+    take = engine.Collected.put
+
+    def put(self: Any, *given: Any) -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+        monkeypatch.setattr(engine.Collected, "put", take)
+        take(self, *given)
+
+    monkeypatch.setattr(engine.Collected, "put", put)
+    monkeypatch.setattr(engine, "_LONGEST", 1e-3)
+    found = rbsdem.ensemble(
+        column(), motion(1, 2000), client=client, allow_partial=True, **GIVEN | {"dt": 1e-5}
+    )
+    assert found.interrupted
+    assert 0 < (found.status != "").sum() < len(found)
+
+
 def test_what_is_no_client() -> None:
     with pytest.raises(InputError, match=r"client = 7 must be a dask\.distributed\.Client"):
         rbsdem.ensemble(column(), motion(1), client=7)

@@ -17,7 +17,8 @@ from test_ensembles import column, motion
 
 import rbsdem
 from rbsdem import InputError
-from rbsdem.ensembles import MEASURES, engine, store
+from rbsdem.ensembles import MEASURES, engine, store, threads
+from rbsdem.ensembles.tasks import Task
 
 parquet = pytest.importorskip("pyarrow.parquet", reason="the extra 'ensembles' brings pyarrow")
 
@@ -26,8 +27,9 @@ GIVEN = {"scales": np.linspace(0.1, 3.0, 12), "method": "newmark", "jobs": 1}
 
 @pytest.fixture(autouse=True)
 def small_shards(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Cut the work of these tests into shards of a few runs."""
-    monkeypatch.setattr(engine, "_LONGEST", 1e-3)
+    """Cut the work of these tests into tasks of a run or two, and write each into a shard."""
+    monkeypatch.setattr(engine, "_LONGEST", 1e-6)
+    monkeypatch.setattr(store, "_BEAT", 0.0)
 
 
 def run(folder: Path, **more: object) -> rbsdem.Ensemble:
@@ -61,7 +63,8 @@ def test_a_second_start_computes_what_is_missing(tmp_path: Path) -> None:
     assert 0 < third.resumed < 24
     same(first, third)
     after = shards(tmp_path)
-    assert {name for name in before if before[name] != after[name]} == set(lost)
+    assert {name for name in before if before[name] != after.get(name)} <= set(lost)
+    assert run(tmp_path).resumed == 24
 
 
 def test_damage_is_noticed(tmp_path: Path) -> None:
@@ -82,16 +85,16 @@ def test_a_lost_manifest_is_written_again(tmp_path: Path) -> None:
     run(tmp_path)
     (tmp_path / "manifest.json").unlink()
     assert run(tmp_path).resumed == 24
-    assert json.loads((tmp_path / "manifest.json").read_text())["runs"] == 24
+    assert len(json.loads((tmp_path / "manifest.json").read_text())["columns"]) == 2
 
 
 def test_a_shard_is_a_table(tmp_path: Path) -> None:
     found = run(tmp_path)
     tables = [parquet.read_table(path) for path in (tmp_path / "shards").iterdir()]
-    rows = {row["run"]: row for table in tables for row in table.to_pylist()}
-    assert sorted(rows) == list(range(24))
-    for number, row in rows.items():
-        assert row["scale"] == found.scale[number]
+    rows = {(row["column"], row["scale"]): row for table in tables for row in table.to_pylist()}
+    assert len(rows) == 24
+    for number in range(24):
+        row = rows[str(found.column[number]), found.scale[number]]
         assert row["status"] == found.status[number]
         assert row["peak_displacement"] == found.measures["peak_displacement"][number]
 
@@ -121,30 +124,104 @@ def test_parts_come_together(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "what"),
     [
-        ({"scales": [1.0]}, "scales"),
-        ({"method": "hht"}, "settings"),
+        ({"method": "hht"}, "their settings differ"),
         ({"measures": [lambda result: 1.0]}, "lambda"),
+        ({"measures": ["cracking"]}, "their measures differ"),
     ],
 )
-def test_another_ensemble_is_refused(tmp_path: Path, change: dict, what: str) -> None:
+def test_another_kind_of_run_is_refused(tmp_path: Path, change: dict, what: str) -> None:
     run(tmp_path)
     with pytest.raises(InputError, match=what):
         run(tmp_path, **change)
 
 
-def test_other_columns_and_motions_are_refused(tmp_path: Path) -> None:
+@pytest.mark.parametrize("what", ["column", "motion", "scale"])
+def test_what_is_added_is_computed_alone(
+    tmp_path: Path, what: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In any place and under any name: a run is known by what it follows from.
+
+    24 runs of 2 columns, 1 motion and 12 scales are there; one more of each makes 36, 48 and 26.
+    """
+    columns, motions, scales = [column(), column(15e3)], [motion(1)], GIVEN["scales"]
     run(tmp_path)
-    with pytest.raises(InputError, match=r"its columns, motions differ"):
-        rbsdem.ensemble([column(), column(15.1e3)], motion(2), store=tmp_path, **GIVEN)
+    if what == "column":
+        columns = {"light": column(8e3), "heavy": columns[0], "middle": columns[1]}
+    elif what == "motion":
+        motions = [motion(2), *motions]
+    else:
+        scales = np.array([*scales, 1.4])
+    done = []
+    real = threads.compute
+
+    def count(task: Task, control: object) -> object:
+        done.append(len(task))
+        return real(task, control)
+
+    monkeypatch.setattr(threads, "compute", count)
+    given = GIVEN | {"scales": scales}
+    found = rbsdem.ensemble(columns, motions, store=tmp_path, **given)
+    assert found.resumed == 24
+    assert sum(done) == len(found) - 24 == {"column": 12, "motion": 24, "scale": 2}[what]
+    same(found, rbsdem.ensemble(columns, motions, **given))
+    manifest = json.loads((tmp_path / "manifest.json").read_text())
+    assert len(manifest["columns"]) == len(columns)
+    assert len(manifest["motions"]) == len(motions)
+
+
+@pytest.mark.parametrize("parts", [2, 3])
+def test_parts_of_few_slow_runs(tmp_path: Path, parts: int) -> None:
+    """Each part has its share of a few runs that take long, whatever the others have done.
+
+    Five runs: of two parts one has three; of three one has one.
+    """
+    given = {"scales": np.linspace(1, 2, 5), "method": "rk4", "dt": 1e-4, "store": tmp_path}
+    number = []
+    for place in range(1, parts + 1):
+        found = rbsdem.ensemble(column(), motion(1), shard=(place, parts), **given)
+        number.append(int((found.status != "").sum()) - found.resumed)
+    assert "" not in found.status
+    assert sorted(number) == {2: [2, 3], 3: [1, 2, 2]}[parts]
+
+
+def test_ctrl_c_is_an_exception_with_what_is_done(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At the third task; the runs that had ended are in it and in the store."""
+    tasks = []
+    real = threads.compute
+
+    def break_off(task: Task, control: object) -> object:
+        tasks.append(task)
+        if len(tasks) == 3:
+            os.kill(os.getpid(), signal.SIGINT)
+        return real(task, control)
+
+    monkeypatch.setattr(threads, "compute", break_off)
+    with pytest.raises(KeyboardInterrupt, match=r"broken off after [0-9]+ of 24 runs") as caught:
+        run(tmp_path)
+    assert isinstance(caught.value, rbsdem.Interrupted)
+    found = caught.value.ensemble
+    assert found.interrupted
+    done = int((found.status != "").sum())
+    assert 0 < done < 24
+    tasks.clear()
+    again = run(tmp_path, allow_partial=True)
+    assert again.resumed == done
+    assert again.interrupted
+    assert again.counts["not started"] > 0
+    monkeypatch.undo()
+    same(run(tmp_path), rbsdem.ensemble([column(), column(15e3)], motion(1), **GIVEN))
 
 
 def test_another_version_is_refused(tmp_path: Path) -> None:
     run(tmp_path)
     path = tmp_path / "manifest.json"
     manifest = json.loads(path.read_text())
-    assert manifest["runs"] == 24
     assert manifest["settings"] == {"method": "newmark"}
-    assert "&column" in manifest["columns"]["0"]
+    entries = list(manifest["columns"].values())
+    assert [entry["name"] for entry in entries] == ["0", "1"]
+    assert "&column" in entries[0]["case"]
     path.write_text(json.dumps(manifest | {"version": "0.0.9"}))
     with pytest.raises(InputError, match=r"rbsdem 0\.0\.9"):
         run(tmp_path)
@@ -226,7 +303,6 @@ def test_a_full_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(OSError, match=r"No space left on device; the shards .* are kept"):
         run(tmp_path)
     monkeypatch.undo()
-    monkeypatch.setattr(engine, "_LONGEST", 1e-3)
     kept = shards(tmp_path)
     assert len(kept) == 3
     assert all(name.endswith(".parquet") for name in kept)
@@ -240,35 +316,76 @@ import sys
 sys.path.insert(0, {tests!r})
 from test_ensembles import column, motion
 import numpy as np, rbsdem
-from rbsdem.ensembles import engine
-engine._LONGEST = 0.02
+from rbsdem.ensembles import engine, store, work
+engine._LONGEST = {longest}
+store._BEAT = {beat}
+real = engine.work_through
+def told(workers, pieces, take, tell, asked):
+    def say(done):
+        print(done, flush=True)
+        tell(done)
+    real(workers, pieces, take, say, asked)
+    print("done", workers.runs(), flush=True)
+engine.work_through = told
 rbsdem.ensemble([column(), column(15e3)], motion(1, 4000, 0.005), store={folder!r},
-                scales=np.linspace(0.1, 3.0, 80), method="rk4", jobs=2)
+                scales=np.linspace(0.1, 3.0, 80), method="rk4", dt={dt}, jobs=1)
 """
+
+
+def begin(folder: Path, **more: object) -> list[object]:
+    """Return the command of a program that runs 160 runs in tasks of a few."""
+    given = {"longest": 0.05, "beat": 0.0, "dt": None} | more
+    tests = os.fspath(Path(__file__).parent)
+    return [sys.executable, "-c", PROGRAM.format(tests=tests, folder=os.fspath(folder), **given)]
+
+
+def rows(folder: Path) -> list[tuple[str, float]]:
+    """Return column and scale of each row of the shards."""
+    tables = [parquet.read_table(path) for path in (folder / "shards").glob("*.parquet")]
+    return [(row["column"], row["scale"]) for table in tables for row in table.to_pylist()]
 
 
 @pytest.mark.skipif(os.name == "nt", reason="no SIGKILL")
 def test_kill_9(tmp_path: Path) -> None:
     """A process that is killed leaves whole shards; the next start computes the others only."""
-    code = PROGRAM.format(tests=os.fspath(Path(__file__).parent), folder=os.fspath(tmp_path))
-    with subprocess.Popen([sys.executable, "-c", code]) as process:
+    with subprocess.Popen(begin(tmp_path), stdout=subprocess.DEVNULL) as process:
         folder = tmp_path / "shards"
         while process.poll() is None and len(list(folder.glob("*.parquet"))) < 3:
             time.sleep(0.01)
         process.send_signal(signal.SIGKILL)
     before = {name: when for name, when in shards(tmp_path).items() if name.endswith(".parquet")}
-    leftover = folder / f"{'0' * 32}.1-1.partial"
+    leftover = folder / f"1-of-1-{'0' * 32}.parquet.1-1.partial"
     leftover.touch()
-    subprocess.run([sys.executable, "-c", code], check=True)
-    after = shards(tmp_path)
+    subprocess.run(begin(tmp_path), check=True, stdout=subprocess.DEVNULL)
+    assert not leftover.exists()
     assert len(before) >= 3
-    assert before.items() <= after.items()
-    runs = [
-        parquet.read_table(folder / name, columns=["run"])["run"].to_pylist()
-        for name in after
-        if name.endswith(".parquet")
-    ]
-    assert sorted(run for part in runs for run in part) == list(range(160))
+    assert before.items() <= shards(tmp_path).items()
+    found = rows(tmp_path)
+    assert len(found) == len(set(found)) == 160
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_every_run_that_has_ended_is_kept(tmp_path: Path, number: signal.Signals) -> None:
+    """In tasks of which none has ended, and although no shard was due yet."""
+    command = begin(tmp_path, longest=1e3, beat=1e3, dt=1e-4)
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, **pipes) as process:
+        assert process.stdout is not None
+        for line in process.stdout:
+            if int(line) > 0:
+                break
+        assert not list((tmp_path / "shards").iterdir())
+        process.send_signal(number)
+        out, err = process.communicate(timeout=60)
+    ended = int(out.split("done")[-1])
+    assert 0 < ended < 160
+    assert len(rows(tmp_path)) == ended
+    if number == signal.SIGTERM:
+        assert process.returncode == -number
+    else:
+        assert process.returncode == 1
+        assert f"Interrupted: ensemble: broken off after {ended} of 160 runs" in err
 
 
 def test_all_measures_are_kept_whatever_is_asked_for(tmp_path: Path) -> None:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterable
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
 
 from rbsdem.ensembles.measures import STATUSES
-from rbsdem.ensembles.tasks import Plan, Task, TaskResult, compute
-from rbsdem.ensembles.threads import Piece
+from rbsdem.ensembles.tasks import Piece, Plan, Task, TaskResult, compute
+from rbsdem.ensembles.work import BEAT
 
-__all__ = ["check_client", "in_cluster"]
+__all__ = ["Cluster", "check_client"]
 
 #: Tasks that a thread of the cluster has before it, so that none waits for the next.
 _AHEAD = 3
@@ -23,66 +24,85 @@ def check_client(client: Any, faults: list[str]) -> None:
         return
     if not callable(getattr(client, "submit", None)) or not hasattr(client, "ncores"):
         faults.append(
-            f"client = {client!r} must be a dask.distributed.Client (pip install distributed)"
+            f"client = {client!r:.60} must be a dask.distributed.Client (pip install distributed)"
         )
     elif not client.ncores():
         faults.append("client: its cluster has no workers; start some first")
 
 
-def in_cluster(
-    plan: Plan,
-    pieces: list[Piece],
-    client: Any,
-    take: Callable[[Piece, TaskResult], None],
-    told: Callable[[int], None],
-) -> bool:
-    """Do all pieces; `take` gets their results as they come. Return whether Ctrl-C broke it off.
+class Cluster:
+    """Workers that are those of a cluster.
 
-    The cluster gives the task of a worker that dies to another one. Runs of a task at which several
-    workers have died are failed.
+    It gives the task of a worker that dies to another one. Runs of a task at which several workers
+    have died are failed.
+
+    Parameters
+    ----------
+    plan : Plan
+        The runs.
+    client : dask.distributed.Client
+        The way to the cluster.
     """
-    from distributed import KilledWorker, as_completed  # noqa: PLC0415
 
-    left = iter(pieces)
-    of: dict[Any, Piece] = {}
-    done = 0
+    def __init__(self, plan: Plan, client: Any) -> None:
+        self.ahead = _AHEAD * max(1, sum(client.ncores().values()))
+        self._plan = plan
+        self._client = client
+        self._waiting: set[Any] = set()
+        self._stopped = False
+        self._done = 0
 
-    def submit(piece: Piece) -> Any:
-        future = client.submit(compute, plan.task(*piece), pure=False)
-        of[future] = piece
+    def submit(self, piece: Piece) -> Any:
+        """Give a task to the cluster."""
+        future = self._client.submit(compute, self._plan.task(*piece), pure=False)
+        self._waiting.add(future)
         return future
 
-    ahead = _AHEAD * max(1, sum(client.ncores().values()))
-    waiting = as_completed([submit(piece) for _, piece in zip(range(ahead), left, strict=False)])
-    try:
-        for future in waiting:
-            piece = of.pop(future)
-            try:
-                result = future.result()
-            except KilledWorker:
-                result = _died(plan.task(*piece))
-            take(piece, result)
-            done += piece[1] - piece[0]
-            told(done)
-            following = next(left, None)
-            if following is not None:
-                waiting.add(submit(following))
-    except KeyboardInterrupt:
-        client.cancel(list(of))
-        return True
-    except BaseException:
-        client.cancel(list(of))
-        raise
-    return False
+    def ended(self, futures: Iterable[Any]) -> Iterable[Any]:
+        """Return the tasks that have ended, after a moment at the latest."""
+        from distributed import wait  # noqa: PLC0415
+
+        if not self._stopped:
+            with suppress(TimeoutError):
+                wait(list(futures), BEAT, "FIRST_COMPLETED")
+        return [future for future in futures if future.done()]
+
+    def result(self, future: Any, piece: Piece) -> TaskResult:
+        """Return what a task has come to."""
+        from distributed import KilledWorker  # noqa: PLC0415
+
+        self._waiting.discard(future)
+        task = self._plan.task(*piece)
+        if future.cancelled():
+            return _without_values(task, "")
+        try:
+            result: TaskResult = future.result()
+        except KilledWorker:
+            result = _without_values(task, "failed")
+            text = "several worker processes died at the task of this run; run it alone to see why"
+            result.errors.update(dict.fromkeys(range(len(task)), text))
+        self._done += len(task)
+        return result
+
+    def runs(self) -> int:
+        """Return the number of runs that are done."""
+        return self._done
+
+    def stop(self) -> None:
+        """Take back the tasks that have not ended."""
+        self._stopped = True
+        self._client.cancel([future for future in self._waiting if not future.done()])
+
+    def close(self) -> None:
+        """Let the cluster be: it belongs to its client."""
 
 
-def _died(task: Task) -> TaskResult:
-    """Return the result of a task at which workers have died."""
+def _without_values(task: Task, status: str) -> TaskResult:
+    """Return the result of a task of which nothing came back."""
     runs = len(task)
-    text = "several worker processes died at the task of this run; run it alone to see why"
     return TaskResult(
-        np.full(runs, STATUSES.index("failed"), dtype=np.int8),
+        np.full(runs, STATUSES.index(status), dtype=np.int8),
         np.full((len(task.names), runs), np.nan),
         {name: np.full(runs, np.nan) for name in task.functions},
-        dict.fromkeys(range(runs), text),
+        {},
     )

@@ -32,12 +32,10 @@ class Collected:
         self.extra: dict[str, Array] = {name: np.full(runs, np.nan) for name in functions}
         self.errors: dict[int, str] = {}
 
-    def put(self, piece: tuple[int, int], result: TaskResult) -> None:
-        """Take the result of the runs from `piece[0]` to before `piece[1]`."""
-        first, last = piece
-        done = result.fates != 0
-        self.fates[first:last] = result.fates
-        self.values[:, first:last] = np.where(done, result.values, np.nan)
+    def put(self, runs: NDArray[np.int_], result: TaskResult) -> None:
+        """Take the result of some runs."""
+        self.fates[runs] = result.fates
+        self.values[:, runs] = np.where(result.fates != 0, result.values, np.nan)
         for name, values in result.extra.items():
-            self.extra[name][first:last] = values
-        self.errors.update({first + run: text for run, text in result.errors.items()})
+            self.extra[name][runs] = values
+        self.errors.update({int(runs[run]): text for run, text in result.errors.items()})

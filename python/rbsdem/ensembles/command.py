@@ -26,8 +26,9 @@ is the motion.
 
 EPILOG = """\
 Files (--out): store/ (what is computed, in Parquet files of some seconds of work each), runs.csv (a
-row for each run, as soon as all parts are there). A second start with the same input goes on from
-what is in the store. For a job array give every job the same command with --shard I/N.
+row for each run, as soon as all parts are there). A second start computes what the store has not:
+after an interruption, or with more records or scales. For a job array give every job the same
+command with --shard I/N.
 Exit codes: 0 every run came to its end or collapsed, 1 some failed, 2 the input is wrong,
 130 interrupted by the keyboard (what was finished is kept).
 """
@@ -88,6 +89,7 @@ def _run(given: argparse.Namespace) -> int:
         store=given.out / "store",
         shard=shard,
         progress=not given.quiet,
+        allow_partial=True,
     )
     if "" not in found.status:
         write_csv(given.out / "runs.csv", _rows(found))

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import heapq
 import os
 import time
 from collections.abc import Sequence
 from contextlib import ExitStack
+from pathlib import Path
 from types import NoneType
 from typing import Any, Literal
 
@@ -15,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from rbsdem import _core
 from rbsdem._core import Array
 from rbsdem.analysis import Method
-from rbsdem.ensembles.cluster import check_client, in_cluster
+from rbsdem.ensembles.cluster import Cluster, check_client
 from rbsdem.ensembles.collected import Collected
 from rbsdem.ensembles.inputs import (
     check_jobs,
@@ -29,11 +31,12 @@ from rbsdem.ensembles.measures import STATUSES, Measure, checked_measures, limit
 from rbsdem.ensembles.progress import telling
 from rbsdem.ensembles.record import Ensemble
 from rbsdem.ensembles.store import Store
-from rbsdem.ensembles.tasks import Plan, TaskResult, cut, expected
-from rbsdem.ensembles.threads import Piece, in_threads
-from rbsdem.errors import InputError
+from rbsdem.ensembles.tasks import Piece, Plan, TaskResult, cut, expected
+from rbsdem.ensembles.threads import Threads
+from rbsdem.ensembles.work import Asked, work_through
+from rbsdem.errors import InputError, Interrupted
 
-#: Expected seconds of a task at the most. The lanes take less.
+#: Seconds of a task at the most, as far as that is known: what a kill may cost.
 _LONGEST = 2.0
 
 #: Runs that advance side by side.
@@ -60,6 +63,7 @@ def ensemble(
     seeds: Any = None,
     client: Any = None,
     progress: bool = False,
+    allow_partial: bool = False,
 ) -> Ensemble:
     """Run columns under ground motions at several scales, and measure each run.
 
@@ -98,26 +102,33 @@ def ensemble(
     jobs : int, optional
         Threads; by default one for each processor that this process may use.
     store : path, optional
-        A folder that keeps what is computed, in files of some seconds of work each. A second start
-        with the same inputs computes what is missing there, after whatever end of the first. Needs
-        pyarrow (``pip install "rbsdem[ensembles]"``).
+        A folder that keeps the runs, written every few seconds, and the rest at Ctrl-C and SIGTERM.
+        A second start computes the runs that are missing there, after whatever end of the first,
+        and so does one with more columns, motions or scales. Needs pyarrow
+        (``pip install "rbsdem[ensembles]"``).
     shard : tuple of two int, optional
-        (i, n): do part i of n, from 1 to n, for jobs that share the work and the store. Runs of the
-        other parts are in the result if the store has them.
+        (i, n): do part i of n, from 1 to n, for jobs that share the work and the store. The parts
+        are expected to take as long. Runs of the other parts are in the result if the store has
+        them.
     seeds : optional
         What the inputs were drawn from, for the manifest of the store: anything that JSON takes.
     client : dask.distributed.Client, optional
         A cluster that does the work in place of threads.
     progress : bool, optional
         Show runs, rate and time left on stderr, if it is a terminal.
+    allow_partial : bool, optional
+        Return the runs that were finished if Ctrl-C ends the work, the others with the status "".
 
     Returns
     -------
     Ensemble
-        Its `table` has a row for each run. After Ctrl-C the runs that were finished are kept.
+        Its `table` has a row for each run.
 
     Raises
     ------
+    Interrupted
+        After Ctrl-C, as soon as the runs under way are finished, unless `allow_partial`; its
+        `ensemble` has those that are. A second Ctrl-C does not wait for them.
     InputError
         Before the first run, with a line for everything that is wrong.
     """
@@ -146,7 +157,11 @@ def ensemble(
         faults.append(str(error))
     part = _checked_part(shard, store, faults)
     check_client(client, faults)
-    _core.switch(progress, "progress")
+    for name, value in (("progress", progress), ("allow_partial", allow_partial)):
+        try:
+            _core.switch(value, name)
+        except InputError as error:
+            faults.append(str(error))
     raise_faults(faults)
     wanted = np.flatnonzero(~np.isnan(full).ravel())
     column, motion, _ = np.unravel_index(wanted, full.shape)
@@ -162,33 +177,18 @@ def ensemble(
         before,
     )
     seconds, in_lanes, wrong = expected(plan)
+    each, lanes = seconds[plan.motion, plan.column], in_lanes[plan.motion, plan.column]
     raise_faults([f"column {column_names[i]!r}: {text}" for i, text in wrong])
-    threads = jobs or available_processors()
-    # The shards of a store do not depend on who computes them.
-    longest = _LONGEST if store is not None else _longest(plan, seconds, in_lanes, threads)
-    pieces = cut(plan, seconds, longest)
-    collected = Collected(plan.scale.size, functions, len(plan.names))
-    with ExitStack() as stack:
-        kept = None
-        resumed = 0
-        if store is not None:
-            own_names = column_names, [item.name for item in motion_items]
-            kept = Store(store, plan, own_names, pieces, seeds)
-            stack.enter_context(kept.locked(part))
-            pieces, resumed = _missing(kept, part, collected)
-
-        def take(piece: Piece, result: TaskResult) -> None:
-            collected.put(piece, result)
-            if kept is not None:
-                kept.write(piece, result)
-
-        runs = sum(last - first for first, last in pieces)
-        told = stack.enter_context(telling(progress, runs))
-        if client is None:
-            interrupted = in_threads(plan, pieces, threads, take, told)
-        else:
-            interrupted = in_cluster(plan, pieces, client, take, told)
-    return Ensemble(
+    kept = None
+    if store is not None:
+        own_names = column_names, [item.name for item in motion_items]
+        kept = Store(Path(store).expanduser(), plan, own_names, part, seeds)
+    own = _of_part(each, lanes, part)
+    workers = jobs or available_processors()
+    collected, resumed, asked = _carried_out(
+        plan, own, (each, lanes), kept, client or workers, progress
+    )
+    whole = Ensemble(
         columns=dict(zip(column_names, column_items, strict=True)),
         motions={item.name: item for item in motion_items},
         settings=settings,
@@ -202,19 +202,117 @@ def ensemble(
         measures=_named(names, collected, plan) | collected.extra,
         errors=dict(sorted(collected.errors.items())),
         seconds=time.perf_counter() - begin,
-        interrupted=interrupted,
+        interrupted=bool(asked),
         resumed=resumed,
     )
+    if asked and not allow_partial:
+        raise Interrupted(_told(whole, store), whole)
+    return whole
 
 
-def _longest(plan: Plan, seconds: Array, in_lanes: NDArray[np.int32], threads: int) -> float:
-    """Return the expected seconds of a task, so that threads end together and lanes are full."""
-    each = seconds[plan.motion, plan.column]
-    together = int(in_lanes[plan.motion, plan.column].sum())
-    most = 8 * threads
+def _carried_out(
+    plan: Plan,
+    own: NDArray[np.int_],
+    cost: tuple[Array, NDArray[np.int32]],
+    kept: Store | None,
+    workers: Any,
+    progress: bool,
+) -> tuple[Collected, int, Asked]:
+    """Do the runs of this process that no store has.
+
+    `workers` is a number of threads or the client of a cluster. Return what was collected, how many
+    runs a store had, and whether the work was asked to end.
+    """
+    collected = Collected(plan.scale.size, plan.functions, len(plan.names))
+    asked = Asked()
+    resumed = 0
+    with ExitStack() as stack:
+        stack.enter_context(asked.listening(also_terminated=kept is not None))
+        if kept is not None:
+            stack.enter_context(kept.open())
+            there, found = kept.read()
+            if found is not None:
+                collected.put(there, found)
+            resumed = there.size
+        missing = own[collected.fates[own] == 0]
+        each, lanes = (values[missing] for values in cost)
+        threads = workers if isinstance(workers, int) else available_processors()
+        pace = _Pace(each, lanes, threads)
+
+        def take(piece: Piece, result: TaskResult) -> None:
+            pace.learn(float(each[slice(*piece)].sum()), result)
+            runs = missing[slice(*piece)]
+            collected.put(runs, result)
+            if kept is not None:
+                kept.add(runs, result)
+
+        told = stack.enter_context(telling(progress, missing.size))
+        left = plan.only(missing)
+        do = Threads(left, workers) if isinstance(workers, int) else Cluster(left, workers)
+        work_through(do, cut(each, pace.longest), take, told, asked)
+    return collected, resumed, asked
+
+
+def _longest(each: Array, lanes: NDArray[np.int32], workers: int) -> float:
+    """Return the expected seconds of a task, so that workers end together and lanes are full."""
+    together = int(lanes.sum())
+    most = 8 * workers
     if 2 * together > each.size:
-        most = min(most, max(threads, together // _LANES))
-    return min(_LONGEST, float(each.sum()) / most)
+        most = min(most, max(workers, together // _LANES))
+    return float(each.sum()) / most
+
+
+class _Pace:
+    """The expected seconds of the next task, of which a few real ones come."""
+
+    def __init__(self, each: Array, lanes: NDArray[np.int32], workers: int) -> None:
+        self._most = _longest(each, lanes, workers)
+        # Until the first task is back nobody knows how busy the machine is; lanes take less.
+        self._slower = 0.5 if 2 * lanes.sum() > lanes.size else 4.0
+
+    def learn(self, expected: float, result: TaskResult) -> None:
+        """Take what a task took in place of what was expected."""
+        if result.fates.all() and expected > 0:
+            self._slower = result.seconds / expected
+
+    def longest(self) -> float:
+        """Return the expected seconds of the next task."""
+        return min(self._most, _LONGEST / max(self._slower, 1e-3))
+
+
+def _of_part(each: Array, lanes: NDArray[np.int32], part: tuple[int, int]) -> NDArray[np.int_]:
+    """Return the runs of part i of n, which follow from the input, whoever computes them.
+
+    Blocks go in order of their length, each to the part that has least so far.
+    """
+    place, parts = part
+    if parts == 1:
+        return np.arange(each.size)
+    longest = min(_LONGEST, _longest(each, lanes, parts))
+    blocks = list(cut(each, lambda: longest))
+    lengths = [float(each[slice(*block)].sum()) for block in blocks]
+    total = [(0.0, number) for number in range(parts)]
+    own = []
+    for number in np.argsort([-length for length in lengths], kind="stable"):
+        least, taker = heapq.heappop(total)
+        heapq.heappush(total, (least + lengths[number], taker))
+        if taker == place - 1:
+            own.append(np.arange(*blocks[number]))
+    return np.sort(np.concatenate(own)) if own else np.empty(0, dtype=int)
+
+
+def _told(found: Ensemble, store: Any) -> str:
+    """Return what an interruption has left."""
+    done = int((found.status != "").sum())
+    kept = (
+        "the attribute `ensemble` of this error has them; with store= the next call goes on"
+        if store is None
+        else f"they are in {store}, and the same call goes on from there"
+    )
+    return (
+        f"ensemble: broken off after {done} of {len(found)} runs; {kept} (allow_partial=True "
+        "returns what is done)"
+    )
 
 
 def _plain(value: Any) -> Any:
@@ -238,21 +336,6 @@ def _checked_part(shard: Any, store: Any, faults: list[str]) -> tuple[int, int]:
     if store is None:
         faults.append("shard: parts come together in a store; give store=")
     return place, parts
-
-
-def _missing(store: Store, part: tuple[int, int], collected: Collected) -> tuple[list[Piece], int]:
-    """Collect what the store has; return the pieces of a part that it has not, and its runs."""
-    resumed = 0
-    missing = []
-    own = set(store.part(part))
-    for piece in store.shards:
-        result = store.read(piece)
-        if result is not None:
-            collected.put(piece, result)
-            resumed += piece[1] - piece[0]
-        elif piece in own:
-            missing.append(piece)
-    return missing, resumed
 
 
 def available_processors() -> int:

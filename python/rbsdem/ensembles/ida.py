@@ -227,8 +227,8 @@ def ida(
         As for `rbsdem.ensemble`. A run that fails is tried again with "rk45"; one that fails
         twice counts as a collapse, with a warning.
     store : path, optional
-        Folder in which every round of runs keeps what it has computed; a second start with the same
-        input goes on from there.
+        Folder that keeps the runs, as for `rbsdem.ensemble`; a second start, with more records too,
+        goes on from there.
 
     Returns
     -------

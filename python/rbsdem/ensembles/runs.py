@@ -137,7 +137,6 @@ class Collector:
     settings: dict[str, Any]
     parts: list[dict[str, Any]] = field(default_factory=list)
     unit: Array = field(init=False)
-    rounds: int = 0
 
     def __post_init__(self) -> None:
         self.unit = np.array([self.measure.of(motion) for motion in self.motions.values()])
@@ -167,6 +166,8 @@ class Collector:
             places = np.flatnonzero(~np.isnan(scales).ravel())[failed]
             again.ravel()[places] = scales.ravel()[places]
             own = {n: v for n, v in self.settings.items() if n in _KEPT} | {"method": _AGAIN}
+            if own.get("store") is not None:
+                own["store"] /= _AGAIN
             second = self._ensemble(again, own)
             status[failed] = second.status
             for name, numbers in values.items():
@@ -200,11 +201,6 @@ class Collector:
             )
 
     def _ensemble(self, scales: Array, settings: dict[str, Any]) -> Any:
-        self.rounds += 1
-        store = settings.get("store")
-        if store is not None:
-            # The runs of a round follow from those before: the same input asks for the same ones.
-            settings = settings | {"store": store / f"round_{self.rounds:03d}"}
         found = ensemble(
             dict(self.columns),
             dict(self.motions),
@@ -212,8 +208,6 @@ class Collector:
             measures=list(self.names),
             **settings,
         )
-        if found.interrupted:
-            raise KeyboardInterrupt
         for text in found.errors.values():
             # Else the runs would count as collapses.
             if text.startswith(FAULT_OF_MEASURE):

@@ -1,8 +1,7 @@
-"""The store of an ensemble: a folder that keeps what was computed.
+"""The store of an ensemble: a folder that keeps the runs that were computed.
 
-Each shard is a Parquet file with a row for each of its runs, named by the digest of all that they
-follow from, and written whole or not at all. So a second start computes what is missing, after
-whatever end of the first.
+A run is known by the digest of all that it follows from. So a second start computes what is
+missing, after whatever end of the first, and so does one with more columns, motions or scales.
 """
 
 from __future__ import annotations
@@ -13,20 +12,21 @@ import inspect
 import json
 import os
 import re
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rbsdem import _core
 from rbsdem._code import code_digest
 from rbsdem._files import whole_file
 from rbsdem._optional import need_parquet
 from rbsdem.ensembles.measures import STATUSES, Measure
-from rbsdem.ensembles.tasks import Plan, Task, TaskResult, watches
-from rbsdem.ensembles.threads import Piece
+from rbsdem.ensembles.tasks import Plan, TaskResult, watches
 from rbsdem.errors import InputError
 
 try:
@@ -43,13 +43,16 @@ _PART = "part-{}-of-{}.lock"
 _OWN = re.compile(r"shards|manifest\.lock|part-\d+-of-\d+\.lock")
 #: Where a shard has the digest of what it holds.
 _SUM = b"rbsdem"
-
-#: Letters of a digest in the name of a shard.
+#: How often what was computed is written [s].
+_BEAT = 3.0
+#: Runs of a shard at the most.
+_MOST_RUNS = 65536
+#: Letters of a digest.
 _LETTERS = 32
 
 
 class Store:
-    """A folder for the shards of one ensemble.
+    """A folder for the runs of ensembles with the same settings and measures.
 
     Parameters
     ----------
@@ -59,47 +62,54 @@ class Store:
         The runs.
     names : tuple of lists
         Names of the columns and of the motions.
-    pieces : list of tuple
-        The runs of each shard.
+    part : tuple of two int
+        Which part of how many this process does.
     seeds : mapping
         What the inputs were drawn from, for the manifest.
 
     Raises
     ------
     InputError
-        If the folder holds another ensemble, that of another version, or other files, or a function
-        among the measures has no source.
+        If the folder holds an ensemble of other settings or measures, that of another version, or
+        other files, or a function among the measures has no source.
     ImportError
         If pyarrow is not installed.
     """
 
     def __init__(
         self,
-        folder: str | os.PathLike[str],
+        folder: Path,
         plan: Plan,
         names: tuple[list[str | int], list[str | int]],
-        pieces: list[Piece],
+        part: tuple[int, int],
         seeds: Any = None,
     ) -> None:
         need_parquet()
-        self.folder = Path(folder).expanduser()
-        self._names = names
+        self.folder = folder
         self._plan = plan
-        given = _given(plan)
-        self.shards = {piece: _shard_name(plan.task(*piece), given) for piece in pieces}
+        self._names = names
+        self._part = part
+        self._columns = [_column_key(plan, i) for i in range(len(plan.columns))]
+        self._motions = [_motion_key(plan, j) for j in range(len(plan.motions))]
+        self._waiting: list[tuple[NDArray[np.int_], TaskResult]] = []
+        self._written = time.monotonic()
         self._check_folder()
         manifest = self._manifest(seeds)
-        text = _manifest_text(manifest)
+        _manifest_text(manifest)
         with self._alone():
             shards = self.folder / "shards"
             if shards.exists() and not shards.is_dir():
                 raise InputError(f"store: {shards} is no folder; give another store")
             shards.mkdir(exist_ok=True)
             known = self._known()
-            if known is None:
-                self._write_manifest(text)
-            else:
+            if known is not None:
                 _compare(self.folder, known, manifest)
+                for kind in ("columns", "motions"):
+                    manifest[kind] = known.get(kind, {}) | manifest[kind]
+                if seeds is None:
+                    manifest["seeds"] = known.get("seeds")
+            if manifest != known:
+                self._write_manifest(_manifest_text(manifest))
 
     def _check_folder(self) -> None:
         if self.folder.exists() and not self.folder.is_dir():
@@ -119,28 +129,26 @@ class Store:
     def _manifest(self, seeds: Any) -> dict[str, Any]:
         plan = self._plan
         columns, motions = self._names
-        texts = [column.to_namelist() for column in plan.columns]
         return {
-            "version": _version(),
+            "version": _core.version(),
             "code": code_digest().hex(),
             "digests": {
-                "columns": _digest(texts),
-                "motions": _digest(_motion_bytes(plan, j) for j in range(len(plan.motions))),
-                "scales": _digest([plan.column, plan.motion, plan.scale]),
-                "settings": _digest([json.dumps(plan.settings, sort_keys=True)]),
-                "initial": _digest(plan.initial),
-                "measures": _digest([*plan.states, *map(_source, plan.functions.values())]),
+                "settings": _digest(json.dumps(plan.settings, sort_keys=True).encode()),
+                "measures": _digest(
+                    *(state.encode() for state in plan.states),
+                    *(f"{name}\0{_source(f)}".encode() for name, f in plan.functions.items()),
+                ),
             },
             "settings": plan.settings,
             "measures": list(plan.functions),
-            "initial": [
-                str(name) for name, state in zip(columns, plan.initial, strict=True) if state.size
-            ],
             "seeds": seeds,
-            "runs": int(plan.scale.size),
-            "shards": list(self.shards.values()),
-            "motions": {str(name): motions.index(name) for name in motions},
-            "columns": dict(zip(map(str, columns), texts, strict=True)),
+            "columns": {
+                key: {"name": str(name), "case": column.to_namelist(), "at_rest": not before.size}
+                for key, name, column, before in zip(
+                    self._columns, columns, plan.columns, plan.initial, strict=True
+                )
+            },
+            "motions": dict(zip(self._motions, map(str, motions), strict=True)),
         }
 
     def _known(self) -> dict[str, Any] | None:
@@ -155,7 +163,7 @@ class Store:
             pass
         raise InputError(
             f"store: {path} is no manifest of an ensemble, or is damaged; give another folder, or "
-            "remove this file: the shards beside it are known by their names"
+            "remove this file: the runs in the shards beside it are known by what they follow from"
         )
 
     def _write_manifest(self, text: bytes) -> None:
@@ -173,8 +181,8 @@ class Store:
             yield
 
     @contextmanager
-    def locked(self, part: tuple[int, int]) -> Iterator[None]:
-        """Keep other processes from the same part while the block lasts.
+    def open(self) -> Iterator[None]:
+        """Keep other processes from the same part while the block lasts; write the rest after it.
 
         The lock ends with the process, however that ends.
 
@@ -185,14 +193,18 @@ class Store:
         """
         with ExitStack() as stack:
             with self._alone():
-                self._lock(part, stack)
+                self._lock(self._part, stack)
                 for path in self.folder.glob(_PART.format("*", "*")):
                     place, parts = map(int, re.findall(r"\d+", path.name))
-                    if parts != part[1]:
+                    if parts != self._part[1]:
                         with ExitStack() as moment:
                             self._lock((place, parts), moment)
-                self._sweep(part)
-            yield
+                self._sweep()
+            self._written = time.monotonic()
+            try:
+                yield
+            finally:
+                self._write()
 
     def _lock(self, part: tuple[int, int], stack: ExitStack) -> None:
         """Lock a part until the stack is left; raise `InputError` if another process has it."""
@@ -209,70 +221,99 @@ class Store:
                 f"{self.folder}; wait for it, or give another folder"
             ) from None
 
-    def part(self, part: tuple[int, int]) -> list[Piece]:
-        """Return the pieces of part i of n: every n-th, from the i-th on."""
-        return list(self.shards)[part[0] - 1 :: part[1]]
+    @property
+    def _prefix(self) -> str:
+        return "{}-of-{}-".format(*self._part)
 
-    def _sweep(self, part: tuple[int, int]) -> None:
+    def _sweep(self) -> None:
         """Remove what an earlier process of this part has begun and not finished."""
-        own = {self.shards[piece] for piece in self.part(part)}
-        for path in (self.folder / "shards").glob("*.partial"):
-            if path.name.partition(".")[0] in own:
-                with suppress(OSError):
-                    path.unlink()
+        for path in (self.folder / "shards").glob(f"{self._prefix}*.partial"):
+            with suppress(OSError):
+                path.unlink()
 
-    def read(self, piece: Piece) -> TaskResult | None:
-        """Return the result of a shard; None if it is not there, or is damaged."""
+    def read(self) -> tuple[NDArray[np.int_], TaskResult | None]:
+        """Return which runs the store has, and their results; None if it has none."""
         parquet = need_parquet()
-        path = self._path(piece)
-        if not path.is_file():
-            return None
-        try:
-            table = parquet.read_table(path)
-            found = _result_of(table, self._plan)
-            whole = (table.schema.metadata or {}).get(_SUM) == _sum(self.shards[piece], found)
-        except (OSError, KeyError, ValueError, TypeError):  # Those of pyarrow are among them.
-            return None
-        return found if whole and found.fates.size == piece[1] - piece[0] else None
+        import pyarrow as pa  # noqa: PLC0415
 
-    def write(self, piece: Piece, result: TaskResult) -> None:
-        """Write a shard, if all of its runs are done.
+        tables = []
+        for path in sorted((self.folder / "shards").glob("*.parquet")):
+            try:
+                table = parquet.read_table(path)
+                if (table.schema.metadata or {}).get(_SUM) == _sum(table):
+                    tables.append(table.replace_schema_metadata(None))
+            except (OSError, KeyError, ValueError, TypeError):  # Those of pyarrow are among them.
+                continue
+        if not tables:
+            return np.empty(0, dtype=int), None
+        table = pa.concat_tables(tables).unify_dictionaries()
+        keys = (table[name].to_pylist() for name in ("column_key", "motion_key", "scale"))
+        row_of = {key: row for row, key in enumerate(zip(*keys, strict=True))}
+        plan = self._plan
+        rows = np.array(
+            [
+                row_of.get((self._columns[i], self._motions[j], scale), -1)
+                for i, j, scale in zip(plan.column, plan.motion, plan.scale.tolist(), strict=True)
+            ]
+        )
+        runs = np.flatnonzero(rows >= 0)
+        return runs, _result_of(table.take(rows[runs]), plan)
+
+    def add(self, runs: NDArray[np.int_], result: TaskResult) -> None:
+        """Take the runs that are done of a task; they are written a few seconds later.
 
         Raises
         ------
         OSError
-            If the disk does not take it; what was there before stays.
+            If the disk does not take them; what was there before stays.
         """
-        if not result.fates.all():
+        self._waiting.append((runs, result))
+        if time.monotonic() - self._written > _BEAT or self._number() >= _MOST_RUNS:
+            self._write()
+
+    def _number(self) -> int:
+        return sum(runs.size for runs, _ in self._waiting)
+
+    def _write(self) -> None:
+        """Write a shard of all that waits."""
+        waiting, self._waiting = self._waiting, []
+        self._written = time.monotonic()
+        tables = [self._table(runs, result) for runs, result in waiting if result.fates.any()]
+        if not tables:
             return
         parquet = need_parquet()
         import pyarrow as pa  # noqa: PLC0415
 
-        first, last = piece
-        rows = slice(first, last)
+        table = pa.concat_tables(tables)
+        known = _sum(table)
+        path = self.folder / "shards" / f"{self._prefix}{known[:_LETTERS].decode()}.parquet"
+        with _clear(self.folder), whole_file(path) as file:
+            parquet.write_table(table.replace_schema_metadata({_SUM: known}), file)
+
+    def _table(self, runs: NDArray[np.int_], result: TaskResult) -> Any:
+        """Return a row for each run of a task that is done."""
+        import pyarrow as pa  # noqa: PLC0415
+
+        done = np.flatnonzero(result.fates)
+        runs = runs[done]
+        plan = self._plan
         columns, motions = (list(map(str, names)) for names in self._names)
         coded = pa.DictionaryArray.from_arrays
-        errors = np.full(last - first, "", dtype=object)
+        errors = np.full(result.fates.size, "", dtype=object)
         errors[list(result.errors)] = list(result.errors.values())
         data: dict[str, Any] = {
-            "run": pa.array(np.arange(first, last)),
-            "column": coded(self._plan.column[rows], columns),
-            "motion": coded(self._plan.motion[rows], motions),
-            "scale": pa.array(self._plan.scale[rows]),
-            "status": coded(result.fates, list(STATUSES)),
+            "column": coded(plan.column[runs], columns),
+            "motion": coded(plan.motion[runs], motions),
+            "scale": pa.array(plan.scale[runs]),
+            "status": coded(result.fates[done], list(STATUSES)),
         }
-        data |= {
-            name: pa.array(values)
-            for name, values in zip(self._plan.names, result.values, strict=True)
-        }
-        data |= {name: pa.array(values) for name, values in result.extra.items()}
-        data["error"] = pa.array(errors)
-        table = pa.table(data).replace_schema_metadata({_SUM: _sum(self.shards[piece], result)})
-        with _clear(self.folder), whole_file(self._path(piece)) as file:
-            parquet.write_table(table, file)
-
-    def _path(self, piece: Piece) -> Path:
-        return self.folder / "shards" / f"{self.shards[piece]}.parquet"
+        named = zip(plan.names, result.values, strict=True)
+        data |= {name: pa.array(values[done]) for name, values in named}
+        data |= {name: pa.array(values[done]) for name, values in result.extra.items()}
+        data["error"] = pa.array(errors[done])
+        data["column_key"] = coded(plan.column[runs], self._columns)
+        data["motion_key"] = coded(plan.motion[runs], self._motions)
+        return pa.table(data)
 
 
 @contextmanager
@@ -291,23 +332,25 @@ def _clear(folder: Path) -> Iterator[None]:
 
 
 def _result_of(table: Any, plan: Plan) -> TaskResult:
-    """Return what a shard holds."""
-    status = table["status"].combine_chunks()
-    codes = np.array([STATUSES.index(word) for word in status.dictionary.to_pylist()], np.int8)
+    """Return what rows of shards hold."""
+    codes = [STATUSES.index(word) for word in table["status"].to_pylist()]
     return TaskResult(
-        codes[status.indices.to_numpy()],
+        np.array(codes, dtype=np.int8),
         np.array([table[name].to_numpy() for name in plan.names]),
         {name: table[name].to_numpy() for name in plan.functions},
         {run: text for run, text in enumerate(table["error"].to_pylist()) if text},
     )
 
 
-def _sum(name: str, result: TaskResult) -> bytes:
-    """Return the digest of a result, by which a shard knows that it is whole and in its place."""
-    digest = hashlib.sha256(name.encode() + result.fates.astype(np.int8).tobytes())
-    for values in (*result.values, *result.extra.values()):
-        digest.update(np.ascontiguousarray(values, dtype=np.float64).tobytes())
-    digest.update(json.dumps(sorted(result.errors.items())).encode())
+def _sum(table: Any) -> bytes:
+    """Return the digest of a table, by which a shard knows that it is whole."""
+    digest = hashlib.sha256()
+    for name in table.column_names:
+        column = table[name]
+        if str(column.type) == "double":
+            digest.update(np.ascontiguousarray(column.to_numpy()).tobytes())
+        else:
+            digest.update(json.dumps(column.to_pylist()).encode())
     return digest.hexdigest().encode()
 
 
@@ -333,35 +376,31 @@ def _compare(folder: Path, known: dict[str, Any], wanted: dict[str, Any]) -> Non
     ]
     if other:
         raise InputError(
-            f"store: {folder} holds another ensemble: its {', '.join(other)} differ; give another "
-            "folder, or remove this one"
+            f"store: {folder} holds runs of another kind: their {', '.join(other)} differ; give "
+            "another folder, or remove this one"
         )
 
 
-def _version() -> str:
-    return _core.version()
-
-
-def _digest(parts: Any) -> str:
+def _digest(*parts: bytes) -> str:
     digest = hashlib.sha256()
     for part in parts:
-        raw = part.encode() if isinstance(part, str) else np.ascontiguousarray(part).tobytes()
-        digest.update(hashlib.sha256(raw).digest())
-    return digest.hexdigest()
+        digest.update(hashlib.sha256(part).digest())
+    return digest.hexdigest()[:_LETTERS]
 
 
-def _motion_bytes(plan: Plan, j: int) -> Any:
-    return np.concatenate([plan.motions[j].time, plan.motions[j].acceleration])
+def _column_key(plan: Plan, i: int) -> str:
+    """Return the digest of a column and of the state that its runs begin in."""
+    column = plan.columns[i]
+    statement = column._statement
+    # Limit states follow from the drawing, which the statement does not have.
+    watched = watches(column, plan.states).tobytes()
+    text = f"{statement.text}\0{statement.numbers!r}".encode()
+    return _digest(text, watched, plan.initial[i].tobytes())
 
 
-def _given(plan: Plan) -> bytes:
-    """Return the digest of what all shards follow from."""
-    digest = hashlib.sha256(code_digest())
-    digest.update(json.dumps(plan.settings, sort_keys=True).encode())
-    digest.update("\0".join(plan.states).encode())
-    for name, function in plan.functions.items():
-        digest.update(f"{name}\0{_source(function)}\0".encode())
-    return digest.digest()
+def _motion_key(plan: Plan, j: int) -> str:
+    motion = plan.motions[j]
+    return _digest(motion.time.tobytes(), motion.acceleration.tobytes())
 
 
 def _source(function: Measure) -> str:
@@ -373,17 +412,3 @@ def _source(function: Measure) -> str:
             f"measures: the function {function.__name__} has no source, so a store cannot know "
             "whether it has changed; write it into a file, or give no store"
         ) from None
-
-
-def _shard_name(task: Task, given: bytes) -> str:
-    digest = hashlib.sha256(given)
-    for column, before in zip(task.columns, task.initial, strict=True):
-        statement = column._statement
-        digest.update(f"{statement.text}\0{statement.numbers!r}\0".encode())
-        # Limit states follow from the drawing, which the statement does not have.
-        digest.update(watches(column, task.states).tobytes())
-        digest.update(b"initial" + before.tobytes())
-    for motion in task.motions:
-        digest.update(motion.time.tobytes() + motion.acceleration.tobytes())
-    digest.update(task.column.tobytes() + task.motion.tobytes() + task.scale.tobytes())
-    return digest.hexdigest()[:_LETTERS]

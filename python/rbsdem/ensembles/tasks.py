@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +20,12 @@ from rbsdem.errors import RbsdemError
 from rbsdem.limit_states.criteria import criteria
 from rbsdem.springs import Layered
 
-__all__ = ["Plan", "Task", "TaskResult", "compute", "cut", "watches"]
+__all__ = ["Piece", "Plan", "Task", "TaskResult", "compute", "cut", "watches"]
 
 Integers = NDArray[np.int32]
+
+#: First run of a task, and the one after its last.
+Piece: TypeAlias = tuple[int, int]
 
 #: Watches for a rotation that no joint reaches.
 _NO_WATCH: Array = np.array(
@@ -66,12 +71,16 @@ class Task:
 
 @dataclass(frozen=True, eq=False)
 class TaskResult:
-    """Fates (runs,), measures (measures, runs), those of functions by name, errors by run."""
+    """Fates (runs,), measures (measures, runs), those of functions by name, errors by run.
+
+    `seconds` is the time that the task took.
+    """
 
     fates: NDArray[np.int8]
     values: Array
     extra: dict[str, Array]
     errors: dict[int, str]
+    seconds: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +102,12 @@ class Plan:
         """Names of the measures, those of functions left out."""
         return core_measures() + self.states
 
+    def only(self, runs: NDArray[np.int_]) -> Plan:
+        """Return the plan of some of the runs."""
+        return replace(
+            self, column=self.column[runs], motion=self.motion[runs], scale=self.scale[runs]
+        )
+
     def task(self, first: int, last: int) -> Task:
         """Return the runs from first to before last."""
         columns, column = np.unique(self.column[first:last], return_inverse=True)
@@ -110,18 +125,20 @@ class Plan:
         )
 
 
-def cut(plan: Plan, seconds: Array, longest: float) -> list[tuple[int, int]]:
-    """Return first run and the one after the last of each task, of about `longest` [s] or less.
+def cut(seconds: Array, longest: Callable[[], float]) -> Iterator[Piece]:
+    """Yield the tasks of runs that are expected to take some seconds each (runs,).
 
-    `seconds` are those expected of a run of each motion with each column (motions, columns).
+    `longest` is asked before each task for its expected seconds; one run is the least.
     """
-    own = seconds[plan.motion, plan.column]
     # By their middles, so that a last run does not stand alone for the round-off of a sum.
-    number = np.floor((np.cumsum(own) - 0.5 * own) / longest)
-    block = np.arange(own.size) // _MOST_RUNS
-    changes = (np.diff(number) > 0) | (np.diff(block) > 0)
-    ends = [*(np.flatnonzero(changes) + 1).tolist(), own.size]
-    return list(zip([0, *ends[:-1]], ends, strict=True))
+    middle = np.cumsum(seconds) - 0.5 * seconds
+    first = 0
+    while first < seconds.size:
+        end = middle[first] - 0.5 * seconds[first] + longest()
+        last = min(int(np.searchsorted(middle, end)), first + _MOST_RUNS)
+        piece = first, max(first + 1, last)
+        yield piece
+        first = piece[1]
 
 
 def expected(plan: Plan) -> tuple[Array, Integers, list[tuple[int, str]]]:
@@ -144,6 +161,7 @@ def compute(task: Task, control: Integers | None = None, kernel: int = 0) -> Tas
     `control` is shared with the thread that waits: it sets the first number to end the task before
     its next run, and reads in the second how many runs are done.
     """
+    begin = time.monotonic()
     control = np.zeros(2, dtype=np.int32) if control is None else control
     fates, values, errors = _core.run_ensemble(
         [column._statement for column in task.columns],
@@ -160,7 +178,8 @@ def compute(task: Task, control: Integers | None = None, kernel: int = 0) -> Tas
     extra = {name: np.full(len(task), np.nan) for name in task.functions}
     if extra:
         _call_functions(task, control, fates, errors, extra)
-    return TaskResult(fates.astype(np.int8), values, extra, errors)
+    seconds = time.monotonic() - begin
+    return TaskResult(fates.astype(np.int8), values, extra, errors, seconds)
 
 
 def _before(work: Plan | Task) -> list[Array]:

@@ -2,67 +2,63 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterable
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 
 import numpy as np
 
-from rbsdem.ensembles.tasks import Integers, Plan, TaskResult, compute
+from rbsdem.ensembles.tasks import Integers, Piece, Plan, TaskResult, compute
+from rbsdem.ensembles.work import BEAT
 
-__all__ = ["Piece", "in_threads"]
-
-#: First run of a task, and the one after its last.
-Piece = tuple[int, int]
-
-#: How often the display is renewed, and Ctrl-C seen [s].
-_BEAT = 0.2
+__all__ = ["Threads"]
 
 
-def in_threads(
-    plan: Plan,
-    pieces: list[Piece],
-    jobs: int,
-    take: Callable[[Piece, TaskResult], None],
-    told: Callable[[int], None],
-) -> bool:
-    """Do all pieces; `take` gets their results as they come. Return whether Ctrl-C broke it off.
+class Threads:
+    """Workers that are threads.
 
-    After Ctrl-C, and where `take` raises an error, the runs under way are finished and the others
-    are not started.
+    Parameters
+    ----------
+    plan : Plan
+        The runs.
+    jobs : int
+        Number of threads.
     """
-    controls = {piece: np.zeros(2, dtype=np.int32) for piece in pieces}
-    interrupted = False
-    waiting: dict[Future[TaskResult], Piece] = {}
 
-    def take_done() -> None:
-        done, _ = wait(waiting, timeout=_BEAT, return_when=FIRST_COMPLETED)
-        for future in done:
-            take(waiting.pop(future), future.result())
-        told(sum(int(control[1]) for control in controls.values()))
+    def __init__(self, plan: Plan, jobs: int) -> None:
+        #: Tasks under way or next in line, so that no thread waits for one.
+        self.ahead = 2 * jobs
+        self._plan = plan
+        self._pool = ThreadPoolExecutor(jobs)
+        self._controls: list[Integers] = []
 
-    with ThreadPoolExecutor(jobs) as pool:
-        try:
-            for piece in pieces:
-                waiting[pool.submit(_do, plan, piece, controls[piece])] = piece
-                while len(waiting) >= 2 * jobs:
-                    take_done()
-            while waiting:
-                take_done()
-        except KeyboardInterrupt:
-            interrupted = True
-            _stop(controls)
-            while waiting:
-                take_done()
-        except BaseException:
-            _stop(controls)
-            raise
-    return interrupted
+    def submit(self, piece: Piece) -> Future[TaskResult]:
+        """Give a task to the threads."""
+        control = np.zeros(2, dtype=np.int32)
+        self._controls.append(control)
+        return self._pool.submit(_do, self._plan, piece, control)
+
+    def ended(self, futures: Iterable[Future[TaskResult]]) -> set[Future[TaskResult]]:
+        """Return the tasks that have ended, after a moment at the latest."""
+        return wait(futures, timeout=BEAT, return_when=FIRST_COMPLETED).done
+
+    def result(self, future: Future[TaskResult], piece: Piece) -> TaskResult:
+        """Return what a task has come to."""
+        del piece
+        return future.result()
+
+    def runs(self) -> int:
+        """Return the number of runs that are done."""
+        return sum(int(control[1]) for control in self._controls)
+
+    def stop(self) -> None:
+        """Finish the runs under way, and start no others: every task ends with what it has."""
+        for control in self._controls:
+            control[0] = 1
+
+    def close(self) -> None:
+        """Let go of the threads."""
+        self._pool.shutdown()
 
 
 def _do(plan: Plan, piece: Piece, control: Integers) -> TaskResult:
     return compute(plan.task(*piece), control)
-
-
-def _stop(controls: dict[Piece, Integers]) -> None:
-    for control in controls.values():
-        control[0] = 1
