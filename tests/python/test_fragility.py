@@ -194,6 +194,7 @@ def test_band_holds_the_curve():
         (lambda: Hazard([1.0], [1.0]), "1 intensities and 1 frequencies"),
         (lambda: Hazard([1.0, 2.0], [0.1, 0.2]), "must be above 0 and descend strictly"),
         (lambda: Hazard([2.0, 1.0], [0.2, 0.1]), "must be above 0 and ascend strictly"),
+        (lambda: Hazard([1.0, 2.0], [0.2, 0.1]).frequency_of(1.0, 0.0), "a beta above 0"),
     ],
 )
 def test_bad_input_of_fits(call, words):
@@ -235,6 +236,36 @@ def test_frequency_under_a_curved_hazard():
         for s, low, high in zip(slope, ends[:-1], ends[1:], strict=True)
     )
     assert FOUND.mean_annual_frequency(hazard) == pytest.approx(wanted, rel=1e-8)
+
+
+def by_quadrature(hazard: Hazard, mu: float, beta: float) -> float:
+    """Return the hazard times the density of ln capacity, by Gauss's rule on panels of beta/4."""
+    x, y = np.log(hazard.intensity), np.log(hazard.frequency)
+    slope = np.diff(y) / np.diff(x)
+    low, high = mu - beta * (40 - beta * slope.min()), mu + 40 * beta
+    ends = np.union1d(np.linspace(low, high, int(4 * (high - low) / beta)), x)
+    points, weights = np.polynomial.legendre.leggauss(20)
+    half = 0.5 * np.diff(ends)[:, None]
+    u = 0.5 * (ends[1:] + ends[:-1])[:, None] + half * points
+    place = np.clip(np.searchsorted(x, u) - 1, 0, slope.size - 1)
+    logs = y[place] + slope[place] * (u - x[place]) - 0.5 * ((u - mu) / beta) ** 2
+    return float((half * weights * np.exp(logs)).sum() / (beta * np.sqrt(2 * np.pi)))
+
+
+@pytest.mark.filterwarnings("ignore::rbsdem.AccuracyWarning")
+def test_frequency_under_steep_hazards():
+    """Steep segments are not lost: 150 random hazards, slopes to 30, and one of slope 24."""
+    steep = Hazard([0.5, 1, 2, 2.2], [1e-1, 1e-2, 1e-3, 1e-4])
+    assert steep.frequency_of(np.log(3), 0.4) == pytest.approx(4.193288e-4, rel=1e-6)
+    random = np.random.default_rng(0)
+    for _ in range(150):
+        n = random.integers(2, 12)
+        gaps = random.exponential(0.5, n) + 1e-3
+        drops = np.minimum(random.exponential(2.0, n) + 1e-6, 30 * gaps)
+        hazard = Hazard(np.exp(np.cumsum(gaps) - 2), np.exp(-np.cumsum(drops)))
+        mu, beta = random.normal(0, 1.5), np.exp(random.uniform(np.log(0.02), 0))
+        wanted = by_quadrature(hazard, mu, beta)
+        assert hazard.frequency_of(mu, beta) == pytest.approx(wanted, rel=1e-9)
 
 
 def test_a_hazard_that_ends_too_early_is_told():

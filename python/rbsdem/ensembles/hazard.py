@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -67,53 +68,77 @@ class Hazard:
     def frequency_of(self, mu: float, beta: float) -> float:
         """Return how often a year a limit state is reached whose fragility is lognormal.
 
-        The integral of the fragility over the hazard, in closed form for each power law.
+        The integral of the hazard over the density of the capacity, in closed form for each power
+        law: a sum of positive terms, each taken where its digits are.
 
         Parameters
         ----------
         mu, beta : float
-            Mean and standard deviation of the logarithm of the capacity.
+            Mean and standard deviation of the logarithm of the capacity; beta above 0.
 
         Warns
         -----
         AccuracyWarning
             If more than a tenth comes from intensities beyond the points of the hazard.
+
+        Raises
+        ------
+        InputError
+            If mu is not finite, or beta not above 0.
         """
+        if not (np.isfinite(mu) and np.isfinite(beta) and beta > 0):
+            raise InputError(
+                f"hazard: mu = {mu:g}, beta = {beta:g}: the capacity needs a finite mu, and a beta "
+                "above 0"
+            )
         special = need_scipy("special")
         x, y = np.log(self.intensity), np.log(self.frequency)
-        k = -np.diff(y) / np.diff(x)
-        # lambda = exp(y0 - k (u - x0)); the outer laws go on beyond the points.
-        ends = np.concatenate([[-np.inf], x[1:-1], [np.inf]])
-        parts = [
-            _part(special, k[i], y[i] + k[i] * x[i], ends[i], ends[i + 1], mu, beta)
-            for i in range(k.size)
-        ]
-        beyond = _part(special, k[0], y[0] + k[0] * x[0], -np.inf, x[0], mu, beta)
-        beyond += _part(special, k[-1], y[-1] + k[-1] * x[-1], x[-1], np.inf, mu, beta)
-        total = float(sum(parts))
-        if beyond > _BEYOND * total:
+        slope = np.diff(y) / np.diff(x)
+
+        def part(low: float, high: float, segment: int) -> float:
+            start = x[segment], y[segment]
+            return _part(special, low, high, (*start, slope[segment]), mu, beta)
+
+        # The outer laws go on beyond the points.
+        with np.errstate(over="ignore"):
+            inside = [part(x[i], x[i + 1], i) for i in range(slope.size)]
+            before, behind = part(-np.inf, x[0], 0), part(x[-1], np.inf, -1)
+        total = before + sum(inside) + behind
+        # Of intensities, not of capacities: those beyond a point fail with all capacities below it.
+        failed = special.ndtr((x[[0, -1]] - mu) / beta) * self.frequency[[0, -1]]
+        beyond = before - failed[0] + behind + failed[1]
+        share = beyond / total if 0.0 < total < np.inf else float(total > 0.0)
+        if share > _BEYOND:
             warnings.warn(
-                f"hazard: {100 * beyond / total:.0f} % of the mean annual frequency come from "
+                f"hazard: {100 * share:.0f} % of the mean annual frequency come from "
                 f"intensities beyond its points ({self.intensity[0]:g} to "
                 f"{self.intensity[-1]:g}); give it a wider range",
                 AccuracyWarning,
                 stacklevel=3,
             )
-        return total
+        return float(total)
 
 
 def _part(
-    special: object, k: float, c: float, low: float, high: float, mu: float, beta: float
+    special: Any, low: float, high: float, law: tuple[float, float, float], mu: float, beta: float
 ) -> float:
-    """Return the integral of Phi((u - mu)/beta) k exp(c - k u) from low to high."""
-    ndtr = special.ndtr  # type: ignore[attr-defined]
+    """Return the integral of exp(y + s (u - x)) over the density of ln capacity, low to high.
 
-    def antiderivative(u: float) -> float:
-        # By parts; the rest is a normal density moved by k beta^2.
-        moved = np.exp(c - k * mu + 0.5 * (k * beta) ** 2)
-        rest = moved * ndtr((u - mu) / beta + k * beta)
-        if np.isinf(u):
-            return float(rest)
-        return float(rest - ndtr((u - mu) / beta) * np.exp(c - k * u))
+    The product is a normal density about mu + s beta^2. Where both ends lie on one side of it, each
+    end is the product there times Mills' ratio, and no large exponents cancel.
+    """
+    x, y, s = law
+    ends = [(end - mu) / beta - s * beta for end in (low, high)]
+    if ends[0] < 0 < ends[1]:
+        peak = y + s * (mu + 0.5 * s * beta**2 - x)
+        # The peak lies between: of two tails that are missing none is the larger part.
+        return float(np.exp(peak) * (special.ndtr(ends[1]) - special.ndtr(ends[0])))
+    sign = 1.0 if ends[0] >= 0 else -1.0
 
-    return antiderivative(high) - antiderivative(low)
+    def tail(end: float, place: float) -> float:
+        if np.isinf(end):
+            return 0.0
+        product = np.exp(y + s * (end - x) - 0.5 * ((end - mu) / beta) ** 2)
+        return float(0.5 * product * special.erfcx(sign * place / np.sqrt(2.0)))
+
+    return sign * (tail(low, ends[0]) - tail(high, ends[1]))
