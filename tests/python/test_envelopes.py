@@ -62,6 +62,37 @@ def test_hardening_lines_are_found_again_by_asce_41():
     assert lines.post_yield_ratio == pytest.approx(0.125)
 
 
+def test_asce_41_finds_the_highest_balanced_lines_or_says_that_there_are_none():
+    """300 concave envelopes, against a search over 4000 yield forces."""
+    random = np.random.default_rng(1)
+    refused = 0
+    for _ in range(300):
+        n = random.integers(2, 9)
+        slope = np.sort(random.exponential(1.0, n))[::-1]
+        step = random.exponential(1.0, n)
+        x, y = (np.append(0.0, np.cumsum(part)) for part in (step, slope * step))
+        top = y[-1] * np.linspace(1.0, 2.5e-4, 4000)
+        at = np.interp(0.6 * top, y, x) / 0.6
+        # Triangle and trapezium of the lines less the area below the envelope.
+        over = 0.5 * (top * at + (top + y[-1]) * (x[-1] - at)) - np.trapezoid(y, x)
+        turned = (over[1:] * over[:-1] < 0) & (at[1:] <= x[-1])
+        try:
+            lines = Envelope(1, x, y).idealise("asce_41")
+        except InputError as error:
+            assert "no two lines" in str(error)
+            assert not turned.any()
+            refused += 1
+            continue
+        own = 0.5 * (lines.yield_force * x[-1] + y[-1] * (x[-1] - lines.yield_displacement))
+        assert own == pytest.approx(np.trapezoid(y, x), rel=1e-9)
+        on = np.interp(0.6 * lines.yield_displacement, x, y)
+        assert on == pytest.approx(0.6 * lines.yield_force, rel=1e-9)
+        assert lines.yield_force <= y[-1] * (1 + 1e-9)
+        if turned.any():
+            assert lines.yield_force >= top[1:][turned].max()
+    assert 0 < refused < 15
+
+
 def test_elastic_envelope_is_one_line():
     lines = Envelope(1, np.array([0.0, 0.02]), np.array([0.0, 1e5])).idealise()
     assert (lines.yield_displacement, lines.yield_force) == pytest.approx((0.02, 1e5))

@@ -99,7 +99,8 @@ class Envelope:
         ----------
         method : {"asce_41", "ec_8", "park", "equal_energy"}, optional
             "asce_41": ASCE 41-17, 7.4.3.2.4: initial line through 0.6 of the yield force, equal
-            areas up to `end`. "ec_8": EN 1998-1:2004, B.3: elastic and perfectly plastic, the force
+            areas up to `end`; of several such yield forces, none above the largest force, the
+            highest. "ec_8": EN 1998-1:2004, B.3: elastic and perfectly plastic, the force
             at `end`, equal areas. "park": Park 1988: secant through 0.75 of the peak force,
             extended to it. "equal_energy": ASTM E2126: secant through 0.4 of the peak force, equal
             areas up to a loss of 20 %.

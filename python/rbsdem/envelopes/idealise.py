@@ -136,34 +136,38 @@ def area(x: Array, y: Array, end: float) -> float:
 
 
 def _asce_41(x: Array, y: Array, end: float) -> tuple[float, float, float, float]:
-    """Return the lines whose first one goes through 0.6 of the yield force: the highest such."""
-    last = float(np.interp(end, x, y))
-    total = area(x, y, end)
-    inside = x <= end
-    reach = max(float(y[inside].max()), last)
+    """Return the lines with equal areas whose first one goes through 0.6 of the yield force.
 
-    def excess(force: float) -> float:
-        at = crossing(x, y, 0.6 * force) / 0.6
-        return 0.5 * force * at + 0.5 * (force + last) * (end - at) - total
-
-    # The curve is made of straight lines: between two of their corners there is one root at most.
-    corners = np.unique(np.concatenate((y[inside] / 0.6, [reach])))
-    corners = corners[(corners > 0) & (corners <= reach)][::-1]
-    tolerance = 1e-12 * total
-    high = float(corners[0])
-    for corner in corners:
-        low = float(corner)
-        if excess(low) <= tolerance:
-            break
-        high = low
-    else:
-        low = 1e-6 * high
-    force = low if abs(excess(low)) <= tolerance else _root(excess, low, high)
-    at = crossing(x, y, 0.6 * force) / 0.6
-    if at >= end:
-        # Nothing yields before the end: one line.
-        return end, last, end, last
-    return at, force, end, last
+    With a point (u, v) of the envelope at 0.6 of the yield force, the area of the lines is
+    (v end/0.6 + last end - last u/0.6)/2. Those points where it is that of the envelope lie on a
+    straight line, parallel to the chord; of all of them the highest is taken.
+    """
+    xs = np.append(x[x < end], end)
+    ys = np.append(y[x < end], np.interp(end, x, y))
+    total, last, reach = area(x, y, end), float(ys[-1]), float(ys.max())
+    # Corners where the bounds are: at <= end, and no more force than the envelope has.
+    more = np.array([0.6 * end, crossing(xs, ys, 0.6 * reach)])
+    corners = np.union1d(xs, more)
+    force = np.interp(corners, xs, ys)
+    off = end * force - last * corners - 0.6 * (2.0 * total - last * end)
+    off[np.abs(off) <= 1e-12 * end * reach] = 0.0
+    crossed = np.flatnonzero(off[:-1] * off[1:] < 0)
+    share = off[crossed] / (off[crossed] - off[crossed + 1])
+    u = np.append(corners[off == 0], corners[crossed] + share * np.diff(corners)[crossed]) / 0.6
+    v = np.interp(0.6 * u, xs, ys) / 0.6
+    slack = 1.0 + 1e-9
+    found = [
+        (top, at)
+        for at, top in zip(u.tolist(), v.tolist(), strict=True)
+        if 0 < at <= end * slack and 0 < top <= reach * slack
+    ]
+    if not found:
+        raise InputError(
+            "ASCE 41, 7.4.3.2.4: no two lines through the envelope at 0.6 of the yield force have "
+            f"its area up to end = {end:g} m; choose another end or another method"
+        )
+    top, at = max(found)
+    return min(at, end), top, end, last
 
 
 def _ec_8(x: Array, y: Array, end: float) -> tuple[float, float, float, float]:
@@ -186,17 +190,3 @@ def _equal_energy(x: Array, y: Array, end: float) -> tuple[float, float, float, 
     force = stiffness * (end - math.sqrt(root)) if root >= 0 else 0.85 * top
     at = min(force / stiffness, end)
     return at, force, end, force
-
-
-def _root(function: object, low: float, high: float) -> float:
-    """Return a root between two values of different sign, to the last digits."""
-    assert callable(function)
-    sign = math.copysign(1.0, function(low))
-    while True:
-        middle = 0.5 * (low + high)
-        if not low < middle < high:
-            return middle
-        if math.copysign(1.0, function(middle)) == sign:
-            low = middle
-        else:
-            high = middle
