@@ -15,6 +15,8 @@ WORKED = Envelope(
     np.array([0.0, 5.0, 10.0, 20.0, 40.0, 60.0]) * 1e-3,
     np.array([0.0, 100.0, 160.0, 200.0, 210.0, 190.0]) * 1e3,
 )
+# It bends so late that balanced lines would yield beyond its largest force.
+NEARLY_STRAIGHT = np.array([0.0, 0.3, 4.44, 4.72]), np.array([0.0, 0.129, 1.813, 1.903])
 COLUMN = rbsdem.paper_columns()["zahn_7"]
 
 
@@ -78,8 +80,7 @@ def test_asce_41_finds_the_highest_balanced_lines_or_says_that_there_are_none():
         turned = (over[1:] * over[:-1] < 0) & (at[1:] <= x[-1])
         try:
             lines = Envelope(1, x, y).idealise("asce_41")
-        except InputError as error:
-            assert "no two lines" in str(error)
+        except InputError:
             assert not turned.any()
             refused += 1
             continue
@@ -140,6 +141,7 @@ def test_result_speaks_by_the_definitions_of_the_comparison():
         (lambda: WORKED.idealise("asce"), "asce_41"),
         (lambda: WORKED.idealise("park", end=0.01), "leave out end"),
         (lambda: WORKED.idealise(end=0.07), "0.06"),
+        (lambda: Envelope(1, *NEARLY_STRAIGHT).idealise(), "no two lines through the envelope"),
         (lambda: WORKED.force_at(0.07), "0.06"),
         (lambda: WORKED.displacement_at(1.2), "share = 1.2"),
         (lambda: envelope(([0, 1], [0, 1]), 2), "side = 2"),

@@ -63,6 +63,16 @@ def test_distance_to_the_next_finer_setting_is_about_the_error(exact, keywords):
     assert 0.6 * true < found < 1.5 * true
 
 
+def test_no_error_is_zero(exact):
+    """The sharpest tolerance has no sharper one, an elastic path no other digits: neither is 0."""
+    sharpest = shake(method="rk45", tolerance=1e-13)
+    true = errors_of(answer(sharpest), answer(exact)).largest
+    assert true < sharpest.refined_error().largest < 1e-8
+    elastic = rbsdem.Column(2.0, 500.0, rbsdem.Elastic(1e9), rbsdem.Elastic(1e9))
+    found = rbsdem.cyclic(elastic, displacement=[0.0, 0.01, -0.01]).refined_error()
+    assert min(found.peak, found.energy, found.largest) >= np.finfo(float).eps
+
+
 def test_irregular_times_and_thinned_rows_can_be_refined(exact):
     uneven = np.delete(TIME, slice(5, None, 7))
     motion = np.interp(uneven, TIME, MOTION)

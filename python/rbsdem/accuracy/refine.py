@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import sys
 import warnings
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -36,7 +38,10 @@ def refined_error(result: Result) -> Errors:
             finer = cyclic(result.column, **_divided(result))
     driven = "displacement" in result.call
     one, other = (_answer(run, result.time, driven) for run in (result, finer))
-    return errors_of(one, other)
+    found = asdict(errors_of(one, other))
+    # Two runs with the same digits say no more than that the error is within their last ones.
+    least = math.sqrt(one.time.size) * sys.float_info.epsilon
+    return Errors(**{name: max(error, least) for name, error in found.items()})
 
 
 def _finer(result: Result) -> dict[str, Any]:
@@ -52,7 +57,9 @@ def _finer(result: Result) -> dict[str, Any]:
     call["method"] = method.name
     if method.adaptive:
         tolerance = call.get("tolerance", _USUAL_TOLERANCE)
-        return call | {"tolerance": max(min(tolerance / _SHARPER, _SHARP), _LEAST)}
+        sharper = max(min(tolerance / _SHARPER, _SHARP), _LEAST)
+        # Where there is none that is much sharper, the distance to one that is not bounds it.
+        return call | {"tolerance": sharper if 10 * sharper <= tolerance else _SHARPER * tolerance}
     if "every" in call:
         call["every"] *= 2
     if "dt" in call:
