@@ -107,6 +107,17 @@ def test_degradation_changes_late_cycles_only() -> None:
     assert range_of[: PATH.size // 6].max() < 0.02 < range_of[PATH.size // 2 :].max()
 
 
+def test_an_energy_near_zero_has_a_width() -> None:
+    """A loop that gives back nearly all that it took: 0.5 and 1.5 times 0.15 of what F moved."""
+    push = np.append(np.linspace(0.0, 0.003, 20), np.linspace(0.003, 0.0, 400))
+    found = column().spread(push, scatter=NONE)
+    moved = np.abs(np.diff(push)) @ np.abs(0.5 * (found.force[1:] + found.force[:-1]))
+    energy = found.energy
+    assert abs(energy.value) < 0.15 * moved
+    assert energy.value - energy.lower == pytest.approx(0.5 * 0.15 * moved)
+    assert energy.upper - energy.value == pytest.approx(0.5 * 0.15 * moved)
+
+
 def test_intervals() -> None:
     found = column().spread(PATH, scatter=NONE)
     assert found.peak_force.value == np.max(np.abs(found.force))

@@ -62,6 +62,10 @@ _LOW, _HIGH = 0.1, 0.9
 #: Largest force over shear strength between which a column comes near failing in shear.
 _NEAR = 0.7, 0.95
 
+#: Least work of a loop, over what its force moves without regard to signs, to which the interval of
+#: its work is in proportion: that of the tests is 0.17 and more.
+_LEAST_WORK = 0.15
+
 #: Parameters of degradation, and whether more of them is more of it.
 _DEGRADATION = {
     "fatigue": 1,
@@ -264,6 +268,7 @@ def spread(
     if scatter.middle is not None:
         widen *= math.exp(scatter.growth * distance)
     values = numbers(d, force, column.height)
+    moved = float(np.abs(np.diff(d)) @ np.abs(0.5 * (force[1:] + force[:-1])))
     return Spread(
         displacement=d,
         force=force,
@@ -272,7 +277,7 @@ def spread(
         upper=force + widen * up,
         samples=sampled,
         peak_force=_interval(values["peak"], scatter.peak, near),
-        energy=_interval(values["energy"], scatter.energy, near),
+        energy=_interval(values["energy"], scatter.energy, near, scale=_LEAST_WORK * moved),
         drift_at_loss=_interval(
             values["drift"], scatter.drift, near, float(np.max(np.abs(d))) / column.height
         ),
@@ -384,14 +389,19 @@ def _interval(
     factors: tuple[tuple[float, float], tuple[float, float]],
     share: float,
     least: float = math.nan,
+    scale: float = 0.0,
 ) -> Interval:
-    """Return a value with its interval; `least` is what it exceeds if it is not known."""
+    """Return a value with its interval; `least` is what it exceeds if it is not known.
+
+    The ends are in proportion to the value, or to `scale` where that is more: a number that can
+    come near zero is not known the better for it.
+    """
     lower, upper = (between(ends, share) for ends in zip(*factors, strict=True))
     if math.isnan(value):
         # No more is known than that it lies beyond, as far as the model is right.
         return Interval(min(lower, 1.0) * least, value, math.inf)
-    ends = sorted((lower * value, upper * value))
-    return Interval(ends[0], value, ends[1])
+    size = max(abs(value), scale)
+    return Interval(value + (lower - 1.0) * size, value, value + (upper - 1.0) * size)
 
 
 def _degraded(column: LayeredColumn, factor: float) -> Column:
