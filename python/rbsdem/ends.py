@@ -15,7 +15,7 @@ __all__ = ["double_curvature", "turned"]
 C = TypeVar("C", bound=Column)
 
 
-def double_curvature(column: C, *, top_mass: float = 0.0) -> C:
+def double_curvature(column: C, *, top_mass: float = 0.0, prismatic: bool = False) -> C:
     """Return the column in double curvature whose lower half is a cantilever.
 
     The upper half is the lower one turned about the middle, where the moment is zero: 2 n - 1
@@ -29,6 +29,10 @@ def double_curvature(column: C, *, top_mass: float = 0.0) -> C:
         The lower half, with a free top, without a footing and without a mass at its top.
     top_mass : float, optional
         Mass that moves with the top [kg]; a dynamic analysis needs it.
+    prismatic : bool, optional
+        Whether the sections of the upper half are not turned: the same face of the column is in
+        tension at one end and in compression at the other. It matters for springs whose sides
+        differ, as those of a section that is not symmetric.
 
     Returns
     -------
@@ -78,7 +82,9 @@ def double_curvature(column: C, *, top_mass: float = 0.0) -> C:
         # The spring of a whole cantilever is one of each half here.
         springs = [part.split(1) if whole_column(part) else part for part in column.joints(name)]
         if springs:
-            turn = turned if name == "flexure" else _same_at_the_top
+            # A slip keeps its sign when the half is turned, a rotation does not.
+            of_the_half = name == "shear" if prismatic else name == "flexure"
+            turn = turned if of_the_half else _same_at_the_top
             changes[name] = (*springs, *(turn(spring) for spring in reversed(springs)))
     return dataclasses.replace(column, **changes)
 
@@ -93,7 +99,7 @@ def _same_at_the_top(spring: Spring) -> Spring:
 
 
 def turned(spring: Spring) -> Spring:
-    """Return a flexural spring that does for negative rotations what another does for positive.
+    """Return a spring that does for negative deformations what another does for positive.
 
     Parameters
     ----------

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
-from typing import Any, ClassVar
+from dataclasses import dataclass, fields, replace
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -115,7 +115,7 @@ class DrawnSection(ABC):
         self._put("_figures", _core.check_section(statement))
 
     def _take_bars(self, cover: float, transverse: Ties | Spiral | None) -> None:
-        """Set the bars, from list or layout, and the diameter of the outermost one in tension."""
+        """Set the bars, from list or layout, and their diameter."""
         if not isinstance(self.bars, Sequence):
             raise InputError(f"section: bars = {self.bars!r} must be a list of (y, area, Steel)")
         if self.layout is not None:
@@ -129,13 +129,26 @@ class DrawnSection(ABC):
             follows: float | None = self.layout.diameter
         else:
             self._put("bars", tuple(_bar(bar, i) for i, bar in enumerate(self.bars, 1)))
-            area = max(self.bars, key=lambda bar: bar[0])[1] if self.bars else 0.0
-            follows = math.sqrt(4.0 * area / math.pi) if area > 0.0 else None
+            areas = [area for _, area, _ in self.bars if area > 0.0]
+            diameters = [math.sqrt(4.0 * area / math.pi) for area in areas]
+            follows = np.average(diameters, weights=areas) if areas else None
         diameter = given(self.bar_diameter)
         if diameter is not None:
             self._put("bar_diameter", _core.number(diameter, "section: bar_diameter"))
         else:
             self._put("bar_diameter", None if follows is None else Derived(follows))
+
+    @property
+    def turned(self) -> Self:
+        """The section upside down: y > 0 is what was y < 0. Itself where that is the same."""
+        turned = sorted(((-y, area, steel) for y, area, steel in self.bars), key=_place)
+        pairs = zip(turned, sorted(self.bars, key=_place), strict=True)
+        slack = 1e-9 * self.depth
+        if all(abs(a[0] - b[0]) <= slack and a[1:] == b[1:] for a, b in pairs):
+            return self
+        layouts = {f.name: None for f in fields(self) if f.name.endswith("layout")}
+        diameter = float(self.bar_diameter or 0.0)
+        return replace(self, bars=turned, bar_diameter=diameter, **layouts)
 
     @property
     def web_width(self) -> float:
@@ -190,7 +203,8 @@ class DrawnSection(ABC):
             Number of strips.
         restrained : int, optional
             Longitudinal bars that are held in a corner of a hoop or by a tie. By default the four
-            corners, and four more for each leg beyond two, up to the number of bars.
+            corners, and four more for each leg beyond two (in proportion for a part of one), up to
+            the number of bars.
         round_core : bool, optional
             Whether the ties stand for a spiral around a round core.
 
@@ -200,6 +214,12 @@ class DrawnSection(ABC):
             In order of y; in each strip core and cover have centroids of their own.
         """
         return cut(self, number, restrained, round_core)
+
+
+def _place(bar: Bar) -> tuple[float, float, float]:
+    """Return by what bars are ordered; heights that differ by round-off are one."""
+    y, area, steel = bar
+    return round(y, 9), area, steel.fy
 
 
 def _bar(bar: Any, number: int) -> Bar:

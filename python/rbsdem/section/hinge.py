@@ -207,7 +207,7 @@ def hinge_joint(
         * (modulus * strips.inertia + of_bars),
         hinge.shear_stiffness * modulus / 2.4 * strips.shear_area,
         moment,
-        moment * yield_stress / _ES * (steel_length + slip) / (0.65 * section.effective_depth),
+        moment * _yield_curvature(section, yield_stress) * (steel_length + slip),
         strips.confining_stress / cylinder,
         Gauge(
             ("core",) * len(strips.core)
@@ -256,6 +256,12 @@ def _yield_moment(section: Section, axial_load: float, ratio: float, stress: flo
     """Return the moment at yield (AIJ 1999) [N m]."""
     pressed = max(0.0, 0.5 * axial_load * section.depth * (1 - ratio))
     return 0.4 * stress * section.steel_area * section.depth + pressed
+
+
+def _yield_curvature(section: Section, stress: float) -> float:
+    """Return the curvature at yield, about, the mean of both directions [1/m]."""
+    depth = 0.5 * (section.effective_depth + section.turned.effective_depth)
+    return stress / _ES / (0.65 * depth)
 
 
 def _least_hardening(section: Section, hinge: HingeParameters) -> float:

@@ -466,7 +466,8 @@ class LayeredColumn(Column):
         hinge = self._recipe.joint
         numbers, springs = self.joint_numbers, self.joints("flexure")
         foot = joint == 1 and springs[numbers.index(1)] == hinge.spring
-        head = joint == self.n + 1 and self.top == "fixed" and springs[-1] == turned(hinge.spring)
+        at_top = joint == self.n + 1 and self.top == "fixed"
+        head = at_top and springs[-1] in (hinge.spring, turned(hinge.spring))
         return hinge.gauge if foot or head else None
 
     def interaction(self, *, points: int = 60, rotation: float = 0.05) -> InteractionDiagram:

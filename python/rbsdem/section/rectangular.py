@@ -13,7 +13,7 @@ from rbsdem._core import Array
 from rbsdem.errors import InputError
 from rbsdem.section.derived import Derived, given
 from rbsdem.section.materials import Concrete
-from rbsdem.section.reinforcement import Bar, Layout, Ties
+from rbsdem.section.reinforcement import Bar, Layout, Ties, share_in_tension
 from rbsdem.section.section import Section
 
 __all__ = ["RectangularSection"]
@@ -42,7 +42,7 @@ class RectangularSection(Section):
         Clear cover at the faces along the depth, if it differs [m].
     bar_diameter : float, optional
         Diameter of the main bars [m], for the length of the hinge and the confinement. By default
-        that of the layout, or of a round bar with the area of the outermost one in tension.
+        that of the layout, or the mean of round bars with the areas of `bars`, weighted by them.
     strips : int, optional
         Number of strips over the depth.
 
@@ -102,12 +102,20 @@ class RectangularSection(Section):
     def effective_depth(self) -> float:
         """From the compression face to the centre of the bars in the half in tension [m].
 
-        0.8 of the depth if there is no bar in that half.
+        Bars within a twentieth of the depth from its middle count in part, those at mid-depth or
+        beyond not at all. 0.8 of the depth if there is no other bar.
         """
-        outer = [(y, area) for y, area, _ in self.bars if y > 1e-9 * self.depth]
-        if not outer:
+        parts = [
+            (y, area, share)
+            for y, area, _ in self.bars
+            if (share := 2.0 * share_in_tension(y, self.depth) - 1.0) > 0.0
+        ]
+        if not parts:
             return 0.8 * self.depth
-        return 0.5 * self.depth + sum(y * a for y, a in outer) / sum(a for _, a in outer)
+        weight = sum(area * share for _, area, share in parts)
+        centre = 0.5 * self.depth + sum(y * area * share for y, area, share in parts) / weight
+        known = max(share for *_, share in parts)
+        return known * centre + (1.0 - known) * 0.8 * self.depth
 
     def part(self, depth: float) -> tuple[float, float]:
         """Return area and first moment about mid-depth of the concrete near the compression face.

@@ -347,12 +347,14 @@ class Section(DrawnSection):
             height.
         restrained : int, optional
             Longitudinal bars held in a corner of a hoop or by a tie, for the confinement in the
-            layered model. By default the four corners, and four more for each leg beyond two.
+            layered model. By default the four corners, and four more for each leg beyond two,
+            in proportion for a part of a leg.
         round_core : bool, optional
             Whether the ties of a rectangular section stand for a spiral around a round core.
         top : {"free", "fixed"}, optional
             "fixed": double curvature, with the hinge and the shear spring of half the height at
-            both ends (`rbsdem.double_curvature`); `n` is then the number of bodies of each half.
+            both ends (`rbsdem.double_curvature`, prismatic); `n` is then the number of bodies of
+            each half.
         footing : Footing, optional
             A footing on springs that the column stands on.
 
@@ -405,7 +407,7 @@ class Section(DrawnSection):
             round_core=round_core,
         )
         if top == "fixed":
-            column = double_curvature(column)
+            column = double_curvature(column, prismatic=self.turned is not self)
         return column if footing is None else replace(column, footing=footing)
 
     def shear_diagram(

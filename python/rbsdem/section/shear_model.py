@@ -8,6 +8,8 @@ is critical in shear: one that yields in flexure first never leaves the lines be
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rbsdem.section.strength import (
@@ -84,7 +86,8 @@ def shear_spring(
     Pinching
         Of the slip of the whole length: cracks at the share V_c of the concrete by Sezen and Moehle
         (2004), which is that of a principal tension; goes on with `cracked_shear_stiffness`; yields
-        near `rbsdem.section.strength.shear_strength_mcft`.
+        near `rbsdem.section.strength.shear_strength_mcft`. A section that is not symmetric has a
+        negative side of its own, that of the section upside down.
 
     Raises
     ------
@@ -125,6 +128,70 @@ def _shear(
     joint: HingeJoint | None = None,
 ) -> tuple[Pinching, dict[str, tuple[float, float]]]:
     """Return the spring and the limits of its parameters."""
+    turned = section.turned
+    positive = _side(section, length, axial_load, stiffness, given)
+    sides = [positive]
+    if turned is not section:
+        sides.append(_side(turned, length, axial_load, stiffness, given))
+    # What both sides share is that of their mean.
+    unit = sum(side.line["f_y"] * side.line["d_y"] for side in sides) / len(sides)
+    ties = sum(side.ties for side in sides) / len(sides)
+    f_y = sum(side.line["f_y"] for side in sides) / len(sides)
+    # Few ties do not hold a crack together: what the concrete carried is soon gone.
+    lasts = min(1.0, max(2.0 * ties, 0.1) ** given.endurance_ties)
+    # The rule refuses what would fall faster than the spring is stiff.
+    soonest = 1.01 * max(side.fastest for side in sides) / (stiffness / length * unit)
+    lambda_h, s_min = _decay(sides, f_y, ties, given, joint)
+    ratio = axial_load / (section.concrete.fc * section.gross_area)
+    closed = math.exp(given.pinch_axial * (ratio - 0.1))
+    limits = {name: _widest(side.limits[name] for side in sides) for name in positive.limits}
+    limits["pinch_force"] = (0.0, 1.0 / closed)
+    lines = positive.line
+    if len(sides) > 1:
+        lines = lines | {f"{name}_neg": value for name, value in sides[1].line.items()}
+    spring = unchecked(
+        Pinching,
+        **lines,
+        lambda_s=max(given.endurance * lasts, soonest) if given.endurance > 0.0 else 0.0,
+        b0=given.b0,
+        kappa_f=min(given.pinch_force * closed, 1.0),
+        kappa_d=given.pinch_slip,
+        lambda_h=lambda_h / unit,
+        s_min=s_min,
+        fade=given.fade,
+    )
+    return spring, limits
+
+
+@dataclass(frozen=True)
+class _Side:
+    """The spring in one direction of loading.
+
+    Attributes
+    ----------
+    line : dict of str to float
+        The backbone, by the names of `Pinching`.
+    ties : float
+        Strength of the ties over that of the spring.
+    strut : float
+        f'c b d [N].
+    fastest : float
+        f_cap^2 (1 + d_cap/d_pc) [N2], which bounds how fast the strength may fall.
+    limits : dict of str to (float, float)
+        Least and largest values of parameters.
+    """
+
+    line: dict[str, float]
+    ties: float
+    strut: float
+    fastest: float
+    limits: dict[str, tuple[float, float]]
+
+
+def _side(
+    section: Section, length: float, axial_load: float, stiffness: float, given: ShearParameters
+) -> _Side:
+    """Return the spring where y > 0 is in tension."""
     sizes = shear_sizes(section)
     # A section without bars in tension, which has no strength, still needs a spring with one.
     by_theory = shear_strength_mcft(section, length, axial_load)
@@ -149,45 +216,39 @@ def _shear(
         # What falls faster than the column above springs back has no equilibrium.
         above = 3 * section.concrete_law["ec"] * section._figures["inertia"] / length**3
         fall = max(fall, f_cap / (given.snap_back * above))
-    ties = (given.round_ties if is_round else 1.0) * by_ties / f_y
-    # Few ties do not hold a crack together: what the concrete carried is soon gone.
-    lasts = min(1.0, max(2.0 * ties, 0.1) ** given.endurance_ties)
-    # The rule refuses what would fall faster than the spring is stiff.
-    soonest = 1.01 * f_cap**2 * (1.0 + (d_y + rise) / fall) / (whole * f_y * d_y)
-    lambda_h, s_min = _decay(section, f_y, ties, given, joint)
-    ratio = axial_load / (sizes.fc * sizes.gross_area)
-    closed = math.exp(given.pinch_axial * (ratio - 0.1))
-    limits = {
-        "strength": (least / (shaped * by_theory) if by_theory > 0.0 else 0.0, math.inf),
-        "hardening": (1.0, math.inf),
-        "cap": (least_rise / length, math.inf),
-        "residual": (0.0, 0.9 * f_y / f_cap),
-        "endurance": (0.0, math.inf),
-        "pinch_force": (0.0, 1.0 / closed),
+    line = {
+        "d_c": d_c,
+        "f_c": f_c,
+        "d_y": d_y,
+        "f_y": f_y,
+        "d_cap": d_y + rise,
+        "f_cap": f_cap,
+        "d_pc": fall,
+        "f_res": min(given.residual * f_cap, 0.9 * f_y),
     }
-    spring = unchecked(
-        Pinching,
-        d_c=d_c,
-        f_c=f_c,
-        d_y=d_y,
-        f_y=f_y,
-        d_cap=d_y + rise,
-        f_cap=f_cap,
-        d_pc=fall,
-        f_res=min(given.residual * f_cap, 0.9 * f_y),
-        lambda_s=max(given.endurance * lasts, soonest) if given.endurance > 0.0 else 0.0,
-        b0=given.b0,
-        kappa_f=min(given.pinch_force * closed, 1.0),
-        kappa_d=given.pinch_slip,
-        lambda_h=lambda_h / (f_y * d_y),
-        s_min=s_min,
-        fade=given.fade,
+    return _Side(
+        line,
+        (given.round_ties if is_round else 1.0) * by_ties / f_y,
+        sizes.fc * sizes.width * sizes.d,
+        f_cap**2 * (1.0 + (d_y + rise) / fall),
+        {
+            "strength": (least / (shaped * by_theory) if by_theory > 0.0 else 0.0, math.inf),
+            "hardening": (1.0, math.inf),
+            "cap": (least_rise / length, math.inf),
+            "residual": (0.0, 0.9 * f_y / f_cap),
+            "endurance": (0.0, math.inf),
+        },
     )
-    return spring, limits
+
+
+def _widest(ends: Iterable[tuple[float, float]]) -> tuple[float, float]:
+    """Return the range that holds several."""
+    lows, highs = zip(*ends, strict=True)
+    return min(lows), max(highs)
 
 
 def _decay(
-    section: Section,
+    sides: list[_Side],
     f_y: float,
     ties: float,
     given: ShearParameters,
@@ -196,12 +257,8 @@ def _decay(
     """Return the work of the hinge that halves what can decay [J], 0: none, and what stays."""
     if joint is None or not given.decay > 0.0:
         return 0.0, 0.0
-    sizes = shear_sizes(section)
-    stays = min(
-        0.95,
-        given.decay_ties * ties,
-        given.decay_strut * sizes.fc * sizes.width * sizes.d / f_y,
-    )
+    strut = sum(side.strut for side in sides) / len(sides)
+    stays = min(0.95, given.decay_ties * ties, given.decay_strut * strut / f_y)
     # What is confined keeps the interlock of its cracks.
     shelter = math.exp(min(joint.confinement / given.decay_shelter, 50.0))
     return joint.yield_work * shelter / given.decay, stays

@@ -366,7 +366,9 @@ def near_shear(column: Column, peak: float) -> float:
     peak : float
         Largest force [N].
     """
-    strength = getattr(column.shear[0], "f_y", math.inf)
+    foot = column.shear[0]
+    strength = getattr(foot, "f_y", math.inf)
+    strength = min(strength, getattr(foot, "f_y_neg", None) or strength)
     low, high = _NEAR
     return min(max((peak / strength - low) / (high - low), 0.0), 1.0)
 

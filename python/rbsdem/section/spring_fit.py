@@ -155,7 +155,8 @@ def fit_springs(
     Warns
     -----
     AccuracyWarning
-        If the moment falls after yield (K_u is then zero), or shear governs.
+        If the moment falls after yield (K_u is then zero), shear governs, or the section is not
+        symmetric.
     """
     if shear not in SHEAR:
         raise InputError(
@@ -185,6 +186,11 @@ def fit_springs(
     note = axial_load_note(axial_load, section.concrete.fc, section.gross_area)
     if note:
         notes.append(f"springs: {note}")
+    if section.turned is not section:
+        notes.append(
+            "springs: the section is not symmetric; both directions have the springs of y > 0 in "
+            "tension (`section.turned` has those of the other)"
+        )
     if found["k_u_found"] < 0.0:
         notes.append(
             f"K_u = {found['k_u_found']:.4g} N m/rad: the moment falls from yield to the ultimate "

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from rbsdem.errors import InputError
 from rbsdem.section.ranges import column_length
+from rbsdem.section.reinforcement import share_in_tension
 
 if TYPE_CHECKING:
     from rbsdem.section.section import Section
@@ -29,6 +30,8 @@ __all__ = [
 ]
 
 _MPA = 1.0e6
+# Share of the least ties from which on the crack spacing goes over to that of tied sections.
+_NEARLY = 0.9
 _ES = 200.0e9
 
 
@@ -45,7 +48,8 @@ class ShearSizes:
     gross_area : float
         Of the concrete [m2].
     tension_steel : float
-        Bars in the half in tension; a bar at mid-depth counts half [m2].
+        Bars in the half in tension [m2]; a bar at mid-depth counts half, and bars within a
+        twentieth of the depth from there in proportion.
     tie_area : float
         Legs times area of a bar, in the direction of the shear [m2]; 0 without ties.
     spacing : float
@@ -86,12 +90,7 @@ def shear_sizes(section: Section) -> ShearSizes:
     ShearSizes
         Its sizes.
     """
-    half = [
-        (y, area if y > 1e-9 * section.depth else 0.5 * area)
-        for y, area, _ in section.bars
-        if y > -1e-9 * section.depth
-    ]
-    steel = sum(area for _, area in half)
+    steel = sum(area * share_in_tension(y, section.depth) for y, area, _ in section.bars)
     ties = section.ties
     area = spacing = tie_yield = 0.0
     core = section.depth
@@ -148,24 +147,25 @@ def shear_strength_mcft(
     Notes
     -----
     Bentz, Vecchio, Collins 2006 (ACI Structural Journal 103(4)). With ties of at least
-    0.06 sqrt(f'c)/f_yt the crack spacing s_ze is 300 mm, else 35 z/(16 + aggregate) >= 0.85 z (mm).
+    0.06 sqrt(f'c)/f_yt the crack spacing s_ze is 300 mm, else 35 z/(16 + aggregate) >= 0.85 z (mm);
+    from 0.9 of those ties on it goes from one to the other in a straight line.
     """
     sizes = shear_sizes(section)
     span = column_length(length, "length")
-    if not sizes.tension_steel > 0.0:
+    if not section.bars:
         return 0.0
     z = 0.9 * sizes.d
     root = min(math.sqrt(sizes.fc / _MPA), 8.0)
     least = 0.06 * root * _MPA / sizes.tie_yield if sizes.tie_yield > 0.0 else math.inf
-    if sizes.tie_ratio >= least:
-        s_ze = 300.0
-    else:
-        s_ze = max(35.0 * z * 1e3 / (16.0 + aggregate * 1e3), 0.85 * z * 1e3)
+    s_ze = max(35.0 * z * 1e3 / (16.0 + aggregate * 1e3), 0.85 * z * 1e3)
+    tied = min(max((sizes.tie_ratio / least - _NEARLY) / (1.0 - _NEARLY), 0.0), 1.0)
+    s_ze += tied * (300.0 - s_ze)
     arm = max(span - sizes.d, sizes.d)
     d, width, pressed = sizes.d, sizes.width, 0.5 * axial_load
-    steel = 2.0 * _ES * sizes.tension_steel
+    # The strength has a limit where bars in tension vanish.
+    steel = 2.0 * _ES * max(sizes.tension_steel, 1e-9 * sizes.gross_area)
     size, turn = 1000.0 + s_ze, 0.88 + s_ze / 2500.0
-    tied, spacing = sizes.tie_area * sizes.tie_yield * z, sizes.spacing
+    pull, spacing = sizes.tie_area * sizes.tie_yield * z, sizes.spacing
     crushed = 0.25 * sizes.fc * width * z
 
     def strength(v: float) -> float:
@@ -173,7 +173,7 @@ def shear_strength_mcft(
         beta = 0.4 / (1.0 + 1500.0 * eps_x) * 1300.0 / size
         theta = math.radians(min((29.0 + 7000.0 * eps_x) * turn, 75.0))
         v_c = beta * root * _MPA * width * z
-        return min(v_c + tied / (math.tan(theta) * spacing), crushed)
+        return min(v_c + pull / (math.tan(theta) * spacing), crushed)
 
     # More shear opens the cracks: strength(v) falls, so there is one v that equals it.
     return _crossing(strength, strength(0.0))

@@ -113,27 +113,30 @@ def _hoops(
     ratio = ties.legs * math.pi / 4 * ties.diameter**2
     ratio /= ties.spacing * core_width
     area = core_width * core_depth
-    if ties.legs <= 2:
-        clear = core_width - bar, core_depth - bar
-        parabolas = 2 * (clear[0] ** 2 + clear[1] ** 2) / 6
-    else:
-        bars = max(4, _restrained(section) if restrained is None else restrained)
-        clear_one = max(0.0, 2 * (core_width + core_depth) / bars - bar)
-        parabolas = bars * clear_one**2 / 6
+    # With two legs the four corners alone are held; from three on the bars stand for all of them.
+    corners = min(max(3.0 - ties.legs, 0.0), 1.0)
+    clear = core_width - bar, core_depth - bar
+    parabolas = corners * 2 * (clear[0] ** 2 + clear[1] ** 2) / 6
+    bars = max(4, _restrained(section) if restrained is None else restrained)
+    clear_one = max(0.0, 2 * (core_width + core_depth) / bars - bar)
+    parabolas += (1 - corners) * bars * clear_one**2 / 6
     gap = ties.spacing - ties.diameter
     effective = max(0.0, 1 - parabolas / area) / (1 - _bars(section, area))
     effective *= max(0.0, 1 - gap / (2 * core_width)) * max(0.0, 1 - gap / (2 * core_depth))
     return effective * ratio * ties.steel.fy, 2 * ratio
 
 
-def _restrained(section: Section) -> int:
-    """Return how many bars the legs hold: the corners, and four for each leg beyond two."""
+def _restrained(section: Section) -> float:
+    """Return how many bars the legs hold: the corners, and four for each leg beyond two.
+
+    A diagonal leg is a part of one, and holds that part of four bars.
+    """
     if section.layout is not None:
         number = section.layout.number
     else:
         # An entry of `bars` may be a row of them.
-        number = round(section.steel_area / (math.pi / 4 * section.bar_diameter**2))
-    return min(number, 4 + 4 * round(section.ties.legs - 2))
+        number = section.steel_area / (math.pi / 4 * section.bar_diameter**2)
+    return min(number, 4 + 4 * (section.ties.legs - 2))
 
 
 def _spiral(section: Section, diameter: float) -> tuple[float, float]:
