@@ -13,6 +13,7 @@ from rbsdem.calibration import Calibration, Parameter, calibrate
 from rbsdem.case import Case, read_case
 from rbsdem.column import Column
 from rbsdem.comparison import Comparison, compare
+from rbsdem.corners import path_of as path_of
 from rbsdem.damping import Damping
 from rbsdem.ends import double_curvature
 from rbsdem.ensembles import Ensemble, cloud, ensemble, ida, stripes

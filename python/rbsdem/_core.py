@@ -308,26 +308,34 @@ def cyclic(
     before: Array,
     room: int,
     every: int | None,
+    corners: int = 0,
 ) -> Run:
     """Follow a static path.
 
     `column` holds the settings of the analysis too; an empty `axial_load` is a constant one,
     an empty `before` a virgin column; `room` is the expected size of the state at the end;
     `shape` is the number of bodies, whether joints open, and whether the rows have the forces at
-    the base and the openings of layered joints.
+    the base and the openings of layered joints. With `corners`, their expected number, there are
+    rows between the values too, where a spring leaves its line.
     """
-    rows = _empty_rows(
-        shape, _rbsdem.rbs_kept_rows(values.size, UNSET_INTEGER if every is None else every)
-    )
+    wanted = _rbsdem.rbs_kept_rows(values.size, UNSET_INTEGER if every is None else every) + corners
     figures = len(quantities(False)[1])
     while True:
-        after = np.empty(room)
+        rows, after = _empty_rows(shape, wanted), np.empty(room)
         kept, ended, *rest = _rbsdem.rbs_cyclic(
-            *_crossing(column), int(by_force), values, axial_load, before, rows, after, figures
+            *_crossing(column),
+            int(by_force),
+            values,
+            axial_load,
+            before,
+            int(corners > 0),
+            rows,
+            after,
+            figures,
         )
-        if ended <= room:
+        if ended <= room and kept <= wanted:
             return _finish(rows, kept, after[:ended], *rest)
-        room = ended
+        room, wanted = max(room, ended), max(wanted, kept)
 
 
 def time_history(

@@ -29,7 +29,7 @@ Curve: TypeAlias = HasLoop | tuple[ArrayLike, ArrayLike]
 def loop_pair(curve: Any, name: str) -> tuple[Any, Any]:
     """Return displacement and force of a loop: of a response in time its base shear; see `pair`."""
     if hasattr(curve, "loop_force"):
-        return curve.displacement, curve.loop_force
+        return curve.path.displacement, curve.path.loop_force
     return pair(curve, name)
 
 

@@ -178,7 +178,7 @@ def cyclic(
         raise InputError(f"{name} is empty; give at least one point")
     load = None if axial_load is None else _core.vector(axial_load, "axial_load")
     kept = not _checked(column).opens and _core.switch(openings, "openings")
-    settings = _settings(every, kept, collapse_drift=collapse_drift)
+    settings = settings_of(every, kept, collapse_drift=collapse_drift)
     run = _core.cyclic(
         column._statement + settings,
         (len(column.joint_numbers), column.opens, False, kept, False),
@@ -186,7 +186,7 @@ def cyclic(
         values,
         _NONE if load is None else load,
         _NONE if initial is None else state_of(initial, "cyclic"),
-        _room(column),
+        expected_state(column),
         every,
     )
     call = {
@@ -327,7 +327,7 @@ def time_history(
     }
     kept = not _checked(column).opens and _core.switch(openings, "openings")
     moves = _core.switch(motion, "motion")
-    settings = _settings(every, kept, moves, **chosen)
+    settings = settings_of(every, kept, moves, **chosen)
     times = _core.vector(time, "time")
     from_end = initial is not None and not isinstance(initial, Mapping)
     run = _core.time_history(
@@ -337,7 +337,7 @@ def time_history(
         loads,
         *((_NONE, False) if from_end else _initial_state(initial, column)),
         state_of(initial, "time_history") if from_end else _NONE,
-        _room(column),
+        expected_state(column),
         every,
         lambda note: _tell(note, LongRunWarning, 5),
     )
@@ -364,7 +364,7 @@ def _tell(note: str, kind: type[Warning], stacklevel: int) -> None:
         warnings.warn(note, kind, stacklevel=stacklevel)
 
 
-def _room(column: Column) -> int:
+def expected_state(column: Column) -> int:
     """Return how many numbers a state mostly has at most; a longer one is asked for again."""
     layers = sum(
         len(spring.layers) for spring in column.joints("flexure") if isinstance(spring, Layered)
@@ -376,7 +376,7 @@ def _checked(column: Column) -> Column:
     return checked_column(column)
 
 
-def _settings(
+def settings_of(
     every: int | None, openings: bool, motion: bool = False, **given: Any
 ) -> _core.Statement:
     """Return the groups analysis and output with the settings that are given."""

@@ -151,6 +151,29 @@ class Result:
     motion: Array | None = None
 
     @property
+    def path(self) -> Result:
+        """A static path from corner to corner: the rows of all points, and of the events between.
+
+        Between two rows a static path is straight with small rotations, and a short piece of curve
+        with exact ones; `time` of a row between two points holds the share of the way. If the first
+        point is not where the path begins, its beginning is the first row, at time -1. What is
+        measured on a path is measured here, so that it depends neither on `every` nor on points put
+        on the way. The openings are kept. It is found by the same analysis once more, when it is
+        first asked for. A response in time is its own path.
+        """
+        own = vars(self)
+        if self.dynamic or "_is_path" in own:
+            return self
+        if "_path" not in own:
+            own["_path"] = _views.view(self, "path")
+        found: Result = own["_path"]
+        return found
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out the path: it is found again."""
+        return {name: value for name, value in vars(self).items() if name != "_path"}
+
+    @property
     def elongation(self) -> Array:
         """Growth of the column's axis from the openings of its joints [m], shape (steps,).
 
@@ -297,7 +320,7 @@ class Result:
         left = (
             float(self.displacement[-1])
             if self.dynamic
-            else _last_zero(self.displacement, self.force)
+            else _last_zero(self.path.displacement, self.path.force)
         )
         return left / self.column.height
 
@@ -380,15 +403,16 @@ class Result:
 
         A layered hinge that knows its drawing: cracking, first yield, nominal moment, yield of the
         hoops, spalling, the tensile strain before bars buckle, fracture of hoops and bars, by the
-        strains of its layers (the analysis needs ``openings=True``); other layered joints: where a
-        layer yields in tension. Other springs: their `Spring.landmarks`, cracking, yield and cap.
+        strains of its layers (in time the analysis needs ``openings=True``); other layered joints:
+        where a layer yields in tension. Other springs: their `Spring.landmarks`, cracking, yield
+        and cap.
         All: the same of shear springs, loss of 20 % of the strength, collapse, loss of the axial
         load. Nothing of the response is changed.
 
         Raises
         ------
         InputError
-            If the openings of a layered hinge were not kept.
+            If the openings of a layered hinge were not kept in time.
         """
         found: LimitStates = _views.view(self, "limit_states")
         return found
@@ -407,7 +431,7 @@ class Result:
         Raises
         ------
         InputError
-            If there is no such joint, or the openings of a layered hinge were not kept.
+            If there is no such joint, or the openings of a layered hinge were not kept in time.
         """
         found: Hinge = _views.view(self, "hinge", joint, length)
         return found

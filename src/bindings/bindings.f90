@@ -224,10 +224,11 @@ subroutine rbs_quantities(opens, with_base, with_openings, with_motion, rows, fi
    figures = figure_names()
 end subroutine rbs_quantities
 
-subroutine rbs_cyclic(statement, nn, number, by_force, m, values, ma, axial_load, mb, before, width, height, &
-                      rows, kept, ms, after, ended, nf, figures, method, status, message)
+subroutine rbs_cyclic(statement, nn, number, by_force, m, values, ma, axial_load, mb, before, corners, &
+                      width, height, rows, kept, ms, after, ended, nf, figures, method, status, message)
    ! `axial_load` is empty where the axial load is constant, `before` where the column is virgin. The state at
-   ! the end has `ended` numbers; it is not filled if they are more than `after` has room for.
+   ! the end has `ended` numbers; it is not filled if they are more than `after` has room for. With `corners`
+   ! there are rows between the targets too; `kept` may be more than there was room for.
    use iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_bindings_runs, only: into_rows_static, tell_run
@@ -237,7 +238,7 @@ subroutine rbs_cyclic(statement, nn, number, by_force, m, values, ma, axial_load
    use rbs_output_summary, only: summary_type
    implicit none
    character(len=*), intent(in) :: statement
-   integer(c_int), intent(in) :: nn, by_force, m, ma, mb, width, height, ms, nf
+   integer(c_int), intent(in) :: nn, by_force, m, ma, mb, corners, width, height, ms, nf
    real(c_double), intent(in) :: number(nn), values(m), axial_load(ma), before(mb)
    real(c_double), intent(inout) :: rows(width, height), after(ms)
    real(c_double), intent(out) :: figures(nf)
@@ -254,8 +255,8 @@ subroutine rbs_cyclic(statement, nn, number, by_force, m, values, ma, axial_load
    ended = 0
    call column_from_statements(statement, number, column, case, error)
    if (.not. allocated(error)) then
-      call into_rows_static(column, case, by_force /= 0, values, axial_load, before, rows, kept, after, &
-                            ended, summary, error)
+      call into_rows_static(column, case, by_force /= 0, values, axial_load, before, &
+                            corners /= 0, rows, kept, after, ended, summary, error)
    end if
    call tell_run(column, summary, error, figures, method, status, message)
 end subroutine rbs_cyclic

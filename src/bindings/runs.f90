@@ -34,8 +34,8 @@ module rbs_bindings_runs
 contains
 
    !> Write the rows of a static path into an array.
-   subroutine into_rows_static(column, case, by_force, target_values, axial_load, before, rows, count, &
-                               after, ended, summary, error)
+   subroutine into_rows_static(column, case, by_force, target_values, axial_load, before, corners, rows, &
+                               count, after, ended, summary, error)
       type(column_type), intent(in) :: column
       !> Settings of analysis and output
       type(case_record), intent(inout) :: case
@@ -45,7 +45,10 @@ contains
       real(c_double), intent(in) :: axial_load(:)
       !> The state to begin in; empty: virgin
       real(c_double), intent(in) :: before(:)
+      !> Whether the corners between two targets have rows too
+      logical, intent(in) :: corners
       real(c_double), intent(inout), target, contiguous :: rows(:, :)
+      !> Rows that there are; those for which there was room are filled
       integer, intent(out) :: count
       !> The state at the end, and how many numbers it has: 0 if there is none; if it has no room it is not
       !> filled
@@ -63,10 +66,11 @@ contains
       if (allocated(error)) return
       recorder%rows => rows
       recorder%openings = case%output%openings .and. .not. column%opens
+      recorder%corners = corners
       call take_from(before, from)
       call run_static(column, by_force, target_values, case%output%every, case%analysis%collapse_drift, &
                       recorder, summary, error, axial_load=axial_load, before=from, after=at_end)
-      count = recorder%count
+      count = recorder%offered
       call hand_over(at_end, after, ended)
    end subroutine into_rows_static
 

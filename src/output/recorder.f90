@@ -12,6 +12,8 @@ module rbs_output_recorder
       logical :: openings = .false.
       !> Whether the rows of an analysis in time hold how the top moves
       logical :: motion = .false.
+      !> Whether a static path has rows at its corners too, where a spring leaves its line between two targets
+      logical :: corners = .false.
    contains
       procedure(record_interface), deferred :: record
    end type recorder_type
@@ -29,8 +31,8 @@ module rbs_output_recorder
 
    !> Keeps rows in an array of the caller.
    type, extends(recorder_type) :: array_recorder
-      !> Rows kept so far
-      integer :: count = 0
+      !> Rows kept so far, and rows offered: more, if there was no room
+      integer :: count = 0, offered = 0
       !> One row a column (values of a row, rows)
       real(wp), pointer, contiguous :: rows(:, :) => null()
    contains
@@ -44,7 +46,9 @@ contains
       real(wp), intent(in) :: row(:)
       type(error_type), allocatable, intent(inout) :: error
 
-      if (allocated(error) .or. self%count == size(self%rows, 2)) return
+      if (allocated(error)) return
+      self%offered = self%offered + 1
+      if (self%count == size(self%rows, 2)) return
       self%count = self%count + 1
       self%rows(:, self%count) = row
    end subroutine record

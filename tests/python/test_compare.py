@@ -290,16 +290,19 @@ def test_strength_loss_at_a_repeated_cycle():
 
 
 def test_strength_loss_of_the_side_that_comes_first():
-    d = [0.0, 1.0, -1.0, 2.0, -3.0]
-    f = [0.0, 100.0, -100.0, 60.0, -50.0]
+    d = [0.0, 1.0, -1.0, 1.0, 2.0, -3.0]
+    f = [0.0, 100.0, -100.0, 100.0, 60.0, -50.0]
     # Positive side: 80 at 1.5; the negative one loses more, but later.
     assert cycles.strength_loss(d, f) == pytest.approx(1.5)
+    # A cycle that crosses its former peak with less than 80 has lost it there, row or no row.
+    del d[3], f[3]
+    assert cycles.strength_loss(d, f) == pytest.approx(1.0)
 
 
 def test_a_force_between_the_envelopes_is_no_strength():
     """On the way back from 2 the force is 300; pushed on it goes from 100 to 70: 80 at 8/3."""
-    d = [0.0, 1.0, 2.0, 1.0, 0.0, 3.0]
-    f = [0.0, 100.0, 100.0, 300.0, 0.0, 70.0]
+    d = [0.0, 1.0, 2.0, 1.0, 0.0, 2.0, 3.0]
+    f = [0.0, 100.0, 100.0, 300.0, 0.0, 100.0, 70.0]
     assert cycles.strength_loss(d, f) == pytest.approx(8 / 3)
 
 

@@ -115,22 +115,25 @@ def test_envelope_of_a_cyclic_path_lies_on_the_push():
     """A Takeda column without P-Delta comes back to its backbone in every larger cycle."""
     path = COLUMN.height * rbsdem.protocol([0.002, 0.005, 0.01, 0.02], points=20)
     cyclic = rbsdem.cyclic(COLUMN, displacement=path)
-    push = rbsdem.cyclic(COLUMN, displacement=np.linspace(0, 0.02 * COLUMN.height, 400))
+    push = rbsdem.cyclic(COLUMN, displacement=[0.02 * COLUMN.height]).path
     for side in (1, -1):
         found = cyclic.envelope(side)
-        assert np.all(np.diff(found.displacement) > 0)
+        assert np.all(np.diff(found.displacement) >= 0)
         assert found.largest_displacement == pytest.approx(0.02 * COLUMN.height)
         tips = np.array([0.002, 0.005, 0.01, 0.02]) * COLUMN.height
         for tip in tips:
             on_push = np.interp(tip, push.displacement, push.force)
-            assert found.force_at(tip) == pytest.approx(on_push, rel=1e-3)
+            # When it is first there; the next cycle comes by with a little more or less.
+            first = np.argmax(found.displacement >= tip * (1 - 1e-12))
+            assert found.force[first] == pytest.approx(on_push, rel=1e-9)
 
 
 def test_result_speaks_by_the_definitions_of_the_comparison():
     path = COLUMN.height * rbsdem.protocol([0.01, 0.02], points=10)
     result = rbsdem.cyclic(COLUMN, displacement=path)
-    cycles = rbsdem.comparison.half_cycles(result.displacement, result.force)
-    assert np.array_equal(result.half_cycles().energy, cycles.energy)
+    path = result.path
+    cycles = rbsdem.comparison.half_cycles(path.displacement, path.force)
+    assert result.half_cycles().energy == pytest.approx(cycles.energy)
     assert np.isnan(result.strength_loss())
     assert result.idealise("park", -1) == result.envelope(-1).idealise("park")
 

@@ -22,7 +22,7 @@ from rbsdem.explore.command import main, start_of
 from rbsdem.explore.compute import shown_rows
 from rbsdem.explore.near import Near
 from rbsdem.explore.parts import GALLERY, MODULES, parts
-from rbsdem.explore.report import write_report
+from rbsdem.explore.report import report_data, write_report
 from rbsdem.explore.report_command import main as report_main
 from rbsdem.explore.server import MOST_STATE, ExploreServer
 from rbsdem.explore.state import DEFAULT
@@ -403,6 +403,15 @@ def test_csv_is_that_of_the_program(post, tmp_path):
 
 
 # ---- reports and the page's files ---------------------------------------------------------------
+
+
+def test_a_report_of_a_file_knows_the_limit_states(post):
+    """A layered column of a file yields whether its case keeps the openings or not."""
+    case = post("export", state=state(), form="namelist")["text"]
+    assert "openings" not in case
+    given = {"columns": [{"case": case, "name": "A"}], "loading": state()["loading"]}
+    (loop,) = report_data(given, "x")["loops"]
+    assert "first_yield" in [one["name"] for one in loop["states"]]
 
 
 def test_a_report_is_one_file(tmp_path, post, capsys):

@@ -165,7 +165,7 @@ def _rows(found: CodeComparison) -> list[Quantity]:
 def _measured(found: CodeComparison) -> dict[str, dict[str, float]]:
     """Return what the test and the model say, by quantity and source."""
     result, height = found.result, found.result.column.height
-    loops = {"model": (result.displacement, result.loop_force)}
+    loops = {"model": loop_pair(result, "the model")}
     if found.test is not None:
         loops["test"] = found.test
     names = ("stiffness", "yield_drift", "largest_force", "strength_loss")

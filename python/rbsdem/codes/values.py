@@ -93,8 +93,8 @@ class CodeValues:
         Parameters
         ----------
         result : Result
-            Of the same column; with a fixed top its shear span is half of its height. One of a
-            layered hinge needs its openings (``openings=True``).
+            Of the same column; with a fixed top its shear span is half of its height. In time
+            that of a layered hinge needs its openings (``openings=True``).
         test : Result, PeerTest or pair of arrays, optional
             The measured loop [m, N].
 
@@ -107,7 +107,7 @@ class CodeValues:
         ------
         InputError
             If the column has another span, axial load or section, the openings of a layered hinge
-            were not kept, or the test is no loop.
+            were not kept in time, or the test is no loop.
         """
         found: CodeComparison = _views.view(self, "compare", result, test)
         return found

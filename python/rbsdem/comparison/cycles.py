@@ -24,6 +24,7 @@ from rbsdem.errors import InputError
 __all__ = [
     "TURN",
     "HalfCycles",
+    "beyond",
     "envelope",
     "half_cycle_numbers",
     "half_cycles",
@@ -47,7 +48,7 @@ class HalfCycles:
     Attributes
     ----------
     row : ndarray of int, shape (c,)
-        Row of the tip.
+        Row of the tip; of a static result, that of its `path`.
     displacement : ndarray, shape (c,)
         At the tip [m].
     force : ndarray, shape (c,)
@@ -146,7 +147,11 @@ def half_cycle_numbers(displacement: ArrayLike) -> np.ndarray:
 
 
 def half_cycles(
-    displacement: ArrayLike, force: ArrayLike, *, tips: ArrayLike | None = None
+    displacement: ArrayLike,
+    force: ArrayLike,
+    *,
+    tips: ArrayLike | None = None,
+    done: ArrayLike | None = None,
 ) -> HalfCycles:
     """Cut a curve into half-cycles.
 
@@ -157,6 +162,8 @@ def half_cycles(
     tips : array_like of int, shape (c,), optional
         Rows of the tips, ascending. By default the turning points, and the last row if the curve
         is still loaded outwards there.
+    done : array_like, shape (m,), optional
+        Work of the force up to each row [J], if it is known better than by the trapezium rule.
 
     Returns
     -------
@@ -170,7 +177,7 @@ def half_cycles(
     """
     d, f = _columns(displacement, force)
     rows = tip_rows(d, f) if tips is None else np.asarray(tips, dtype=np.intp)
-    done = work(d, f)
+    works = work(d, f) if done is None else columns(("displacement", "work"), d, done, least=0)[1]
     before = np.concatenate(([0], rows[:-1])) if rows.size else rows
     sides = np.sign(d[rows] - d[before])
     # Work up to the zeros of force: before the first tip, between two tips, after the last.
@@ -180,9 +187,9 @@ def half_cycles(
     for i, (first, last, side) in enumerate(zip(before, rows, sides, strict=True)):
         peaks[i] = side * np.max(side * f[first : last + 1])
         if i > 0:
-            zeros[i] = _work_to_zero(d, f, done, first, last, side)
+            zeros[i] = _work_to_zero(d, f, works, first, last, side)
     if rows.size:
-        zeros[-1] = _work_to_zero(d, f, done, rows[-1], d.size - 1, -sides[-1])
+        zeros[-1] = _work_to_zero(d, f, works, rows[-1], d.size - 1, -sides[-1])
     product = f[rows] * d[rows]
     carries = product > 0
     safe = np.where(carries, product, 1.0)
@@ -226,42 +233,96 @@ def _work_to_zero(d: Array, f: Array, done: Array, first: int, last: int, side: 
     return float(done[row - 1] + 0.5 * f[row - 1] * share * (d[row] - d[row - 1]))
 
 
-def envelope(displacement: ArrayLike, force: ArrayLike, side: int) -> np.ndarray:
-    """Find the rows of the envelope of a cyclic curve to one side.
+def beyond(displacement: ArrayLike, force: ArrayLike, side: int) -> tuple[Array, Array, Array]:
+    """Return the parts of a curve that go beyond its largest displacement so far to one side.
+
+    A part begins on the line that crosses that displacement, whether there is a row or not; there
+    the displacement comes twice, with the force of the part before and with that of the new one.
 
     Parameters
     ----------
     displacement, force : array_like, shape (m,)
-        The curve, row by row [m, N].
+        The curve, row by row, straight between two [m, N].
     side : {1, -1}
         Which side.
 
     Returns
     -------
-    ndarray of int, shape (k,)
-        The rows that go beyond the largest displacement so far. Of each half-cycle that comes back
-        to it (within 5 %) without going beyond, the row of the largest force.
+    place : ndarray, shape (k,)
+        Numbers of the rows, between two rows with the share of the way.
+    displacement, force : ndarray, shape (k,)
+        There, with the sign that they have to that side [m, N].
 
     Raises
     ------
     InputError
         If the arrays differ in length or a number is not finite, or if `side` is neither.
     """
-    d, f = _columns(displacement, force)
-    if side not in (1, -1):
-        raise InputError(f"side = {side!r} must be 1 or -1")
-    x, y = side * d, side * f
+    x, y = _to_side(displacement, force, side)
+    so_far = np.maximum.accumulate(np.concatenate(([0.0], x)))[:-1]
+    rows = np.flatnonzero(x > so_far)
+    after = rows[rows > 0]
+    share = (so_far[after] - x[after - 1]) / (x[after] - x[after - 1])
+    force_there = y[after - 1] + share * (y[after] - y[after - 1])
+    place = np.concatenate((rows.astype(np.float64), after - 1 + share))
+    # Where the row before is one of them, the crossing is that row.
+    place, at = np.unique(place, return_index=True)
+    return (
+        place,
+        np.concatenate((x[rows], so_far[after]))[at],
+        np.concatenate((y[rows], force_there))[at],
+    )
+
+
+def envelope(displacement: ArrayLike, force: ArrayLike, side: int) -> tuple[Array, Array, Array]:
+    """Return the envelope of a cyclic curve to one side.
+
+    Parameters
+    ----------
+    displacement, force, side
+        As for `beyond`.
+
+    Returns
+    -------
+    place, displacement, force : ndarray, shape (k,)
+        Those of `beyond`; and of each half-cycle that comes back to the largest displacement so
+        far (within 5 %) without going beyond, the point of the largest force there.
+
+    Raises
+    ------
+    InputError
+        As `beyond`.
+    """
+    x, y = _to_side(displacement, force, side)
+    places, xs, ys = ([part] for part in beyond(displacement, force, side))
     so_far = np.maximum.accumulate(np.concatenate(([0.0], x)))
-    rows = np.flatnonzero(x > so_far[:-1]).tolist()
-    if d.size < 2:
-        return np.array(rows, dtype=np.intp)
-    turns = [0, *turning_points(d).tolist(), d.size - 1]
-    for first, last in pairwise(turns):
-        reach = so_far[first + 1]
-        if x[first] < x[last] <= reach and x[last] >= _NEARLY * reach:
-            near = first + 1 + np.flatnonzero(x[first + 1 : last + 1] >= _NEARLY * reach)
-            rows.append(int(near[np.argmax(y[near])]))
-    return np.unique(np.array(rows, dtype=np.intp))
+    if x.size >= 2:
+        turns = [0, *turning_points(displacement).tolist(), x.size - 1]
+        for first, last in pairwise(turns):
+            reach = so_far[first + 1]
+            if x[first] < x[last] <= reach and x[last] >= _NEARLY * reach:
+                place, at, most = _largest_beyond(x, y, (first, last), _NEARLY * reach)
+                places.append(np.array([place]))
+                xs.append(np.array([at]))
+                ys.append(np.array([most]))
+    place, order = np.unique(np.concatenate(places), return_index=True)
+    return place, np.concatenate(xs)[order], np.concatenate(ys)[order]
+
+
+def _largest_beyond(
+    x: Array, y: Array, rows: tuple[int, int], least: float
+) -> tuple[float, float, float]:
+    """Return the point of the largest force between two rows where x is at least so large."""
+    first, last = rows
+    x, y = x[first : last + 1], y[first : last + 1]
+    place, force = np.flatnonzero(x >= least).astype(np.float64), y[x >= least]
+    # Where the curve crosses that displacement.
+    row = np.flatnonzero((x[1:] >= least) != (x[:-1] >= least))
+    share = (least - x[row]) / (x[row + 1] - x[row])
+    place = np.concatenate((place, row + share))
+    force = np.concatenate((force, y[row] + share * (y[row + 1] - y[row])))
+    at = int(np.argmax(force))
+    return first + place[at], float(np.interp(place[at], np.arange(x.size), x)), float(force[at])
 
 
 def strength_loss(displacement: ArrayLike, force: ArrayLike, *, share: float = 0.2) -> float:
@@ -292,8 +353,8 @@ def strength_loss(displacement: ArrayLike, force: ArrayLike, *, share: float = 0
 
 def strength_loss_point(
     displacement: ArrayLike, force: ArrayLike, *, share: float = 0.2
-) -> tuple[int | None, float]:
-    """Find the row at which a share of the strength is lost, and the displacement there.
+) -> tuple[float, float]:
+    """Find where a share of the strength is lost, and the displacement there.
 
     Parameters
     ----------
@@ -302,8 +363,9 @@ def strength_loss_point(
 
     Returns
     -------
-    row : int or None
-        First row of the envelope at or below (1 - share) of the peak; None if there is none.
+    place : float
+        Number of the row there, between two rows with the share of the way; where the envelope is
+        not the curve itself, that of the next point of the envelope. NaN if there is none.
     displacement : float
         That of `strength_loss`.
 
@@ -314,14 +376,12 @@ def strength_loss_point(
     """
     if not 0 < share < 1:
         raise InputError(f"share = {share} must be above 0 and below 1")
-    d, f = _columns(displacement, force)
-    found: tuple[int | None, float] = (None, math.nan)
-    sides = {side: envelope(d, f, side) for side in (1, -1)}
+    found = (math.nan, math.nan)
+    sides = [envelope(displacement, force, side) for side in (1, -1)]
     # A force between the envelopes, as on the way back, is no strength.
-    largest = max((np.max(side * f[rows]) for side, rows in sides.items() if rows.size), default=0)
-    for side, rows in sides.items():
-        x, y = side * d[rows], side * f[rows]
-        if not rows.size or 2 * np.max(y) < largest or not np.max(y) > 0:
+    largest = max((np.max(y) for _, _, y in sides if y.size), default=0)
+    for place, x, y in sides:
+        if not y.size or 2 * np.max(y) < largest or not np.max(y) > 0:
             continue
         peak = int(np.argmax(y))
         left = (1 - share) * y[peak]
@@ -329,10 +389,19 @@ def strength_loss_point(
         if not lost.size:
             continue
         at = peak + int(lost[0])
-        if found[0] is None or rows[at] < found[0]:
-            part = (y[at - 1] - left) / (y[at - 1] - y[at])
-            found = int(rows[at]), float(x[at - 1] + part * (x[at] - x[at - 1]))
+        part = (y[at - 1] - left) / (y[at - 1] - y[at])
+        way = place[at] - place[at - 1]
+        there = place[at - 1] + part * way if way <= 1 else place[at]
+        if not found[0] <= there:
+            found = float(there), float(x[at - 1] + part * (x[at] - x[at - 1]))
     return found
+
+
+def _to_side(displacement: ArrayLike, force: ArrayLike, side: int) -> tuple[Array, Array]:
+    if side not in (1, -1):
+        raise InputError(f"side = {side!r} must be 1 or -1")
+    d, f = _columns(displacement, force)
+    return side * d, side * f
 
 
 def _columns(displacement: ArrayLike, force: ArrayLike) -> tuple[Array, Array]:

@@ -271,9 +271,8 @@ def _secant(d: Array, f: Array, level: float) -> float:
         return math.nan
     i = int(np.argmax(size >= target))
     at, force = float(d[i]), float(f[i])
-    # A row before on the other side of zero force is no end to interpolate from.
-    if i > 0 and f[i] * f[i - 1] >= 0 and size[i] != size[i - 1]:
-        share = (target - size[i - 1]) / (size[i] - size[i - 1])
-        at = float(d[i - 1] + share * (d[i] - d[i - 1]))
+    if i > 0:
+        # The row before lies below the target on both sides of zero force.
         force = float(np.sign(f[i])) * target
+        at = float(d[i - 1] + (force - f[i - 1]) / (f[i] - f[i - 1]) * (d[i] - d[i - 1]))
     return force / at if at != 0 and force / at > 0 else math.nan

@@ -29,7 +29,7 @@ class Envelope:
     side : {1, -1}
         The side of the displacement.
     displacement : ndarray, shape (k,)
-        Strictly ascending from 0 [m].
+        Ascending from 0 [m]; twice the same where the force falls from one cycle to the next.
     force : ndarray, shape (k,)
         Forces there [N].
     """
@@ -135,8 +135,8 @@ class Envelope:
 def envelope(curve: Curve, side: Literal[1, -1] = 1) -> Envelope:
     """Return the envelope of a cyclic curve to one side.
 
-    Of the curve those points are kept that go beyond the largest displacement so far, as in
-    `rbsdem.comparison.envelope`; of a test with noise these are many, of a static path its corners.
+    Of the curve those parts are kept that go beyond the largest displacement so far, from where
+    they cross it; of a test with noise these are many points, of a static path its corners.
 
     Parameters
     ----------
@@ -150,13 +150,8 @@ def envelope(curve: Curve, side: Literal[1, -1] = 1) -> Envelope:
     InputError
         If the curve has no displacement with a force to that side.
     """
-    if side not in (1, -1):
-        raise InputError(f"side = {side!r} must be 1 or -1")
     d, f = columns(("displacement", "force"), *loop_pair(curve, "the curve"))
-    rows = cycles.envelope(d, f, side)
-    x, y = side * d[rows], side * f[rows]
-    beyond = x > np.maximum.accumulate(np.concatenate(([0.0], x)))[:-1]
-    x, y = x[beyond], y[beyond]
+    _, x, y = cycles.beyond(d, f, side)
     if x.size == 0 or not y.max() > 0:
         way = "positive" if side > 0 else "negative"
         raise InputError(

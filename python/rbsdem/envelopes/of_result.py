@@ -29,7 +29,8 @@ def idealise(
 @view_of(Result, "half_cycles")
 def cycles(result: Result) -> HalfCycles:
     """Return the half-cycles of the loop."""
-    return half_cycles(*_loop(result))
+    done = None if result.dynamic else result.path.energy["input"]
+    return half_cycles(*_loop(result), done=done)
 
 
 @view_of(Result, "strength_loss")
@@ -39,4 +40,4 @@ def loss(result: Result, share: float) -> float:
 
 
 def _loop(result: Result) -> tuple[Array, Array]:
-    return result.displacement, result.loop_force
+    return result.path.displacement, result.path.loop_force

@@ -11,6 +11,7 @@ import warnings
 from collections import OrderedDict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -117,7 +118,8 @@ class Answers:
         if "case" in given:
             try:
                 case = case_of_text(given["case"])
-                run = case.run
+                # The strains of a layered hinge follow from its openings.
+                run = partial(case.run, openings=True)
             except RbsdemError as error:
                 return Answered(None, None, None, [{"field": "case", "text": str(error)}], [])
         else:
@@ -270,12 +272,12 @@ def _response(found: Answered) -> dict[str, Any]:
             {
                 "name": state.name,
                 "displacement": number(factor * state.displacement),
-                "force": number(_at(force, result, state.time)),
+                "force": number(state.force),
                 "drift": number(state.drift),
                 "threshold": number(state.threshold),
                 "source": state.source,
             }
-            for state in _states(result)
+            for state in result.limit_states()
         ],
         "figures": {
             "peak_force": number(float(np.max(np.abs(force), initial=0.0))),
@@ -305,17 +307,6 @@ def shown_rows(displacement: Array, force: Array, most: int = _ROWS) -> NDArray[
         for values in (displacement[part], force[part]):
             kept += [int(part[np.argmin(values)]), int(part[np.argmax(values)])]
     return np.unique(kept)
-
-
-def _states(result: Result) -> list[Any]:
-    try:
-        return list(result.limit_states())
-    except InputError:
-        return []
-
-
-def _at(values: Array, result: Result, when: float) -> float:
-    return float(np.interp(when, result.time, values))
 
 
 def _interval(interval: Any, factor: float = 1.0) -> list[float | None]:

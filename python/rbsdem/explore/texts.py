@@ -239,7 +239,7 @@ def _loaded(loading: Mapping[str, Any], frame: Mapping[str, Any], half: float) -
         return [
             f"drifts = rbsdem.protocol({asked})",
             "path = column.height * drifts",
-            "result = rbsdem.cyclic(column, displacement=path, openings=True)",
+            "result = rbsdem.cyclic(column, displacement=path)",
         ]
     mass = frame.get("top_mass")
     mass = f"{frame['axial_load']!r} / 9.80665" if mass is None else repr(mass)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rbsdem import plot
 from rbsdem._views import view_of
 from rbsdem.limit_states.record import LimitStates
@@ -20,15 +18,12 @@ _MARKERS = "os^Dv<>phX*P8"
 def draw(states: LimitStates, ax: Axes | None) -> Axes:
     """Draw the loop thin and gray, and a marker for each state."""
     result = states.result
-    force = result.loop_force
     with plot.axes_or_new(ax, (4.6, 3.4)) as drawn:
         plot.loop(result, height=result.column.height, ax=drawn, color="0.55", linewidth=0.6)
         for state, marker in zip(states, _MARKERS, strict=False):
-            before = max(state.row - 1, 0)
-            at = np.interp(state.time, result.time[[before, state.row]], force[[before, state.row]])
             drawn.plot(
                 1e3 * state.displacement,
-                1e-3 * at,
+                1e-3 * state.force,
                 linestyle="none",
                 marker=marker,
                 markersize=5.0,

@@ -1,4 +1,4 @@
-"""Finding limit states in the rows of a result. They read its state and change nothing."""
+"""Finding limit states on the path of a result. They read its state and change nothing."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from rbsdem._core import Array
 from rbsdem._views import view_of
 from rbsdem.comparison.cycles import strength_loss_point
 from rbsdem.limit_states.criteria import Criterion, criteria
@@ -21,8 +20,9 @@ _LOSS = 0.2
 def limit_states(result: Result) -> LimitStates:
     """Return the limit states that a result reaches; see `Result.limit_states`."""
     watched = criteria(result.column)
+    path = result.path
     if any(criterion.opening for criterion in watched):
-        result._check_openings()
+        path._check_openings()
     first: dict[str, LimitState] = {}
     for criterion in watched:
         found = _reached(result, criterion)
@@ -35,49 +35,51 @@ def limit_states(result: Result) -> LimitStates:
     }
     if result.summary["status"] in ends:
         name, source = ends[result.summary["status"]]
-        states.append(_state(result, name, result.time.size - 1, 1.0, math.nan, source))
+        states.append(_state(result, name, path.time.size - 1, math.nan, source))
     return LimitStates(result, states)
 
 
 def _reached(result: Result, criterion: Criterion) -> LimitState | None:
-    values, threshold = criterion.values(result), criterion.threshold
+    values, threshold = criterion.values(result.path), criterion.threshold
     rows = np.flatnonzero(values >= threshold)
     if rows.size == 0:
         return None
-    row = int(rows[0])
-    share = 1.0
-    if row > 0 and values[row] > values[row - 1]:
-        share = float((threshold - values[row - 1]) / (values[row] - values[row - 1]))
-    return _state(result, criterion.name, row, share, threshold, criterion.source)
+    place = float(rows[0])
+    if rows[0] > 0:
+        before, there = values[rows[0] - 1 : rows[0] + 1]
+        place += (threshold - there) / (there - before)
+    return _state(result, criterion.name, place, threshold, criterion.source)
 
 
 def _losses(result: Result) -> list[LimitState]:
     """Return where a fifth of the strength of a side is lost first, as the comparison has it."""
-    row, loss = strength_loss_point(result.displacement, result.loop_force, share=_LOSS)
-    if row is None:
+    path = result.path
+    place, loss = strength_loss_point(path.displacement, path.loop_force, share=_LOSS)
+    if math.isnan(place):
         return []
     source = "20 % of the largest force of a side, on its envelope"
-    state = _state(result, "strength_loss", row, 1.0, _LOSS, source)
-    # Interpolated on the envelope.
+    state = _state(result, "strength_loss", place, _LOSS, source)
     at = math.copysign(loss, state.displacement)
     return [replace(state, displacement=at, drift=at / result.column.height)]
 
 
-def _state(
-    result: Result, name: str, row: int, share: float, threshold: float, source: str
-) -> LimitState:
-    before = max(row - 1, 0)
-
-    def at(values: Array) -> float:
-        return float((1.0 - share) * values[before] + share * values[row])
-
-    displacement = at(result.displacement)
+def _state(result: Result, name: str, place: float, threshold: float, source: str) -> LimitState:
+    """Return the state at a row of the path, or between two with the share of the way."""
+    path = result.path
+    rows = np.arange(path.time.size)
+    time, displacement, force = (
+        float(np.interp(place, rows, values))
+        for values in (path.time, path.displacement, path.loop_force)
+    )
+    # Round-off of a time that is one of the rows does not take the next one.
+    row = np.searchsorted(result.time, time - 1e-12 * abs(time))
     return LimitState(
         name,
-        row,
-        at(result.time),
+        min(int(row), result.time.size - 1),
+        time,
         displacement,
         displacement / result.column.height,
+        force,
         threshold,
         source,
     )

@@ -38,6 +38,9 @@ class Hinge:
         in this result.
     length : float or None
         Length of the hinge [m], over which the curvature is a mean; None if it is not known.
+    ductility : float
+        Largest rotation over that at yield of its side: of rotation and of curvature; on a static
+        path between the rows too.
     """
 
     joint: int
@@ -46,6 +49,7 @@ class Hinge:
     moment: Array
     yield_rotation: tuple[float, float]
     length: float | None
+    ductility: float
 
     @property
     def plastic_rotation(self) -> Array:
@@ -62,12 +66,6 @@ class Hinge:
     def plastic_curvature(self) -> Array:
         """Plastic rotation over length [1/m], shape (rows,)."""
         return self.plastic_rotation / self._length
-
-    @property
-    def ductility(self) -> float:
-        """Largest rotation over that at yield of its side: of rotation and of curvature."""
-        limit = np.where(self.rotation >= 0, *self.yield_rotation)
-        return float((np.abs(self.rotation) / limit).max(initial=0.0))
 
     @property
     def _length(self) -> float:
@@ -102,14 +100,17 @@ def hinge(result: Result, joint: int, length: float | None) -> Hinge:
                 over for part, over in zip(gauge.part, gauge.length, strict=True) if part != "bar"
             )
     yields = [each for each in criteria(result.column, ["first_yield"]) if each.joint == joint]
-    rotation = result.rotation[:, at]
+    path = result.path
+    turned = path.rotation[:, at]
+    limits = _yield_rotation(path, turned, yields)
     return Hinge(
         joint,
         result.time,
-        rotation,
+        result.rotation[:, at],
         result.moment[:, at],
-        _yield_rotation(result, rotation, yields),
+        limits,
         length,
+        float((np.abs(turned) / np.where(turned >= 0, *limits)).max(initial=0.0)),
     )
 
 

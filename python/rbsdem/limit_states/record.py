@@ -30,9 +30,12 @@ class LimitState:
     row : int
         First row of the result at or behind it.
     time : float
-        Time [s], or point of a static path, linear between two rows.
+        Time [s], linear between two rows; or point of a static path, between two with the share of
+        the way (`Result.path`).
     displacement, drift : float
         Of the top there [m], and over the height.
+    force : float
+        Of the loop there [N], see `Result.loop_force`.
     threshold : float
         What is reached: a strain, a rotation [rad], a slip [m] or a share.
     source : str
@@ -44,6 +47,7 @@ class LimitState:
     time: float
     displacement: float
     drift: float
+    force: float
     threshold: float
     source: str
 

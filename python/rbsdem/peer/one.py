@@ -137,7 +137,7 @@ def _analyse(
             column = column_of(specimen, model, **options)
         built = end = time.perf_counter()
         remarks = getattr(column, "outside", ())
-        result = cyclic(column, displacement=path, openings=how.limit_states)
+        result = cyclic(column, displacement=path)
         status, error = "completed", ""
     except SolveError as stop:
         known = stop.result is not None

@@ -51,11 +51,19 @@ module rbs_solve_static_path
       integer :: cuts = 0
       !> Axial load at the top without what follows the force [N], and energy that was damped before [J]
       real(wp) :: load_now = 0.0_wp, damped_before = 0.0_wp
+      !> What is driven where the way to the present target begins, and the number of the target, from 0
+      real(wp) :: way_begin = 0.0_wp
+      integer, private :: number = 0
+      !> What is told of a corner between two targets: figures, and its row if it is to be kept
+      type(summary_type), pointer, private :: summary => null()
+      class(recorder_type), pointer, private :: corners => null()
+      real(wp), allocatable, private :: row_values(:)
    contains
       procedure :: prepare
       procedure :: begin
       procedure :: compress
       procedure :: follow
+      procedure :: see_corner
       procedure(walk_interface), deferred :: walk
       procedure(advance_interface), deferred :: advance
       procedure(solve_line_interface), deferred :: solve_line
@@ -218,15 +226,14 @@ contains
       integer, intent(in) :: every
       !> Displacement of the top over the height at which the path ends; `unset`: it does not
       real(wp), intent(in) :: collapse_drift
-      class(recorder_type), intent(inout) :: recorder
-      type(summary_type), intent(inout) :: summary
+      class(recorder_type), intent(inout), target :: recorder
+      type(summary_type), intent(inout), target :: summary
       !> On failure everything up to the last good state has been recorded
       type(error_type), allocatable, intent(out) :: error
       !> Told now and then how far the path is
       class(observer_type), intent(inout), optional :: progress
       type(error_type), allocatable :: failure
       type(layer_fall) :: fall
-      real(wp), allocatable :: row(:)
       real(wp) :: height
       logical :: may_collapse
       integer :: i, n
@@ -235,8 +242,15 @@ contains
       if (every == unset_integer) n = 1
       may_collapse = collapse_drift > unset
       height = self%column%joint_height(self%column%n + 1)
-      allocate (row(row_size(self%column%unknowns, layered=merge(self%column%n, 0, recorder%openings))))
+      allocate (self%row_values(row_size(self%column%unknowns, &
+                                         layered=merge(self%column%n, 0, recorder%openings))))
+      self%summary => summary
+      if (recorder%corners) self%corners => recorder
       do i = 1, size(target)
+         self%number = i - 1
+         self%way_begin = self%control
+         ! A path whose first target is not where it begins has a way to it.
+         if (i == 1 .and. abs(target(1) - self%control) > 0.0_wp) call self%see_corner(0.0_wp)
          call self%advance(target(i), failure)
          summary%lost_joint = max(self%springs%lost_joint() - self%column%n, 0)
          if (summary%lost_joint > 0) then
@@ -246,16 +260,13 @@ contains
          ! Where a joint has lost its axial load, that is what ends the path.
          if (summary%lost_joint > 0 .and. allocated(failure)) deallocate (failure)
          if (allocated(failure)) failure%message = 'row '//to_text(i)//': '//failure%message
-         ! A force that pulls the column back, as where second-order moments drive it on, is no strength.
-         call summary%see_peak(self%displacement, merge(self%force, 0.0_wp, &
-                                                        self%force*self%displacement >= 0.0_wp))
-         call summary%see_turn(largest_turn(self%column, self%springs%d))
+         call see_peaks(self)
          if (may_collapse) summary%collapsed = abs(self%displacement)/height >= collapse_drift
          if (mod(i - 1, n) == 0 .or. i == size(target) .or. allocated(failure) .or. &
              summary%collapsed .or. summary%lost_joint > 0) then
-            call fill_row(self, row, i - 1)
-            call summary%see(row)
-            call recorder%record(row, error)
+            call fill_row(self, self%row_values, real(i - 1, wp))
+            call summary%see(self%row_values)
+            call recorder%record(self%row_values, error)
             if (allocated(error)) return
          end if
          summary%steps = i
@@ -269,6 +280,29 @@ contains
          if (summary%collapsed .or. summary%lost_joint > 0) return
       end do
    end subroutine follow
+
+   !> The path is at a corner, a share of the way to the present target: its figures belong to the summary,
+   !> and its row to those who keep every corner.
+   subroutine see_corner(self, share)
+      class(static_path), intent(inout) :: self
+      real(wp), intent(in) :: share
+      type(error_type), allocatable :: error
+
+      call see_peaks(self)
+      if (.not. associated(self%corners)) return
+      call fill_row(self, self%row_values, self%number - 1 + share)
+      call self%corners%record(self%row_values, error)
+   end subroutine see_corner
+
+   !> Tell the summary of the present force, displacement and rotations.
+   subroutine see_peaks(self)
+      class(static_path), intent(inout) :: self
+
+      ! A force that pulls the column back, as where second-order moments drive it on, is no strength.
+      call self%summary%see_peak(self%displacement, merge(self%force, 0.0_wp, &
+                                                          self%force*self%displacement >= 0.0_wp))
+      call self%summary%see_turn(largest_turn(self%column, self%springs%d))
+   end subroutine see_peaks
 
    !> Whether a spring has come to the open end that it goes to.
    pure logical function is_on_end(springs, i, d, rate)
@@ -295,7 +329,8 @@ contains
    subroutine fill_row(self, row, number)
       class(static_path), intent(in) :: self
       real(wp), intent(out) :: row(:)
-      integer, intent(in) :: number
+      !> Number of the row, between two targets with the share of the way
+      real(wp), intent(in) :: number
       integer :: m
 
       associate (springs => self%springs)

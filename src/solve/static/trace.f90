@@ -104,6 +104,7 @@ contains
          else if (direction*(self%finish - target) < -on_the_end*abs(target)) then
             call go(self, self%finish)
             call end_line(self)
+            call self%see_corner((self%control - self%way_begin)/(target - self%way_begin))
          else
             call go(self, target)
             call end_line(self)

@@ -259,6 +259,8 @@ contains
       self%here = self%there
       self%here%q = self%springs%d
       call self%equilibrium%remember(self%here%q)
+      if (.not. abs(self%target - self%control) > 0.0_wp) return
+      call self%see_corner((self%control - self%way_begin)/(self%target - self%way_begin))
    end subroutine accept
 
    !> Move the springs along their lines; those that come to an open end are put on the next line.

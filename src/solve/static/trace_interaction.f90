@@ -224,6 +224,7 @@ contains
       self%force = there%force
       self%displacement = top_displacement(self%column, there%q)
       self%control = merge(self%force, self%displacement, self%by_force)
+      if (self%at%share < 1.0_wp) call self%see_corner(self%at%share)
    end subroutine go_on
 
    !> Whether a stride has been small enough for its tangent to tell what lies between.

@@ -1,0 +1,36 @@
+"""The lines of a static path: a row at every corner, from the same analysis once more."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rbsdem import _core
+from rbsdem._views import view_of
+from rbsdem.analysis import expected_state, settings_of
+from rbsdem.result import Result, result_from_rows
+from rbsdem.state_file import state_of
+
+
+@view_of(Result, "path")
+def path_of(result: Result) -> Result:
+    """Return the result with a row at every corner; see `Result.path`."""
+    column, call = result.column, result.call
+    by_force = result.summary["driven"] == "force"
+    values = call["force" if by_force else "displacement"]
+    openings = not column.opens
+    run = _core.cyclic(
+        column._statement + settings_of(None, openings, collapse_drift=call.get("collapse_drift")),
+        (len(column.joint_numbers), column.opens, False, openings, False),
+        by_force,
+        values,
+        call.get("axial_load", np.empty(0)),
+        state_of(call["initial"], "cyclic") if "initial" in call else np.empty(0),
+        expected_state(column),
+        None,
+        # With exact rotations there are strides between the events.
+        corners=result.summary["events"] + values.size + 1,
+    )
+    # Where the path broke off, the result has been told of it.
+    path = result_from_rows(run[0], column, result.summary, call, result.state)
+    vars(path)["_is_path"] = True
+    return path
