@@ -148,6 +148,34 @@ def test_strains_of_the_hinge_are_read():
     assert [name for name in states.names() if name in order] == order
 
 
+def test_bars_of_two_steels_in_a_row_yield_each_at_its_strain():
+    """The order in which the bars are listed says nothing: the softer ones yield first."""
+    strong, soft = rbsdem.Steel(450e6, 650e6), rbsdem.Steel(300e6, 650e6)
+    ties = rbsdem.Ties(0.01, 0.08, rbsdem.Steel(400e6), legs=4)
+    section = rbsdem.RectangularSection(
+        0.4,
+        0.4,
+        rbsdem.Concrete(40e6),
+        layout=rbsdem.Layout(12, 0.02, strong, between_steel=soft),
+        ties=ties,
+        cover=0.02,
+    )
+    listed = {"layout": None, "bar_diameter": 0.02}
+    found = []
+    for bars in (section.bars, section.bars[::-1]):
+        column = replace(section, **listed, bars=list(bars)).column(1.6, axial_load=0.5e6)
+        result = rbsdem.cyclic(column, displacement=[0.02 * 1.6])
+        state = result.limit_states()["first_yield"]
+        assert state.threshold == soft.fy / soft.es
+        found.append(state.drift)
+        # The outermost of them is there at that strain, of all its layers' rows.
+        strains, place = result.path.strains(1), max(bar[0] for bar in bars if bar[2] == soft)
+        layer = np.flatnonzero((strains.position == place) & (strains.part == "bar"))[0]
+        at = np.interp(state.time, result.path.time, strains.value[:, layer])
+        assert at == pytest.approx(state.threshold, rel=1e-9)
+    assert found[1] == pytest.approx(found[0], rel=1e-9)
+
+
 def test_states_do_not_depend_on_what_comes_after():
     part = rbsdem.cyclic(COLUMN, displacement=PATH[:700], openings=True).limit_states()
     whole = RESULT.limit_states()

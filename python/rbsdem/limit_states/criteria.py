@@ -181,10 +181,14 @@ def _of_bars(
     spring, gauge = layers
     buckles = buckling_strain(section, column) if buckling else math.inf
     outer: dict[tuple[float, float, float], list[float]] = {}
-    for (y, _), part, over in zip(spring.layers, gauge.part, gauge.length, strict=True):
-        if part == "bar":
-            steel = min(section.bars, key=lambda bar, y=y: abs(bar[0] - y))[2]
-            outer.setdefault((steel.fy / steel.es, steel.eps_u, over), []).append(y)
+    layers_of_bars = [
+        (y, over)
+        for (y, _), part, over in zip(spring.layers, gauge.part, gauge.length, strict=True)
+        if part == "bar"
+    ]
+    # They are in the order of the bars: at one place there may be bars of several steels.
+    for (y, over), (_, _, steel) in zip(layers_of_bars, section.bars, strict=True):
+        outer.setdefault((steel.fy / steel.es, steel.eps_u, over), []).append(y)
     for (yields, breaks, over), places in outer.items():
         # Plane sections: of equal bars the outermost ones are stretched most.
         for y in dict.fromkeys((max(places), min(places))):

@@ -90,7 +90,6 @@ def _draw_layers(
     core = section.confinement
     cover = section.concrete_law["eps0"], section.concrete.eps_spall
     marks = {"cover": cover, "core": (core.eps_cc, core.eps_cu) if core else cover}
-    yields = min(steel.fy / steel.es for _, _, steel in section.bars)
     half = 0.5e3 * section.depth
     clip = Polygon(1e3 * section.outline(), facecolor="none", edgecolor="black", lw=0.8, zorder=3)
     ax.add_patch(clip)
@@ -123,6 +122,9 @@ def _draw_layers(
     singles = [(y, section.bar_diameter or 0.0) for y, _, _ in section.bars]
     for x, y, diameter in section.place_bars(singles):
         strain = strains[np.argmin(np.abs(levels - y))]
+        near = min(abs(bar[0] - y) for bar in section.bars)
+        steels = [steel for at, _, steel in section.bars if abs(at - y) <= near]
+        yields = min(steel.fy / steel.es for steel in steels)
         state = "elastic" if abs(strain) < yields else "yields"
         if strain > buckles:
             state = "beyond buckling strain"
