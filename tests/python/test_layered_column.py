@@ -518,3 +518,34 @@ def test_a_parameter_beyond_its_limit_starts_at_the_limit():
     assert stiffness.value == stiffness.high == column.recipe.limits["stiffness"][1]
     same = column.with_parameters(stiffness=stiffness.value)
     assert same.flexure[1].k_c == pytest.approx(column.joints("flexure")[1].k_c)
+
+
+def test_another_axial_load_draws_the_springs_again():
+    """`dataclasses.replace` gives the column that the section makes for that load, bit for bit."""
+    section = rbsdem.paper_sections()["zahn_7"].section
+    column, other = (section.column(1.6, axial_load=load) for load in (0.5e6, 1.0e6))
+    again = replace(column, axial_load=1.0e6)
+    assert again == other
+    assert again.recipe == other.recipe
+    assert replace(replace(column, damping=0.02), axial_load=1.0e6) == replace(other, damping=0.02)
+    # Springs of the user's own stay as they are.
+    own = rbsdem.Elastic(1e9)
+    mixed = replace(replace(column, shear=[own, own]), axial_load=1.0e6)
+    assert mixed.joints("shear") == (own, own)
+    assert mixed.flexure == other.flexure
+    with pytest.warns(rbsdem.AccuracyWarning, match="axial load ratio"):
+        replace(column, axial_load=0.9 * section.concrete.fc * section.gross_area)
+
+
+def test_sizes_that_the_springs_are_made_for_are_not_changed_alone():
+    section = rbsdem.paper_sections()["zahn_7"].section
+    column = section.column(1.6, axial_load=0.5e6)
+    for change in ({"height": 2.0}, {"n": 3}):
+        with pytest.raises(rbsdem.InputError, match="make the column anew"):
+            replace(column, **change)
+    twice = rbsdem.double_curvature(column)
+    with pytest.raises(rbsdem.InputError, match="the cantilever that it is made from"):
+        replace(twice, axial_load=1e6)
+    # Springs of the user's own suit any size.
+    own = rbsdem.Elastic(1e9)
+    assert replace(column, height=2.0, n=1, lengths=None, shear=own, flexure=own).height == 2.0

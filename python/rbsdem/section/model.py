@@ -390,6 +390,10 @@ class LayeredColumn(Column):
             raise InputError(
                 "a LayeredColumn is made by rbsdem.section.Section.column or rbsdem.peer.column"
             )
+        self._check_size()
+        load = _core.number(self.axial_load, "column: axial_load")
+        if load != self.recipe.axial_load:
+            self._draw_again(load)
         try:
             super().__post_init__()
         except InputError:
@@ -397,6 +401,52 @@ class LayeredColumn(Column):
             for name in ("flexure", "shear"):
                 check_springs(self.recipe.made[name])
             raise
+
+    def _check_size(self) -> None:
+        """Refuse another height or number of bodies for springs that are made for those."""
+        made, halves = self._recipe, 2 if self.top == "fixed" else 1
+        sizes = {"height": (made.height, 2 * made.height), "n": (made.n, 2 * made.n - 1)}
+        for name, known in sizes.items():
+            value = getattr(self, name)
+            if value not in known[:halves] and not self._is_other:
+                raise InputError(
+                    f"column: {name} = {value!r}: the springs of this layered column are made for "
+                    f"{name} = {known[0]:g}; make the column anew with Section.column, or give it "
+                    "shear and flexure of your own"
+                )
+
+    def _draw_again(self, axial_load: float) -> None:
+        """Make the springs of the model anew for another axial load; others stay."""
+        if self._is_other:
+            return
+        before, now = self._recipe, replace(self._recipe, axial_load=axial_load)
+        if self.height != before.height:
+            raise InputError(
+                f"column: axial_load = {axial_load:g} N: the springs of this column in double "
+                f"curvature are made for {before.axial_load:g} N; give the cantilever that it is "
+                "made from the other load"
+            )
+        for name, value in before.made.items():
+            if getattr(self, name) == value:
+                object.__setattr__(self, name, now.made[name])
+        object.__setattr__(self, "recipe", now)
+        section = now.section
+        notes = (
+            axial_load_note(axial_load, section.concrete.fc, section.gross_area),
+            *self.outside,
+        )
+        if any(notes):
+            warnings.warn("; ".join(filter(None, notes)), AccuracyWarning, stacklevel=5)
+
+    @property
+    def _is_other(self) -> bool:
+        """Whether springs of shear and flexure are both not those of the model."""
+        made = self._recipe.made
+        return not any(
+            spring in _listed(made[name])
+            for name in ("shear", "flexure")
+            for spring in _listed(getattr(self, name))
+        )
 
     def __repr__(self) -> str:
         return (
@@ -546,6 +596,10 @@ class LayeredColumn(Column):
     def _recipe(self) -> LayeredModel:
         assert self.recipe is not None
         return self.recipe
+
+
+def _listed(springs: Any) -> tuple[Any, ...]:
+    return tuple(springs) if isinstance(springs, (list, tuple)) else (springs,)
 
 
 def _made_from(name: str) -> tuple[str, ...]:
