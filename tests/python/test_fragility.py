@@ -19,7 +19,7 @@ from rbsdem.ensembles import (
     lognormal,
     variance_split,
 )
-from rbsdem.ensembles.lognormal import fit_brackets, fit_counts
+from rbsdem.ensembles.lognormal import Bounds, bounds_of_counts, fit_bounds
 from rbsdem.ensembles.regression import fit_line, fit_logistic
 
 
@@ -87,14 +87,98 @@ def test_stripes_have_the_largest_likelihood():
 def test_many_samples_are_fitted_as_one_after_the_other():
     level = np.array([1.0, 2.0, 4.0, 8.0])
     failures = np.array([[0, 3, 9, 10], [1, 1, 2, 6], [0, 0, 0, 0], [5, 5, 5, 5], [0, 0, 10, 10]])
-    mu, beta = fit_counts(level, np.full(4, 10), failures)
+    bounds = bounds_of_counts(level, np.full(4, 10), failures)
+    mu, beta, covariance = fit_bounds(bounds)
     for i, row in enumerate(failures):
-        one = fit_counts(level, np.full(4, 10), row)
-        assert [mu[i], beta[i]] == pytest.approx([float(v) for v in one], rel=1e-8, nan_ok=True)
-    assert np.isnan(mu[2])
-    # A step between two levels: the curve is as steep as it can be, and stands between them.
-    assert beta[4] < 0.1
-    assert 2.0 < np.exp(mu[4]) < 4.0
+        one = fit_bounds(bounds_of_counts(level, np.full(4, 10), row))
+        assert [mu[i], beta[i]] == pytest.approx([float(v) for v in one[:2]], rel=1e-8, nan_ok=True)
+        assert covariance[i] == pytest.approx(one[2], rel=1e-6, nan_ok=True) or i > 1
+    # None failed; all shares alike; a step between two levels.
+    assert np.isnan(mu[2:]).all()
+    assert np.isinf(beta[3])
+    low, high = bounds.gap()
+    assert np.exp([low[4], high[4]]) == pytest.approx([2.0, 4.0])
+    assert np.isnan(low[[0, 1, 3]]).all()
+
+
+def test_a_fit_is_the_largest_likelihood_or_none():
+    """200 small random sets of counts, near separation too, against a search by scipy."""
+    random = np.random.default_rng(0)
+    fitted = 0
+    for _ in range(200):
+        size = random.integers(2, 6)
+        number = random.integers(1, 12, size)
+        x = np.cumsum(random.exponential(random.choice([0.01, 0.3, 2.0]), size) + 1e-4)
+        share = random.uniform(0, 1, size) ** random.choice([0.2, 1.0, 5.0])
+        failures = random.binomial(number, share)
+        bounds = bounds_of_counts(np.exp(x), number, failures)
+        mu, beta, _ = (np.asarray(value) for value in fit_bounds(bounds))
+        overlap = x[number > failures].max(initial=-9) > x[failures > 0].min(initial=99)
+        assert np.isnan(bounds.gap()[0]) == overlap
+        if not overlap or np.isinf(beta):
+            assert np.isnan(mu)
+            continue
+
+        def loss(at, x=x, k=failures, n=number):
+            z = (x - at[0]) / np.exp(at[1])
+            return -(k * special.log_ndtr(z) + (n - k) * special.log_ndtr(-z)).sum()
+
+        here = [float(mu), float(np.log(beta))]
+        assert loss(here) <= optimize.minimize(loss, here, method="Nelder-Mead").fun + 1e-9
+        fitted += 1
+    assert fitted > 50
+
+
+# At most one level has both outcomes, or all capacities may be one: a step fits as well as a curve.
+@pytest.mark.parametrize(
+    ("data", "where"),
+    [
+        (counts([2, 5], [10, 10], [0, 10]), "between 2 and 5"),
+        (counts([1, 2, 5], [10, 10, 10], [0, 8, 10]), "between 1 and 5"),
+        (counts([1, 2, 5], [10, 10, 10], [0, 0, 3]), "above 2"),
+        (counts([1, 2], [10, 10], [3, 10]), "between 0 and 2"),
+        (Capacities(np.array([1.0, 2.0, 1.0]), np.array([4.0, 4.0, 2.5])), "between 2 and 2.5"),
+        (Capacities(np.array([1.0, 2.0, 1.0]), np.array([2.0, 4.0, 2.0])), "between 1 and 4"),
+        (Capacities(np.array([1.0, 2.0]), np.array([2.0, np.inf])), "above 1"),
+    ],
+)
+def test_data_that_do_not_determine_beta_say_so(data, where):
+    with pytest.raises(InputError, match=f"do not determine beta.*the median is {where}"):
+        fit_fragility("x", data)
+    # With a stated beta the median alone is fitted; its band and frequency follow.
+    found = fit_fragility("x", data, beta=0.4)
+    assert (found.beta, found.stated, found.covariance[1, 1]) == (0.4, True, 0.0)
+    assert np.isfinite(found.covariance).all()
+    assert "beta=0.4 stated" in repr(found)
+
+
+def test_median_with_a_stated_beta():
+    """One level with 3 of 10: ln theta = x - beta z of the share; two opposite levels: between."""
+    found = fit_fragility("x", counts([2.0], [10], [3]), beta=0.5)
+    z = special.ndtri(0.3)
+    assert np.log(found.theta) == pytest.approx(np.log(2.0) - 0.5 * z, rel=1e-9)
+    variance = 0.25 * 0.21 / (10 * stats.norm.pdf(z) ** 2)
+    assert found.covariance[0, 0] == pytest.approx(found.theta**2 * variance, rel=1e-6)
+    step = fit_fragility("x", counts([2.0, 5.0], [10, 10], [0, 10]), beta=0.4)
+    assert step.theta == pytest.approx(np.sqrt(10.0), rel=1e-9)
+    values = drawn(30, 2.0, 0.6)
+    exact = fit_fragility("x", Capacities(values, values), beta=0.6)
+    assert exact.theta == pytest.approx(stats.gmean(values), rel=1e-9)
+    assert exact.covariance[0, 0] == pytest.approx((exact.theta * 0.6) ** 2 / 30, rel=1e-9)
+    assert (exact.samples(50)[1] == 0.6).all()
+
+
+def test_samples_without_a_curve_are_told():
+    """A draw separates two levels if none fails at the lower one, or all do at the upper one.
+
+    With 2 and 10 of 12: 1 - (1 - (10/12)^12)^2 = 0.21 of the draws; with 1 and 8 of 9: 0.57.
+    """
+    few = fit_fragility("x", counts([2.0, 5.0], [12, 12], [2, 10]))
+    with pytest.warns(AccuracyWarning, match=r"(19|2\d) % of the bootstrap samples do not"):
+        few.samples(1000)
+    fewer = fit_fragility("x", counts([2.0, 5.0], [9, 9], [1, 8]))
+    with pytest.raises(InputError, match=r"5\d % of the bootstrap samples do not determine beta"):
+        fewer.band([3.0])
 
 
 def test_bounds_of_capacities_have_the_largest_likelihood():
@@ -115,15 +199,15 @@ def test_bounds_of_capacities_have_the_largest_likelihood():
         uncensored=np.log(values[:5]), right=logs[np.isinf(upper)], interval=interval
     )
     other = stats.norm.fit(data)
-    assert [float(v) for v in fit_brackets(lower, upper)] == pytest.approx(other, rel=1e-4)
     found = fit_fragility("x", Capacities(lower, upper))
-    assert np.log(found.theta) == pytest.approx(other[0], rel=1e-4)
+    assert (np.log(found.theta), found.beta) == pytest.approx(other, rel=1e-4)
 
 
 def test_bounds_that_are_the_values_have_the_moments():
     """The likelihood of a normal sample is largest at its mean and its spread over n."""
     values = drawn(30, 2.0, 0.6)
-    mu, beta = fit_brackets(values, values)
+    logs = np.log(values)
+    mu, beta, _ = fit_bounds(Bounds(logs, logs, np.ones(30)))
     assert float(mu) == pytest.approx(np.log(values).mean(), rel=1e-9)
     assert float(beta) == pytest.approx(np.log(values).std(), rel=1e-6)
 

@@ -209,14 +209,20 @@ def test_a_hunt_goes_on_from_its_store(column, records, tmp_path, monkeypatch):
 
 
 def test_stripes_of_an_elastic_column(column, records, omega):
-    """All or none at each level; the counts say so, and the step lies between the levels."""
+    """All or none at each level: no spread is known, and the step lies between the levels."""
     limit = omega**2 * 0.03 * HEIGHT
     levels = limit * np.array([0.5, 0.9, 1.1, 2.0])
     found = rbsdem.stripes(column, records, levels, **SETTINGS)
     counts = found.counts("peak_drift", 0.03)
     assert counts.number.tolist() == [6, 6, 6, 6]
     assert counts.failures.tolist() == [0, 0, 6, 6]
-    assert 0.9 * limit < found.fragility("peak_drift", 0.03).theta < 1.1 * limit
+    with pytest.raises(InputError, match="do not determine beta"):
+        found.fragility("peak_drift", 0.03)
+    step = found.fragility("peak_drift", 0.03, beta=0.2)
+    assert found.fragilities({"heavy": 0.03}, beta={"heavy": 0.2})["heavy"].theta == step.theta
+    assert 0.9 * limit < step.theta < 1.1 * limit
+    with pytest.raises(InputError, match="beta of light: no such limit state; there are heavy"):
+        found.fragilities({"heavy": 0.03}, beta={"light": 0.2})
 
 
 def test_stripes_with_records_of_their_own(column, records, omega):

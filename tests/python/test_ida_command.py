@@ -87,10 +87,11 @@ def test_hazard_adds_frequencies(folder, tmp_path, capsys):
     hazard = tmp_path / "hazard.csv"
     hazard.write_text("# a site\nsa,frequency\n0.1,1\n1,0.03\n10,0.0003\n100,1e-7\n")
     words = [str(CASE), str(folder), *FEW, "--limit", "repair=0.01", "--hazard", str(hazard)]
-    assert main(words) == 0
+    assert main([*words, "--beta", "repair=0.35"]) == 0
     printed = capsys.readouterr().out
     assert "1/a" in printed
     line = next(line for line in printed.splitlines() if "repair" in line)
+    assert line.split()[3:5] == ["0.35", "stated"]
     assert 1e-4 < float(line.split()[-1]) < 1e-1
 
 
@@ -130,6 +131,8 @@ def test_the_command_starts_from_the_shell(folder, tmp_path):
         ([str(CASE), "synthetic", "--levels", "1,x"], "--levels 1,x: give intensities"),
         ([str(CASE), "synthetic", "--levels", "-1"], "levels must be intensities above 0"),
         ([str(CASE), "synthetic", "--limit", "0.01"], "--limit 0.01: give a name and a drift"),
+        ([str(CASE), "synthetic", "--beta", "light=0.4"], "give a limit state (yield, collapse)"),
+        ([str(CASE), "synthetic", "--beta", "yield"], "--beta yield: give a limit state"),
         ([str(CASE), "synthetic", "--intensity", "sa"], "intensity = 'sa' is not one of"),
         ([str(CASE), "synthetic", "--jobs", "0"], "jobs = 0 must be 1 or more"),
         ([str(CASE), "synthetic", "--parquet"], "say where with --out"),

@@ -189,7 +189,11 @@ class Cloud(Fragile[CloudFragility]):
         """
         return self._one(edp, threshold)
 
-    def _fit(self, name: str, measure: str, limit: float) -> CloudFragility:
+    def _fit(self, name: str, measure: str, limit: float, beta: float | None) -> CloudFragility:
+        if beta is not None:
+            raise InputError(
+                f"fragility of {name}: the spread of a cloud is that of its runs; leave beta out"
+            )
         data = self._data(measure, limit)
         theta, beta = _theta_beta(data, data.parts())
         if not np.isfinite([theta, beta]).all():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from rbsdem.ensembles.fragility import Capacities, Counts, Fragility
 from rbsdem.ensembles.ida import IDA
 from rbsdem.ensembles.runs import Runs
 from rbsdem.ensembles.stripes import Stripes
+from rbsdem.errors import InputError
 from rbsdem.plot import MODEL_LINE, axes_or_new, line_of
 
 if TYPE_CHECKING:
@@ -121,8 +123,10 @@ def draw_fragility(
             x, found.probability(x), **line_of({**MODEL_LINE, "label": found.name}, line)
         )[0]
         if level:
-            low, high = found.band(x, level)
-            drawn.fill_between(x, low, high, color=curve.get_color(), alpha=0.15, linewidth=0)
+            # Where the bootstrap determines no band none is drawn.
+            with suppress(InputError):
+                low, high = found.band(x, level)
+                drawn.fill_between(x, low, high, color=curve.get_color(), alpha=0.15, linewidth=0)
         at, share = _shares(found)
         drawn.plot(at, share, **_POINT | {"color": curve.get_color()})
         if ax is None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from rbsdem.ensembles.fragility import Fragility
 from rbsdem.ensembles.limits import limit_states
 from rbsdem.ensembles.runs import Runs
+from rbsdem.errors import InputError
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -24,14 +25,19 @@ class Fragile(ABC, Generic[Curve]):
     runs: Runs
 
     @abstractmethod
-    def _fit(self, name: str, measure: str, limit: float) -> Curve:
+    def _fit(self, name: str, measure: str, limit: float, beta: float | None) -> Curve:
         """Return the fragility curve of a limit state under a name."""
 
-    def _one(self, edp: str, threshold: float | None) -> Curve:
+    def _one(self, edp: str, threshold: float | None, beta: float | None = None) -> Curve:
         ((name, (measure, limit)),) = limit_states(edp, threshold).items()
-        return self._fit(name, measure, limit)
+        return self._fit(name, measure, limit, beta)
 
-    def fragilities(self, limits: Mapping[str, Any], edp: str = "peak_drift") -> dict[str, Curve]:
+    def fragilities(
+        self,
+        limits: Mapping[str, Any],
+        edp: str = "peak_drift",
+        beta: Mapping[str, float] | None = None,
+    ) -> dict[str, Curve]:
         """Return the fragility curves of several limit states.
 
         Parameters
@@ -41,8 +47,21 @@ class Fragile(ABC, Generic[Curve]):
             ``{"yield": ("first_yield", None), "repair": 0.01, "collapse": ("collapse", None)}``.
         edp : str, optional
             Measure of the thresholds that come alone.
+        beta : mapping, optional
+            By name a stated beta, as for `IDA.fragility`.
+
+        Raises
+        ------
+        InputError
+            If a curve is not determined, or a beta belongs to no limit state.
         """
-        return {name: self._fit(name, *state) for name, state in limit_states(edp, limits).items()}
+        states, stated = limit_states(edp, limits), dict(beta or {})
+        if unknown := stated.keys() - states.keys():
+            raise InputError(
+                f"beta of {', '.join(sorted(unknown))}: no such limit state; there are "
+                f"{', '.join(states)}"
+            )
+        return {name: self._fit(name, *state, stated.get(name)) for name, state in states.items()}
 
     @property
     def table(self) -> pd.DataFrame:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,12 +13,13 @@ from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem._optional import need_scipy
 from rbsdem.ensembles.hazard import Hazard
-from rbsdem.ensembles.lognormal import LEAST_BETA, MOST_BETA, fit_brackets, fit_counts, fit_points
-from rbsdem.errors import InputError
+from rbsdem.ensembles.lognormal import Bounds, bounds_of_counts, fit_bounds, fit_points
+from rbsdem.errors import AccuracyWarning, InputError
 
 #: Bounds of a capacity that differ by less than this count as one value, their geometric mean.
 NARROW = 1.05
-_STEP = 1e-4
+#: Share of bootstrap samples without a curve beyond which one is warned.
+_LOST = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,19 +52,23 @@ class Counts:
         """Runs at each level that reached the limit state, shape (k,)."""
         return np.asarray(np.nansum(self.failed, axis=1).astype(int))
 
-    def fit(self) -> tuple[Array, Array]:
-        """Return mean and spread of the logarithm of the capacity."""
-        return fit_counts(self.intensity, self.number, self.failures)
+    def bounds(self) -> Bounds:
+        """Return what is known of the capacities."""
+        return bounds_of_counts(self.intensity, self.number, self.failures)
 
-    def fit_samples(self, random: np.random.Generator, n: int) -> tuple[Array, Array]:
-        """Return the same for n bootstrap samples, each of shape (n,)."""
-        if not self.paired:
-            share = self.failures / np.maximum(self.number, 1)
-            drawn = random.binomial(self.number, share, (n, self.intensity.size))
-            return fit_counts(self.intensity, self.number, drawn.astype(float))
-        failed = self.failed[:, random.integers(0, self.size, (n, self.size))].transpose(1, 0, 2)
-        number = np.isfinite(failed).sum(axis=-1)
-        return fit_counts(self.intensity, number, np.nansum(failed, axis=-1))
+    def fit_samples(
+        self, random: np.random.Generator, n: int, beta: float | None = None
+    ) -> tuple[Array, Array]:
+        """Return mean and spread of the logarithm for n bootstrap samples, each of shape (n,)."""
+        number, drawn = self.number, None
+        if self.paired:
+            failed = self.failed[:, random.integers(0, self.size, (n, self.size))]
+            number = np.isfinite(failed).sum(axis=-1).T
+            drawn = np.nansum(failed, axis=-1).T
+        else:
+            share = self.failures / np.maximum(number, 1)
+            drawn = random.binomial(number, share, (n, self.intensity.size))
+        return fit_bounds(bounds_of_counts(self.intensity, number, drawn), beta)[:2]
 
     @property
     def size(self) -> int:
@@ -94,18 +100,26 @@ class Capacities:
         """Geometric means of the bounds, shape (n,); infinite where it was not reached."""
         return np.sqrt(self.lower * self.upper)
 
-    def fit(self) -> tuple[Array, Array]:
-        """Return mean and spread of the logarithm of the capacity."""
-        return self._fit(np.arange(self.size))
+    def bounds(self) -> Bounds:
+        """Return what is known of the capacities."""
+        return self._bounds(np.arange(self.size))
 
-    def fit_samples(self, random: np.random.Generator, n: int) -> tuple[Array, Array]:
-        """Return the same for n bootstrap samples of the records, each of shape (n,)."""
-        return self._fit(random.integers(0, self.size, (n, self.size)))
-
-    def _fit(self, draws: NDArray[np.int_]) -> tuple[Array, Array]:
-        if self.known:
+    def fit_samples(
+        self, random: np.random.Generator, n: int, beta: float | None = None
+    ) -> tuple[Array, Array]:
+        """Return mean and spread of the logarithm for n bootstrap samples, each of shape (n,)."""
+        draws = random.integers(0, self.size, (n, self.size))
+        if self.known and beta is None:
             return fit_points(self.values[draws])
-        return fit_brackets(self.lower[draws], self.upper[draws])
+        return fit_bounds(self._bounds(draws), beta)[:2]
+
+    def _bounds(self, draws: NDArray[np.int_]) -> Bounds:
+        known = self.known
+        with np.errstate(divide="ignore"):
+            low, high = (
+                np.log((self.values if known else end)[draws]) for end in (self.lower, self.upper)
+            )
+        return Bounds(low, high, np.ones(draws.shape))
 
     @property
     def size(self) -> int:
@@ -131,6 +145,8 @@ class Fragility:
         What it was fitted to.
     intensity_name : str
         Name of the intensity, for figures.
+    stated : bool
+        Whether beta was stated, and theta alone fitted.
     """
 
     name: str
@@ -139,6 +155,7 @@ class Fragility:
     covariance: Array
     data: Any
     intensity_name: str = ""
+    stated: bool = False
 
     def probability(self, intensity: ArrayLike) -> Array:
         """Return the probability of the limit state at intensities."""
@@ -151,13 +168,32 @@ class Fragility:
         """Return theta and beta of bootstrap samples of the records, each of shape (n,).
 
         Samples that do not determine a curve are left out.
+
+        Warns
+        -----
+        AccuracyWarning
+            If these are more than a tenth.
+
+        Raises
+        ------
+        InputError
+            If these are more than half.
         """
         number = _core.whole(n, "n")
         if number < 10:
             raise InputError(f"samples: n = {n} must be 10 or more")
         random = np.random.default_rng(_core.whole(seed, "seed"))
-        mu, beta = self.data.fit_samples(random, number)
+        mu, beta = self.data.fit_samples(random, number, self.beta if self.stated else None)
         good = np.isfinite(mu)
+        lost = 1.0 - float(good.mean())
+        if lost > _LOST:
+            text = (
+                f"fragility of {self.name}: {100 * lost:.0f} % of the bootstrap samples do not "
+                "determine beta; add levels or records, or state beta"
+            )
+            if lost > 0.5:
+                raise InputError(text)
+            warnings.warn(f"{text}. The others are the band", AccuracyWarning, stacklevel=3)
         return np.exp(mu[good]), beta[good]
 
     def band(
@@ -216,11 +252,16 @@ class Fragility:
         se = np.sqrt(np.diag(self.covariance))
         return (
             f"Fragility({self.name!r}, theta={self.theta:.4g} +- {se[0]:.2g}, "
-            f"beta={self.beta:.3g} +- {se[1]:.2g})"
+            f"beta={self.beta:.3g} {'stated' if self.stated else f'+- {se[1]:.2g}'})"
         )
 
 
-def fit_fragility(name: str, data: Counts | Capacities, intensity_name: str = "") -> Fragility:
+def fit_fragility(
+    name: str,
+    data: Counts | Capacities,
+    intensity_name: str = "",
+    beta: float | None = None,
+) -> Fragility:
     """Return the lognormal curve of largest likelihood.
 
     Parameters
@@ -233,13 +274,52 @@ def fit_fragility(name: str, data: Counts | Capacities, intensity_name: str = ""
         of their bounds.
     intensity_name : str, optional
         Name of the intensity.
+    beta : float, optional
+        Standard deviation of the logarithm of the capacity, stated where the data do not determine
+        it; the median alone is then fitted.
 
     Raises
     ------
     InputError
-        If no run reached the limit state, or all did, at every level.
+        If no run reached the limit state, or all did, at every level, or the data do not determine
+        beta: runs of which at most one level has both outcomes, and bounds that have a value in
+        common, or touch. The message gives between what the median lies.
     """
     who = f"fragility of {name}: "
+    if beta is not None:
+        beta = _core.number(beta, "beta")
+        if not 0 < beta < np.inf:
+            raise InputError(f"{who}beta = {beta:g} must be above 0 and finite, as 0.4")
+    _check(who, data, beta)
+    if isinstance(data, Capacities) and data.known and beta is None:
+        mu, spread = (float(value) for value in fit_points(data.values))
+        n = data.size
+        covariance = np.diag([spread**2 / n, spread**2 / (2 * (n - 1))])
+    else:
+        bounds = data.bounds()
+        found = fit_bounds(bounds, beta)
+        mu, spread, covariance = float(found[0]), float(found[1]), found[2]
+        if np.isinf(spread):
+            raise InputError(
+                f"{who}the share of the runs that reach it does not grow with the intensity; add "
+                "levels or records"
+            )
+        if np.isnan(mu):
+            raise InputError(who + _undetermined(bounds))
+    to_theta = np.diag([np.exp(mu), 1.0])
+    return Fragility(
+        name,
+        float(np.exp(mu)),
+        spread,
+        np.asarray(to_theta @ covariance @ to_theta),
+        data,
+        intensity_name,
+        beta is not None,
+    )
+
+
+def _check(who: str, data: Counts | Capacities, beta: float | None) -> None:
+    """Refuse data without any curve."""
     if data.size < 2:
         raise InputError(f"{who}{data.size} records; give two or more")
     if isinstance(data, Counts):
@@ -249,7 +329,7 @@ def fit_fragility(name: str, data: Counts | Capacities, intensity_name: str = ""
             raise InputError(
                 f"{who}{which} the limit state, of {runs}; add {other} levels of intensity"
             )
-        if (data.number > 0).sum() < 2:
+        if (data.number > 0).sum() < 2 and beta is None:
             raise InputError(f"{who}one level does not give a curve; give two or more")
     elif not ((data.lower >= 0) & (data.upper >= data.lower)).all():
         raise InputError(f"{who}bounds of capacities must be 0 or more, the lower one first")
@@ -257,65 +337,18 @@ def fit_fragility(name: str, data: Counts | Capacities, intensity_name: str = ""
         raise InputError(
             f"{who}no record reached the limit state; raise the highest level of intensity"
         )
-    elif not data.known and data.lower.max() < data.upper.min():
+    elif not (data.lower > 0).any():
         raise InputError(
-            f"{who}all records reach the limit state between the same two levels, "
-            f"{data.lower.max():.4g} and {data.upper.min():.4g}; add levels between them"
+            f"{who}all records reached the limit state at the lowest level; give lower ones"
         )
-    mu, beta = (float(value) for value in data.fit())
-    if not np.isfinite(mu):
-        raise InputError(f"{who}the data do not determine a curve; add levels of intensity")
-    if isinstance(data, Counts) and beta >= MOST_BETA:
-        raise InputError(
-            f"{who}the share of the runs that reach it does not grow with the intensity; add "
-            "levels or records"
-        )
-    return Fragility(
-        name, float(np.exp(mu)), beta, _covariance(data, mu, beta), data, intensity_name
+
+
+def _undetermined(bounds: Bounds) -> str:
+    low, high = (float(np.exp(end)) for end in bounds.gap())
+    if np.isnan(low):
+        return "the fit has not come to an end; give intensities within a few powers of ten"
+    where = f"above {low:.4g}" if np.isinf(high) else f"between {low:.4g} and {high:.4g}"
+    return (
+        "the data do not determine beta, as a step fits them as well as any curve; the median is "
+        f"{where}. Add levels there, or state beta, as fragility(..., beta=0.4)"
     )
-
-
-def _covariance(data: Counts | Capacities, mu: float, beta: float) -> Array:
-    """Return the covariance of theta and beta; NaN where the likelihood has no curvature."""
-    theta = np.exp(mu)
-    if isinstance(data, Capacities) and data.known:
-        n = data.size
-        return np.diag([(theta * beta) ** 2 / n, beta**2 / (2 * (n - 1))])
-    if beta <= LEAST_BETA * (1 + 1e-9):
-        return np.full((2, 2), np.nan)
-    hessian = np.empty((2, 2))
-    at = np.array([mu, beta])
-    steps = _STEP * beta * np.eye(2)
-    for i in range(2):
-        for j in range(2):
-            ends = [
-                _loss(data, *(at + a * steps[i] + b * steps[j])) * a * b
-                for a in (1, -1)
-                for b in (1, -1)
-            ]
-            hessian[i, j] = sum(ends) / (4 * (_STEP * beta) ** 2)
-    try:
-        found = np.linalg.inv(hessian)
-    except np.linalg.LinAlgError:
-        return np.full((2, 2), np.nan)
-    to_theta = np.diag([theta, 1.0])
-    return np.asarray(to_theta @ found @ to_theta)
-
-
-def _loss(data: Counts | Capacities, mu: float, beta: float) -> float:
-    """Return the negative logarithm of the likelihood."""
-    special = need_scipy("special")
-    if isinstance(data, Counts):
-        z = (np.log(data.intensity) - mu) / beta
-        k, n = data.failures, data.number
-        return -float((k * special.log_ndtr(z) + (n - k) * special.log_ndtr(-z)).sum())
-    with np.errstate(divide="ignore"):
-        low, high = ((np.log(end) - mu) / beta for end in (data.lower, data.upper))
-    exact = high - low <= 1e-12 / beta
-    flip = low > 0
-    lo, hi = np.where(flip, -high, low), np.where(flip, -low, high)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        top, bottom = special.log_ndtr(hi), special.log_ndtr(lo)
-        between = top + np.log1p(-np.exp(np.minimum(bottom - top, 0.0)))
-    point = -0.5 * low**2 - np.log(beta)
-    return -float(np.where(exact, point, between).sum())

@@ -130,7 +130,9 @@ class IDA(Fragile[Fragility]):
             )
         return Capacities(lower, upper)
 
-    def fragility(self, edp: str = "collapse", threshold: float | None = None) -> Fragility:
+    def fragility(
+        self, edp: str = "collapse", threshold: float | None = None, *, beta: float | None = None
+    ) -> Fragility:
         """Return the fragility curve of a limit state.
 
         Parameters
@@ -140,16 +142,21 @@ class IDA(Fragile[Fragility]):
             have no threshold.
         threshold : float, optional
             Value of the measure at the limit state.
+        beta : float, optional
+            Standard deviation of the logarithm of the capacity, stated where the runs do not
+            determine it; the median alone is then fitted.
 
         Raises
         ------
         InputError
-            If no record reached it.
+            If no record reached it, or the runs do not determine beta: one value lies within the
+            bounds of all capacities, or they touch. The message gives between what the median lies.
         """
-        return self._one(edp, threshold)
+        return self._one(edp, threshold, beta)
 
-    def _fit(self, name: str, measure: str, limit: float) -> Fragility:
-        return fit_fragility(name, self._capacities(measure, limit), self.runs.measure.label)
+    def _fit(self, name: str, measure: str, limit: float, beta: float | None) -> Fragility:
+        data = self._capacities(measure, limit)
+        return fit_fragility(name, data, self.runs.measure.label, beta)
 
     def plot(self, ax: Any = None, **line: Any) -> Any:
         """Draw all curves and their fractiles; see `rbsdem.ensembles.figure`."""

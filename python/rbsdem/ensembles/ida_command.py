@@ -65,6 +65,13 @@ def parser() -> CommandParser:
         help="a limit state by its peak drift, as repair=0.01; may be repeated",
     )
     parser.add_argument(
+        "--beta",
+        action="append",
+        default=[],
+        metavar="NAME=BETA",
+        help="a spread that the runs do not determine, as yield=0.4; may be repeated",
+    )
+    parser.add_argument(
         "--collapse-drift",
         type=float,
         metavar="X",
@@ -99,6 +106,7 @@ def _run(given: argparse.Namespace) -> int:
             raise InputError("--parquet writes a file; say where with --out DIR")
     case = read_case(given.case)
     limits = _limits(given.limit)
+    spreads = _spreads(given.beta, limits)
     hazard = None if given.hazard is None else _read_hazard(given.hazard)
     motions = _records(given.records, given.units)
     if given.out is not None:
@@ -112,7 +120,7 @@ def _run(given: argparse.Namespace) -> int:
         progress=not given.quiet and sys.stderr.isatty(),
         **_settings(case, given),
     )
-    curves, notes = _curves(found, limits)
+    curves, notes = _curves(found, limits, spreads)
     written = [] if given.out is None else _write(found, curves, given.out, given.parquet)
     if not given.quiet:
         _report(found, curves, notes, hazard)
@@ -181,15 +189,32 @@ def _limits(texts: Sequence[str]) -> dict[str, Any]:
     """Return yield, the limit states of the command line, and collapse."""
     found: dict[str, Any] = {"yield": ("first_yield", None)}
     for text in texts:
-        name, mark, value = text.partition("=")
-        try:
-            drift = float(value)
-        except ValueError:
-            drift = math.nan
-        if not (name and mark and 0 < drift < 1):
+        name, drift = _named_number(text)
+        if not (name and 0 < drift < 1):
             raise InputError(f"--limit {text}: give a name and a drift, as repair=0.01")
         found[name] = drift
     return found | {"collapse": ("collapse", None)}
+
+
+def _spreads(texts: Sequence[str], limits: dict[str, Any]) -> dict[str, float]:
+    """Return the spreads that the command line states."""
+    found = dict(map(_named_number, texts))
+    for text, (name, beta) in zip(texts, map(_named_number, texts), strict=True):
+        if name not in limits or not 0 < beta < math.inf:
+            raise InputError(
+                f"--beta {text}: give a limit state ({', '.join(limits)}) and its spread, as "
+                "yield=0.4"
+            )
+    return found
+
+
+def _named_number(text: str) -> tuple[str, float]:
+    """Return the parts of NAME=NUMBER; NaN where there is no number."""
+    name, _, value = text.partition("=")
+    try:
+        return name, float(value)
+    except ValueError:
+        return name, math.nan
 
 
 def _read_hazard(path: Path) -> Hazard:
@@ -217,13 +242,16 @@ def _read_hazard(path: Path) -> Hazard:
     return Hazard(*zip(*rows, strict=True))
 
 
-def _curves(found: IDA, limits: dict[str, Any]) -> tuple[dict[str, Fragility], list[str]]:
+def _curves(
+    found: IDA, limits: dict[str, Any], spreads: dict[str, float]
+) -> tuple[dict[str, Fragility], list[str]]:
     """Return the curves, and why some limit states have none."""
     curves: dict[str, Fragility] = {}
     notes: list[str] = []
     for name, limit in limits.items():
         try:
-            curves |= found.fragilities({name: limit})
+            beta = {name: spreads[name]} if name in spreads else None
+            curves |= found.fragilities({name: limit}, beta=beta)
         except InputError as error:
             notes.append(str(error))
     return curves, notes
@@ -268,10 +296,16 @@ def _report(
     for number, head in enumerate([*heads, "1/a"] if hazard else heads):
         table.add_column(head, justify="right" if number else "left", no_wrap=True)
     for name, one in curves.items():
-        low, high = one.band([one.theta])
         errors = _errors(one)
-        cells = [f"{one.theta:.3g}", f"{errors[0]:.2g}", f"{one.beta:.2f}", f"{errors[1]:.2f}"]
-        cells += [f"{float(low[0]):.2f} to {float(high[0]):.2f}", str(one.data.size)]
+        cells = [f"{one.theta:.3g}", f"{errors[0]:.2g}", f"{one.beta:.2f}"]
+        cells += ["stated" if one.stated else f"{errors[1]:.2f}"]
+        try:
+            low, high = one.band([one.theta])
+            cells.append(f"{float(low[0]):.2f} to {float(high[0]):.2f}")
+        except InputError as error:
+            cells.append("-")
+            notes = [*notes, str(error)]
+        cells.append(str(one.data.size))
         if hazard:
             cells.append(f"{one.mean_annual_frequency(hazard):.2e}")
         table.add_row(plain(name), *cells)

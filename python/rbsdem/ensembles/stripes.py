@@ -59,7 +59,9 @@ class Stripes(Fragile[Fragility]):
         failed[level, record] = response >= limit
         return Counts(self.levels, failed, self.paired)
 
-    def fragility(self, edp: str = "collapse", threshold: float | None = None) -> Fragility:
+    def fragility(
+        self, edp: str = "collapse", threshold: float | None = None, *, beta: float | None = None
+    ) -> Fragility:
         """Return the fragility curve of a limit state, of largest likelihood (Baker 2015, eq 11).
 
         The parameters are those of `IDA.fragility`.
@@ -67,12 +69,13 @@ class Stripes(Fragile[Fragility]):
         Raises
         ------
         InputError
-            If no run reached it, or all did.
+            If no run reached it, or all did, or the runs do not determine beta: at most one level
+            has both outcomes. The message gives between what the median lies.
         """
-        return self._one(edp, threshold)
+        return self._one(edp, threshold, beta)
 
-    def _fit(self, name: str, measure: str, limit: float) -> Fragility:
-        return fit_fragility(name, self._counts(measure, limit), self.runs.measure.label)
+    def _fit(self, name: str, measure: str, limit: float, beta: float | None) -> Fragility:
+        return fit_fragility(name, self._counts(measure, limit), self.runs.measure.label, beta)
 
     def plot(self, ax: Any = None, **line: Any) -> Any:
         """Draw the responses at the levels; see `rbsdem.ensembles.figure`."""
