@@ -60,15 +60,10 @@ contains
          call settle(section, laws, axial_load, 0.0_wp, state, found)
          if (found) return
       end if
-      if (axial_load > 0.0_wp) then
-         call fatal_error(error, bad_input, 'section: axial load = '//to_text(axial_load)// &
-                          ' N (compression) is above what the section carries, '//to_text(most%n)// &
-                          ' N; reduce it, or enlarge the section')
-      else
-         call fatal_error(error, bad_input, 'section: axial load = '//to_text(axial_load)// &
-                          ' N (tension) is above what the bars carry, '//to_text(-least%n)// &
-                          ' N; reduce it, or add bars')
-      end if
+      call fatal_error(error, bad_input, 'section: axial_load = '//to_text(axial_load)//' N is more '// &
+                       trim(merge('compression', 'tension    ', axial_load > 0.0_wp))// &
+                       ' than the section carries; compression is positive: give '//to_text(least%n)// &
+                       ' to '//to_text(most%n)//' N')
    end subroutine begin
 
    !> Bend the section to a curvature of the same sign and larger magnitude, in internal steps.

@@ -76,7 +76,7 @@ contains
       spring%yield = without%yield
       spring%ultimate = without%ultimate
       spring%peak = without%peak
-      call check_points(section, spring, error)
+      call check_points(section, hinge%axial_load, spring, error)
       if (allocated(error)) return
       if (hinge%stiffened_yield) call stiffen_yield(section, stiffened, hinge, spring, error)
       if (allocated(error)) return
@@ -84,8 +84,9 @@ contains
    end subroutine fit_flexural_spring
 
    !> The three points must exist, in this order.
-   subroutine check_points(section, spring, error)
+   subroutine check_points(section, axial_load, spring, error)
       type(section_type), intent(in) :: section
+      real(wp), intent(in) :: axial_load
       type(flexural_spring_type), intent(in) :: spring
       type(error_type), allocatable, intent(out) :: error
 
@@ -100,8 +101,9 @@ contains
          call fatal_error(error, bad_input, 'flexural spring: the diagram ends before the ultimate point '// &
                           "of this rule; take ultimate = 'drop'")
       else if (.not. (spring%cracking%found .and. spring%cracking%curvature > 0.0_wp)) then
-         call fatal_error(error, bad_input, 'flexural spring: the axial load alone cracks the section, '// &
-                          'the trilinear line has no first branch; reduce the tension')
+         call fatal_error(error, bad_input, 'flexural spring: the axial load alone cracks the section: '// &
+                          to_text(axial_load)//' N, compression positive; the trilinear line has no first '// &
+                          'branch, reduce the tension')
       else if (spring%ultimate%curvature <= spring%yield%curvature) then
          call fatal_error(error, bad_input, 'flexural spring: the ultimate curvature '// &
                           to_text(spring%ultimate%curvature)//' 1/m is not beyond the yield curvature '// &

@@ -29,9 +29,8 @@ contains
             if (carries_axial_load(spring)) cycle
             call fatal_error(error, bad_input, 'flexure spring of joint '// &
                              to_text(spec%joint_number(i))// &
-                             ': its layers cannot '// &
-                             'carry the axial load of '//to_text(spring%axial_load)//' N; lower it, or '// &
-                             'give stronger layers')
+                             ': its layers cannot carry the axial load of '//to_text(spring%axial_load)// &
+                             ' N (compression positive); lower it, or give stronger layers')
          end associate
          return
       end do

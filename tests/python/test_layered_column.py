@@ -128,7 +128,7 @@ def test_wrong_choices_are_refused(model, options, text):
 @pytest.mark.parametrize("load", [9e6, -1.5e6])
 def test_an_axial_load_over_the_capacity_is_refused(load):
     crushed = replace(SPECIMEN, axial_load=load)
-    with pytest.raises(InputError, match=f"axial load = {load / 1e3:g} kN is not between"):
+    with pytest.raises(InputError, match=r"axial_load = .* N is more .*; compression is positive"):
         peer.column(crushed, "layered")
 
 
@@ -266,7 +266,7 @@ def test_a_circular_section_makes_both_models():
         ({"model": "paper", "version": "2026.2"}, "version is for model = 'layered'; remove it"),
         ({"model": "paper", "round_core": True}, "round_core is for model = 'layered'"),
         ({"axial_height": 0.0}, "axial_height = 0 m must be above zero"),
-        ({"axial_load": 9e6}, "axial load = 9000 kN is not between"),
+        ({"axial_load": 9e6}, r"axial_load = 9e\+06 N is more compression"),
     ],
 )
 def test_arguments_that_a_section_refuses(options, text):

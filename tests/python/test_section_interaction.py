@@ -133,7 +133,7 @@ def largest_on_a_grid(section, load, confined=False):
     largest = 0.0
     for curvature in np.geomspace(1e-4, 0.4, 300) / section.depth:
         try:
-            moment, strain = section.strains(load, curvature, confined=confined)
+            moment, strain = section._strains(load, curvature, "ts", confined)
         except rbsdem.SolveError:
             break
         edge = 0.5 * section.depth - section.cover - 0.5 * section.ties.diameter
@@ -165,6 +165,7 @@ def test_own_laws_are_those_of_moment_curvature(confined):
     assert np.all(diagram.moment_at(loads) > 0.97 * code.moment_at(loads))
 
 
+@pytest.mark.filterwarnings("ignore:axial_load = .* is tension")
 def test_the_drop_after_cracking_is_no_end():
     """A circle that hangs on bars that yield is bent until the first of them breaks."""
     steel = rbsdem.Steel(460e6, 600e6)

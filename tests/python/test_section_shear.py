@@ -325,7 +325,7 @@ def test_section_without_a_knee_has_one_line() -> None:
         ({"length": -1.0}, "length = -1"),
         ({"length": math.nan}, "length = nan"),
         ({"axial_load": math.inf}, "axial_load"),
-        ({"axial_load": 1e9}, "axial load"),
+        ({"axial_load": 1e9}, "axial_load"),
         ({"layers": 1}, "layers = 1"),
         ({"knee": 1.2}, "knee = 1.2"),
         ({"curvature": [0.01, 0.005]}, "must rise"),

@@ -201,7 +201,7 @@ def make_diagram(
     named = [point.curvature for point in (*_points(events), end) if point.curvature <= furthest]
     # Closer together where the diagram turns, at small curvatures.
     curvature = np.unique(np.concatenate([furthest * np.linspace(0.0, 1.0, points) ** 2, named]))
-    moment, strain = section.strains(axial_load, curvature, tension, confined)
+    moment, strain = section._strains(axial_load, curvature, tension, confined)
     return Diagram(
         section, axial_load, tension, confined, curvature, moment, strain, events, end, lost
     )
@@ -217,8 +217,8 @@ def largest_moment(section: Section, axial_load: float, confined: bool) -> float
         raise AssertionError("every diagram has a peak")
     if rule == "cover" or broken is None or peak.curvature <= broken.curvature:
         return peak.moment
-    until = section.diagram(axial_load, confined=True, ultimate="mander", furthest=broken.curvature)
-    return float(until.moment.max())
+    curvature = np.linspace(0.0, broken.curvature, 100)
+    return float(section._strains(axial_load, curvature, "ts", confined)[0].max())
 
 
 def _find(section: Section, settings: dict[str, Any]) -> tuple[Events, Point, bool]:

@@ -273,7 +273,8 @@ def _least_hardening(section: Section, hinge: HingeParameters) -> float:
 def _check(axial_load: float, bars: float, whole: float) -> None:
     """Refuse what only hardening bars would carry, beyond the bars alone and the whole section."""
     if not -bars < axial_load < whole:
+        kind = "compression" if axial_load > 0.0 else "tension"
         raise InputError(
-            f"axial load = {axial_load / 1e3:g} kN is not between {-bars / 1e3:.0f} and "
-            f"{whole / 1e3:.0f} kN, which bars and concrete of the section carry"
+            f"axial_load = {axial_load:g} N is more {kind} than bars at yield and concrete of the "
+            f"joint carry; compression is positive: give {-bars:g} to {whole:g} N"
         )

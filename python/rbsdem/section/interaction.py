@@ -35,6 +35,7 @@ __all__ = [
     "InteractionDiagram",
     "interaction_diagram",
     "joint_interaction",
+    "joint_loads",
     "nominal_moment",
 ]
 
@@ -182,19 +183,30 @@ def joint_interaction(
     turned = _core.number(rotation, "interaction: rotation")
     if not 0.0 < turned <= 1.0:
         raise InputError(f"interaction: rotation = {turned:g} rad must be above 0, up to 1")
+    loads = np.linspace(*joint_loads(joint, closing), count)
+    path = np.concatenate(([0.0], np.geomspace(1e-4, 1.0, 100) * turned))
+    moments = np.array([np.nanmax(joint.response(path, load)) for load in loads.tolist()])
+    unknown = np.full(count, np.nan)
+    return InteractionDiagram("joint", loads, moments, loads, moments, unknown, unknown)
+
+
+def joint_loads(joint: Layered, closing: float) -> tuple[float, float]:
+    """Return the axial loads of a joint without rotation: bars yield in tension, and the largest.
+
+    Parameters
+    ----------
+    joint, closing
+        As for `joint_interaction`.
+    """
     bars = [spring for _, spring in joint.layers if isinstance(spring, SteelSpring)]
     if not bars:
         raise InputError("interaction: the joint has no layers of steel")
     apart = max(bar.f_y / bar.k for bar in bars)
     together = -closing * np.linspace(0.0, 1.0, 400)
     numbers = Counter(spring for _, spring in joint.layers)
-    least = -sum(n * bar.response([apart])[0] for bar, n in numbers.items())
+    least = -sum(n * layer.response([apart])[0] for layer, n in numbers.items())
     most = max(-sum(n * layer.response(together) for layer, n in numbers.items()))
-    loads = np.linspace(least, most, count)
-    path = np.concatenate(([0.0], np.geomspace(1e-4, 1.0, 100) * turned))
-    moments = np.array([np.nanmax(joint.response(path, load)) for load in loads.tolist()])
-    unknown = np.full(count, np.nan)
-    return InteractionDiagram("joint", loads, moments, loads, moments, unknown, unknown)
+    return float(least), float(most)
 
 
 def _points(points: int) -> int:

@@ -22,7 +22,7 @@ from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.parameter import Parameter
 from rbsdem.section.directions import DIRECTIONS
 from rbsdem.section.hinge import HingeJoint, hinge_joint
-from rbsdem.section.interaction import InteractionDiagram, joint_interaction
+from rbsdem.section.interaction import InteractionDiagram, joint_interaction, joint_loads
 from rbsdem.section.parameters import FACTORS, ModelParameters, parameters
 from rbsdem.section.ranges import axial_load_note, column_length, outside
 from rbsdem.section.scatter import Scatter
@@ -55,6 +55,9 @@ MODELS: tuple[str, ...] = get_args(Model)
 
 DEFAULT: Model = "layered"
 """The model that is taken if none is named."""
+
+#: Strain at which all concrete is crushed.
+_CRUSHED = 0.02
 
 CONCRETE_DENSITY = 2400.0
 """Density of reinforced concrete for the mass of a column [kg/m3]."""
@@ -109,9 +112,6 @@ def make_column(
     check_model(model)
     height = column_length(height, "height")
     axial_load = _core.number(axial_load, "axial_load")
-    note = axial_load_note(axial_load, section.concrete.fc, section.gross_area)
-    if note:
-        warnings.warn(note, AccuracyWarning, stacklevel=3)
     if mass is None:
         mass = section.gross_area * height * CONCRETE_DENSITY
     common = {
@@ -146,8 +146,10 @@ def make_column(
     if model_parameters is not None:
         recipe.check(model_parameters.own)
     column = LayeredColumn(height, n=recipe.n, recipe=recipe, **recipe.made, **common)
-    if column.outside:
-        warnings.warn("; ".join(column.outside), AccuracyWarning, stacklevel=3)
+    note = axial_load_note(axial_load, section)
+    remarks = [note, *column.outside] if note else column.outside
+    if remarks:
+        warnings.warn("; ".join(remarks), AccuracyWarning, stacklevel=3)
     return column
 
 
@@ -397,7 +399,8 @@ class LayeredColumn(Column):
         try:
             super().__post_init__()
         except InputError:
-            # What a spring of the model says, which was not asked before, is nearer the fault.
+            # What the hinge carries or a spring says is nearer the fault; neither was asked before.
+            self._check_load()
             for name in ("flexure", "shear"):
                 check_springs(self.recipe.made[name])
             raise
@@ -547,8 +550,7 @@ class LayeredColumn(Column):
         foot = self.joints("flexure")[self.joint_numbers.index(1)]
         if not isinstance(foot, Layered):
             raise InputError(f"interaction: the joint at the foot is a {type(foot).__name__}")
-        # Concrete is crushed at a strain of 0.02.
-        return joint_interaction(foot, 0.02 * self._recipe.joint.length, rotation, points)
+        return joint_interaction(foot, _CRUSHED * self._recipe.joint.length, rotation, points)
 
     @property
     def outside(self) -> tuple[str, ...]:
@@ -587,6 +589,19 @@ class LayeredColumn(Column):
             Where the column is outside the range of the tests.
         """
         return spread(self, displacement, samples=samples, scatter=scatter)
+
+    def _check_load(self) -> None:
+        """Refuse an axial load that the hinge of the model does not carry."""
+        joint = self._recipe.joint
+        if self.flexure[0] != joint.spring:
+            return
+        least, most = joint_loads(joint.spring, _CRUSHED * joint.length)
+        if not least <= self.axial_load <= most:
+            kind = "compression" if self.axial_load > 0.0 else "tension"
+            raise InputError(
+                f"axial_load = {self.axial_load:g} N is more {kind} than the hinge of the model "
+                f"carries; compression is positive: give {least:g} to {most:g} N"
+            )
 
     def _kept(self, field: str) -> bool:
         """Whether what the model made was replaced by something else."""

@@ -60,19 +60,32 @@ def column_length(value: Any, name: str) -> float:
     )
 
 
-def axial_load_note(axial_load: float, strength: float, area: float) -> str:
-    """Return a remark on an axial load that is hardly meant, as one in kN; empty if there is none.
+def axial_load_note(axial_load: float, section: Section) -> str:
+    """Return a remark on an axial load that is hardly meant; empty if there is none.
+
+    Tension is one, as the sign may be that of another convention, and a load as small as one in kN.
 
     Parameters
     ----------
     axial_load : float
         Compression positive [N].
-    strength, area : float
-        Cylinder strength [Pa] and gross area [m2].
+    section : Section
+        The section that carries it.
     """
-    ratio = abs(axial_load) / (strength * area)
-    if not 0.0 < ratio < _HARDLY_ANY or not math.isfinite(ratio):
+    ratio = abs(axial_load) / (section.concrete.fc * section.gross_area)
+    if not 0.0 < ratio < math.inf:
         return ""
+    if ratio >= _HARDLY_ANY:
+        if axial_load > 0.0:
+            return ""
+        least, most = section.axial_capacity
+        if axial_load < least:
+            # It will be refused.
+            return ""
+        return (
+            f"axial_load = {axial_load:g} N is tension; compression is positive, and without "
+            f"bending the section carries {least:g} to {most:g} N"
+        )
     return (
         f"axial_load = {axial_load:g} N is only {ratio:.1e} of f'c A; loads are in N: 744 kN is "
         "744e3"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal, get_args, overload
 
@@ -13,7 +14,7 @@ from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem.column import Top
 from rbsdem.ends import double_curvature
-from rbsdem.errors import InputError
+from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.footing import Footing
 from rbsdem.section.diagram import Diagram, make_diagram
 from rbsdem.section.drawn import DrawnSection
@@ -21,7 +22,7 @@ from rbsdem.section.interaction import Code, InteractionDiagram, interaction_dia
 from rbsdem.section.materials import Tension
 from rbsdem.section.model import DEFAULT, LayeredColumn, Model, make_column
 from rbsdem.section.parameters import ModelParameters
-from rbsdem.section.ranges import column_length
+from rbsdem.section.ranges import axial_load_note, carried_load, column_length
 from rbsdem.section.shear_diagram import ShearDiagram, shear_diagram
 from rbsdem.section.spring_fit import SectionSprings, fit_springs
 from rbsdem.section.strength import shear_strength_mcft
@@ -72,7 +73,8 @@ class Section(DrawnSection):
         SolveError
             If the section no longer carries the axial load at one of the curvatures.
         """
-        return self.strains(axial_load, curvature, tension, confined)[0]
+        load = self._load(axial_load)
+        return self._strains(load, curvature, tension, self._confined(confined))[0]
 
     def strains(
         self,
@@ -99,6 +101,11 @@ class Section(DrawnSection):
         InputError, SolveError
             As for `moment_curvature`.
         """
+        return self._strains(self._load(axial_load), curvature, tension, self._confined(confined))
+
+    def _strains(
+        self, axial_load: float, curvature: ArrayLike, tension: Tension, confined: bool
+    ) -> tuple[Array, Array]:
         shape = np.shape(curvature)
         flat = _core.finite_vector(np.ravel(np.asarray(curvature)), "curvature")
         over = np.flatnonzero(np.abs(flat) * self.depth > 1.0)
@@ -108,9 +115,9 @@ class Section(DrawnSection):
                 f"over the depth; curvatures are in 1/m: 10 mrad/m is 0.01"
             )
         settings = {
-            "axial_load": self._load(axial_load),
+            "axial_load": axial_load,
             "tension": tension,
-            "confined": self._confined(confined),
+            "confined": confined,
         }
         moment = np.empty_like(flat)
         strain = np.empty_like(flat)
@@ -268,7 +275,7 @@ class Section(DrawnSection):
                 f"springs: hinge_length = {hinge:g} m is longer than the column, length = "
                 f"{length:g} m"
             )
-        return fit_springs(self, length, self._load(axial_load), **options)
+        return fit_springs(self, length, _core.number(axial_load, "axial_load"), **options)
 
     @overload
     def column(
@@ -463,7 +470,7 @@ class Section(DrawnSection):
         InputError
             If a value is refused.
         """
-        return shear_strength_mcft(self, length, self._load(axial_load))
+        return shear_strength_mcft(self, length, carried_load(self._load(axial_load), self))
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the section with its bars and ties.
@@ -481,9 +488,13 @@ class Section(DrawnSection):
         return _views.view(self, "plot", ax)
 
     def _load(self, axial_load: Any) -> float:
+        """Return an axial load; say so if it is hardly meant."""
         value = _core.number(axial_load, "axial_load")
         if not math.isfinite(value):
             raise InputError(f"axial_load = {value} N must be a finite number")
+        note = axial_load_note(value, self)
+        if note:
+            warnings.warn(note, AccuracyWarning, stacklevel=3)
         return value
 
     def _confined(self, confined: Any) -> bool:

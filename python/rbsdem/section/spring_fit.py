@@ -183,7 +183,7 @@ def fit_springs(
         section._statement, settings | words | {"confined": confined}
     )
     notes = []
-    note = axial_load_note(axial_load, section.concrete.fc, section.gross_area)
+    note = axial_load_note(axial_load, section)
     if note:
         notes.append(f"springs: {note}")
     if section.turned is not section:
