@@ -27,9 +27,11 @@ class Method:
         The step that the method chooses, as a share of the stability limit of "rk4" and of the
         longest natural period; 0 if it does not depend on that. For "rk45" it is the longest step.
     usual_error, largest_error : float
-        Errors at this step, or at the tolerance by default: median and largest of the responses of
-        ``studies/error_classes.py``. 0 for "static" (round-off), and for "auto", which has those of
-        the method that it chooses.
+        Errors at this step, or at the tolerance by default, over the peaks: median and largest of
+        the responses of ``studies/error_classes.py``. 0 for "static" (round-off), and for "auto",
+        which has those of the method that it chooses.
+    responses : int
+        How many responses these are.
     """
 
     name: str
@@ -41,6 +43,7 @@ class Method:
     period_share: float
     usual_error: float
     largest_error: float
+    responses: int
 
 
 _SETTINGS = ("dt", "events", "tolerance", "rho_infinity", "allow_unstable")
@@ -57,6 +60,7 @@ METHODS = {
         period_share=float(row["period_share"]),
         usual_error=float(row["usual_error"]),
         largest_error=float(row["largest_error"]),
+        responses=int(row["responses"]),
     )
     for row in _core.methods()
 }

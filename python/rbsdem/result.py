@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import os
 from dataclasses import dataclass, fields
@@ -12,7 +13,7 @@ import numpy as np
 from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem.column import Column
-from rbsdem.errors import InputError
+from rbsdem.errors import InputError, SolveError
 from rbsdem.methods import METHODS
 from rbsdem.springs import Layered
 from rbsdem.strains import Gauge, Strains, strains_of
@@ -26,43 +27,57 @@ if TYPE_CHECKING:
     from rbsdem.limit_states.hinge import Hinge
     from rbsdem.limit_states.record import LimitStates
 
+#: Most steps times bodies of a run that is short enough to be done once more.
+_SHORT = 50_000
+
 #: Names of the energies.
 ENERGIES = ("input", "kinetic", "spring", "damping", "axial", "residual")
 
 
 @dataclass(frozen=True)
 class ErrorEstimate:
-    """What is known of the error of one result without another run.
+    """What is known of the error of one result.
 
     Attributes
     ----------
     method : str
         The method that was used.
+    measured : float
+        The largest of `Result.refined_error`, where that run is short; NaN where it is not, and for
+        a static path.
     usual, largest : float
         Error of the method at its own step or tolerance, relative to the peaks: median and largest
-        of the responses of ``studies/error_classes.py``. 0 for a static path, which is exact but
-        for round-off with small rotations.
+        of the responses of ``studies/error_classes.py``, which say little of another one. 0 for a
+        static path, which is exact but for round-off.
+    responses : int
+        How many responses those were.
     own_setting : bool
         Whether the result has this step or tolerance; else a setting of the user.
     energy : float
-        What is missing in the energy balance of this result, over its largest energy. It shows the
-        error in the energy alone: a response may err by more.
+        What is missing in the energy balance of this result, over its largest energy. It is no
+        measure of the response, which may err by much more.
     """
 
     method: str
+    measured: float
     usual: float
     largest: float
+    responses: int
     own_setting: bool
     energy: float
 
     def __str__(self) -> str:
-        balance = f"energy balance to {self.energy:.1e}"
         if not self.usual > 0:
-            return f"{self.method}: {balance}"
+            return f"{self.method}: exact but for round-off"
         at = "" if self.own_setting else " at its own setting, which this is not"
+        tried = (
+            f"{self.usual:g} in the median of {self.responses} other responses, "
+            f"{self.largest:g} at most{at}"
+        )
+        if math.isnan(self.measured):
+            return f"{self.method}: errors over the peaks: {tried}; refined_error() measures it"
         return (
-            f"{self.method}: errors usually about {self.usual:g}, up to {self.largest:g}{at}; "
-            f"{balance}"
+            f"{self.method}: error about {self.measured:.1g} of the peaks, by a finer run ({tried})"
         )
 
 
@@ -493,13 +508,20 @@ class Result:
 
     @property
     def error_estimate(self) -> ErrorEstimate:
-        """What is known of the error: the class of the method, and the balance of energy."""
+        """What is known of the error: measured where that takes about 0.1 s, else by its method."""
         about = self.summary
         method = METHODS[about["method"]]
+        short = self.dynamic and about["steps"] * self.column.n <= _SHORT
+        measured = math.nan
+        if short and about["status"] == "completed":
+            with contextlib.suppress(SolveError):
+                measured = self.refined_error().largest
         return ErrorEstimate(
             method.name,
+            measured,
             method.usual_error,
             method.largest_error,
+            method.responses,
             not {"dt", "tolerance", "rho_infinity"} & set(self.call),
             about["relative_energy_residual"],
         )

@@ -7,10 +7,13 @@ module rbs_case_methods
    private
 
    public :: method_type, methods, method_named, method_choices, methods_taking, quoted_names, method_rows
-   public :: usual_tolerance, usual_rho_infinity, methods_columns
+   public :: usual_tolerance, usual_rho_infinity, methods_columns, responses_tried
 
    !> What is usual: error of a step of rk45, spectral radius at infinite frequency.
    real(wp), parameter :: usual_tolerance = 1.0e-6_wp, usual_rho_infinity = 0.8_wp
+
+   !> Responses of studies/error_classes.py, with P-Delta, from which the errors of the methods come.
+   integer, parameter :: responses_tried = 44
 
    !> The facts of one method.
    type :: method_type
@@ -62,7 +65,7 @@ module rbs_case_methods
    !> Names of the columns of `method_rows`.
    character(len=*), parameter :: methods_columns = 'method order kind adaptive dt events tolerance '// &
                                   'rho_infinity allow_unstable limit_share period_share '// &
-                                  'usual_error largest_error'
+                                  'usual_error largest_error responses'
 
 contains
 
@@ -145,7 +148,8 @@ contains
                 yes_or_no(method%tolerance)//yes_or_no(method%rho_infinity)// &
                 yes_or_no(method%allow_unstable)//' '// &
                 to_text(method%limit_share)//' '//to_text(method%period_share)//' '// &
-                to_text(method%usual_error)//' '//to_text(method%largest_error)
+                to_text(method%usual_error)//' '//to_text(method%largest_error)//' '// &
+                to_text(merge(responses_tried, 0, method%largest_error > 0.0_wp))
       end do
    end subroutine method_rows
 

@@ -92,7 +92,7 @@ def test_a_static_path_is_exact(kinematics, every):
     assert run.refined_error().largest < 1e-9
     estimate = run.error_estimate
     assert (estimate.usual, estimate.largest, estimate.own_setting) == (0.0, 0.0, True)
-    assert str(estimate).startswith("static: energy balance to ")
+    assert str(estimate) == "static: exact but for round-off"
 
 
 @pytest.mark.parametrize("method", [name for name in METHODS if name not in ("static", "auto")])
@@ -113,9 +113,24 @@ def coarser(method: str) -> dict[str, float]:
 def test_auto_says_what_error_its_choice_has():
     run = shake()
     chosen = METHODS[run.summary["method"]]
-    words = f"errors are usually about {chosen.usual_error:g}, up to {chosen.largest_error:g}"
-    assert run.summary["reason"].endswith(words.replace("e-0", "e-"))
-    assert run.error_estimate.usual == chosen.usual_error
+    words = f"errors over the peaks: {chosen.usual_error:g} in the median of {chosen.responses}"
+    assert words.replace("e-0", "e-") in run.summary["reason"]
+    assert run.summary["reason"].endswith(f"{chosen.largest_error:g} at most".replace("e-0", "e-"))
+
+
+def test_the_error_of_a_short_run_is_measured(exact):
+    """It is that of the finer run; an energy is no part of what is printed."""
+    run = shake(method="newmark")
+    estimate = run.error_estimate
+    assert estimate.measured == run.refined_error().largest
+    true = errors_of(answer(run), answer(exact)).largest
+    assert 0.6 * true < estimate.measured < 1.5 * true
+    assert f"about {estimate.measured:.1g} of the peaks" in str(estimate)
+    assert "energy" not in str(estimate)
+    # A run that takes longer is not done once more unasked.
+    long = shake(method="rk4", dt=2e-6, every=1000).error_estimate
+    assert np.isnan(long.measured)
+    assert "refined_error() measures it" in str(long)
 
 
 def test_a_result_knows_how_it_was_called():

@@ -4,7 +4,8 @@ module rbs_solve_time_run_dynamic
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_case_methods, only: method_type, methods, method_named, usual_tolerance, usual_rho_infinity
+   use rbs_case_methods, only: method_type, methods, method_named, responses_tried, usual_tolerance, &
+                               usual_rho_infinity
    use rbs_column_axial, only: check_stable
    use rbs_column_column, only: column_type, small, finite
    use rbs_column_ends, only: check_inertia_of_ends, check_held_rotation
@@ -167,8 +168,9 @@ contains
          if (plan%located) plan%reason = trim(plan%reason)//'; events located'
       end if
       chosen = method_named(plan%method)
-      plan%reason = trim(plan%reason)//'; errors are usually about '//to_text(chosen%usual_error)// &
-                    ', up to '//to_text(chosen%largest_error)
+      plan%reason = trim(plan%reason)//'; errors over the peaks: '//to_text(chosen%usual_error)// &
+                    ' in the median of '//to_text(responses_tried)//' responses, '// &
+                    to_text(chosen%largest_error)//' at most'
    end subroutine choose_method
 
    !> Response in time under lateral force, ground motion, axial load, or all of them.
