@@ -14,6 +14,9 @@ __all__ = ["double_curvature", "turned"]
 
 C = TypeVar("C", bound=Column)
 
+#: A deformation that no spring reaches [m or rad].
+_NEVER = 1e30
+
 
 def double_curvature(column: C, *, top_mass: float = 0.0, prismatic: bool = False) -> C:
     """Return the column in double curvature whose lower half is a cantilever.
@@ -128,4 +131,7 @@ def turned(spring: Spring) -> Spring:
         changes[name] = getattr(spring, plain)
         if value is not None:
             changes[plain] = value
+    if changes["d_u_neg"] is None and "d_u" in changes:
+        # What is not given would be that of the positive side, which has an end now.
+        changes["d_u_neg"] = _NEVER
     return dataclasses.replace(spring, **changes)

@@ -85,7 +85,7 @@ contains
          call self%work%create(n)
          call state%motion%acceleration(state%springs, state%q, state%v, state%load, self%now)
          call finite_acceleration(column, self%work, state%q, state%v, self%now%f, state%load, self%now%a)
-         self%tension = self%work%axial
+         if (.not. column%opens) self%tension = self%work%axial
       end associate
       call self%place(state)
       call self%body_velocities(state)

@@ -1,0 +1,908 @@
+"""What must not change an answer: each relation over random columns of all rules.
+
+A relation is a function of a random generator; `relation` makes it a test of some hundred cases.
+RBSDEM_CASES=50 takes fifty times as many, RBSDEM_SEED=7 others; a failure names its case, and
+`replay("relation", case)` runs it alone. "Bits" means equal to the last one: nothing that is added
+up changes its size or its order. Elsewhere the tolerance is a multiple of round-off, for a reason
+that stands beside it.
+"""
+
+from __future__ import annotations
+
+import os
+import warnings
+import zlib
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from strategies import (
+    Rng,
+    any_column,
+    motion,
+    rules,
+    static_path,
+    two_sided,
+    waves,
+)
+
+import rbsdem
+from rbsdem import _core
+from rbsdem.ends import turned
+from rbsdem.ensembles.inputs import Motion
+from rbsdem.ensembles.tasks import Task, compute
+from rbsdem.springs import Layered, Spring
+
+TIMES = float(os.environ.get("RBSDEM_CASES", "1"))
+SEED = int(os.environ.get("RBSDEM_SEED", "0"))
+
+ARRAYS = ("time", "displacement", "force", "slip", "rotation", "opening", "shear", "moment")
+ARRAYS += ("base_shear", "base_moment", "axial_force", "top", "motion", "rest")
+
+#: Arrays that two results are compared in but for round-off.
+SIZED = ("displacement", "force", "slip", "rotation", "shear", "moment")
+
+#: Figures of a summary that do not depend on which rows are kept.
+FIGURES = ("status", "steps", "events", "cut_steps", "peak_displacement", "peak_force")
+FIGURES += ("displacement_at_peak_force", "peak_base_shear", "peak_rotation")
+
+
+#: Figures that are those of the rows, and say so.
+BY_ROW = ("rows", "energy_residual", "relative_energy_residual", "peak_floor_acceleration")
+
+
+class Discard(Exception):  # noqa: N818
+    """The case has nothing to say of the relation."""
+
+
+def replay(name: str, case: int, judge: Callable[[Rng], None] | None = None) -> None:
+    """Run one case of a relation."""
+    rng = np.random.default_rng((zlib.crc32(name.encode()), SEED, case))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        (judge or RELATIONS[name])(rng)
+
+
+RELATIONS: dict[str, Callable[[Rng], None]] = {}
+
+
+def relation(cases: int, judged: float = 0.5) -> Callable[[Callable[[Rng], None]], Any]:
+    """Make a relation a test of some cases, of which at least a share is not discarded."""
+
+    def make(judge: Callable[[Rng], None]) -> Callable[[], None]:
+        RELATIONS[judge.__name__] = judge
+
+        def test() -> None:
+            count, discarded, found = int(cases * TIMES), 0, []
+            for case in range(count):
+                try:
+                    replay(judge.__name__, case, judge)
+                except Discard:
+                    discarded += 1
+                except Exception as error:  # all of them, with the numbers of their cases
+                    found.append(f"case {case}: {type(error).__name__}: {error}")
+            shown = "\n".join(line[:600] for line in found[:20])
+            assert not found, f"{len(found)} of {count - discarded}:\n{shown}"
+            assert discarded <= (1 - judged) * count, f"only {count - discarded} were judged"
+
+        test.__name__ = judge.__name__
+        test.__doc__ = judge.__doc__
+        return test
+
+    return make
+
+
+# ---- following and comparing ---------------------------------------------------------------------
+
+
+def follow(column: rbsdem.Column, loading: dict[str, Any], **more: Any) -> rbsdem.Result:
+    """Follow a static path, or what there is of it."""
+    return _ended(lambda: rbsdem.cyclic(column, **loading, **more))
+
+
+def move(column: rbsdem.Column, loading: dict[str, Any], **more: Any) -> rbsdem.Result:
+    """Follow a motion, or what there is of it."""
+    return _ended(lambda: rbsdem.time_history(column, **loading, **more))
+
+
+def _ended(run: Callable[[], rbsdem.Result]) -> rbsdem.Result:
+    try:
+        return run()
+    except rbsdem.SolveError as error:
+        if error.result is None:
+            raise Discard from None
+        return error.result
+
+
+def same_bits(one: rbsdem.Result, other: rbsdem.Result, names: tuple[str, ...] = ARRAYS) -> None:
+    """Hold two results to the same rows, energies and figures."""
+    for name in names:
+        a, b = getattr(one, name), getattr(other, name)
+        assert (a is None) == (b is None), name
+        assert a is None or np.array_equal(a, b, equal_nan=True), difference(name, a, b)
+    for name, values in one.energy.items():
+        assert np.array_equal(values, other.energy[name]), difference(
+            name, values, other.energy[name]
+        )
+    for name in FIGURES:
+        a, b = one.summary.get(name), other.summary.get(name)
+        assert np.array_equal(a, b, equal_nan=isinstance(a, float)), f"{name}: {a} {b}"
+
+
+def difference(name: str, one: np.ndarray, other: np.ndarray) -> str:
+    """Return where and by how much two arrays differ."""
+    if one.shape != other.shape:
+        return f"{name}: {one.shape} {other.shape}"
+    size = np.abs(one).max()
+    share = np.abs(one - other) / (size or 1)
+    row = np.unravel_index(np.argmax(share), share.shape)[0]
+    return f"{name}: by {share.max():.1e} of {size:.3g} in row {row} of {len(one)}"
+
+
+def arms(column: rbsdem.Column) -> np.ndarray:
+    """Return how far the top is above each joint [m]."""
+    n = column.n
+    lengths = np.asarray(column.lengths or [column.height / n] * n)
+    above = np.concatenate([np.cumsum(lengths[::-1])[::-1], [0.0] * (column.top == "fixed")])
+    if column.footing is None:
+        return above
+    return np.concatenate([[column.height + column.footing.height], above])
+
+
+# ---- static paths --------------------------------------------------------------------------------
+
+
+def layered(column: rbsdem.Column) -> bool:
+    """Return whether a joint has layers."""
+    return any(isinstance(spring, Layered) for spring in column.joints("flexure"))
+
+
+def axial_matters(column: rbsdem.Column) -> bool:
+    """Return whether an axial load that varies does anything in a column."""
+    return column.kinematics != "small" or layered(column) or column.opens
+
+
+def static_case(
+    rng: Rng, *, varying: bool = True, **fixed: Any
+) -> tuple[rbsdem.Column, dict[str, Any]]:
+    """Return a column and its path, some under an axial load that varies or follows the force."""
+    column = any_column(rng, damping=None, **fixed)
+    if varying and rng.random() < 0.05 and axial_matters(column):
+        column = replace(column, axial_force_ratio=rng.uniform(-2, 2))
+    loading: dict[str, Any] = static_path(rng, column)
+    if varying and rng.random() < 0.15 and axial_matters(column) and column.axial_load:
+        share = 1 + 0.5 * rng.uniform(-1, 1, points(loading))
+        loading["axial_load"] = column.axial_load * share
+    return column, loading
+
+
+def points(loading: dict[str, Any]) -> int:
+    return len(next(iter(loading.values())))
+
+
+@relation(500, judged=0.9)
+def test_a_path_is_in_balance(rng: Rng) -> None:
+    """The top is where its joints bring it, and no energy comes from anywhere.
+
+    To 1e-10 and 1e-9 of the largest value, as each of many lines adds its round-off; with exact
+    rotations to 1e-7, the tolerance of their equilibrium.
+    """
+    column, loading = static_case(rng)
+    run = follow(column, loading)
+    if not run.time.size:
+        raise Discard
+    if column.kinematics != "finite":
+        parts = np.abs(run.slip).sum(1) + np.abs(run.rotation * arms(column)).sum(1)
+        top = (run.slip + run.rotation * arms(column)).sum(1)
+        apart = np.abs(run.displacement - top)
+        assert (apart <= 1e-10 * parts.max()).all(), f"displacement by {apart.max():.1e} m"
+    limit = 1e-7 if column.kinematics == "finite" else 1e-9
+    assert run.summary["relative_energy_residual"] <= limit, run.summary["relative_energy_residual"]
+
+
+def mirrored(column: rbsdem.Column) -> rbsdem.Column:
+    """Return the column whose left is the right of another one."""
+
+    def sides(name: str) -> list[Spring] | None:
+        springs = column.joints(name)[column.footing is not None :]
+        return None if not springs else [turned(one) for one in springs]
+
+    beneath = column.footing
+    if beneath is not None:
+        beneath = replace(beneath, shear=turned(beneath.shear), flexure=turned(beneath.flexure))
+    return replace(column, shear=sides("shear"), flexure=sides("flexure"), footing=beneath)
+
+
+def turns(column: rbsdem.Column) -> rbsdem.Column:
+    """Return the mirrored column, where its springs can be turned."""
+    try:
+        return mirrored(column)
+    except rbsdem.InputError as error:
+        if "buckles on one side" in str(error):
+            raise Discard from None
+        raise
+
+
+@relation(400, judged=0.8)
+def test_mirror(rng: Rng) -> None:
+    """Left and right are names: round-off."""
+    column, loading = static_case(rng)
+    other = replace(turns(column), axial_force_ratio=-column.axial_force_ratio)
+    back = {name: v if name == "axial_load" else -v for name, v in loading.items()}
+    same_but_round_off(
+        lambda: follow(column, loading),
+        lambda: turned_back(follow(other, back)),
+        lambda: follow(column, changed(loading)),
+    )
+
+
+def turned_back(run: rbsdem.Result) -> rbsdem.Result:
+    """Return the result of the mirrored column as that of the column."""
+    return replace(run, **{name: -getattr(run, name) for name in SIZED})
+
+
+def scaled_spring(spring: Spring, force: float, way: float) -> Spring:
+    """Return the spring in other units, by the dimensions that its keys have."""
+    sizes = {"force": force, "deformation": way, "stiffness": force / way}
+    changes = {}
+    for key in _core.keys()["rules"][spring.rule]["keys"]:
+        value = getattr(spring, key["name"])
+        if value is not None and "unit" in key:
+            changes[key["name"]] = value * sizes[key["unit"]]
+    return replace(spring, **changes)
+
+
+def scaled(
+    column: rbsdem.Column, length: float, mass: float, time: float, amplitude: float
+) -> rbsdem.Column:
+    """Return the column in other units, whose springs change their lines at another amplitude."""
+    force = mass * length / time**2
+
+    def one(spring: Spring | None, name: str) -> Spring | None:
+        if isinstance(spring, Layered):
+            return Layered([(y * length, one(layer, "layer")) for y, layer in spring.layers])
+        if spring is None:
+            return None
+        size, way = (force * length, 1.0) if name == "flexure" else (force, length)
+        return scaled_spring(spring, size * amplitude, way * amplitude)
+
+    names = ("shear", "flexure", "axial_spring")
+    changes: dict[str, Any] = {
+        name: [one(s, name) for s in column.joints(name)[column.footing is not None :]] or None
+        for name in names
+    }
+    if column.footing is not None:
+        springs = {name: one(getattr(column.footing, name), name) for name in names}
+        changes["footing"] = rbsdem.Footing(
+            **springs,
+            mass=column.footing.mass * mass,
+            inertia=column.footing.inertia * mass * length**2,
+            height=column.footing.height * length,
+        )
+    if isinstance(column.damping, rbsdem.Damping):
+        changes["damping"] = replace(
+            column.damping,
+            mass=column.damping.mass / time,
+            stiffness=column.damping.stiffness * time,
+        )
+    sizes = {"height": length, "depth": length, "axial_height": length, "mass": mass}
+    sizes |= {"top_mass": mass, "top_inertia": mass * length**2, "axial_load": force}
+    sizes |= {"gravity": length / time**2}
+    several = {"lengths": length, "masses": mass, "rotary_inertia": mass * length**2}
+    for name, size in sizes.items():
+        if getattr(column, name) is not None:
+            changes[name] = getattr(column, name) * size
+    for name, size in several.items():
+        if getattr(column, name) is not None:
+            changes[name] = [value * size for value in getattr(column, name)]
+    return replace(column, **changes)
+
+
+#: Powers of two at the most by which units of length, mass and time, and amplitudes, differ.
+POWERS = (20, 40, 15, 30)
+
+
+def units(
+    rng: Rng, column: rbsdem.Column, loading: dict[str, Any]
+) -> tuple[float, float, float, float]:
+    """Return units of length, mass and time, and an amplitude where nothing but springs bends."""
+    drawn = [2.0 ** int(rng.integers(-most, most + 1)) for most in POWERS]
+    bends = column.kinematics == "finite" or column.opens or layered(column)
+    varies = {"axial_load", "vertical_acceleration"} & set(loading) or column.axial_force_ratio
+    return drawn[0], drawn[1], drawn[2], 1.0 if bends or varies else drawn[3]
+
+
+def in_units(
+    loading: dict[str, Any], length: float, mass: float, time: float, amplitude: float
+) -> dict[str, Any]:
+    """Return a loading in other units and of another amplitude."""
+    force = mass * length / time**2
+    sizes = {"time": time, "displacement": length * amplitude, "force": force * amplitude}
+    sizes |= {"ground_acceleration": length / time**2 * amplitude}
+    sizes |= {"vertical_acceleration": length / time**2, "axial_load": force}
+    return {name: values * sizes[name] for name, values in loading.items()}
+
+
+def unscaled(
+    run: rbsdem.Result, length: float, mass: float, time: float, amplitude: float
+) -> rbsdem.Result:
+    """Return a result in the units and of the amplitude before."""
+    force = mass * length / time**2 * amplitude
+    sizes = {"displacement": length * amplitude, "slip": length * amplitude, "rotation": amplitude}
+    sizes |= {"force": force, "shear": force, "moment": force * length}
+    return replace(run, **{name: getattr(run, name) / size for name, size in sizes.items()})
+
+
+@relation(400, judged=0.9)
+def test_powers_of_two(rng: Rng) -> None:
+    """Units are names, and with small rotations an amplitude is one: round-off.
+
+    No digit changes, but which of two equations is solved first is a question of their numbers.
+    """
+    column, loading = static_case(rng)
+    scale = units(rng, column, loading)
+    same_but_round_off(
+        lambda: follow(column, loading),
+        lambda: unscaled(follow(scaled(column, *scale), in_units(loading, *scale)), *scale),
+        lambda: follow(column, changed(loading)),
+    )
+
+
+@relation(60, judged=0.8)
+def test_modes_in_powers_of_two(rng: Rng) -> None:
+    """Units are names for the modes too: round-off, of the largest frequency for the smallest."""
+    column = any_column(rng)
+    length, mass, time, _ = units(rng, column, {})
+    try:
+        one, other = (
+            rbsdem.modes(which) for which in (column, scaled(column, length, mass, time, 1.0))
+        )
+    except rbsdem.InputError:
+        raise Discard from None
+    assert np.abs(other.omega * time - one.omega).max() <= 1e-9 * one.omega[-1]
+    assert abs(other.stable_step / time - one.stable_step) <= 1e-9 * one.stable_step
+
+
+def put_between(values: np.ndarray, parts: int, start: float = 0.0) -> np.ndarray:
+    """Return a path with more points on its straight lines; the old ones are kept."""
+    whole = np.concatenate([[start], values])
+    put = np.interp(np.arange(values.size * parts + 1) / parts, np.arange(whole.size), whole)
+    put[::parts] = whole
+    return put[1:]
+
+
+@relation(400, judged=0.85)
+def test_points_on_the_way(rng: Rng) -> None:
+    """A path is a line, not its points: round-off, with exact rotations that of equilibrium."""
+    column, loading = static_case(rng)
+    parts = int(rng.integers(2, 6))
+    fine = {
+        name: put_between(values, parts, values[0] if name == "axial_load" else 0.0)
+        for name, values in loading.items()
+    }
+
+    def coarse() -> rbsdem.Result:
+        run = follow(column, fine)
+        return replace(run, **{name: getattr(run, name)[parts - 1 :: parts] for name in SIZED})
+
+    one = follow(column, loading)
+    if one.summary["status"] != "completed":
+        raise Discard
+    curved = column.kinematics == "finite" or len(loading) > 1 or column.axial_force_ratio != 0
+    same_but_round_off(
+        lambda: one, coarse, lambda: follow(column, changed(loading)), 1e-6 if curved else ROUND_OFF
+    )
+
+
+@relation(300, judged=0.8)
+def test_cut_and_restart(rng: Rng) -> None:
+    """A path that goes on in the state of another one is one path: bits."""
+    column, loading = static_case(rng)
+    whole = follow(column, loading)
+    cut = int(rng.integers(1, points(loading)))
+    first = follow(column, {name: values[:cut] for name, values in loading.items()})
+    if first.state is None or first.summary["status"] != "completed":
+        raise Discard
+    rest = follow(column, {name: values[cut:] for name, values in loading.items()}, initial=first)
+    for name in ("displacement", "force", "slip", "rotation", "shear", "moment", "axial_force"):
+        a, b = getattr(rest, name), getattr(whole, name)
+        if a is not None:
+            assert np.array_equal(a, b[cut:]), difference(name, a, b[cut:])
+    for name, values in rest.energy.items():
+        assert np.array_equal(values, whole.energy[name][cut:]), name
+    assert rest.summary["status"] == whole.summary["status"]
+
+
+def few_rows(whole: rbsdem.Result, kept: rbsdem.Result, every: int) -> None:
+    """Hold a result to the rows and to all figures of the one that has every row."""
+    last = whole.time.size - 1
+    places = sorted({*range(0, last + 1, every), last})
+    for name in ARRAYS:
+        a, b = getattr(whole, name), getattr(kept, name)
+        assert a is None or np.array_equal(a[places], b, equal_nan=True), difference(
+            name, a[places], b
+        )
+    for name, a in whole.summary.items():
+        b = kept.summary[name]
+        same = np.array_equal(a, b, equal_nan=isinstance(a, float))
+        assert name in BY_ROW or same, f"{name}: {a} {b}"
+
+
+@relation(200, judged=0.8)
+def test_few_rows(rng: Rng) -> None:
+    """Which rows are kept is of no weight: bits, and the same figures."""
+    column, loading = static_case(rng)
+    every = int(rng.choice([2, 3, 1000]))
+    whole, kept = follow(column, loading), follow(column, loading, every=every)
+    if whole.time.size == 0 or whole.summary["status"] == "failed":
+        raise Discard
+    few_rows(whole, kept, every)
+
+
+def each_stated(column: rbsdem.Column) -> rbsdem.Column:
+    """Return the column that states the spring of each joint, and of each layer, by itself."""
+    other = replace(column)
+    text, numbers = [], []
+
+    def put(part: _core.Statement) -> None:
+        text.append(part.text)
+        numbers.extend(part.numbers)
+
+    skipped = ("shear", "flexure", "axial_spring", "layers", "layer_spring")
+    for name, values in _core.groups(column._statement):
+        if name not in skipped:
+            put(_core.group(name, values))
+    ids = 0
+    for name in ("shear", "flexure", "axial_spring"):
+        for joint, spring in zip(column.joint_numbers, column.joints(name), strict=False):
+            put(spring.statement(name, joint=[joint]))
+            if isinstance(spring, Layered):
+                places = [y for y, _ in spring.layers]
+                own = list(range(ids + 1, ids + 1 + len(places)))
+                for at, (_, layer) in zip(own, spring.layers, strict=True):
+                    put(layer.statement("layer_spring", id=at))
+                put(_core.group("layers", {"joint": [joint], "y": places, "spring": own}))
+                ids = own[-1]
+    object.__setattr__(other, "_statement", _core.Statement("\n".join(text), numbers))
+    return other
+
+
+@relation(150, judged=0.8)
+def test_springs_stated_once_or_each(rng: Rng) -> None:
+    """A spring that several joints have is theirs one by one: bits."""
+    column, loading = static_case(rng)
+    same_bits(follow(column, loading), follow(each_stated(column), loading))
+
+
+def relayered(rng: Rng, column: rbsdem.Column) -> rbsdem.Column:
+    """Return the column with the layers of its joints in another order, some cut into halves."""
+
+    def other(spring: Spring) -> Spring:
+        if not isinstance(spring, Layered):
+            return spring
+        layers: list[tuple[float, Spring]] = []
+        for y, layer in spring.layers:
+            halves = 2 if rng.random() < 0.5 else 1
+            layers += [(y, scaled_spring(layer, 1 / halves, 1.0))] * halves
+        return Layered([layers[i] for i in rng.permutation(len(layers))])
+
+    springs = [other(spring) for spring in column.joints("flexure")]
+    beneath = column.footing
+    if beneath is not None:
+        beneath = replace(beneath, flexure=springs.pop(0))
+    return replace(column, flexure=springs, footing=beneath)
+
+
+@relation(200, judged=0.8)
+def test_layers_in_another_order_and_in_halves(rng: Rng) -> None:
+    """Layers side by side are a sum: round-off."""
+    column, loading = static_case(rng, flexure=["layered"])
+    same_but_round_off(
+        lambda: follow(column, loading),
+        lambda: follow(relayered(rng, column), loading),
+        lambda: follow(column, changed(loading)),
+    )
+
+
+#: Round-off of a path, in shares of the largest value, and what it may have grown to.
+ROUND_OFF, CHANGE, GROWN = 1e-9, 1e-12, 1e3
+
+
+def changed(loading: dict[str, Any]) -> dict[str, Any]:
+    """Return a loading that differs by little more than round-off."""
+    return {
+        name: values if name in ("time", "axial_load") else values * (1 + CHANGE)
+        for name, values in loading.items()
+    }
+
+
+def sizes_of(run: rbsdem.Result) -> dict[str, float]:
+    """Return what the differences of two results are held against.
+
+    Of lengths and forces the largest of their kind: forces that balance have round-off of them all.
+    """
+
+    def largest(*names: str) -> float:
+        return max(np.abs(getattr(run, name)).max(initial=0) for name in names)
+
+    height = run.column.height
+    rotation = largest("rotation")
+    length = max(largest("displacement", "slip", "opening"), rotation * height)
+    force = max(largest("force", "shear"), largest("moment") / height)
+    # A force of no size in a stiff column, where only contacts that are open stand against a load.
+    force = max(force, 1e-6 * length * stiffest(run.column), 1e-300)
+    sizes = dict.fromkeys(("displacement", "slip"), max(length, 1e-300))
+    sizes |= {"rotation": max(length / height, 1e-300), "moment": force * height}
+    return sizes | dict.fromkeys(("force", "shear"), force)
+
+
+def distance(one: rbsdem.Result, other: rbsdem.Result) -> tuple[float, str]:
+    """Return the largest difference of two results, in shares of the largest value, and where."""
+    worst, where = 0.0, ""
+    if one.summary["status"] != other.summary["status"]:
+        return np.inf, f"{one.summary['status']}, {other.summary['status']}"
+    # Where on a plateau a path ends that fails is a question of its search.
+    kept = slice(-1) if one.summary["status"] == "failed" else slice(None)
+    for name, size in sizes_of(one).items():
+        a, b = getattr(one, name)[kept], getattr(other, name)[kept]
+        if a.shape != b.shape:
+            return np.inf, difference(name, a, b)
+        share = np.abs(a - b).max(initial=0) / size
+        if share > worst:
+            worst, where = float(share), f"{share:.1e}; {difference(name, a, b)}"
+    return worst, where
+
+
+def same_but_round_off(
+    one: Callable[[], rbsdem.Result],
+    other: Callable[[], rbsdem.Result],
+    moved: Callable[[], rbsdem.Result],
+    tolerance: float = ROUND_OFF,
+) -> None:
+    """Hold two results to one answer, but for round-off.
+
+    A case whose answer a change of the loading by 1e-12 moves as far says nothing.
+    """
+    first = one()
+    apart, where = distance(first, other())
+    if apart <= tolerance:
+        return
+    if distance(first, moved())[0] > min(apart / GROWN, tolerance):
+        raise Discard
+    raise AssertionError(where)
+
+
+def with_huge_axial_springs(column: rbsdem.Column, stiffness: float) -> rbsdem.Column:
+    springs = rbsdem.Elastic(stiffness)
+    beneath = column.footing
+    if beneath is not None:
+        beneath = replace(beneath, axial_spring=springs)
+    return replace(column, axial_spring=springs, footing=beneath)
+
+
+def stiffest(column: rbsdem.Column) -> float:
+    """Return a stiffness [N/m] above those of all springs of a column, moments over its height."""
+    found = [1.0]
+    for name in ("shear", "flexure"):
+        for spring in column.joints(name):
+            whole = [s for _, s in spring.layers] if isinstance(spring, Layered) else [spring]
+            for part in whole:
+                force, way = np.abs(part.response([1e-9])[0]), 1e-9
+                found.append(2 * force / way / min(1.0, column.height) ** 2 + 1)
+    return max(found)
+
+
+@relation(300, judged=0.7)
+def test_huge_axial_springs_change_nothing(rng: Rng) -> None:
+    """Joints that hardly open are joints that do not: to the share of the stiffnesses, 1e-7."""
+    kinematics = str(rng.choice(["small", "pdelta"]))
+    rules_of_joints = [name for name in rules("flexure") if name != "layered"]
+    column, loading = static_case(
+        rng, varying=False, kinematics=kinematics, axial_spring=None, axial_height=None,
+        flexure=rules_of_joints,
+    )  # fmt: skip
+    other = with_huge_axial_springs(column, 1e9 * stiffest(column))
+    same_but_round_off(
+        lambda: follow(column, loading),
+        lambda: follow(other, loading),
+        lambda: follow(column, changed(loading)),
+        1e-7,
+    )
+
+
+@relation(200, judged=0.6)
+def test_a_huge_footing_changes_nothing(rng: Rng) -> None:
+    """A footing that hardly moves is the ground: to the share of the stiffnesses, 1e-6."""
+    column, loading = static_case(rng, footing=None, axial_height=None)
+    stiff = rbsdem.Elastic(1e8 * stiffest(column) * max(1.0, column.height) ** 2)
+    beneath = rbsdem.Footing(
+        stiff, stiff, stiff if column.opens else None, mass=1.0, inertia=1.0, height=0.0
+    )
+    other = replace(column, footing=beneath)
+
+    def upper() -> rbsdem.Result:
+        run = follow(other, loading)
+        names = ("slip", "rotation", "shear", "moment")
+        return replace(run, **{name: getattr(run, name)[:, 1:] for name in names})
+
+    same_but_round_off(
+        lambda: follow(column, loading), upper, lambda: follow(column, changed(loading)), 1e-6
+    )
+
+
+@relation(300, judged=0.3)
+def test_driven_by_its_own_force(rng: Rng) -> None:
+    """Where the force grows all the way, it brings the displacement back: round-off over slope."""
+    column, loading = static_case(
+        rng, varying=False, axial_spring=None, footing=None, shear=None, flexure=None
+    )
+    if "force" in loading:
+        raise Discard
+    whole = put_between(loading["displacement"], 8)
+    run = follow(column, {"displacement": whole})
+    # Up to the point at which more displacement takes no more force.
+    ways = np.diff(run.displacement, prepend=0.0)
+    slopes = np.diff(run.force, prepend=0.0)[ways != 0] / ways[ways != 0]
+    if run.summary["status"] != "completed" or not slopes.size:
+        raise Discard
+    if slopes.min() < 1e-3 * slopes.max():
+        raise Discard
+    same_but_round_off(
+        lambda: run,
+        lambda: follow(column, {"force": run.force}),
+        lambda: follow(column, changed({"displacement": whole})),
+        1e-6,
+    )
+
+
+@relation(150, judged=0.5)
+def test_double_curvature_is_two_cantilevers(rng: Rng) -> None:
+    """Two halves that do the same are one: round-off.
+
+    Softening chooses a half. With second-order moments a joint that slips is not its own mirror:
+    the axial load stands on the body above.
+    """
+    column, loading = static_case(
+        rng, varying=False, kinematics="small", top="free", footing=None, top_mass=None,
+        self_weight=None, axial_spring=None, shear=None, flexure=None,
+    )  # fmt: skip
+    if "force" in loading:
+        raise Discard
+    try:
+        both = rbsdem.double_curvature(column)
+    except rbsdem.InputError:
+        raise Discard from None
+    n = column.n
+
+    def half() -> rbsdem.Result:
+        run = follow(both, {"displacement": 2 * loading["displacement"]})
+        names = ("slip", "rotation", "shear", "moment")
+        lower = {name: getattr(run, name)[:, :n] for name in names}
+        return replace(run, displacement=run.displacement / 2, **lower)
+
+    same_but_round_off(
+        lambda: follow(column, loading), half, lambda: follow(column, changed(loading))
+    )
+
+
+# ---- motions -------------------------------------------------------------------------------------
+
+
+def motion_case(
+    rng: Rng, *, settings: dict[str, Any] | None = None, **fixed: Any
+) -> tuple[rbsdem.Column, dict[str, Any], dict[str, Any]]:
+    """Return a column, its loading in time, and the method."""
+    column = any_column(rng, in_time=True, **fixed)
+    if column.top == "fixed" and not column.top_mass:
+        raise Discard
+    try:
+        found = motion(rng, column, settings=settings)
+    except rbsdem.InputError:
+        found = None
+    if found is None:
+        raise Discard
+    loading, chosen = found
+    points = loading["time"].size
+    if axial_matters(column) and rng.random() < 0.2:
+        loading["vertical_acceleration"] = 2 * waves(rng, points)
+        if column.axial_load:
+            loading["axial_load"] = column.axial_load * (1 + 0.3 * waves(rng, points))
+    return column, loading, chosen
+
+
+def round_off(settings: dict[str, Any]) -> float:
+    """Return the tolerance of round-off in time: rk45 chooses its steps by it."""
+    return 1e-4 if settings["method"] == "rk45" else ROUND_OFF
+
+
+@relation(60, judged=0.4)
+def test_mirror_in_time(rng: Rng) -> None:
+    """Left and right are names: round-off."""
+    column, loading, chosen = motion_case(rng)
+    if chosen.get("events") == "step" and two_sided(column):
+        # Such a spring begins on the line of one side, and leaves it at the end of a step.
+        raise Discard
+    other = turns(column)
+    back = {n: -v if n in ("ground_acceleration", "force") else v for n, v in loading.items()}
+    same_but_round_off(
+        lambda: move(column, loading, **chosen),
+        lambda: turned_back(move(other, back, **chosen)),
+        lambda: move(column, changed(loading), **chosen),
+        round_off(chosen),
+    )
+
+
+@relation(60, judged=0.4)
+def test_powers_of_two_in_time(rng: Rng) -> None:
+    """Units are names, and with small rotations an amplitude is one: round-off."""
+    column, loading, chosen = motion_case(rng)
+    scale = units(rng, column, loading)
+    settings = chosen | ({"dt": chosen["dt"] * scale[2]} if "dt" in chosen else {})
+    same_but_round_off(
+        lambda: move(column, loading, **chosen),
+        lambda: unscaled(
+            move(scaled(column, *scale), in_units(loading, *scale), **settings), *scale
+        ),
+        lambda: move(column, changed(loading), **chosen),
+        round_off(chosen),
+    )
+
+
+@relation(60, judged=0.4)
+def test_cut_and_restart_in_time(rng: Rng) -> None:
+    """A motion that goes on in the state of another one is one motion: bits."""
+    column, loading, chosen = motion_case(rng)
+    whole = move(column, loading, every=1, **chosen)
+    cut = int(rng.integers(1, loading["time"].size - 1))
+    first = move(column, {n: v[: cut + 1] for n, v in loading.items()}, every=1, **chosen)
+    if first.state is None or first.summary["status"] != "completed":
+        raise Discard
+    rest = move(column, {n: v[cut:] for n, v in loading.items()}, initial=first, every=1, **chosen)
+    for name in ARRAYS:
+        a, b = getattr(rest, name), getattr(whole, name)
+        if a is not None:
+            at = b[first.time.size - 1 :]
+            assert np.array_equal(a, at), difference(name, a, at)
+    for name, values in rest.energy.items():
+        at = whole.energy[name][first.time.size - 1 :]
+        assert np.array_equal(values, at), difference(name, values, at)
+    if whole.state is not None:
+        assert np.array_equal(rest.state, whole.state)
+
+
+@relation(60, judged=0.4)
+def test_the_peaks_are_those_of_all_steps(rng: Rng) -> None:
+    """No row goes beyond a figure of the summary; with all rows and fixed steps one reaches it."""
+    column, loading, chosen = motion_case(rng)
+    run = move(column, loading, every=1, **chosen)
+    if run.summary["status"] == "failed":
+        raise Discard
+    reached = chosen["method"] != "rk45" and chosen.get("events") != "located"
+    for name, rows in (("displacement", run.displacement), ("base_shear", run.base_shear)):
+        peak, most = abs(run.summary[f"peak_{name}"]), np.abs(rows).max()
+        assert most <= peak, f"{name}: {most} in the rows, {peak}"
+        assert peak == most or not reached, f"{name}: {most} in the rows, {peak}"
+
+
+@relation(60, judged=0.4)
+def test_zero_loads_change_nothing(rng: Rng) -> None:
+    """A load that is zero is none: round-off, as the steps add it."""
+    column, loading, chosen = motion_case(rng)
+    names = {"ground_acceleration", "force"}
+    if axial_matters(column):
+        names |= {"vertical_acceleration"}
+    zeros = {name: np.zeros(loading["time"].size) for name in names - set(loading)}
+    if not zeros:
+        raise Discard
+    same_but_round_off(
+        lambda: move(column, loading, **chosen),
+        lambda: move(column, loading | zeros, **chosen),
+        lambda: move(column, changed(loading), **chosen),
+        round_off(chosen),
+    )
+
+
+@relation(60, judged=0.3)
+def test_a_constant_axial_history_in_time(rng: Rng) -> None:
+    """A load is stated as a number or as a history: round-off."""
+    column, loading, chosen = motion_case(rng)
+    if not axial_matters(column):
+        raise Discard
+    loading.pop("axial_load", None)
+    history = loading | {"axial_load": np.full(loading["time"].size, column.axial_load)}
+    one, other = move(column, loading, **chosen), move(column, history, **chosen)
+    same_but_round_off(
+        lambda: one,
+        lambda: other,
+        lambda: move(column, changed(loading), **chosen),
+        round_off(chosen),
+    )
+    if one.summary["status"] == other.summary["status"] == "completed":
+        size = max(np.abs(values).max() for values in one.energy.values())
+        for name, values in one.energy.items():
+            apart = np.abs(values - other.energy[name]).max()
+            assert apart <= 1e-6 * size, f"{name}: by {apart} J of {size}"
+
+
+@relation(40, judged=0.3)
+def test_springs_stated_each_in_time(rng: Rng) -> None:
+    """A spring that several joints have is theirs one by one: bits."""
+    column, loading, chosen = motion_case(rng)
+    same_bits(move(column, loading, **chosen), move(each_stated(column), loading, **chosen))
+
+
+@relation(60, judged=0.3)
+def test_points_on_the_way_of_a_motion(rng: Rng) -> None:
+    """A motion is a line, not its points: round-off."""
+    column, loading, chosen = motion_case(rng)
+    if chosen["method"] == "rk45" or chosen["dt"] == loading["time"][1]:
+        raise Discard
+    half = np.arange(2 * loading["time"].size - 1) / 2
+    fine = {name: np.interp(half, half[::2], values) for name, values in loading.items()}
+
+    def coarse() -> rbsdem.Result:
+        run = move(column, fine, **chosen)
+        return replace(run, **{name: getattr(run, name)[::2] for name in SIZED})
+
+    same_but_round_off(
+        lambda: move(column, loading, **chosen),
+        coarse,
+        lambda: move(column, changed(loading), **chosen),
+    )
+
+
+@relation(40, judged=0.2)
+def test_huge_axial_springs_in_time(rng: Rng) -> None:
+    """Joints that hardly open are joints that do not: to the share of the stiffnesses."""
+    rules_of_joints = [name for name in rules("flexure") if name != "layered"]
+    kinematics = str(rng.choice(["small", "pdelta"]))
+    column, loading, chosen = motion_case(
+        rng, kinematics=kinematics, axial_spring=None, axial_height=None, flexure=rules_of_joints,
+        damping=None,
+    )  # fmt: skip
+    if chosen["method"] not in rbsdem.methods.IMPLICIT:
+        raise Discard
+    loading.pop("vertical_acceleration", None)
+    loading.pop("axial_load", None)
+    other = with_huge_axial_springs(column, 1e6 * stiffest(column))
+    same_but_round_off(
+        lambda: move(column, loading, **chosen),
+        lambda: move(other, loading, **chosen),
+        lambda: move(column, changed(loading), **chosen),
+        1e-5,
+    )
+
+
+# ---- many runs -----------------------------------------------------------------------------------
+
+
+@relation(25, judged=0.3)
+def test_lanes_have_the_bits_of_runs_alone(rng: Rng) -> None:
+    """A run of an ensemble is that of `time_history`, in whatever lanes: bits."""
+    column, loading, chosen = motion_case(rng, kinematics=str(rng.choice(["small", "pdelta"])))
+    if "ground_acceleration" not in loading:
+        raise Discard
+    time, ground = loading["time"], loading["ground_acceleration"]
+    columns = [column, replace(column, damping=None)]
+    motions = [Motion(0, time, ground), Motion(1, time[:9], ground[-9:])]
+    scales = np.array([0.0, 0.3, 1.0, 3.0, 10.0])
+    grid = np.meshgrid(np.arange(2), np.arange(2), np.arange(5), indexing="ij")
+    place = [axis.ravel().astype(np.int32) for axis in grid]
+    settings = chosen | ({"collapse_drift": 0.05} if rng.random() < 0.5 else {})
+    task = Task(columns, motions, settings, place[0], place[1], scales[place[2]])
+    alone = compute(task, kernel=-1)
+    kernel = int(rng.integers(1, 4))
+    together = compute(task, kernel=kernel)
+    assert np.array_equal(together.fates, alone.fates)
+    for name, a, b in zip(task.names, alone.values, together.values, strict=True):
+        assert np.array_equal(a, b, equal_nan=True), f"{difference(name, a, b)}, kernel {kernel}"
+    assert together.errors == alone.errors
+    run = int(rng.integers(scales.size))
+    which = motions[place[1][run]]
+    loads = {"time": which.time, "ground_acceleration": which.acceleration * task.scale[run]}
+    one = move(columns[place[0][run]], loads, **settings)
+    for name, value in zip(task.names, alone.values[:, run], strict=True):
+        told = one.summary.get(name, value)
+        same = np.array_equal(value, told, equal_nan=True)
+        assert same or one.summary["status"] == "failed", f"{name}: {value} {told}"
