@@ -11,7 +11,7 @@ module rbs_loading_spectrum
    public :: response_spectrum
 
    !> Fewest steps in a period, more where strong damping makes the response faster: longer steps are divided,
-   !> which changes nothing in the exact solution, but keeps the peaks between two points within 3e-5.
+   !> which changes nothing in the exact solution, but keeps the peaks between two points within 4e-5.
    real(wp), parameter :: steps_in_period = 20.0_wp
 
    !> Periods of free vibration that are followed after the end.

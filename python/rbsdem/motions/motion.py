@@ -134,8 +134,8 @@ class GroundMotion:
         """Return the elastic response spectrum.
 
         The oscillators are solved exactly for an acceleration that is linear between its points
-        (Nigam and Jennings 1969), with the peaks between points, and those of the free vibration
-        after the end of the motion.
+        (Nigam and Jennings 1969), with the peaks between points, to 4e-5, and those of the free
+        vibration after the end of the motion.
 
         Parameters
         ----------
