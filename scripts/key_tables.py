@@ -4,8 +4,8 @@
     python scripts/key_tables.py --check    only say whether they are up to date
 
 A table stands between ``<!-- keys: NAME -->`` and ``<!-- end of keys -->``. NAME is a group of a
-case file, ``rule`` and the name of a rule, or ``places``: the groups where each rule may stand. The
-list is that of ``rbsdem keys --json``.
+case file, ``rule`` and the name of a rule, ``shape`` and that of a section's, or ``places``: the
+groups where each rule may stand. The list is that of ``rbsdem keys --json``.
 """
 
 from __future__ import annotations
@@ -100,7 +100,13 @@ def table(known: dict[str, Any], name: str) -> str:
     """Return the table of a group, of a rule, or of the places of all rules."""
     if name == "places":
         return places(known["rules"])
-    keys = known["rules"][name[5:]]["keys"] if name.startswith("rule ") else known["groups"][name]
+    kind, _, which = name.partition(" ")
+    if kind == "rule":
+        keys = known["rules"][which]["keys"]
+    elif kind == "shape":
+        keys = known["section"][which]
+    else:
+        keys = known["groups"][name]
     return HEAD + "".join(rows(keys))
 
 

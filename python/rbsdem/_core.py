@@ -200,6 +200,24 @@ def groups(statement: Statement) -> Iterator[tuple[str, dict[str, Any]]]:
         yield name, values
 
 
+def typed(group: str, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return values in the types of their keys; whole numbers and switches arrive as floats."""
+    types = {"integer": int, "logical": bool}
+    found = dict(given)
+    for key in keys()["groups"][group]:
+        name = key["name"]
+        if name in found and key.get("values", 1) > 1:
+            found[name] = several(found[name])
+        elif name in found and key["kind"] in types:
+            found[name] = types[key["kind"]](found[name])
+    return found
+
+
+def several(value: float | list[float]) -> list[float]:
+    """Return a value of `groups` as a list; a list of one arrives as a number."""
+    return value if isinstance(value, list) else [value]
+
+
 def _split_item(item: str) -> tuple[str, str, str]:
     for mark in ("=", ":"):
         key, found, rest = item.partition(mark)

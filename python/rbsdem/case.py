@@ -16,6 +16,7 @@ from rbsdem.damping import Damping
 from rbsdem.errors import InputError, SolveError
 from rbsdem.footing import Footing
 from rbsdem.result import Result
+from rbsdem.section.reading import Groups, layered_column, recipe_of
 from rbsdem.springs import SPRINGS, Spring
 
 _DRIVES = ("displacement", "force", "ground_acceleration", "vertical_acceleration", "axial_load")
@@ -99,7 +100,7 @@ class Case:
         Histories are written into the text itself, with all their digits.
         """
         head = {"title": _core.Text(self.title) if self.title else None}
-        parts = [_core.group("case", head), self.column._statement]
+        parts = [_core.group("case", head), self.column._groups()]
         for name in _DRIVES:
             values = getattr(self, name)
             if values is None:
@@ -146,19 +147,20 @@ def read_case(path: str | os.PathLike[str]) -> Case:
         With a line for each error, as `rbsdem check` reports them.
     """
     statement, time, values, acting = _core.read_case(os.fspath(path))
-    found: dict[str, dict[str, Any]] = {}
-    springs = _Springs()
+    groups: dict[str, list[dict[str, Any]]] = {}
     for name, given in _core.groups(statement):
-        if not springs.take(name, given):
-            found[name] = given
-    settings = _typed("analysis", found.get("analysis", {}))
-    settings |= _typed("output", found.get("output", {}))
+        groups.setdefault(name, []).append(given)
+    # Of springs and of what a drawing has there are several.
+    found = {name: given[-1] for name, given in groups.items()}
+    springs = _Springs(groups)
+    settings = _core.typed("analysis", found.get("analysis", {}))
+    settings |= _core.typed("output", found.get("output", {}))
     # The histories already end at the duration; the csv file is for the executable only.
     for name in ("duration", "file", "state"):
         settings.pop(name, None)
     if "initial" in settings:
         settings["initial"] = os.path.join(os.path.dirname(os.fspath(path)), settings["initial"])
-    column = _typed("column", found["column"])
+    column = _core.typed("column", found["column"])
     column |= springs.of_joints(column.get("n", 1) + (column.get("top") == "fixed"))
     beneath = {name: column.pop(f"{name}_0", None) for name in ("shear", "flexure", "axial_spring")}
     footing = {
@@ -169,11 +171,12 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     if beneath["shear"] is not None:
         column["footing"] = Footing(**beneath, **footing)
     if "damping" in found:
-        column["damping"] = Damping(**_typed("damping", found["damping"]))
+        column["damping"] = Damping(**_core.typed("damping", found["damping"]))
+    column = {"mass": None} | column
     loads = (np.ascontiguousarray(values[:, i]) if acting[i] else None for i in range(len(_DRIVES)))
     return Case(
         found.get("case", {}).get("title", ""),
-        Column(**({"mass": None} | column)),
+        layered_column(recipe_of(groups), column) if "drawing" in groups else Column(**column),
         settings.pop("method"),
         time,
         *loads,
@@ -181,35 +184,12 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     )
 
 
-def _typed(group: str, given: dict[str, Any]) -> dict[str, Any]:
-    """Return values in the types of their keys; whole numbers and switches arrive as floats."""
-    types = {"integer": int, "logical": bool}
-    typed = {}
-    for key in _core.keys()["groups"][group]:
-        if key["name"] not in given:
-            continue
-        value = given[key["name"]]
-        if key.get("values", 1) > 1:
-            value = _several(value)
-        elif key["kind"] in types:
-            value = types[key["kind"]](value)
-        typed[key["name"]] = value
-    return typed
-
-
 class _Springs:
-    """The springs of a case, collected from its groups."""
+    """The springs of a case, from its groups."""
 
-    def __init__(self) -> None:
-        self.stated: dict[str, list[dict[str, Any]]] = {
-            name: [] for name in ("shear", "flexure", "axial_spring", "layer_spring", "layers")
-        }
-
-    def take(self, group: str, given: dict[str, Any]) -> bool:
-        """Keep the group if it is one of springs; return whether it is."""
-        if group in self.stated:
-            self.stated[group].append(given)
-        return group in self.stated
+    def __init__(self, groups: Groups) -> None:
+        names = ("shear", "flexure", "axial_spring", "layer_spring", "layers")
+        self.stated = {name: groups.get(name, []) for name in names}
 
     def of_joints(self, last: int) -> dict[str, Any]:
         """Return the springs of a column, one for all joints or one for each from 1 to the last.
@@ -220,8 +200,8 @@ class _Springs:
         layers: dict[tuple[int, ...], list[tuple[float, Spring]]] = {
             _joints(given): list(
                 zip(
-                    _several(given["y"]),
-                    (springs[int(number)] for number in _several(given["spring"])),
+                    _core.several(given["y"]),
+                    (springs[int(number)] for number in _core.several(given["spring"])),
                     strict=True,
                 )
             )
@@ -243,13 +223,9 @@ class _Springs:
         return column
 
 
-def _several(value: float | list[float]) -> list[float]:
-    return value if isinstance(value, list) else [value]
-
-
 def _joints(given: dict[str, Any]) -> tuple[int, ...]:
     """Return the joints that a group names; an empty tuple means all joints."""
-    return tuple(int(joint) for joint in _several(given.get("joint", [])))
+    return tuple(int(joint) for joint in _core.several(given.get("joint", [])))
 
 
 def _spring(given: dict[str, Any], layers: list[tuple[float, Spring]] | None = None) -> Spring:

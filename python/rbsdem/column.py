@@ -274,7 +274,11 @@ class Column:
 
     def to_namelist(self) -> str:
         """Return the column as groups of a case file, from which the same column comes back."""
-        return _core.to_namelist(self._statement)
+        return _core.to_namelist(self._groups())
+
+    def _groups(self) -> _core.Statement:
+        """Return all that a case file has of the column."""
+        return self._statement
 
     def _state(self) -> _core.Statement:
         """Return the keys of the column, as the groups of a case file."""

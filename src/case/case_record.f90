@@ -4,6 +4,7 @@ module rbs_case_case_record
    use rbs_base_key_visitor, only: key_visitor
    use rbs_base_units, only: unit_system, unit_type, length_units, force_units, mass_units
    use rbs_case_analysis_record, only: analysis_record, output_record
+   use rbs_case_drawing_record, only: drawing_record
    use rbs_column_column_record, only: column_record
    use rbs_loading_loading_record, only: loading_record
    implicit none
@@ -28,6 +29,8 @@ module rbs_case_case_record
       character(len=:), allocatable :: title
       type(units_record) :: units
       type(column_record) :: column
+      !> What its springs were drawn from, if that is known
+      type(drawing_record), allocatable :: drawing
       !> Number of loadings
       integer :: loadings = 0
       type(loading_record) :: loading(most_loadings)
@@ -124,6 +127,7 @@ contains
       if (messages%count > known) return
       call self%settle()
       call self%column%validate(messages)
+      if (allocated(self%drawing)) call self%drawing%validate(messages)
       if (self%analysis%method == '') then
          call messages%add("analysis: the loading has times, so method must be named: 'static' for the "// &
                            "path without inertia, or 'auto' for the response in time")

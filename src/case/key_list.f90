@@ -34,7 +34,7 @@ contains
    end subroutine group_keys
 
    !> {"groups": {name: [key, ...]}, "rules": {name: {"places": [...], "keys": [key, ...]}},
-   !>  "section": {name: [key, ...]}}; a section comes from Python, with its groups and the sizes of shapes.
+   !>  "section": {name: [key, ...]}}; the last are what Python asks of a section, and the sizes of shapes.
    subroutine keys_as_json(buffer)
       type(text_buffer), intent(inout) :: buffer
       type(key_type), allocatable :: keys(:)

@@ -1,6 +1,7 @@
 !> The only way to set a case: a group is opened, then its keys are set by name. The reader of case files and
 !> the bindings for Python both use it, so that a value has one name, one check and one message.
 module rbs_case_setter
+   use rbs_base_constants, only: unset
    use rbs_base_error, only: message_list
    use rbs_base_key_setter, only: key_setter
    use rbs_base_key_visitor, only: key_visitor
@@ -10,17 +11,19 @@ module rbs_case_setter
    use rbs_base_text, only: to_text, nearest_name, list_of
    use rbs_base_units, only: unit_system
    use rbs_case_case_record, only: case_record, most_loadings
+   use rbs_case_drawing_record, only: drawing_groups, is_drawing_group, may_repeat
    use rbs_case_renamed, only: new_group, new_key, new_word
    use rbs_case_spring_entry, only: entry_list, keys_of_group, is_spring_group, place_springs
    use rbs_hysteresis_registry, only: rule_names, keys_of
+   use rbs_section_shapes, only: new_shape, shape_names
    implicit none
    private
 
    public :: setter_type, group_names, unit_in_group
 
-   character(len=16), parameter :: group_names(12) = [character(len=16) :: &
+   character(len=16), parameter :: group_names(*) = [character(len=16) :: &
       'case', 'units', 'column', 'damping', 'shear', 'flexure', 'axial_spring', 'layer_spring', 'layers', &
-      'loading', 'analysis', 'output']
+      drawing_groups, 'loading', 'analysis', 'output']
 
    !> The result of `find` for a key that is ignored because the rule of its spring is unknown.
    integer, parameter, public :: ignored = -1
@@ -90,12 +93,16 @@ contains
             return
          end if
          self%case%loadings = self%case%loadings + 1
-      else if (self%seen(place)) then
+      else if (self%seen(place) .and. .not. may_repeat(group)) then
          call messages%add(adjustl(trim(where)//' &'//trim(group)//' appears twice; it may appear once'))
          ok = .false.
          return
       end if
       self%seen(place) = .true.
+      if (is_drawing_group(group)) then
+         if (.not. allocated(self%case%drawing)) allocate (self%case%drawing)
+         call self%case%drawing%open_group(group)
+      end if
       call self%visitor%collect(group)
       call self%visit_open()
       self%keys = self%visitor%keys(:self%visitor%count)
@@ -105,6 +112,10 @@ contains
    subroutine visit_open(self)
       class(setter_type), intent(inout) :: self
 
+      if (is_drawing_group(self%group)) then
+         call self%case%drawing%visit(self%group, self%visitor)
+         return
+      end if
       select case (self%group)
       case ('case')
          call self%case%visit(self%visitor)
@@ -226,6 +237,7 @@ contains
          call self%visit_open()
          call self%visitor%end_check(messages)
          if (self%group == 'units') self%units = self%case%units%system()
+         if (self%group == 'section' .and. self%keys(place)%name == 'shape') call take_shape(self, text, messages)
          return
       end if
       associate (spring => self%springs%entry(self%springs%count)%spring, key => self%keys(place))
@@ -259,6 +271,23 @@ contains
          self%keys = [self%keys, keys]
       end associate
    end subroutine take_rule
+
+   !> The shape of a section brings its sizes as keys.
+   subroutine take_shape(self, name, messages)
+      type(setter_type), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      type(message_list), intent(inout) :: messages
+
+      if (.not. any(shape_names == name)) then
+         call messages%add(adjustl(trim(self%where)//" section: shape = '"//name//"' is not known; it is "// &
+                                   'one of '//list_of(shape_names)))
+         return
+      end if
+      call new_shape(findloc(shape_names == name, .true., dim=1), unset, unset, self%case%drawing%section%shape)
+      call self%visitor%collect(self%group)
+      call self%visit_open()
+      self%keys = self%visitor%keys(:self%visitor%count)
+   end subroutine take_shape
 
    !> The choices of a key, separated by commas.
    pure function listed(key) result(text)

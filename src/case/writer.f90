@@ -2,15 +2,19 @@
 !> Python. Values that equal the defaults are left out.
 module rbs_case_writer
    use rbs_base_check, only: is_given
+   use rbs_base_constants, only: unset
    use rbs_base_key_visitor, only: key_visitor, entry_type
    use rbs_base_keys, only: key_type, integer_kind, logical_kind, word_kind, text_kind, real_kind, choice_name
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text, exact_text
    use rbs_case_case_record, only: case_record
+   use rbs_case_drawing_record, only: drawing_record
    use rbs_case_text_buffer, only: text_buffer
    use rbs_column_column_record, only: column_record
    use rbs_hysteresis_registry, only: keys_of
    use rbs_hysteresis_spring_record, only: spring_record
+   use rbs_section_cross_section, only: no_ties
+   use rbs_section_shapes, only: new_shape, shape_names
    implicit none
    private
 
@@ -73,6 +77,7 @@ contains
       call case%visit(v)
       if (v%listed > 0) call sink%group('case', v%entry(:v%listed))
       call write_column(case%column, sink)
+      if (allocated(case%drawing)) call write_drawing(case%drawing, sink)
       do i = 1, case%loadings
          call v%collect('loading')
          call new%loading(1)%visit(v)
@@ -91,6 +96,55 @@ contains
       call case%output%visit(v)
       if (v%listed > 0) call sink%group('output', v%entry(:v%listed))
    end subroutine write_case
+
+   !> Write what a column was drawn from.
+   subroutine write_drawing(drawing, sink)
+      type(drawing_record), intent(inout) :: drawing
+      class(sink_type), intent(inout) :: sink
+      integer :: i
+
+      call write_group('drawing')
+      call write_group('section')
+      call write_group('concrete')
+      do i = 1, size(drawing%section%steels)
+         call write_group('steel', i)
+      end do
+      call write_group('bars')
+      if (allocated(drawing%layout)) call write_group('layout')
+      if (allocated(drawing%inner_layout)) call write_group('inner_layout')
+      if (drawing%section%hoops%kind /= no_ties) call write_group(trim(drawing%section%hoops%name()))
+      do i = 1, size(drawing%parameters)
+         call write_group('parameter', i)
+      end do
+
+   contains
+
+      subroutine write_group(name, number)
+         character(len=*), intent(in) :: name
+         !> Which of several
+         integer, intent(in), optional :: number
+         type(drawing_record) :: new, one
+         type(key_visitor) :: v
+
+         call new%open_group(name)
+         if (name == 'section' .and. allocated(drawing%section%shape)) then
+            call new_shape(findloc(shape_names == drawing%section%shape_name, .true., dim=1), unset, unset, &
+                           new%section%shape)
+         end if
+         call v%collect(name)
+         call new%visit(name, v)
+         call v%list()
+         if (present(number)) then
+            call one%open_group(name)
+            if (name == 'steel') one%section%steels(1) = drawing%section%steels(number)
+            if (name == 'parameter') one%parameters(1) = drawing%parameters(number)
+            call one%visit(name, v)
+         else
+            call drawing%visit(name, v)
+         end if
+         if (v%listed > 0) call sink%group(name, v%entry(:v%listed))
+      end subroutine write_group
+   end subroutine write_drawing
 
    !> Write a column with its damping and its springs; equal springs are written once.
    subroutine write_column(column, sink)

@@ -77,7 +77,7 @@ contains
       end do
    end subroutine put_groups
 
-   !> Read one group; the rule of a spring first, as it determines the parameters.
+   !> Read one group; first the rule of a spring and the shape of a section, which bring keys.
    subroutine put_group(scanned, group, path, setter, messages)
       type(nml_scan), intent(in) :: scanned
       type(nml_group), intent(in) :: group
@@ -92,7 +92,7 @@ contains
       do pass = 1, 2
          do i = group%first, group%last
             if (messages%count > most_messages) return
-            if ((scanned%entry(i)%name == 'rule') .eqv. (pass == 1)) then
+            if (any(scanned%entry(i)%name == [character(len=5) :: 'rule', 'shape']) .eqv. (pass == 1)) then
                call put_entry(scanned, group, i, path, setter, messages)
             end if
          end do

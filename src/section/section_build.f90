@@ -63,7 +63,7 @@ contains
          hoops%diameter = given%diameter
          hoops%spacing = given%spacing
          hoops%legs = given%legs
-         hoops%legs_across = given%legs_across
+         hoops%legs_across = merge(given%legs_across, given%legs, is_given(given%legs_across))
          hoops%steel = record%steels(find_steel(record, given%steel))%law()
       end associate
    end subroutine take_data

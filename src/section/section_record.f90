@@ -39,7 +39,7 @@ module rbs_section_section_record
       !> Diameter of the bar, distance between hoops or pitch along the column [m]
       real(wp) :: diameter = unset, spacing = unset
       !> Of ties: bars that cross the section along the depth and across it
-      real(wp) :: legs = 2.0_wp, legs_across = 2.0_wp
+      real(wp) :: legs = 2.0_wp, legs_across = unset
       !> Of round bars: whether they are single hoops, not a spiral
       logical :: hoops = .false.
       !> Number of the steel
@@ -91,7 +91,7 @@ contains
 
       call v%key('y', self%y, 'm', any_number, 'distance from mid-depth, positive to the tension face', &
                  most_bars)
-      call v%key('area', self%area, 'm2', above_zero, 'area', most_bars)
+      call v%key('area', self%area, 'm2', above_zero, 'area of the bar or row', most_bars)
       call v%key('steel', self%steel, '', any_number, 'numbers of their steels', most_bars)
    end subroutine visit_bars
 
@@ -106,7 +106,7 @@ contains
       if (self%kind == ties) then
          call v%key('legs', self%legs, '', above_zero, 'bars that cross the section along its depth')
          call v%key('legs_across', self%legs_across, '', above_zero, &
-                    'bars that cross the section along its width')
+                    'bars that cross the section along its width; without it as many as legs', optional=.true.)
       else
          call v%key('hoops', self%hoops, 'single hoops in place of a spiral')
          if (self%hoops) self%kind = circular_hoops

@@ -365,6 +365,26 @@ def test_a_namelist_comes_back_and_runs(post, tmp_path, run_cli):
     assert max(loop["force"]) != pytest.approx(max(answer["force"]), rel=1e-6)
 
 
+def test_a_case_with_a_drawing_keeps_what_belongs_to_it(post):
+    """As `section.column(...).to_namelist()` writes it, without the page."""
+    column = section().column(1.6, axial_load=744e3)
+    text = column.to_namelist() + "&loading drive = 'displacement', amplitudes = 0.005, 0.02 /\n"
+    given = post("open", text=text)["state"]
+    (answer,) = post("loops", state=given)["columns"]
+    path = 1.6 * rbsdem.protocol([0.005, 0.02])
+    result = rbsdem.cyclic(column, displacement=path, openings=True)
+    assert [one["name"] for one in answer["states"]] == result.limit_states().names()
+    assert {"cracking", "first_yield"} <= {one["name"] for one in answer["states"]}
+    assert answer["notes"] == []
+    (shown,) = post("sections", state=given, code="aci318")["columns"]
+    assert shown["codes"] == post("sections", state=state(), code="aci318")["columns"][0]["codes"]
+    (band,) = post("bands", state=given)["columns"]
+    assert band["upper"]
+    given["columns"][0]["case"] = text.replace("cover = 0.013", "cover = 0.014")
+    (answer,) = post("loops", state=given)["columns"]
+    assert "other than layered 2026.5 draws" in answer["notes"][0]
+
+
 def test_a_case_in_the_page_names_no_file(post, case_text):
     for loading in (
         "drive = 'displacement', file = '/etc/passwd'",

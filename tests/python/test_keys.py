@@ -186,8 +186,10 @@ def test_tables_of_the_input_reference_are_those_of_the_keys():
     shown = {found["name"] for found in script.BLOCK.finditer(text)}
     # &flexure and &axial_spring have the keys of &shear, and layered joints have no parameters.
     assert KEYS["groups"]["shear"] == KEYS["groups"]["flexure"] == KEYS["groups"]["axial_spring"]
+    assert KEYS["groups"]["layout"] == KEYS["groups"]["inner_layout"]
     assert shown == (
-        set(KEYS["groups"]) - {"flexure", "axial_spring"}
+        set(KEYS["groups"]) - {"flexure", "axial_spring", "inner_layout"}
+        | {f"shape {name}" for name in ("rectangle", "circle", "hollow_rectangle", "hollow_circle")}
         | {f"rule {name}" for name in RULES if name != "layered"}
         | {"places"}
     )

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 
 import rbsdem
+from rbsdem.section import parameters
 from rbsdem.springs import Spring
 
 # The same column is made at every level of kinematics, and masses without weight are tried.
@@ -226,6 +228,146 @@ def test_column_of_a_section_comes_back_and_its_loop_too(tmp_path, run_cli, read
         same_rows(back.run(), rows(run_cli, read_csv, tmp_path), case.run())
 
 
+# ---- drawings ------------------------------------------------------------------------------------
+
+
+def drawn_steel(rng: Rng) -> rbsdem.Steel:
+    fy = near(rng, 4e8)
+    return (
+        rbsdem.Steel(fy, 1.3 * fy, eps_u=near(rng, 0.1)) if rng.random() < 0.5 else rbsdem.Steel(fy)
+    )
+
+
+def drawn_section(rng: Rng) -> rbsdem.Section:
+    """Any shape, bars laid out or one by one, of steels alike or not."""
+    strength = rng.uniform(2e7, 9e7)
+    given: dict[str, Any] = {
+        "concrete": rbsdem.Concrete(strength, 3e6 if rng.random() < 0.3 else None),
+        "cover": float(rng.uniform(0.01, 0.04)),
+    }
+    round_, hollow = rng.random() < 0.4, rng.random() < 0.3
+    size, bar = float(rng.uniform(0.5, 1.2)), float(rng.uniform(0.012, 0.025))
+    hoop = {"diameter": float(rng.uniform(0.006, 0.012)), "spacing": float(rng.uniform(0.05, 0.2))}
+    if rng.random() < 0.3:
+        given["bar_diameter"] = near(rng, 0.02)
+    if hollow:
+        given["wall"] = 0.25 * size
+    if round_:
+        given["layout"] = rbsdem.Layout(int(rng.integers(6, 21)), bar, drawn_steel(rng))
+        given["spiral"] = rbsdem.Spiral(
+            **hoop, steel=drawn_steel(rng), hoops=bool(rng.random() < 0.5)
+        )
+        kind = rbsdem.HollowCircularSection if hollow else rbsdem.CircularSection
+        return kind(size, **given)
+    legs = float(rng.uniform(2, 5))
+    given["ties"] = rbsdem.Ties(
+        **hoop, steel=drawn_steel(rng), legs=legs, legs_across=2.0 if rng.random() < 0.5 else None
+    )
+    if rng.random() < 0.3 and not hollow:
+        given["bars"] = [
+            (float(y), near(rng, 4e-4), drawn_steel(rng))
+            for y in (-0.17, -0.05, 0.08, 0.17) for _ in range(2)
+        ]  # fmt: skip
+    else:
+        between = {"between_diameter": 0.8 * bar, "between_steel": drawn_steel(rng)}
+        given["layout"] = rbsdem.Layout(
+            int(rng.choice([8, 12, 16])), bar, drawn_steel(rng), face=int(rng.integers(2, 5)),
+            **(between if rng.random() < 0.5 else {}),
+        )  # fmt: skip
+    if rng.random() < 0.3:
+        given["side_cover"] = 0.03
+    kind = rbsdem.HollowRectangularSection if hollow else rbsdem.RectangularSection
+    return kind(size, size, **given)
+
+
+def drawn_column(rng: Rng) -> rbsdem.Column:
+    section = drawn_section(rng)
+    given: dict[str, Any] = {"top": "fixed" if rng.random() < 0.3 else "free"}
+    if rng.random() < 0.3:
+        given["restrained"] = 6
+    if rng.random() < 0.3:
+        given["version"] = str(rng.choice(["2026.2", "2026.4"]))
+    elif rng.random() < 0.3:
+        values = {"wear": near(rng, 0.08), "shear_strength": near(rng, 1.0)}
+        given["model_parameters"] = parameters().with_values(**values)
+    if rng.random() < 0.3:
+        given["footing"] = rbsdem.Footing(elastic(rng), elastic(rng))
+    load = rng.uniform(0.02, 0.3) * section.gross_area * section.concrete.fc
+    height = section.depth * rng.uniform(3, 6)
+    return section.column(height, axial_load=load, n=int(rng.integers(2, 4)), **given)
+
+
+@pytest.mark.filterwarnings("ignore::rbsdem.AccuracyWarning")
+@pytest.mark.parametrize("seed", range(4))
+def test_a_drawing_comes_back(tmp_path, run_cli, read_csv, seed):
+    """The column, what its layers stand for, and what follows when the drawing is changed."""
+    rng, reached = np.random.default_rng(seed), set()
+    for number in range(12):
+        column = tried(lambda: drawn_column(rng))
+        path = column.height * rbsdem.protocol([0.004, 0.012], points=3)
+        case = made(column, "static", displacement=path)
+        back = read_back(tmp_path, case.to_namelist())
+        assert back == case
+        assert back.to_namelist() == case.to_namelist()
+        section = column.recipe.section
+        thicker = {"cover": 1.05 * section.cover}
+        assert replace(back.column.recipe.section, **thicker) == replace(section, **thicker)
+        one, other = back.run(openings=True), case.run(openings=True)
+        assert list(one.limit_states()) == list(other.limit_states())
+        reached |= set(one.limit_states().names())
+        if number == 0:
+            same_rows(one, rows(run_cli, read_csv, tmp_path), other)
+    assert {"cracking", "first_yield"} <= reached
+
+
+def drawn_text(**changes: str) -> str:
+    bars = rbsdem.Layout(12, 0.016, rbsdem.Steel(446e6))
+    ties = rbsdem.Ties(0.007, 0.085, rbsdem.Steel(364e6), legs=4)
+    section = rbsdem.RectangularSection(
+        0.4, 0.4, rbsdem.Concrete(46.5e6), layout=bars, ties=ties, cover=0.013
+    )
+    text = section.column(1.6, axial_load=744e3).to_namelist() + LOADING
+    for old, new in changes.items():
+        found = {"drawing": r"&drawing[^/]*/\n", "layout": r"&layout[^/]*/\n"}.get(old, old)
+        assert re.search(found, text)
+        text = re.sub(found, new, text)
+    return text
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("drawing", "", "a section is there without the group &drawing"),
+        ("'rectangle'", "'star'", "shape = 'star' is not known; it is one of rectangle, circle"),
+        ("width = 0.4", "diameter = 0.4", "&section has no 'diameter'"),
+        ("cover = 0.013", "cover = -1", "section: cover = -1 m must not be negative"),
+        ("layout", "", "layout|bars"),
+        ("number = 12", "number = 0", "layout: number = 0 must be 1 or more"),
+        ("number = 12", "number = 11", "number = 11 does not spread"),
+        ("0.016, steel = 1", "0.016, steel = 3", "layout: steel is not one of the steels"),
+        ("&ties", "&bars y = 0.1, area = 1e-4, steel = 1 /\n&ties", "there is a layout too"),
+        ("&ties", "&spiral diameter = 0.01, spacing = 0.1, steel = 1 /\n&ties", "a spiral too"),
+        ("'2026.5', h", "'1066.1', h", "version = '1066.1' is not known; there are 2026.2"),
+        ("&ties", "&parameter name = 'ware', value = 1 /\n&ties", "did you mean 'wear'"),
+        ("'rectangle'", "'hollow_rectangle'", "section: wall = 0 m must be above zero"),
+        ("&concrete fc = 46500000 /", "", "concrete: fc is missing"),
+        ("fc = 46500000", "fc = 46.5", "30 MPa is fc = 30e6"),
+    ],
+)  # fmt: skip
+def test_a_wrong_drawing_is_named(tmp_path, old, new, words):
+    with pytest.raises(rbsdem.InputError, match=words):
+        read_back(tmp_path, drawn_text(**{old: new}))
+
+
+@pytest.mark.parametrize(
+    ("old", "new"), [("lambda_s = 46.9", "lambda_s = 40"), ("width = 0.4", "width = 0.41")]
+)
+def test_springs_that_are_not_as_drawn_are_told(tmp_path, old, new):
+    with pytest.warns(rbsdem.AccuracyWarning, match="shear.* other than layered 2026.5 draws"):
+        case = read_back(tmp_path, drawn_text(**{old: new}))
+    assert ("flexure" in case.column.replaced) == (old == "width = 0.4")
+
+
 # ---- cases ---------------------------------------------------------------------------------------
 
 
@@ -249,7 +391,7 @@ def same_rows(run: rbsdem.Result, csv: dict[str, np.ndarray], before: rbsdem.Res
     assert np.array_equal(run.displacement, csv["displacement_m"])
     assert np.array_equal(run.force, csv["force_N"])
     assert np.array_equal(run.energy["spring"], csv["spring_J"])
-    for i, moment in enumerate(run.moment.T, 1):
+    for i, moment in zip(run.column.joint_numbers, run.moment.T, strict=True):
         assert np.array_equal(moment, csv[f"moment_{i}_Nm"])
     for name in ("time", "displacement", "force", "slip", "rotation", "shear", "moment", "top"):
         assert np.array_equal(getattr(run, name), getattr(before, name)), name

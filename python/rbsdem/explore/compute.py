@@ -117,11 +117,17 @@ class Answers:
         run: Callable[[], Result]
         if "case" in given:
             try:
-                case = case_of_text(given["case"])
-                # The strains of a layered hinge follow from its openings.
-                run = partial(case.run, openings=True)
+                with warnings.catch_warnings(record=True) as told:
+                    warnings.simplefilter("always")
+                    case = case_of_text(given["case"])
             except RbsdemError as error:
                 return Answered(None, None, None, [{"field": "case", "text": str(error)}], [])
+            notes = [str(one.message) for one in told]
+            column = case.column
+            if isinstance(column, LayeredColumn) and column.recipe is not None:
+                drawn = Drawn(column, column.recipe.section, column.recipe.height, 1.0)
+            # The strains of a layered hinge follow from its openings.
+            run = partial(case.run, openings=True)
         else:
             drawn, notes = column_of(given, faults)
             loads = loading_of(loading, self.records, faults)

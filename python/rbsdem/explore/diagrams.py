@@ -28,6 +28,7 @@ def section_answer(drawn: Drawn, code: str) -> dict[str, Any]:
         ],
         "code": _tried(lambda: _interaction(section, code)),
         "codes": _tried(lambda: _codes(section, span, load)),
+        "axial_load": number(load),
     }
 
 

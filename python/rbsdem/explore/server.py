@@ -14,6 +14,7 @@ import json
 import secrets
 import tempfile
 import threading
+import warnings
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -262,7 +263,10 @@ _ONCE = ("export", "open", "record")
 def opened(text: object) -> dict[str, Any]:
     """Return the state of the text of a case file, from its drawing or as the case that it is."""
     try:
-        case = texts.case_of_text(text)
+        with warnings.catch_warnings():
+            # What there is to say of it stands beside its loop.
+            warnings.simplefilter("ignore")
+            case = texts.case_of_text(text)
     except InputError as error:
         return {"faults": [{"field": "case", "text": str(error)}]}
     assert isinstance(text, str)

@@ -138,6 +138,33 @@ class DrawnSection(ABC):
         else:
             self._put("bar_diameter", None if follows is None else Derived(follows))
 
+    def drawing(self) -> _core.Statement:
+        """Return the keys of the section as it was given, as groups of a case file."""
+        layouts = {name: getattr(self, name, None) for name in ("layout", "inner_layout")}
+        laid_out = [layout for layout in layouts.values() if layout is not None]
+        steels = [steel for layout in laid_out for steel in layout.steels]
+        bars = self.bars if self.layout is None else ()
+        steels += [steel for _, _, steel in bars]
+        if self.ties is not None:
+            steels.append(self.ties.steel)
+        numbers = {steel: i for i, steel in enumerate(dict.fromkeys(steels), 1)}
+        values = ((field.name, getattr(self, field.name)) for field in fields(self))
+        sizes = {name: given(value) for name, value in values if isinstance(value, int | float)}
+        statement = _core.group("section", {"shape": self.shape} | sizes)
+        statement += self.concrete.statement()
+        for steel, number in numbers.items():
+            statement += steel.statement(number)
+        if bars:
+            y, area, each = zip(*bars, strict=True)
+            rows = {"y": y, "area": area, "steel": [numbers[steel] for steel in each]}
+            statement += _core.group("bars", rows)
+        for name, layout in layouts.items():
+            if layout is not None:
+                statement += layout.statement(name, numbers)
+        if self.ties is not None:
+            statement += self.ties.statement(numbers[self.ties.steel])
+        return statement
+
     @property
     def turned(self) -> Self:
         """The section upside down: y > 0 is what was y < 0. Itself where that is the same."""

@@ -131,7 +131,7 @@ class Steel:
 
     def statement(self, number: int | None = None) -> _core.Statement:
         """Return the keys of the steel with their values; `number` is what bars refer to."""
-        values = {f.name: getattr(self, f.name) for f in fields(self)}
+        values = {f.name: given(getattr(self, f.name)) for f in fields(self)}
         return _core.group("steel", {"id": number} | values)
 
     def stress(self, strain: ArrayLike) -> Array:

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 from numpy.typing import ArrayLike
 
 from rbsdem import _core
-from rbsdem.column import Column
-from rbsdem.ends import turned
+from rbsdem.column import Column, without_notes
+from rbsdem.ends import double_curvature, turned
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.parameter import Parameter
 from rbsdem.section.directions import DIRECTIONS
@@ -259,6 +259,40 @@ class LayeredModel:
         )
         return joint.limits | {f"shear_{name}": ends for name, ends in of_shear.items()}
 
+    def statement(self) -> _core.Statement:
+        """Return the keys of the drawing, as groups of a case file."""
+        own = {
+            "version": _core.Text(self.parameters.version),
+            "height": self.height,
+            "axial_load": self.axial_load,
+            "n": self.n,
+            "restrained": self.restrained,
+            "round_core": self.round_core or None,
+        }
+        statement = _core.group("drawing", own) + self.section.drawing()
+        values = self.parameters.values
+        for name in self.parameters.own:
+            change = {"name": _core.Text(name), "value": values[name]}
+            statement += _core.group("parameter", change)
+        return statement
+
+    def ends(self, top: str) -> dict[str, Any]:
+        """Return `made` for a cantilever, or for a column whose top is fixed.
+
+        Parameters
+        ----------
+        top : {"free", "fixed"}
+            The latter is that of double curvature, of which the drawing is the lower half.
+        """
+        return self.made if top == "free" else self._made_twice
+
+    @cached_property
+    def _made_twice(self) -> dict[str, Any]:
+        with without_notes():
+            half = Column(self.height, 1.0, n=self.n, axial_load=self.axial_load, **self.made)
+            whole = double_curvature(half)
+        return {name: getattr(whole, name) for name in self.made}
+
     def check(self, names: Iterable[str]) -> None:
         """Refuse values of some parameters beyond what they can change.
 
@@ -435,7 +469,7 @@ class LayeredColumn(Column):
         object.__setattr__(self, "recipe", now)
         section = now.section
         notes = (
-            axial_load_note(axial_load, section.concrete.fc, section.gross_area),
+            axial_load_note(axial_load, section),
             *self.outside,
         )
         if any(notes):
@@ -511,7 +545,8 @@ class LayeredColumn(Column):
         several = {name: FACTORS[name][0] for name in values if name in FACTORS}
         several |= {name: tuple(DIRECTIONS[name]) for name in values if name in DIRECTIONS}
         recipe.check(set(values).difference(several, *several.values()))
-        made = {name: value for name, value in recipe.made.items() if not self._kept(name)}
+        ends = recipe.ends(self.top)
+        made = {name: value for name, value in ends.items() if not self._kept(name)}
         return replace(self, recipe=recipe, **made)
 
     def gauge(self, joint: int) -> Gauge | None:
@@ -603,9 +638,17 @@ class LayeredColumn(Column):
                 f"carries; compression is positive: give {least:g} to {most:g} N"
             )
 
+    @property
+    def replaced(self) -> tuple[str, ...]:
+        """What of shear and flexure is not that of the model."""
+        return tuple(name for name in ("shear", "flexure") if self._kept(name))
+
     def _kept(self, field: str) -> bool:
         """Whether what the model made was replaced by something else."""
-        return bool(getattr(self, field) != self._recipe.made[field])
+        return bool(getattr(self, field) != self._recipe.ends(self.top)[field])
+
+    def _groups(self) -> _core.Statement:
+        return self._statement + self._recipe.statement()
 
     @property
     def _recipe(self) -> LayeredModel:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from typing import ClassVar
 
 import numpy as np
 
 from rbsdem import _core
 from rbsdem.errors import InputError
+from rbsdem.section.derived import Derived, given
 from rbsdem.section.materials import Steel
 
 __all__ = ["Bar", "Layout", "Spiral", "Ties", "share_in_tension"]
@@ -80,6 +82,25 @@ class Layout:
             raise InputError(f"layout: steel = {self.steel!r} must be a Steel")
         if not isinstance(self.between_steel, Steel | None):
             raise InputError(f"layout: between_steel = {self.between_steel!r} must be a Steel")
+
+    @property
+    def steels(self) -> list[Steel]:
+        """The steels of its bars."""
+        return [steel for steel in (self.steel, self.between_steel) if steel is not None]
+
+    def statement(self, name: str, numbers: Mapping[Steel, int]) -> _core.Statement:
+        """Return the keys of the layout with their values.
+
+        Parameters
+        ----------
+        name : str
+            Of the group.
+        numbers : mapping
+            The numbers of the steels.
+        """
+        own = {field.name: getattr(self, field.name) for field in fields(self)}
+        steels = {key: numbers[value] for key, value in own.items() if isinstance(value, Steel)}
+        return _core.group(name, own | steels)
 
     def rectangular(self, depth: float, inset: float) -> list[Bar]:
         """Return the bars of a rectangle.
@@ -188,18 +209,22 @@ class Ties:
     legs_across: float | None = None
 
     def __post_init__(self) -> None:
-        across = self.legs if self.legs_across is None else self.legs_across
-        object.__setattr__(self, "legs_across", across)
-        for name, unit in (("diameter", "m"), ("spacing", "m"), ("legs", ""), ("legs_across", "")):
+        for name, unit in (("diameter", "m"), ("spacing", "m"), ("legs", "")):
             value = _positive(getattr(self, name), f"ties: {name}", unit)
             object.__setattr__(self, name, value)
+        across: float | None = given(self.legs_across)
+        if across is None:
+            across = Derived(self.legs)
+        else:
+            across = _positive(across, "ties: legs_across", "")
+        object.__setattr__(self, "legs_across", across)
         if not isinstance(self.steel, Steel):
             raise InputError(f"ties: steel = {self.steel!r} must be a Steel")
 
     def statement(self, steel: int) -> _core.Statement:
         """Return the keys of the ties with their values; `steel` is the number of their steel."""
         names = ("diameter", "spacing", "legs", "legs_across")
-        return _core.group("ties", {"steel": steel} | {n: getattr(self, n) for n in names})
+        return _core.group("ties", {"steel": steel} | {n: given(getattr(self, n)) for n in names})
 
 
 @dataclass(frozen=True)

@@ -151,7 +151,7 @@ function showSections() {
   curvatureChart(get("curvaturefigure"), found.state, found.columns, system);
   interactionChart(get("interactionfigure"), found.state, found.columns, same("own"), same("loops"), system, get("code").selectedOptions[0].textContent);
   codeTable(get("codetable"), found.state, found.columns, system);
-  for (const name of ["curvature", "interaction", "codes"]) get(name).hidden = found.state.columns.every(one => "case" in one);
+  for (const name of ["curvature", "interaction", "codes"]) get(name).hidden = found.columns.every(one => !one.code);
 }
 
 function showNear() {
@@ -170,7 +170,7 @@ function showDrawings() {
   state.columns.forEach((column, i) => {
     let box = host.children[i];
     if (!box) { box = element("div", { className: "drawbox" }); box.dataset.column = i; host.append(box); }
-    if ("case" in column) { box.replaceChildren(element("p", { className: "empty" }, `Column ${column.name} is a case file: its springs have no drawing.`)); return; }
+    if ("case" in column) { box.replaceChildren(element("p", { className: "empty" }, `Column ${column.name} is a case file: nothing is drawn here.`)); return; }
     if (!dragging) scalesDrawn[i] = scalesOf(column);
     const heard = latest?.columns[i];
     drawColumn(box, column, heard?.figure, { system, scales: scalesDrawn[i] ?? scalesOf(column), kind: "ab"[i], title: column.name, fixed, stale: latest?.key !== keyOf(state) || Boolean(heard?.faults.length),

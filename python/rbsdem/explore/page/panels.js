@@ -78,8 +78,8 @@ export function interactionChart(host, state, sections, own, loops, system, code
       lines.push({ x: scaled(by.design_moment, factor), y: scaled(by.design_axial_load, per), kind: KINDS[i] + " thin dashed", label: name + "design" });
     }
     if (own?.[i]?.moment) lines.push({ x: scaled(own[i].moment, factor), y: scaled(own[i].axial_load, per), kind: KINDS[i], label: name + "own laws" });
-    const loop = loops?.[i], frame = state.columns[i].column;
-    if (loop?.figures?.peak_moment && frame) marks.push({ x: loop.figures.peak_moment / factor, y: frame.axial_load / per, shape: "circle", filled: true, kind: KINDS[i], title: "largest moment of the loop" });
+    const loop = loops?.[i];
+    if (loop?.figures.peak_moment && by) marks.push({ x: loop.figures.peak_moment / factor, y: one.axial_load / per, shape: "circle", filled: true, kind: KINDS[i], title: "largest moment of the loop" });
   });
   if (lines.length) drawChart(host, { lines, marks, fromZero: true, xLabel: `Moment (${unit})`, yLabel: `Axial load (${newton})`, legend: "inside", label: `Interaction of axial load and moment, ${code}; the dot is the largest moment of the loop` });
   else host.replaceChildren();

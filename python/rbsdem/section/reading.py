@@ -1,0 +1,139 @@
+"""A layered column from the groups of a case file that has its drawing."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import fields, replace
+from typing import Any
+
+from rbsdem import _core
+from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.section.circular import CircularSection
+from rbsdem.section.hollow import HollowCircularSection, HollowRectangularSection
+from rbsdem.section.materials import Concrete, Steel
+from rbsdem.section.model import LayeredColumn, LayeredModel
+from rbsdem.section.parameters import VERSIONS, ModelParameters, parameters
+from rbsdem.section.rectangular import RectangularSection
+from rbsdem.section.reinforcement import Layout, Spiral, Ties
+from rbsdem.section.section import Section
+
+__all__ = ["SHAPES", "Groups", "layered_column", "recipe_of"]
+
+Groups = Mapping[str, list[dict[str, Any]]]
+"""The groups of a case file with their values by name; those of one name in their order."""
+
+#: The classes of the shapes.
+SHAPES: dict[str, type[Section]] = {
+    kind.shape: kind
+    for kind in (
+        RectangularSection,
+        CircularSection,
+        HollowRectangularSection,
+        HollowCircularSection,
+    )
+}
+
+#: What groups with steels stand for.
+_PARTS: dict[str, type] = {
+    "layout": Layout,
+    "inner_layout": Layout,
+    "ties": Ties,
+    "spiral": Spiral,
+}
+
+
+def layered_column(recipe: LayeredModel, given: Mapping[str, Any]) -> LayeredColumn:
+    """Return the column of a case that has its drawing.
+
+    Parameters
+    ----------
+    recipe : LayeredModel
+        The drawing.
+    given : mapping
+        The arguments of `rbsdem.Column` that the case gives, with its springs.
+
+    Returns
+    -------
+    LayeredColumn
+        With the springs of the case.
+
+    Warns
+    -----
+    AccuracyWarning
+        Where they are not those that the model draws.
+    """
+    column = LayeredColumn(**given, recipe=recipe)
+    other = column.replaced
+    if other:
+        warnings.warn(
+            f"the case has {' and '.join(other)} other than layered {recipe.parameters.label} "
+            "draws from its section; it is solved with its own springs, and what bars and concrete "
+            "undergo is known only for a hinge that is as drawn. To draw the springs anew, make "
+            "the column of case.column.recipe.section",
+            AccuracyWarning,
+            stacklevel=3,
+        )
+    return column
+
+
+def recipe_of(groups: Groups) -> LayeredModel:
+    """Return the drawing of a case.
+
+    Parameters
+    ----------
+    groups : mapping
+        The groups of the case, which are those of a drawing or others.
+
+    Raises
+    ------
+    InputError
+        If a value is refused, or the program does not know the version.
+    """
+    drawing = _one(groups, "drawing")
+    changes = {one["name"]: one["value"] for one in groups.get("parameter", [])}
+    made = _parameters(drawing.pop("version"), changes)
+    return LayeredModel(section=_section(groups), parameters=made, **drawing)
+
+
+def _parameters(version: str, changes: dict[str, float]) -> ModelParameters:
+    if version in VERSIONS:
+        return parameters(version).with_values(**changes)
+    base = parameters()
+    if set(base.values) - set(changes):
+        raise InputError(
+            f"drawing: version = {version!r} is not known; there are {', '.join(VERSIONS)}"
+        )
+    return replace(base.with_values(**changes), version=version)
+
+
+def _section(groups: Groups) -> Section:
+    steels = {}
+    for one in groups.get("steel", []):
+        values = _core.typed("steel", one)
+        number = values.pop("id", None)
+        steels.setdefault(number, Steel(**values))
+    sizes = _one(groups, "section")
+    kind = SHAPES[sizes.pop("shape")]
+    parts: dict[str, Any] = {"concrete": Concrete(**_one(groups, "concrete"))}
+    if "bars" in groups:
+        bars = _one(groups, "bars")
+        rows = zip(bars["y"], bars["area"], bars["steel"], strict=True)
+        parts["bars"] = [(y, area, steels[int(number)]) for y, area, number in rows]
+    for name, part in _PARTS.items():
+        if name in groups:
+            values = _one(groups, name)
+            used = {key: steels[values[key]] for key in values if key.endswith("steel")}
+            parts[name] = part(**values | used)
+    known = {field.name for field in fields(kind)}
+    for name in (*sizes, *parts):
+        if name not in known:
+            raise InputError(f"section: {name} is not for shape = {kind.shape!r}; remove it")
+    return kind(**sizes, **parts)
+
+
+def _one(groups: Groups, name: str) -> dict[str, Any]:
+    """Return the values of a group that is there once."""
+    if name not in groups:
+        raise InputError(f"section: the group &{name} is missing; give it")
+    return _core.typed(name, groups[name][0])

@@ -1,0 +1,228 @@
+!> The drawing that the springs of a case were made from: a section, and what the model was told. The springs
+!> stand in the case as well, and the solver takes them; with the drawing the case also says what they are of.
+module rbs_case_drawing_record
+   use rbs_base_constants, only: unset, unset_integer
+   use rbs_base_error, only: message_list
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: above_zero, any_number, bound_type, one_or_more
+   use rbs_base_kinds, only: wp
+   use rbs_column_column_record, only: most_bodies
+   use rbs_section_cross_section, only: spiral, ties
+   use rbs_section_section_record, only: append_steel, find_steel, section_record
+   use rbs_section_shape, only: column_size
+   implicit none
+   private
+
+   public :: drawing_record, is_drawing_group, may_repeat
+
+   !> The groups of a drawing.
+   character(len=12), parameter, public :: drawing_groups(10) = [character(len=12) :: &
+      'drawing', 'section', 'concrete', 'steel', 'bars', 'layout', 'inner_layout', 'ties', 'spiral', 'parameter']
+
+   !> Bars by number and diameter, on the faces of a rectangle or around a circle.
+   type :: layout_record
+      integer :: number = unset_integer
+      real(wp) :: diameter = unset
+      !> Number of their steel
+      integer :: steel = unset_integer
+      !> Bars on the tension face
+      integer :: face = unset_integer
+      !> Bars between the corners, where they differ
+      real(wp) :: between_diameter = unset
+      integer :: between_steel = unset_integer
+   contains
+      procedure :: visit => visit_layout
+   end type layout_record
+
+   !> A parameter of the model that is not that of its version.
+   type :: parameter_record
+      character(len=32) :: name = ''
+      real(wp) :: value = unset
+   contains
+      procedure :: visit => visit_parameter
+   end type parameter_record
+
+   type :: drawing_record
+      type(section_record) :: section
+      !> In place of bars one by one: along the hoops, and along those around a void
+      type(layout_record), allocatable :: layout, inner_layout
+      !> Version of the parameters of the layered model
+      character(len=32) :: version = ''
+      !> From an end to where the moment is zero [m], the axial load [N], bodies of that part
+      real(wp) :: height = unset, axial_load = unset
+      integer :: n = unset_integer
+      !> Bars that hoops hold, and whether the core of a rectangle is round
+      integer :: restrained = unset_integer
+      logical :: round_core = .false.
+      type(parameter_record), allocatable :: parameters(:)
+      !> Whether the group itself was given, and how many groups of hoops were
+      logical :: stated = .false.
+      integer :: hoops = 0
+   contains
+      procedure :: open_group
+      procedure :: visit
+      procedure :: validate
+   end type drawing_record
+
+contains
+
+   pure logical function is_drawing_group(group)
+      character(len=*), intent(in) :: group
+
+      is_drawing_group = any(drawing_groups == group)
+   end function is_drawing_group
+
+   !> Whether a group may appear several times.
+   pure logical function may_repeat(group)
+      character(len=*), intent(in) :: group
+
+      may_repeat = group == 'steel' .or. group == 'parameter'
+   end function may_repeat
+
+   !> Make room for what a group gives.
+   subroutine open_group(self, group)
+      class(drawing_record), intent(inout) :: self
+      character(len=*), intent(in) :: group
+
+      if (.not. allocated(self%section%steels)) allocate (self%section%steels(0))
+      if (.not. allocated(self%parameters)) allocate (self%parameters(0))
+      if (group == 'ties' .or. group == 'spiral') self%hoops = self%hoops + 1
+      select case (group)
+      case ('drawing')
+         self%stated = .true.
+      case ('steel')
+         call append_steel(self%section)
+      case ('layout')
+         allocate (self%layout)
+      case ('inner_layout')
+         allocate (self%inner_layout)
+      case ('ties')
+         self%section%hoops%kind = ties
+      case ('spiral')
+         self%section%hoops%kind = spiral
+      case ('parameter')
+         self%parameters = [self%parameters, parameter_record()]
+      case default                                  ! always there
+      end select
+   end subroutine open_group
+
+   !> Present the keys of a group; of steels and parameters those of the last one.
+   subroutine visit(self, group, v)
+      class(drawing_record), intent(inout) :: self
+      character(len=*), intent(in) :: group
+      type(key_visitor), intent(inout) :: v
+
+      select case (group)
+      case ('section')
+         call self%section%visit(v)
+      case ('concrete')
+         call self%section%concrete%visit(v)
+      case ('steel')
+         call self%section%steels(size(self%section%steels))%visit(v)
+      case ('bars')
+         call self%section%bars%visit(v)
+      case ('layout')
+         call self%layout%visit(v)
+      case ('inner_layout')
+         call self%inner_layout%visit(v)
+      case ('ties', 'spiral')
+         call self%section%hoops%visit(v)
+      case ('parameter')
+         call self%parameters(size(self%parameters))%visit(v)
+      case default
+         call visit_drawing(self, v)
+      end select
+   end subroutine visit
+
+   subroutine visit_drawing(self, v)
+      class(drawing_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%word('version', self%version, 'version of the parameters of the layered model')
+      call v%key('height', self%height, 'm', above_zero, &
+                 'from an end to where the moment is zero: the height, or half of it under a fixed top')
+      call v%key('axial_load', self%axial_load, 'N', any_number, &
+                 'axial load that the springs were drawn for, compression positive')
+      call v%key('n', self%n, '', bound_type(2.0_wp, real(most_bodies, wp)), 'bodies of that height')
+      call v%key('restrained', self%restrained, '', one_or_more, &
+                 'bars that hoops or ties hold; without it as the layout has them', optional=.true.)
+      call v%key('round_core', self%round_core, 'the ties stand for a spiral around a round core')
+   end subroutine visit_drawing
+
+   subroutine visit_layout(self, v)
+      class(layout_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%key('number', self%number, '', one_or_more, 'number of bars')
+      call v%key('diameter', self%diameter, 'm', column_size, 'their diameter')
+      call v%key('steel', self%steel, '', any_number, 'number of their steel')
+      call v%key('face', self%face, '', one_or_more, &
+                 'bars on the tension face of a rectangle; without it number/4 + 1', optional=.true.)
+      call v%key('between_diameter', self%between_diameter, 'm', above_zero, &
+                 'diameter of the bars between the corners, if it differs', optional=.true.)
+      call v%key('between_steel', self%between_steel, '', any_number, &
+                 'number of the steel of the bars between the corners, if it differs', optional=.true.)
+   end subroutine visit_layout
+
+   subroutine visit_parameter(self, v)
+      class(parameter_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%word('name', self%name, 'name of a parameter of the model that is not that of the version')
+      call v%key('value', self%value, '', any_number, 'its value')
+   end subroutine visit_parameter
+
+   !> Add a message for every value that is refused.
+   subroutine validate(self, messages)
+      class(drawing_record), intent(inout) :: self
+      type(message_list), intent(inout) :: messages
+      type(key_visitor) :: v
+      integer :: i
+
+      if (.not. self%stated) then
+         call messages%add('drawing: a section is there without the group &drawing, which says what was '// &
+                           'made of it; give it, or remove the groups of the section')
+      else
+         call v%start_check('drawing')
+         call visit_drawing(self, v)
+         call v%end_check(messages)
+         if (self%version == '') call messages%add("drawing: version is missing; give it, as '2026.5'")
+      end if
+      call self%section%validate(messages)
+      call check_layout(self%section, 'layout', self%layout, messages)
+      call check_layout(self%section, 'inner_layout', self%inner_layout, messages)
+      if (allocated(self%layout) .and. allocated(self%section%bars%y)) then
+         call messages%add('bars: there is a layout too; give one of them')
+      end if
+      if (self%hoops > 1) call messages%add('ties: there is a spiral too; give one of them')
+      do i = 1, size(self%parameters)
+         call v%start_check('parameter')
+         call self%parameters(i)%visit(v)
+         call v%end_check(messages)
+         if (self%parameters(i)%name == '') call messages%add('parameter: name is missing; give it')
+      end do
+   end subroutine validate
+
+   !> The values of a layout, and its steels.
+   subroutine check_layout(section, name, layout, messages)
+      type(section_record), intent(in) :: section
+      character(len=*), intent(in) :: name
+      type(layout_record), allocatable, intent(inout) :: layout
+      type(message_list), intent(inout) :: messages
+      type(key_visitor) :: v
+
+      if (.not. allocated(layout)) return
+      call v%start_check(name)
+      call layout%visit(v)
+      call v%end_check(messages)
+      if (.not. v%sound) return
+      if (find_steel(section, layout%steel) == 0) then
+         call messages%add(name//': steel is not one of the steels of the section')
+      end if
+      if (layout%between_steel == unset_integer) return
+      if (find_steel(section, layout%between_steel) == 0) then
+         call messages%add(name//': between_steel is not one of the steels of the section')
+      end if
+   end subroutine check_layout
+
+end module rbs_case_drawing_record
