@@ -17,7 +17,8 @@ module rbs_case_drawing_record
 
    !> The groups of a drawing.
    character(len=12), parameter, public :: drawing_groups(10) = [character(len=12) :: &
-      'drawing', 'section', 'concrete', 'steel', 'bars', 'layout', 'inner_layout', 'ties', 'spiral', 'parameter']
+      'drawing', 'section', 'concrete', 'steel', 'bars', 'layout', 'inner_layout', 'ties', 'spiral', &
+      'parameter']
 
    !> Bars by number and diameter, on the faces of a rectangle or around a circle.
    type :: layout_record

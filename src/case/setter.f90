@@ -237,7 +237,7 @@ contains
          call self%visit_open()
          call self%visitor%end_check(messages)
          if (self%group == 'units') self%units = self%case%units%system()
-         if (self%group == 'section' .and. self%keys(place)%name == 'shape') call take_shape(self, text, messages)
+         if (self%group == 'section') call take_shape(self, text, messages)
          return
       end if
       associate (spring => self%springs%entry(self%springs%count)%spring, key => self%keys(place))
@@ -272,7 +272,7 @@ contains
       end associate
    end subroutine take_rule
 
-   !> The shape of a section brings its sizes as keys.
+   !> The shape of a section, its only word, brings its sizes as keys.
    subroutine take_shape(self, name, messages)
       type(setter_type), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -283,7 +283,8 @@ contains
                                    'one of '//list_of(shape_names)))
          return
       end if
-      call new_shape(findloc(shape_names == name, .true., dim=1), unset, unset, self%case%drawing%section%shape)
+      call new_shape(findloc(shape_names == name, .true., dim=1), unset, unset, &
+                     self%case%drawing%section%shape)
       call self%visitor%collect(self%group)
       call self%visit_open()
       self%keys = self%visitor%keys(:self%visitor%count)

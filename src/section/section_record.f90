@@ -106,7 +106,8 @@ contains
       if (self%kind == ties) then
          call v%key('legs', self%legs, '', above_zero, 'bars that cross the section along its depth')
          call v%key('legs_across', self%legs_across, '', above_zero, &
-                    'bars that cross the section along its width; without it as many as legs', optional=.true.)
+                    'bars that cross the section along its width; without it as many as legs', &
+                    optional=.true.)
       else
          call v%key('hoops', self%hoops, 'single hoops in place of a spiral')
          if (self%hoops) self%kind = circular_hoops
