@@ -368,6 +368,15 @@ def test_springs_that_are_not_as_drawn_are_told(tmp_path, old, new):
     assert ("flexure" in case.column.replaced) == (old == "width = 0.4")
 
 
+def test_a_case_under_another_load_keeps_its_springs(tmp_path):
+    """As the executable does, which cannot draw: its answer would be another one."""
+    text = drawn_text()
+    with pytest.warns(rbsdem.AccuracyWarning, match="drawn for axial_load = 744000 N, and its col"):
+        case = read_back(tmp_path, text.replace("axial_load = 744000", "axial_load = 700000", 1))
+    assert type(case.column) is rbsdem.Column
+    assert case.column.joints("shear") == read_back(tmp_path, text).column.joints("shear")
+
+
 # ---- cases ---------------------------------------------------------------------------------------
 
 

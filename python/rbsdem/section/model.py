@@ -457,15 +457,9 @@ class LayeredColumn(Column):
         if self._is_other:
             return
         before, now = self._recipe, replace(self._recipe, axial_load=axial_load)
-        if self.height != before.height:
-            raise InputError(
-                f"column: axial_load = {axial_load:g} N: the springs of this column in double "
-                f"curvature are made for {before.axial_load:g} N; give the cantilever that it is "
-                "made from the other load"
-            )
-        for name, value in before.made.items():
+        for name, value in before.ends(self.top).items():
             if getattr(self, name) == value:
-                object.__setattr__(self, name, now.made[name])
+                object.__setattr__(self, name, now.ends(self.top)[name])
         object.__setattr__(self, "recipe", now)
         section = now.section
         notes = (

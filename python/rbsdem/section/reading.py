@@ -8,6 +8,7 @@ from dataclasses import fields, replace
 from typing import Any
 
 from rbsdem import _core
+from rbsdem.column import Column
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.section.circular import CircularSection
 from rbsdem.section.hollow import HollowCircularSection, HollowRectangularSection
@@ -43,7 +44,7 @@ _PARTS: dict[str, type] = {
 }
 
 
-def layered_column(recipe: LayeredModel, given: Mapping[str, Any]) -> LayeredColumn:
+def layered_column(recipe: LayeredModel, given: Mapping[str, Any]) -> Column:
     """Return the column of a case that has its drawing.
 
     Parameters
@@ -55,8 +56,9 @@ def layered_column(recipe: LayeredModel, given: Mapping[str, Any]) -> LayeredCol
 
     Returns
     -------
-    LayeredColumn
-        With the springs of the case.
+    Column
+        A `LayeredColumn` with the springs of the case; a plain column where these were drawn for
+        another axial load than that of the case.
 
     Warns
     -----
@@ -64,6 +66,15 @@ def layered_column(recipe: LayeredModel, given: Mapping[str, Any]) -> LayeredCol
         Where they are not those that the model draws.
     """
     column = LayeredColumn(**given, recipe=recipe)
+    if column.recipe != recipe:
+        warnings.warn(
+            f"the springs of the case were drawn for axial_load = {recipe.axial_load:g} N, and its "
+            f"column has {column.axial_load:g} N; it is solved with its own springs, and nothing "
+            "is known of bars and concrete. To draw it again, make the column of its section",
+            AccuracyWarning,
+            stacklevel=3,
+        )
+        return Column(**given)
     other = column.replaced
     if other:
         warnings.warn(
