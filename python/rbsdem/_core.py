@@ -60,6 +60,8 @@ def number(value: Any, name: str) -> float:
         if isinstance(value, (bool, np.bool_, str, bytes)):
             raise TypeError
         return float(value)
+    except OverflowError:
+        raise InputError(f"{name} is larger than any number of the computer") from None
     except (TypeError, ValueError):
         raise InputError(f"{name} = {value!r} must be a number") from None
 

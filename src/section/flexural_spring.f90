@@ -102,8 +102,8 @@ contains
                           "of this rule; take ultimate = 'drop'")
       else if (.not. (spring%cracking%found .and. spring%cracking%curvature > 0.0_wp)) then
          call fatal_error(error, bad_input, 'flexural spring: the axial load alone cracks the section: '// &
-                          to_text(axial_load)//' N, compression positive; the trilinear line has no first '// &
-                          'branch, reduce the tension')
+                          to_text(axial_load)//' N, compression positive; the trilinear line has '// &
+                          'no first branch, reduce the tension')
       else if (spring%ultimate%curvature <= spring%yield%curvature) then
          call fatal_error(error, bad_input, 'flexural spring: the ultimate curvature '// &
                           to_text(spring%ultimate%curvature)//' 1/m is not beyond the yield curvature '// &

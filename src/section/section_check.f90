@@ -19,7 +19,11 @@ contains
       type(section_type), intent(in) :: section
       type(message_list), intent(inout) :: messages
 
-      if (section%transverse%kind /= no_ties) call check_core(section, messages)
+      if (section%transverse%kind /= no_ties) then
+         call check_core(section, messages)
+      else
+         call check_cover(section, messages)
+      end if
       if (size(section%bar_y) > 0) call check_bars(section, messages)
    end subroutine check_section
 
@@ -53,10 +57,40 @@ contains
       type(section_type), intent(in) :: section
       type(message_list), intent(inout) :: messages
 
-      if (min(section%core_shape%depth, section%core_shape%width) > section%transverse%diameter) return
-      call messages%add('section: cover = '//to_text(section%cover)//' m and ties of '// &
-                        to_text(section%transverse%diameter)//' m leave no core; the cover is measured '// &
-                        'to the outer edge of the ties')
+      associate (core => section%core_shape, hoops => section%transverse)
+         if (min(core%depth, core%width) > hoops%diameter) then
+            call check_legs('legs', hoops%legs, core%width)
+            call check_legs('legs_across', hoops%legs_across, core%depth)
+         else
+            call messages%add('section: cover = '//to_text(section%cover)//' m and ties of '// &
+                              to_text(hoops%diameter)//' m leave no core; the cover is measured '// &
+                              'to the outer edge of the ties')
+         end if
+      end associate
+
+   contains
+
+      !> Side by side the legs fill no more than the core and the outer halves of two of them.
+      subroutine check_legs(name, legs, core)
+         character(len=*), intent(in) :: name
+         real(wp), intent(in) :: legs, core
+
+         if ((legs - 1.0_wp)*section%transverse%diameter <= core) return
+         call messages%add('ties: '//name//' = '//to_text(legs)//' bars of '// &
+                           to_text(section%transverse%diameter)//' m do not fit into a core of '// &
+                           to_text(core)//' m; give fewer, or thinner ones')
+      end subroutine check_legs
    end subroutine check_core
+
+   !> Without hoops the cover still leaves something inside.
+   subroutine check_cover(section, messages)
+      type(section_type), intent(in) :: section
+      type(message_list), intent(inout) :: messages
+
+      if (section%cover < 0.5_wp*section%shape%depth .and. &
+          section%side_cover < 0.5_wp*section%shape%width) return
+      call messages%add('section: cover = '//to_text(section%cover)//' m, side_cover = '// &
+                        to_text(section%side_cover)//' m leave nothing of the section; 20 mm is 0.02')
+   end subroutine check_cover
 
 end module rbs_section_section_check

@@ -376,6 +376,16 @@ def test_tension_axial_load():
         section.springs(1.6, -8e5)
 
 
+def box(**changes):
+    given = {"wall": 0.25, "layout": Layout(12, 0.02, STEEL), "cover": 0.03} | changes
+    return rbsdem.HollowRectangularSection(1.0, 1.0, Concrete(30e6), **given)
+
+
+def ring(**changes):
+    given = {"wall": 0.25, "layout": Layout(12, 0.02, STEEL), "cover": 0.03} | changes
+    return rbsdem.HollowCircularSection(1.0, Concrete(30e6), **given)
+
+
 @pytest.mark.parametrize(
     ("make", "words"),
     [
@@ -403,6 +413,18 @@ def test_tension_axial_load():
         (lambda: tied(bars=[(0.1, 2e-4, STEEL)]), "not both"),
         (lambda: tied(cover=0.2), "no core"),
         (lambda: tied(cover=-0.01), "negative"),
+        (lambda: tied(cover=1e308), "no core"),
+        (lambda: RectangularSection(0.4, 0.4, Concrete(30e6), cover=0.2), "leave nothing"),
+        (lambda: tied(cover=10**400), "larger than any number"),
+        (lambda: tied(ties=Ties(0.01, 0.1, STEEL, legs=2.0**53)), "legs = 9.00.* do not fit"),
+        (lambda: tied(ties=Ties(0.01, 0.1, STEEL, legs_across=1e6)), "legs_across = 1e.06 bars"),
+        (lambda: tied(strips=10**400), "strips"),
+        (lambda: Layout(2**31 - 1, 0.02, STEEL), "must not be above 1000"),
+        (lambda: tied(layout=Layout(8, 1e308, STEEL)), "no core"),
+        (lambda: box(ties=1), "must be Ties"),
+        (lambda: box(cover="a"), "must be a number"),
+        (lambda: box(layout=1), "must be a Layout"),
+        (lambda: ring(spiral=1), "must be a Spiral"),
         (lambda: tied(ties=Spiral(0.01, 0.05, STEEL)), "must be Ties"),
         (lambda: tied(layout=Layout(10, 0.02, STEEL)), "multiple of 4"),
         (lambda: tied(layout=Layout(9, 0.02, STEEL, face=3)), "even number"),

@@ -88,8 +88,7 @@ class DrawnSection(ABC):
         """Set bars and bar diameter; state the section to the Fortran part, which checks it."""
         if not isinstance(self.concrete, Concrete):
             raise InputError(f"section: concrete = {self.concrete!r} must be a Concrete")
-        if not isinstance(self.strips, int):
-            raise InputError(f"section: strips = {self.strips!r} must be a whole number")
+        self._put("strips", _core.whole(self.strips, "section: strips"))
         ties = self.ties
         self._take_bars(self.cover, ties)
         numbers = {

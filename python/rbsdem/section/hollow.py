@@ -66,12 +66,16 @@ class HollowRectangularSection(RectangularSection):
         self._put("wall", _core.number(self.wall, "section: wall"))
         side = self.wall if self.side_wall is None else self.side_wall
         self._put("side_wall", _core.number(side, "section: side_wall"))
-        hoop = self.ties.diameter if self.ties is not None else 0.0
-        _check_wall(self.wall, "wall", _core.number(self.depth, "section: depth"), "depth")
-        _check_wall(self._web, "side_wall", _core.number(self.width, "section: width"), "width")
-        _check_cover(min(self.wall, self._web), self.cover, hoop)
-        _check_inner(self.layout, self.inner_layout)
         super().__post_init__()
+
+    def _finish(self) -> None:
+        hoop = self.ties.diameter if self.ties is not None else 0.0
+        _check_wall(self.wall, "wall", self.depth, "depth")
+        _check_wall(self._web, "side_wall", self.width, "width")
+        _check_cover(self.wall, self.cover, hoop)
+        _check_cover(self._web, float(self.side_cover or 0.0), hoop)
+        _check_inner(self.layout, self.inner_layout)
+        super()._finish()
 
     @property
     def _web(self) -> float:
@@ -205,12 +209,14 @@ class HollowCircularSection(CircularSection):
 
     def __post_init__(self) -> None:
         self._put("wall", _core.number(self.wall, "section: wall"))
+        super().__post_init__()
+
+    def _finish(self) -> None:
         hoop = self.spiral.diameter if self.spiral is not None else 0.0
-        outside = _core.number(self.diameter, "section: diameter")
-        _check_wall(self.wall, "wall", outside, "diameter")
+        _check_wall(self.wall, "wall", self.diameter, "diameter")
         _check_cover(self.wall, self.cover, hoop)
         _check_inner(self.layout, self.inner_layout)
-        super().__post_init__()
+        super()._finish()
 
     @property
     def web_width(self) -> float:

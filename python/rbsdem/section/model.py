@@ -461,11 +461,7 @@ class LayeredColumn(Column):
             if getattr(self, name) == value:
                 object.__setattr__(self, name, now.ends(self.top)[name])
         object.__setattr__(self, "recipe", now)
-        section = now.section
-        notes = (
-            axial_load_note(axial_load, section),
-            *self.outside,
-        )
+        notes = (axial_load_note(axial_load, now.section), *self.outside)
         if any(notes):
             warnings.warn("; ".join(filter(None, notes)), AccuracyWarning, stacklevel=5)
 

@@ -19,6 +19,9 @@ __all__ = ["Bar", "Layout", "Spiral", "Ties", "share_in_tension"]
 #: Bars at mid-depth count half in tension; the others whole from this share of the depth on.
 _MIDDLE = 0.05
 
+#: Bars of a layout; more are a mistake, and fill the memory.
+_MOST_BARS = 1000
+
 Bar = tuple[float, float, Steel]
 """One bar: distance from mid-depth [m], positive to the tension face; area [m2]; steel."""
 
@@ -70,6 +73,8 @@ class Layout:
             object.__setattr__(self, name, value)
 
         put("number", _core.whole(self.number, "layout: number"))
+        if self.number > _MOST_BARS:
+            raise InputError(f"layout: number = {self.number} must not be above {_MOST_BARS}")
         put("diameter", _positive(self.diameter, "layout: diameter", "m"))
         if self.between_diameter is not None:
             put(
@@ -131,7 +136,7 @@ class Layout:
                 f"layout: {face} bars on each face leave {side} of {self.number} for the two "
                 f"sides; face must be 2 or more, and an even number must be left"
             )
-        edge = 0.5 * depth - inset - 0.5 * self.diameter
+        edge = self._edge(depth, inset)
         corner = (_area(self.diameter), self.steel)
         between = (
             _area(self.between_diameter or self.diameter),
@@ -148,6 +153,16 @@ class Layout:
             else:
                 bars += [(y, *between)] * 2
         return bars
+
+    def _edge(self, depth: float, inset: float) -> float:
+        """Return the distance of the outermost bars from the middle [m]."""
+        edge = 0.5 * depth - inset - 0.5 * self.diameter
+        if not edge > 0.0:
+            raise InputError(
+                f"layout: bars of {self.diameter:g} m at {inset:g} m from the faces leave no core "
+                f"in a section of {depth:g} m"
+            )
+        return edge
 
     def circular(self, diameter: float, inset: float) -> list[Bar]:
         """Return the bars of a circle, the first at the tension face.
@@ -169,7 +184,7 @@ class Layout:
                 raise InputError(f"layout: {name} is for rectangular sections; remove it")
         if self.number < 1:
             raise InputError(f"layout: number = {self.number} must be one or more")
-        radius = 0.5 * diameter - inset - 0.5 * self.diameter
+        radius = self._edge(diameter, inset)
         angles = 2.0 * math.pi * np.arange(self.number) / self.number
         area = _area(self.diameter)
         return [(float(y), area, self.steel) for y in radius * np.cos(angles)]
@@ -274,7 +289,8 @@ class Spiral:
 
 
 def _area(diameter: float) -> float:
-    return 0.25 * math.pi * diameter**2
+    # A power of a huge number raises; the section refuses an area without end.
+    return 0.25 * math.pi * diameter * diameter
 
 
 def _positive(value: object, name: str, unit: str) -> float:

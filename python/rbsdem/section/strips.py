@@ -133,6 +133,8 @@ def _restrained(section: Section) -> float:
     """
     if section.layout is not None:
         number = section.layout.number
+    elif not section.bars:
+        number = 0
     else:
         # An entry of `bars` may be a row of them.
         number = section.steel_area / (math.pi / 4 * section.bar_diameter**2)
