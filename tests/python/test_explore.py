@@ -209,6 +209,17 @@ def test_section_and_band_are_those_of_the_functions(post):
     assert values["asce_41.a"] == pytest.approx(
         section().code_values(1.6, 744e3)["asce_41.a"], rel=1e-5
     )
+    (own,) = post("own", state=state())["columns"]
+    column = section().column(1.6, axial_load=744e3)
+    joint = column.interaction(points=24)
+    np.testing.assert_allclose(own["joint"]["moment"], joint.moment, rtol=1e-5, atol=1e-3)
+    laws = section().interaction(points=24)
+    np.testing.assert_allclose(own["section"]["moment"], laws.moment, rtol=1e-5, atol=1e-3)
+    # The moment of the loop, which the section by its own laws does not carry, is the joint's.
+    (answer,) = post("loops", state=state())["columns"]
+    peak = answer["figures"]["peak_moment"]
+    assert peak > 1.05 * laws.moment_at(744e3)
+    assert peak < 1.02 * joint.moment_at(744e3)
     (band,) = post("bands", state=state())["columns"]
     spread = section().column(1.6, axial_load=744e3).spread(1.6 * rbsdem.protocol([0.005, 0.02]))
     np.testing.assert_allclose(band["upper"], spread.upper, rtol=1e-5)

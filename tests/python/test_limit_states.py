@@ -32,6 +32,14 @@ def test_states_of_springs_are_where_their_lines_end():
     assert math.isnan(states.drift("cap"))
 
 
+@pytest.mark.filterwarnings("ignore::rbsdem.AccuracyWarning")
+def test_what_codes_are_not_for_does_not_hide_the_rest():
+    """No relation for bar buckling is for tension; cracking and yield are strains all the same."""
+    column = SECTION.column(1.6, axial_load=-0.3e6)
+    states = rbsdem.cyclic(column, displacement=[0.0, 0.01, 0.03]).limit_states()
+    assert {"cracking", "first_yield"} <= set(states.names())
+
+
 def test_first_state_of_either_side_counts():
     flexure = rbsdem.Bilinear(k=1e8, d_y=0.004, k_post=1e6)
     column = rbsdem.Column(2.0, 100.0, rbsdem.Elastic(1e14), flexure)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from rbsdem.codes.drawing import Quantities
-from rbsdem.errors import InputError
 
 __all__ = ["hinge_length_paulay", "hinge_length_priestley", "yield_point"]
 
@@ -22,11 +21,6 @@ def yield_point(q: Quantities, modulus: float | None = None) -> tuple[float, flo
         The column; a rectangle.
     modulus : float, optional
         Of the concrete [MPa]; 4700 sqrt(f'c) by default.
-
-    Raises
-    ------
-    InputError
-        If no part of the section is in compression at yield, which the formulas need.
     """
     ec = 4700.0 * math.sqrt(q.fc) if modulus is None else modulus
     area = q.width * q.d
@@ -39,12 +33,6 @@ def yield_point(q: Quantities, modulus: float | None = None) -> tuple[float, flo
         b = rho + rho2 * cover + 0.5 * web * (1.0 + cover)
         if steel:
             b += load
-        if b <= 0.0:
-            raise InputError(
-                f"code values: axial_load = {q.load:g} N pulls the whole section when its bars "
-                "yield, and the formulas need a part in compression; an axial load in "
-                "compression is positive"
-            )
         deep = math.sqrt((n * a) ** 2 + 2.0 * n * b) - n * a
         strain = q.fy / (q.es * (1.0 - deep) * q.d) if steel else 1.8 * q.fc / (ec * deep * q.d)
         found.append((strain if strain > 0 else math.inf, deep))

@@ -177,7 +177,7 @@ class Answers:
         return self._of_drawn(state, lambda drawn: section_answer(drawn, code))
 
     def own_interaction(self, state: Mapping[str, Any]) -> list[dict[str, Any]]:
-        """Return the interaction diagram of each column by its own laws, which takes long."""
+        """Return the interaction diagrams of each column by own laws, of section and joint."""
         return self._of_drawn(state, own_laws)
 
     def _of_drawn(

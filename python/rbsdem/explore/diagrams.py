@@ -13,9 +13,14 @@ import numpy as np
 from rbsdem._core import Array
 from rbsdem.errors import RbsdemError
 from rbsdem.explore.state import Drawn
+from rbsdem.section.interaction import InteractionDiagram
+from rbsdem.section.model import LayeredColumn
 from rbsdem.section.section import Section
 
 __all__ = ["defect", "figure_of", "number", "numbers", "own_laws", "section_answer"]
+
+#: Points of an interaction diagram that takes long.
+_POINTS = 24
 
 
 def section_answer(drawn: Drawn, code: str) -> dict[str, Any]:
@@ -33,8 +38,11 @@ def section_answer(drawn: Drawn, code: str) -> dict[str, Any]:
 
 
 def own_laws(drawn: Drawn) -> dict[str, Any]:
-    """Return the interaction diagram by the own laws of a section, which takes long."""
-    found: dict[str, Any] = _tried(lambda: _interaction(drawn.section, None))
+    """Return the interaction diagrams by own laws, of section and joint, which take long."""
+    found = {"section": _tried(lambda: _interaction(drawn.section, None))}
+    column = drawn.column
+    if isinstance(column, LayeredColumn):
+        found["joint"] = _tried(lambda: _curve(column.interaction(points=_POINTS)))
     return found
 
 
@@ -105,17 +113,17 @@ def _curvature(section: Section, load: float, confined: bool) -> dict[str, Any]:
 
 
 def _interaction(section: Section, code: str | None) -> dict[str, Any]:
-    points = 24 if code is None else 60
+    points = _POINTS if code is None else 60
     diagram = section.interaction(code, points=points)  # type: ignore[arg-type]
-    found = {
-        "code": code,
-        "axial_load": numbers(diagram.axial_load),
-        "moment": numbers(diagram.moment),
-    }
+    found = _curve(diagram) | {"code": code}
     if code is not None:
         found["design_axial_load"] = numbers(diagram.design_axial_load)
         found["design_moment"] = numbers(diagram.design_moment)
     return found
+
+
+def _curve(diagram: InteractionDiagram) -> dict[str, Any]:
+    return {"axial_load": numbers(diagram.axial_load), "moment": numbers(diagram.moment)}
 
 
 def _codes(section: Section, span: float, load: float) -> list[dict[str, Any]]:

@@ -17,6 +17,7 @@ from rbsdem._core import Array
 from rbsdem.codes.drawing import quantities
 from rbsdem.codes.regressions import goodnight_buckling_strain
 from rbsdem.column import Column
+from rbsdem.errors import InputError
 from rbsdem.result import Result
 from rbsdem.section.model import LayeredColumn
 from rbsdem.section.section import Section
@@ -210,10 +211,13 @@ def _of_bars(
 def buckling_strain(section: Section, column: Column) -> float:
     """Return the tensile strain beyond which bars buckle on reversal; infinite if not known.
 
-    It is known of solid sections with hoops.
+    It is known of solid sections with hoops and bars near both faces, in compression.
     """
     if section.hollow or section.ties is None:
         return math.inf
     span = column.height / (2 if column.top == "fixed" else 1)
-    given = quantities(section, span, column.axial_load)
+    try:
+        given = quantities(section, span, column.axial_load)
+    except InputError:
+        return math.inf
     return max(goodnight_buckling_strain(given), 0.01)

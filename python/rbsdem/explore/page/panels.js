@@ -77,7 +77,11 @@ export function interactionChart(host, state, sections, own, loops, system, code
       lines.push({ x: scaled(by.moment, factor), y: scaled(by.axial_load, per), kind: KINDS[i] + " thin", label: name + "nominal" });
       lines.push({ x: scaled(by.design_moment, factor), y: scaled(by.design_axial_load, per), kind: KINDS[i] + " thin dashed", label: name + "design" });
     }
-    if (own?.[i]?.moment) lines.push({ x: scaled(own[i].moment, factor), y: scaled(own[i].axial_load, per), kind: KINDS[i], label: name + "own laws" });
+    for (const [which, kind, label] of [["section", " dotted", "own laws of the section"], ["joint", "", "joint of the model"]]) {
+      const found = own?.[i]?.[which];
+      if (found?.fault) faults.push(found.fault);
+      else if (found) lines.push({ x: scaled(found.moment, factor), y: scaled(found.axial_load, per), kind: KINDS[i] + kind, label: name + label });
+    }
     const loop = loops?.[i];
     if (loop?.figures.peak_moment && by) marks.push({ x: loop.figures.peak_moment / factor, y: one.axial_load / per, shape: "circle", filled: true, kind: KINDS[i], title: "largest moment of the loop" });
   });
