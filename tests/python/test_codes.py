@@ -197,6 +197,8 @@ def test_the_order_of_bars_does_not_matter():
     values, same = mixed.code_values(1.6, 5e5), turned.code_values(1.6, 5e5)
     assert {v.name: v.value for v in same} == pytest.approx({v.name: v.value for v in values})
     assert values.quantities.fy == pytest.approx(0.5 * (450 + 300))
+    design, other = (each.interaction("aci318").design_moment for each in (mixed, turned))
+    assert design == pytest.approx(other, abs=1.0)
     assert (values.quantities.fy_compression, values.quantities.fy_web) == pytest.approx((375, 300))
 
 

@@ -28,6 +28,7 @@ from rbsdem.springs import Layered, SteelSpring
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from rbsdem.section.materials import Steel
     from rbsdem.section.section import Section
 
 __all__ = [
@@ -289,6 +290,12 @@ def _axes(section: Section, ultimate: float, count: int, strains: list[float]) -
     return np.unique(np.concatenate((by_strain, beyond, [section.depth])))
 
 
+def _outermost(section: Section) -> tuple[float, Steel]:
+    """Return the place of the outermost bars in tension, and their steel that yields last."""
+    y, _, steel = max(section.bars, key=lambda bar: (bar[0], bar[2].fy / bar[2].es))
+    return y, steel
+
+
 _ACI_STRAIN = 0.003
 
 
@@ -334,7 +341,7 @@ def nominal_moment(section: Section, axial_load: float) -> float:
 def _aci_318(section: Section, count: int) -> InteractionDiagram:
     """ACI 318-19: 22.2.2.4 (block), 21.2.2 (phi), 22.4.2.1 (limit of the axial load)."""
     block, ultimate = _aci_block(section), _ACI_STRAIN
-    outermost, _, steel = max(section.bars, key=lambda bar: bar[0])
+    outermost, steel = _outermost(section)
     yields = steel.fy / steel.es
     axes = _axes(section, ultimate, count, [0.0, yields, yields + 0.003, 0.005])
     rows = [block.point(axis, _aci_strains(section, axis)) for axis in axes]
@@ -374,7 +381,7 @@ def _ec_2(section: Section, count: int) -> InteractionDiagram:
         # 3.1.7(3): where the width falls towards the extreme fibre.
         strength *= 0.9
     depth, half = section.depth, 0.5 * section.depth
-    outermost, _, steel = max(section.bars, key=lambda bar: bar[0])
+    outermost, steel = _outermost(section)
     axes = _axes(section, ultimate, count, [0.0, steel.fy / steel.es])
     fixed = (1.0 - plateau / ultimate) * depth
 
