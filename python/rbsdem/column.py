@@ -216,6 +216,11 @@ class Column:
         return range(int(self.footing is None), self.n + 1 + (self.top == "fixed"))
 
     @property
+    def _prismatic(self) -> bool:
+        """Whether its sections are to stay the same way up at both ends of a double curvature."""
+        return False
+
+    @property
     def opens(self) -> bool:
         """Whether the joints have axial springs and open."""
         return self.axial_spring is not None

@@ -18,7 +18,7 @@ C = TypeVar("C", bound=Column)
 _NEVER = 1e30
 
 
-def double_curvature(column: C, *, top_mass: float = 0.0, prismatic: bool = False) -> C:
+def double_curvature(column: C, *, top_mass: float = 0.0, prismatic: bool | None = None) -> C:
     """Return the column in double curvature whose lower half is a cantilever.
 
     The upper half is the lower one turned about the middle, where the moment is zero: 2 n - 1
@@ -35,7 +35,8 @@ def double_curvature(column: C, *, top_mass: float = 0.0, prismatic: bool = Fals
     prismatic : bool, optional
         Whether the sections of the upper half are not turned: the same face of the column is in
         tension at one end and in compression at the other. It matters for springs whose sides
-        differ, as those of a section that is not symmetric.
+        differ. The default is what a column knows that was made from a section that is not
+        symmetric, else no.
 
     Returns
     -------
@@ -61,6 +62,8 @@ def double_curvature(column: C, *, top_mass: float = 0.0, prismatic: bool = Fals
                 f"double_curvature: the column must be a plain cantilever, without {name}; "
                 "give the ends of the whole column afterwards, with dataclasses.replace"
             )
+    if prismatic is None:
+        prismatic = column._prismatic
     n = 2 * column.n - 1
     lengths = list(column.lengths or [column.height / column.n] * column.n)
     changes: dict[str, Any] = {
@@ -86,7 +89,7 @@ def double_curvature(column: C, *, top_mass: float = 0.0, prismatic: bool = Fals
         springs = [part.split(1) if whole_column(part) else part for part in column.joints(name)]
         if springs:
             # A slip keeps its sign when the half is turned, a rotation does not.
-            of_the_half = name == "shear" if prismatic else name == "flexure"
+            of_the_half = name == ("shear" if prismatic else "flexure")
             turn = turned if of_the_half else _same_at_the_top
             changes[name] = (*springs, *(turn(spring) for spring in reversed(springs)))
     return dataclasses.replace(column, **changes)

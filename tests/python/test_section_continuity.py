@@ -177,6 +177,8 @@ def test_a_column_drawn_upside_down(height, top):
         back = rbsdem.cyclic(columns[0], displacement=-path).force
         np.testing.assert_allclose(back, -loop, atol=1e-5 * abs(loop).max())
         assert columns[0].gauge(columns[0].n + 1) is not None
+        # It is still the column of its drawing, whose parameters can be changed.
+        assert columns[0].with_parameters(r0=columns[0].recipe.parameters.hinge.r0) == columns[0]
     shear = columns[0].shear[0]
     strengths = [strength.shear_strength_mcft(one, height, 8e5) for one in (up, down)]
     assert shear.f_y_neg / shear.f_y == pytest.approx(strengths[1] / strengths[0])

@@ -177,6 +177,11 @@ class DrawnSection(ABC):
         return replace(self, bars=turned, bar_diameter=diameter, **layouts)
 
     @property
+    def symmetric(self) -> bool:
+        """Whether the section is the same upside down."""
+        return self.turned is self
+
+    @property
     def web_width(self) -> float:
         """Width that carries shear [m]."""
         return self.width

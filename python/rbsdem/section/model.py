@@ -290,7 +290,7 @@ class LayeredModel:
     def _made_twice(self) -> dict[str, Any]:
         with without_notes():
             half = Column(self.height, 1.0, n=self.n, axial_load=self.axial_load, **self.made)
-            whole = double_curvature(half)
+            whole = double_curvature(half, prismatic=not self.section.symmetric)
         return {name: getattr(whole, name) for name in self.made}
 
     def check(self, names: Iterable[str]) -> None:
@@ -632,6 +632,10 @@ class LayeredColumn(Column):
     def replaced(self) -> tuple[str, ...]:
         """What of shear and flexure is not that of the model."""
         return tuple(name for name in ("shear", "flexure") if self._kept(name))
+
+    @property
+    def _prismatic(self) -> bool:
+        return not self._recipe.section.symmetric
 
     def _kept(self, field: str) -> bool:
         """Whether what the model made was replaced by something else."""

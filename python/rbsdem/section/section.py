@@ -414,7 +414,7 @@ class Section(DrawnSection):
             round_core=round_core,
         )
         if top == "fixed":
-            column = double_curvature(column, prismatic=self.turned is not self)
+            column = double_curvature(column)
         return column if footing is None else replace(column, footing=footing)
 
     def shear_diagram(

@@ -186,7 +186,7 @@ def fit_springs(
     note = axial_load_note(axial_load, section)
     if note:
         notes.append(f"springs: {note}")
-    if section.turned is not section:
+    if not section.symmetric:
         notes.append(
             "springs: the section is not symmetric; both directions have the springs of y > 0 in "
             "tension (`section.turned` has those of the other)"
