@@ -251,7 +251,7 @@ def test_double_curvature_in_time_is_the_whole_column(post):
     ("changes", "field", "text"),
     [
         ({"bars_number": 11}, "bars.number", "layout: number = 11 does not spread"),
-        ({"bars_number": 10**9}, "bars.number", "too many here"),
+        ({"bars_number": 10**9}, "bars.number", "must not be above 1000"),
         ({"bars_number": "many"}, "bars.number", "must be a whole number"),
         ({"bars_face": 7}, "bars.face", "leave -2 of 12"),
         ({"section_cover": 0.3}, "section.cover", "cover"),

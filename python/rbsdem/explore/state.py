@@ -66,8 +66,8 @@ DEFAULT: dict[str, Any] = {
 #: How a column is held, and its height over the distance from an end to where its moment is zero.
 ENDS = {"cantilever": 1.0, "double": 2.0}
 
-#: What one looks at on a page: cycles of a path, bars of a section, values of a record.
-MOST_CYCLES, MOST_BARS, MOST_VALUES = 200, 400, 60_000
+#: What one looks at on a page: cycles of a path, values of a record.
+MOST_CYCLES, MOST_VALUES = 200, 60_000
 
 #: Shapes with the names of their sizes.
 SIZES = {
@@ -250,10 +250,6 @@ def section_of(given: Mapping[str, Any], faults: Faults) -> Section | None:
     with faults.of("bar_steel"):
         steel = Steel(bars.get("fy"), bars.get("fu"))  # type: ignore[arg-type]
         with faults.of("layout"):
-            if _core.whole(bars.get("number"), "layout: number") > MOST_BARS:
-                raise InputError(
-                    f"layout: number = {bars['number']} is too many here; at most {MOST_BARS}"
-                )
             face = {} if round_ else {"face": bars.get("face")}
             parts["layout"] = Layout(
                 bars.get("number"),  # type: ignore[arg-type]
