@@ -294,9 +294,11 @@ def test_strength_loss_of_the_side_that_comes_first():
     f = [0.0, 100.0, -100.0, 100.0, 60.0, -50.0]
     # Positive side: 80 at 1.5; the negative one loses more, but later.
     assert cycles.strength_loss(d, f) == pytest.approx(1.5)
-    # A cycle that crosses its former peak with less than 80 has lost it there, row or no row.
+    # A cycle that crosses its former peak with less than 80 and stays below has lost it there, row
+    # or no row; one that rises to 90 again has not.
     del d[3], f[3]
     assert cycles.strength_loss(d, f) == pytest.approx(1.0)
+    assert math.isnan(cycles.strength_loss(d[:4], [0.0, 100.0, -100.0, 90.0]))
 
 
 def test_a_force_between_the_envelopes_is_no_strength():

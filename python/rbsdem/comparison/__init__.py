@@ -35,7 +35,8 @@ cycles
     dissipated there is its energy (`half_cycles`).
 strength loss
     The first displacement past the peak of the envelope at which the force is down to 80 % of that
-    peak (`strength_loss`), the usual limit of drift capacity.
+    peak, and does not come back in the same half-cycle (`strength_loss`): the usual limit of drift
+    capacity.
 ratios
     Model over test, over the rows that both have. They are not given if less than half of the path
     was reached.

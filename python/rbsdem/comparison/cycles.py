@@ -339,9 +339,10 @@ def strength_loss(displacement: ArrayLike, force: ArrayLike, *, share: float = 0
     -------
     float
         On the envelope of a side, the first displacement past the largest force at which the force
-        is down to (1 - share) of it, interpolated between two points. The side at which this
-        happens first is taken; the displacement is unsigned [m]. A side whose largest force is
-        less than half of that of the other does not count. NaN if no side loses so much.
+        is down to (1 - share) of it and does not come back in the same half-cycle, as a pinched
+        loop does that crosses its former displacement; interpolated between two points. The side
+        at which this happens first is taken; the displacement is unsigned [m]. A side whose largest
+        force is less than half of that of the other does not count. NaN if no side loses so much.
 
     Raises
     ------
@@ -377,6 +378,7 @@ def strength_loss_point(
     if not 0 < share < 1:
         raise InputError(f"share = {share} must be above 0 and below 1")
     found = (math.nan, math.nan)
+    turns = turning_points(displacement)
     sides = [envelope(displacement, force, side) for side in (1, -1)]
     # A force between the envelopes, as on the way back, is no strength.
     largest = max((np.max(y) for _, _, y in sides if y.size), default=0)
@@ -385,16 +387,32 @@ def strength_loss_point(
             continue
         peak = int(np.argmax(y))
         left = (1 - share) * y[peak]
-        lost = np.flatnonzero(y[peak:] <= left)
+        half_cycle = np.searchsorted(turns, place)
+        reached = _still_reached(y, half_cycle)
+        lost = np.flatnonzero(reached[peak:] <= left)
         if not lost.size:
             continue
         at = peak + int(lost[0])
-        part = (y[at - 1] - left) / (y[at - 1] - y[at])
+        # In a half-cycle the force falls on its line; from one to the next, to what that reaches.
+        lower = y[at] if half_cycle[at] == half_cycle[at - 1] else reached[at]
+        part = (y[at - 1] - left) / (y[at - 1] - lower)
         way = place[at] - place[at - 1]
         there = place[at - 1] + part * way if way <= 1 else place[at]
         if not found[0] <= there:
             found = float(there), float(x[at - 1] + part * (x[at] - x[at - 1]))
     return found
+
+
+def _still_reached(force: Array, half_cycle: np.ndarray) -> Array:
+    """Return the largest force that the half-cycle of each point has there or later.
+
+    A curve that comes back with pinched loops dips where it crosses its former displacement, and
+    rises again: that is no loss of strength.
+    """
+    largest = force.copy()
+    for part in np.split(np.arange(force.size), np.flatnonzero(np.diff(half_cycle)) + 1):
+        largest[part] = np.maximum.accumulate(force[part][::-1])[::-1]
+    return largest
 
 
 def _to_side(displacement: ArrayLike, force: ArrayLike, side: int) -> tuple[Array, Array]:
