@@ -159,8 +159,8 @@ class Layout:
         edge = 0.5 * depth - inset - 0.5 * self.diameter
         if not edge > 0.0:
             raise InputError(
-                f"layout: bars of {self.diameter:g} m at {inset:g} m from the faces leave no core "
-                f"in a section of {depth:g} m"
+                f"section: cover and hoops of {inset:g} m and bars of {self.diameter:g} m leave no "
+                f"core in a section of {depth:g} m"
             )
         return edge
 
