@@ -7,6 +7,7 @@ exception.
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
@@ -366,16 +367,19 @@ def time_history(
     initial: Array,
     opening_given: bool,
     before: Array,
+    watches: Array,
     room: int,
     every: int | None,
     tell: Callable[[str], None],
-) -> Run:
-    """March through time.
+) -> tuple[Run, Array]:
+    """March through time; return the run, and where each watch is reached, shape (watches, 2).
 
     Only the Fortran part knows the number of rows, after it has planned the steps. Without `every`
     there is one row for each of `time`, unless the step does not divide the intervals. Where there
     is not enough room, the first call returns the number of rows and a second one computes them.
-    `tell` is called with a note before a long run starts.
+    `tell` is called with a note before a long run starts. `watches` are of shape (watches, 6), see
+    `run_ensemble`; of each the time [s] and the displacement of the top [m] are returned, NaN where
+    it is not reached.
     """
     for name, values in loads.items():
         if values.size != time.size:
@@ -390,7 +394,7 @@ def time_history(
     told = False
     while True:
         rows, after = _empty_rows(shape, wanted), np.empty(room)
-        wanted, ended, *rest = _rbsdem.rbs_time_history(
+        wanted, ended, reached, *rest = _rbsdem.rbs_time_history(
             *_crossing(column),
             time,
             " ".join(loads),
@@ -398,6 +402,7 @@ def time_history(
             initial,
             int(opening_given),
             before,
+            watches.T,
             int(told),
             rows,
             after,
@@ -410,7 +415,7 @@ def time_history(
         elif ended > room:
             room, wanted = ended, rows.shape[1]
         elif status != _LITTLE_ROOM:
-            return _finish(rows, wanted, after[:ended], *rest)
+            return _finish(rows, wanted, after[:ended], *rest), reached.T
 
 
 def settings(given: Mapping[str, Any]) -> Statement:
@@ -787,6 +792,8 @@ def _finish(
     else:
         for name in ("lost_axial_load", "axial_capacity", "fall", "fall_energy"):
             del named[name]
+    if math.isnan(named["peak_floor_acceleration"]):
+        del named["peak_floor_acceleration"]
     named["method"] = _text(method[:_METHOD_LENGTH])
     named["reason"] = _text(method[_METHOD_LENGTH:])
     named["status"] = "failed" if error else status

@@ -13,7 +13,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _core
+from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem.column import Column, checked_column
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning
@@ -278,7 +278,7 @@ def time_history(
     motion : bool, optional
         Whether to keep how the top moves, for `Result.velocity`, `Result.acceleration` and
         `Result.absolute_acceleration`; `summary` then has "peak_floor_acceleration" [m/s2], the
-        largest absolute acceleration of the top over the rows, in size.
+        largest absolute acceleration of the top at the ends of all steps, in size.
 
     Returns
     -------
@@ -330,20 +330,21 @@ def time_history(
     settings = settings_of(every, kept, moves, **chosen)
     times = _core.vector(time, "time")
     from_end = initial is not None and not isinstance(initial, Mapping)
-    run = _core.time_history(
+    run, reached = _core.time_history(
         column._statement + settings,
         (len(column.joint_numbers), column.opens, column.damped, kept, moves),
         times,
         loads,
         *((_NONE, False) if from_end else _initial_state(initial, column)),
         state_of(initial, "time_history") if from_end else _NONE,
+        _views.view(column, "watches", kept),
         expected_state(column),
         every,
         lambda note: _tell(note, LongRunWarning, 5),
     )
     kept_initial = named_state(initial) if from_end else initial
     call = {"time": times, **loads, "initial": kept_initial, **chosen, "every": every}
-    return _return(column, run, {"analysis": "dynamic"}, call)
+    return _return(column, run, {"analysis": "dynamic"}, call, reached)
 
 
 @contextmanager
@@ -421,14 +422,20 @@ def _initial_state(initial: Mapping[str, ArrayLike] | None, column: Column) -> t
     return np.concatenate([*parts.values()]), "opening" in initial
 
 
-def _return(column: Column, run: _core.Run, about: dict[str, str], call: dict[str, Any]) -> Result:
+def _return(
+    column: Column,
+    run: _core.Run,
+    about: dict[str, str],
+    call: dict[str, Any],
+    reached: Array | None = None,
+) -> Result:
     rows, state, summary, error, note = run
     summary |= about
     summary["kinematics"] = column.kinematics
     if "lost_joint" in summary:
         summary["lost_joint"] = column.joint_numbers[summary["lost_joint"] - 1]
     given = {name: value for name, value in call.items() if value is not None}
-    result = result_from_rows(rows, column, summary, given, state)
+    result = result_from_rows(rows, column, summary, given, state, reached)
     if error is not None:
         error.result = result
         raise error

@@ -114,11 +114,12 @@ class Result:
         "collapsed" (`collapse_drift` was reached) or "failed" (the result of a `SolveError`).
         Values: steps, rows, events (how often a spring left its line), time_step and stable_step
         [s], peak_displacement [m], peak_force [N] (in a static analysis where it has the sign of
-        the displacement), displacement_at_peak_force [m], peak_base_shear [N] (in time of the kept
-        rows), energies at the end [J], energy_residual [J] and
-        relative_energy_residual (largest of the kept rows),
-        peak_rotation (largest absolute rotation of a body in all steps [rad]), cut_steps
-        (steps cut at an event, for accuracy, or because they did not converge).
+        the displacement), displacement_at_peak_force [m], peak_base_shear [N], peak_rotation
+        (largest absolute rotation of a body [rad]), energies at the end [J], energy_residual [J]
+        and relative_energy_residual (the largest), cut_steps (steps cut at an event, for accuracy,
+        or because they did not converge). Whatever rows are kept, they are those of all points or
+        steps, the residual that of all points or times of the loading; "rk45" and located events
+        resolve peaks within a step.
     opening : ndarray, shape (steps, n)
         Opening of the joints at the middle of the section [m]: of axial springs, and, if the
         analysis was called with ``openings=True``, of layered joints. Zero for other joints.
@@ -142,6 +143,10 @@ class Result:
     rest : ndarray, shape (steps, n), or None
         Rotations of layered joints under their first axial load, from which `rotation` counts
         [rad]; zero but for unsymmetric sections. None if the openings were not kept.
+    reached : ndarray, shape (criteria, 2), or None
+        Of an analysis in time: when each criterion of `limit_states` that could be looked at was
+        met first [s], and the displacement of the top then [m]; NaN where it was not. All steps
+        count, whatever rows are kept.
     """
 
     time: Array
@@ -164,6 +169,7 @@ class Result:
     rest: Array | None = None
     state: Array | None = None
     motion: Array | None = None
+    reached: Array | None = None
 
     @property
     def path(self) -> Result:
@@ -377,7 +383,7 @@ class Result:
         arrays = {
             name: value
             for name, value in vars(self).items()
-            if isinstance(value, np.ndarray) and name != "state"
+            if isinstance(value, np.ndarray) and name not in ("state", "reached")
         }
         state: dict[str, Any] = {name: between(values) for name, values in arrays.items()}
         return state | {"energy": between(self.energy), "time": at}
@@ -605,6 +611,7 @@ def result_from_rows(
     summary: dict[str, Any],
     call: dict[str, Any],
     state: Array | None = None,
+    reached: Array | None = None,
 ) -> Result:
     """Return the result whose arrays are views of rows of the Fortran part."""
     values: dict[str, Array] = {}
@@ -626,8 +633,6 @@ def result_from_rows(
     if with_motion:
         names = ("velocity", "acceleration", "ground_acceleration")
         motion = np.column_stack([values[name] for name in names])
-        floor = np.abs(motion[:, 1] + motion[:, 2])
-        summary["peak_floor_acceleration"] = float(floor.max()) if floor.size else math.nan
     return Result(
         time=values["time"],
         displacement=values["displacement"],
@@ -648,4 +653,5 @@ def result_from_rows(
         call=call,
         state=state,
         motion=motion,
+        reached=reached,
     )

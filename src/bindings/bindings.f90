@@ -262,8 +262,9 @@ subroutine rbs_cyclic(statement, nn, number, by_force, m, values, ma, axial_load
 end subroutine rbs_cyclic
 
 subroutine rbs_time_history(statement, nn, number, m, time, drives, nd, load, mi, initial, opening_given, &
-                            mb, before, told, width, height, rows, kept, ms, after, ended, nf, figures, &
-                            used, status, message)
+                            mb, before, nw, watches, told, width, height, rows, kept, ms, after, ended, &
+                            reached, nf, figures, used, status, message)
+   ! `reached`: time and displacement of the top where each of the `watches` is reached first.
    ! status 3: the array is too small for the rows; `kept` rows are needed, and nothing was solved.
    ! status 4: the run is long, as the message says, and nothing was solved; with `told` it starts.
    use iso_c_binding, only: c_double, c_int
@@ -276,10 +277,11 @@ subroutine rbs_time_history(statement, nn, number, m, time, drives, nd, load, mi
    use rbs_solve_time_loads, only: loads_type
    implicit none
    character(len=*), intent(in) :: statement, drives
-   integer(c_int), intent(in) :: nn, m, nd, mi, opening_given, mb, told, width, height, ms, nf
+   integer(c_int), intent(in) :: nn, m, nd, mi, opening_given, mb, nw, told, width, height, ms, nf
    real(c_double), intent(in) :: number(nn), time(m), load(m, nd), initial(mi), before(mb)
+   real(c_double), intent(in) :: watches(6, nw)
    real(c_double), intent(inout) :: rows(width, height), after(ms)
-   real(c_double), intent(out) :: figures(nf)
+   real(c_double), intent(out) :: reached(2, nw), figures(nf)
    integer(c_int), intent(out) :: kept, ended, status
    character(len=220), intent(out) :: used
    character(len=8192), intent(out) :: message
@@ -294,13 +296,14 @@ subroutine rbs_time_history(statement, nn, number, m, time, drives, nd, load, mi
 
    kept = 0
    ended = 0
+   reached = 0
    enough = .true.
    call column_from_statements(statement, number, column, case, error)
    if (.not. allocated(error)) call make_loads(loads, drives, time, load, error)
    if (.not. allocated(error)) call choose_method(case, loads, error)
    if (.not. allocated(error)) then
-      call into_rows_dynamic(column, case, time, loads, initial, opening_given /= 0, before, rows, kept, &
-                             after, ended, summary, enough, told /= 0, note, error)
+      call into_rows_dynamic(column, case, time, loads, initial, opening_given /= 0, before, watches, &
+                             rows, kept, after, ended, reached, summary, enough, told /= 0, note, error)
    end if
    call tell_run(column, summary, error, figures, used, status, message)
    if (.not. enough) status = little_room

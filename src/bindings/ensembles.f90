@@ -5,13 +5,13 @@ module rbs_bindings_ensembles
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_bindings_runs, only: choose_method
+   use rbs_bindings_runs, only: choose_method, watches_of
    use rbs_bindings_statements, only: column_from_statements
    use rbs_case_case_record, only: case_record
    use rbs_case_text_buffer, only: text_buffer
    use rbs_solve_ensemble_block, only: plan_column, run_block
    use rbs_solve_ensemble_outcome, only: outcome_type, measure_count
-   use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, run_type, watch_type
+   use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, run_type
    use rbs_solve_time_loads, only: loads_type
    implicit none
    private
@@ -144,19 +144,12 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(case_record) :: case
       type(loads_type) :: loads
-      integer :: last, i
+      integer :: last
 
       last = at(1) + index(statements(at(1):), after) - 2
       call column_from_statements(statements(at(1):last), numbers(at(2):at(2) + counts(1) - 1), &
                                   column%column, case, error)
-      if (allocated(column%watch)) deallocate (column%watch)
-      allocate (column%watch(counts(2)))
-      do i = 1, counts(2)
-         associate (given => watches(:, at(3) + i - 1))
-            column%watch(i) = watch_type(state=nint(given(1)), joint=nint(given(2)), slip=given(3), &
-                                         rotation=given(4), opening=given(5), threshold=given(6))
-         end associate
-      end do
+      column%watch = watches_of(watches(:, at(3):at(3) + counts(2) - 1))
       if (allocated(column%before)) deallocate (column%before)
       if (counts(3) > 0) column%before = before(at(4):at(4) + counts(3) - 1)
       at = [last + 2, at(2) + counts(1), at(3) + counts(2), at(4) + counts(3)]

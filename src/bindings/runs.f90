@@ -1,5 +1,6 @@
 !> Analyses from plain arrays into plain arrays, called by the procedures for f2py.
 module rbs_bindings_runs
+   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_kinds, only: wp
@@ -19,11 +20,12 @@ module rbs_bindings_runs
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: run_dynamic, plan_dynamic
+   use rbs_solve_time_sight, only: sight_type, watch_type
    implicit none
    private
 
    public :: into_rows_static, into_rows_dynamic, make_loads, choose_method, protocol_from_numbers, tell, &
-             tell_run
+             tell_run, watches_of
 
    !> Status of a run that needs more rows than the array has; 0 to 2 are those of an error.
    integer(c_int), parameter, public :: little_room = 3
@@ -126,8 +128,8 @@ contains
    end subroutine choose_method
 
    !> Write the rows of a response in time into an array.
-   subroutine into_rows_dynamic(column, case, time, loads, initial_values, opening_given, before, rows, &
-                                count, after, ended, summary, enough, told, note, error)
+   subroutine into_rows_dynamic(column, case, time, loads, initial_values, opening_given, before, watches, &
+                                rows, count, after, ended, reached, summary, enough, told, note, error)
       type(column_type), intent(in) :: column
       !> Settings of analysis and output
       type(case_record), intent(in) :: case
@@ -138,6 +140,8 @@ contains
       logical, intent(in) :: opening_given
       !> The state to begin in; empty: that of `initial_values`
       real(c_double), intent(in) :: before(:)
+      !> See `watches_of` (6, watches)
+      real(c_double), intent(in) :: watches(:, :)
       real(c_double), intent(inout), target, contiguous :: rows(:, :)
       !> Rows kept; if the array is too small, nothing is solved and this is the number of rows needed
       integer, intent(out) :: count
@@ -145,6 +149,9 @@ contains
       !> filled
       real(c_double), intent(inout) :: after(:)
       integer(c_int), intent(out) :: ended
+      !> When each state that is watched for is reached first [s] and the displacement of the top then [m],
+      !> not a number if it is not (2, watches)
+      real(c_double), intent(out) :: reached(:, :)
       type(summary_type), intent(out) :: summary
       logical, intent(out) :: enough
       !> Whether the user has been told how long the run takes; if not, the note is allocated for a long
@@ -156,10 +163,12 @@ contains
       type(initial_state) :: initial
       type(time_plan) :: plan
       type(end_state) :: from, at_end
+      type(sight_type) :: sight
 
       count = 0
       ended = 0
       enough = .true.
+      reached = ieee_value(1.0_wp, ieee_quiet_nan)
       call plan_dynamic(column, case%analysis, time, loads, plan, error)
       if (allocated(error)) return
       if (.not. told .and. expected_seconds(column, plan) >= patience) then
@@ -180,11 +189,31 @@ contains
       recorder%motion = case%output%motion
       recorder%openings = case%output%openings .and. .not. column%opens
       call take_from(before, from)
+      call sight%watch_for(watches_of(watches), size(watches, 2))
       call run_dynamic(column, case%analysis, plan, time, loads, initial, case%output%every, recorder, &
-                       summary, error, before=from, after=at_end)
+                       summary, error, before=from, after=at_end, sight=sight)
       count = recorder%count
       call hand_over(at_end, after, ended)
+      where (sight%reached < huge(1.0_wp))
+         reached(1, :) = sight%reached
+         reached(2, :) = sight%top
+      end where
    end subroutine into_rows_dynamic
+
+   !> What to watch for, from the numbers of the user: state, joint, factors of slip, rotation and opening,
+   !> threshold of each (6, watches).
+   pure function watches_of(numbers) result(watch)
+      real(c_double), intent(in) :: numbers(:, :)
+      type(watch_type) :: watch(size(numbers, 2))
+      integer :: i
+
+      do i = 1, size(watch)
+         associate (given => numbers(:, i))
+            watch(i) = watch_type(state=nint(given(1)), joint=nint(given(2)), slip=given(3), &
+                                  rotation=given(4), opening=given(5), threshold=given(6))
+         end associate
+      end do
+   end function watches_of
 
    !> The excitation, from one column of values for each drive.
    subroutine make_loads(loads, drives, time, load, error)

@@ -42,6 +42,8 @@ module rbs_column_column
       real(wp), allocatable :: length(:), mass(:), inertia(:)
       !> Distance of the centroid from the bottom and from the top of its body (n) [m]
       real(wp), allocatable :: lower(:), upper(:)
+      !> Height of the column itself, which drifts are in proportion to: a footing is not part of it [m]
+      real(wp) :: height = 0.0_wp
       !> Height of the joints above the ground (n + 1) [m]; the last is the top
       real(wp), allocatable :: joint_height(:)
       !> Displacement of the top per unknown, for small rotations (unknowns) [1, m, 0]
@@ -101,6 +103,7 @@ contains
       column%held = spec%top == 'fixed'
       n = spec%joints()
       column%n = n
+      column%height = spec%height
       ! The bodies of the column itself
       first = merge(2, 1, column%footing)
       last = first + spec%n - 1

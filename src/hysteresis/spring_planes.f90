@@ -29,6 +29,7 @@ module rbs_hysteresis_spring_planes
       procedure :: lost_joint
       procedure :: fall_of
       procedure :: fill_openings
+      procedure :: opening
       procedure :: choose_lines
       procedure :: way_on_plane
       procedure :: put_on_plane
@@ -141,17 +142,32 @@ contains
       values = 0.0_wp
       do j = 1, size(self%layered)
          i = self%layered(j)
+         values(i - n) = self%opening(i, self%d(i), 0.0_wp)
          select type (rule => self%slot(i)%rule)
          type is (layered_rule)
-            if (self%pressed) then
-               values(i - n) = rule%opening_at(self%d(i), self%press_at(i))
-            else
-               values(i - n) = rule%opening_at(self%d(i), rule%present_load())
-            end if
             values(i) = rule%rotation_at_rest()
          end select
       end do
    end subroutine fill_openings
+
+   !> Opening of a layered joint on its present line or plane [m]; 0 of other springs.
+   pure real(wp) function opening(self, i, d, share)
+      class(spring_planes), intent(in) :: self
+      !> Its flexural spring
+      integer, intent(in) :: i
+      !> Rotation [rad], and the share of the way from the present axial load to that of the end of the step
+      real(wp), intent(in) :: d, share
+
+      opening = 0.0_wp
+      select type (rule => self%slot(i)%rule)
+      type is (layered_rule)
+         if (self%pressed) then
+            opening = rule%opening_at(d, self%press_at(i) + share*(self%press_to(i) - self%press_at(i)))
+         else
+            opening = rule%opening_at(d, rule%present_load())
+         end if
+      end select
+   end function opening
 
    !> Put the layers of a joint on the lines on which they go on along a straight path.
    subroutine choose_lines(self, i, turn, press)

@@ -7,35 +7,46 @@ module rbs_output_summary
    implicit none
    private
 
-   public :: summary_type, summary_size, summary_names, summary_units, figure_names
+   public :: peaks_type, summary_type, summary_size, summary_names, summary_units, figure_names
 
-   integer, parameter :: summary_size = 22
+   integer, parameter :: summary_size = 23
 
    !> Names of the figures of `as_array`, and their SI units.
    character(len=26), parameter :: summary_names(summary_size) = [character(len=26) :: &
       'steps', 'rows', 'events', 'time_step', 'stable_step', 'peak_displacement', 'peak_force', &
       'displacement_at_peak_force', 'peak_base_shear', 'input_energy', 'spring_energy', 'damping_energy', &
-      'energy_residual', 'relative_energy_residual', 'peak_rotation', 'cut_steps', 'collapsed', &
+      'energy_residual', 'relative_energy_residual', 'peak_rotation', 'peak_floor_acceleration', &
+      'cut_steps', 'collapsed', &
       'lost_joint', 'lost_axial_load', 'axial_capacity', 'fall', 'fall_energy']
    character(len=4), parameter :: summary_units(summary_size) = [character(len=4) :: &
-      '', '', '', 's', 's', 'm', 'N', 'm', 'N', 'J', 'J', 'J', 'J', '', 'rad', '', '', '', &
-                                                             'N', 'N', 'm', 'J']
+      '', '', '', 's', 's', 'm', 'N', 'm', 'N', 'J', 'J', 'J', 'J', '', 'rad', 'm/s2', '', '', &
+                                                             '', 'N', 'N', 'm', 'J']
 
-   type :: summary_type
-      !> Steps or increments taken, rows offered to the recorder, lines that springs have left
+   !> The largest responses: over all points (static) or all steps (in time), kept or not.
+   type :: peaks_type
+      !> Largest displacement and force in size, with sign [m, N], and the displacement where the force
+      !> is largest [m]; of a static path the force where it has the sign of the displacement
+      real(wp) :: peak_displacement = 0.0_wp, peak_force = 0.0_wp, displacement_at_peak = 0.0_wp
+      !> Largest shear force at the base in size, with sign [N]
+      real(wp) :: peak_base_shear = 0.0_wp
+      !> Largest absolute rotation of a body, in size [rad]
+      real(wp) :: peak_rotation = 0.0_wp
+      !> Largest absolute acceleration of the top, in size [m/s2]; negative where it is not looked at
+      real(wp) :: peak_floor_acceleration = -1.0_wp
+   contains
+      procedure :: see_peak
+      procedure :: see_turn
+      procedure :: see_base
+      procedure :: see_floor
+   end type peaks_type
+
+   type, extends(peaks_type) :: summary_type
+      !> Steps or increments taken, rows kept, lines that springs have left
       integer :: steps = 0, rows = 0, events = 0
       !> Time step and stability limit of the scheme [s]; 0 in a static analysis
       real(wp) :: time_step = 0.0_wp, stable_step = 0.0_wp
-      !> Largest displacement and force in size, with sign [m, N], and the displacement where the force
-      !> is largest [m]; over all points (static, the force where it has the sign of the displacement) or
-      !> steps (dynamic)
-      real(wp) :: peak_displacement = 0.0_wp, peak_force = 0.0_wp, displacement_at_peak = 0.0_wp
-      !> Largest shear force at the base in size, with sign [N]; over all points (static) or rows (dynamic)
-      real(wp) :: peak_base_shear = 0.0_wp
       !> Energies at the end [J]
       real(wp) :: input = 0.0_wp, spring = 0.0_wp, damping = 0.0_wp
-      !> Largest absolute rotation of a body, in size [rad]; over all points (static) or steps (dynamic)
-      real(wp) :: peak_rotation = 0.0_wp
       !> Steps that were cut: at an event, for accuracy, or because they did not converge
       integer :: cut_steps = 0
       !> Whether the analysis ended where the user's criterion of collapse was met
@@ -48,22 +59,20 @@ module rbs_output_summary
       !> Method that was used and, if the program chose it, why
       character(len=20) :: method = ''
       character(len=200) :: reason = ''
-      !> Largest residual of the balance over the rows, in size, and the largest energy [J]
+      !> Largest residual of the balance, in size, and the largest energy [J]: over all points (static) or
+      !> times of the loading (in time)
       real(wp) :: residual = 0.0_wp, largest = 0.0_wp
    contains
-      procedure :: see_peak
-      procedure :: see_turn
-      procedure :: see_base
       procedure :: see_fall
-      procedure :: see
+      procedure :: see_energies
       procedure :: as_array
    end type summary_type
 
 contains
 
-   !> Take a displacement and a force into account, whether they are kept or not.
+   !> Take a displacement and a force into account.
    pure subroutine see_peak(self, displacement, force)
-      class(summary_type), intent(inout) :: self
+      class(peaks_type), intent(inout) :: self
       !> Of the top [m], lateral [N]
       real(wp), intent(in) :: displacement, force
 
@@ -74,9 +83,9 @@ contains
       end if
    end subroutine see_peak
 
-   !> Take the largest rotation of a body into account, whether the row is kept or not.
+   !> Take the largest rotation of a body into account.
    pure subroutine see_turn(self, rotation)
-      class(summary_type), intent(inout) :: self
+      class(peaks_type), intent(inout) :: self
       !> In size [rad]
       real(wp), intent(in) :: rotation
 
@@ -85,12 +94,21 @@ contains
 
    !> Take a shear force at the base into account.
    pure subroutine see_base(self, shear)
-      class(summary_type), intent(inout) :: self
+      class(peaks_type), intent(inout) :: self
       !> [N]
       real(wp), intent(in) :: shear
 
       if (abs(shear) > abs(self%peak_base_shear)) self%peak_base_shear = shear
    end subroutine see_base
+
+   !> Take an absolute acceleration of the top into account.
+   pure subroutine see_floor(self, acceleration)
+      class(peaks_type), intent(inout) :: self
+      !> [m/s2]
+      real(wp), intent(in) :: acceleration
+
+      self%peak_floor_acceleration = max(self%peak_floor_acceleration, abs(acceleration))
+   end subroutine see_floor
 
    !> Take the fall of the joint that lost its axial load into account.
    pure subroutine see_fall(self, fall)
@@ -100,19 +118,18 @@ contains
       self%fall = fall
    end subroutine see_fall
 
-   !> Take the energies of a kept row into account.
-   pure subroutine see(self, row)
+   !> Take the energies of a moment into account; those of the last one stay.
+   pure subroutine see_energies(self, row)
       class(summary_type), intent(inout) :: self
       !> Values as in `rbs_output_row`
       real(wp), intent(in) :: row(:)
 
-      self%rows = self%rows + 1
       self%input = row(row_input)
       self%spring = row(row_spring)
       self%damping = row(row_damping)
       self%residual = max(self%residual, abs(row(row_residual)))
       self%largest = max(self%largest, abs(row(row_input)), row(row_kinetic) + row(row_spring))
-   end subroutine see
+   end subroutine see_energies
 
    !> The figures in the order of `summary_names`.
    pure function as_array(self) result(values)
@@ -123,9 +140,12 @@ contains
                 self%stable_step, self%peak_displacement, self%peak_force, self%displacement_at_peak, &
                 self%peak_base_shear, self%input, self%spring, self%damping, self%residual, &
                 self%residual/max(self%largest, tiny(1.0_wp)), self%peak_rotation, &
-                real(self%cut_steps, wp), merge(1.0_wp, 0.0_wp, self%collapsed), &
-                real(self%lost_joint, wp), self%fall%axial_load, self%fall%capacity, &
-                self%fall%drop, self%fall%freed]
+                self%peak_floor_acceleration, real(self%cut_steps, wp), &
+                merge(1.0_wp, 0.0_wp, self%collapsed), real(self%lost_joint, wp), self%fall%axial_load, &
+                self%fall%capacity, self%fall%drop, self%fall%freed]
+      associate (floor => values(findloc(summary_names, 'peak_floor_acceleration', dim=1)))
+         if (floor < 0.0_wp) floor = ieee_value(floor, ieee_quiet_nan)
+      end associate
       if (.not. self%fall%rests) values(summary_size - 1:) = ieee_value(1.0_wp, ieee_quiet_nan)
    end function as_array
 

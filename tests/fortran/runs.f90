@@ -2,7 +2,7 @@
 !> test moves with a stepper.
 module runs
    use check, only: check_passed, check_true
-   use rbs_base_constants, only: unset_integer
+   use rbs_base_constants, only: unset, unset_integer
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -130,6 +130,7 @@ contains
       state%v = v
       call state%springs%move_all(state%q)
       state%at_begin = energy_of(state)
+      call state%begin_sight(unset, .false.)
    end subroutine new_state
 
    !> Energy of a state: motion, springs, potential [J].

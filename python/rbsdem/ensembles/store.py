@@ -26,7 +26,7 @@ from rbsdem._code import code_digest
 from rbsdem._files import whole_file
 from rbsdem._optional import need_parquet
 from rbsdem.ensembles.measures import STATUSES, Measure
-from rbsdem.ensembles.tasks import Plan, TaskResult, watches
+from rbsdem.ensembles.tasks import Plan, TaskResult, watched
 from rbsdem.errors import InputError
 
 try:
@@ -393,9 +393,9 @@ def _column_key(plan: Plan, i: int) -> str:
     column = plan.columns[i]
     statement = column._statement
     # Limit states follow from the drawing, which the statement does not have.
-    watched = watches(column, plan.states).tobytes()
+    watches = watched(column, plan.states).tobytes()
     text = f"{statement.text}\0{statement.numbers!r}".encode()
-    return _digest(text, watched, plan.initial[i].tobytes())
+    return _digest(text, watches, plan.initial[i].tobytes())
 
 
 def _motion_key(plan: Plan, j: int) -> str:

@@ -17,10 +17,10 @@ from rbsdem.column import Column
 from rbsdem.ensembles.inputs import AT_REST, Motion
 from rbsdem.ensembles.measures import STATUSES, Measure, core_measures
 from rbsdem.errors import RbsdemError
-from rbsdem.limit_states.criteria import criteria
+from rbsdem.limit_states.criteria import criteria, watches
 from rbsdem.springs import Layered
 
-__all__ = ["Piece", "Plan", "Task", "TaskResult", "compute", "cut", "watches"]
+__all__ = ["Piece", "Plan", "Task", "TaskResult", "compute", "cut", "watched"]
 
 Integers = NDArray[np.int32]
 
@@ -166,7 +166,7 @@ def compute(task: Task, control: Integers | None = None, kernel: int = 0) -> Tas
     fates, values, errors = _core.run_ensemble(
         [column._statement for column in task.columns],
         _core.settings(task.settings),
-        [watches(column, task.states) for column in task.columns],
+        [watched(column, task.states) for column in task.columns],
         _before(task),
         [(motion.time, motion.acceleration) for motion in task.motions],
         (task.column, task.motion, task.scale),
@@ -253,13 +253,10 @@ def one_run(
     )
 
 
-def watches(column: Column, states: tuple[str, ...]) -> Array:
+def watched(column: Column, states: tuple[str, ...]) -> Array:
     """Return what runs of a column are watched for, as `_core.run_ensemble` takes it."""
     numbers = {name: number for number, name in enumerate(("first_yield", *states), 1)}
-    # The rows of a run count the joints from the ground, a footing's included.
-    at = {joint: place for place, joint in enumerate(column.joint_numbers, 1)}
-    rows = [
-        (numbers[c.name], at[c.joint], c.slip, c.rotation, c.opening, c.threshold)
-        for c in criteria(column, numbers)
-    ]
-    return np.array(rows) if rows else _NO_WATCH
+    found = criteria(column, numbers)
+    if not found:
+        return _NO_WATCH
+    return watches(column, found, [numbers[each.name] for each in found])

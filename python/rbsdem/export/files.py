@@ -178,7 +178,14 @@ def _result(about: dict[str, Any], arrays: dict[str, Any]) -> Result:
         column: Column = _case(about["column"] + _LOADING).column
         case = None if about["case"] is None else _case(about["case"])
     return Result(
-        **{"axial_force": None, "rest": None, "state": None, "motion": None, **own},
+        **{
+            "axial_force": None,
+            "rest": None,
+            "state": None,
+            "motion": None,
+            "reached": None,
+            **own,
+        },
         energy=energy,
         summary=about["summary"],
         column=column,

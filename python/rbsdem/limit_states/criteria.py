@@ -8,12 +8,13 @@ ensemble, which keep no rows.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from rbsdem._core import Array
+from rbsdem._views import view_of
 from rbsdem.codes.drawing import quantities
 from rbsdem.codes.regressions import goodnight_buckling_strain
 from rbsdem.column import Column
@@ -24,7 +25,7 @@ from rbsdem.section.section import Section
 from rbsdem.springs import Layered, Spring
 from rbsdem.strains import Gauge
 
-__all__ = ["WATCHED", "Criterion", "buckling_strain", "criteria"]
+__all__ = ["WATCHED", "Criterion", "buckling_strain", "criteria", "watches"]
 
 #: The limit states that criteria find, and what each is.
 WATCHED: dict[str, str] = {
@@ -89,7 +90,7 @@ class Criterion:
         return np.asarray(self.rotation * turned + self.opening * result.opening[:, at])
 
 
-def criteria(column: Column, names: Collection[str] = tuple(WATCHED)) -> list[Criterion]:
+def criteria(column: Column, names: Collection[str] = tuple(WATCHED)) -> Sequence[Criterion]:
     """Return the criteria of a column; a state may have several, of which the first counts.
 
     Parameters
@@ -99,6 +100,16 @@ def criteria(column: Column, names: Collection[str] = tuple(WATCHED)) -> list[Cr
     names : collection of str, optional
         The limit states that are wanted.
     """
+    if set(WATCHED) <= set(names):
+        # Once for all analyses, as a frozen column does not change.
+        if "_criteria" not in column.__dict__:
+            object.__setattr__(column, "_criteria", tuple(_criteria(column, names)))
+        every: tuple[Criterion, ...] = column.__dict__["_criteria"]
+        return every
+    return _criteria(column, names)
+
+
+def _criteria(column: Column, names: Collection[str]) -> list[Criterion]:
     found: list[Criterion] = []
     for joint, spring in zip(column.joint_numbers, column.joints("flexure"), strict=True):
         if joint == 0:  # A footing is not the column.
@@ -111,6 +122,41 @@ def criteria(column: Column, names: Collection[str] = tuple(WATCHED)) -> list[Cr
         if joint > 0:
             found += _of_spring(joint, spring, _SLIPS, "slip")
     return [criterion for criterion in found if criterion.name in names]
+
+
+@view_of(Column, "watches")
+def all_watches(column: Column, openings: bool) -> Array:
+    """Return what a run is watched for: all criteria, those of openings only if they are kept.
+
+    Each counts for itself. A run without openings is told of the others, but cannot reach them.
+    """
+    found = criteria(column)
+    numbers = watches(column, found, range(1, len(found) + 1))
+    if not openings:
+        numbers[[bool(each.opening) for each in found], 5] = np.finfo(np.float64).max
+        numbers[:, 4] = 0.0
+    return numbers
+
+
+def watches(column: Column, found: Sequence[Criterion], states: Iterable[int]) -> Array:
+    """Return criteria in numbers, shape (criteria, 6), as the Fortran part watches for them.
+
+    Parameters
+    ----------
+    column : Column
+        The column.
+    found : sequence of Criterion
+        Its criteria, or some of them.
+    states : iterable of int
+        The number of the limit state of each.
+    """
+    # The rows of a run count the joints from the ground, a footing's included.
+    at = {joint: place for place, joint in enumerate(column.joint_numbers, 1)}
+    rows = [
+        (state, at[c.joint], c.slip, c.rotation, c.opening, c.threshold)
+        for state, c in zip(states, found, strict=True)
+    ]
+    return np.array(rows, dtype=float).reshape(-1, 6)
 
 
 def _of_spring(

@@ -24,8 +24,11 @@ def limit_states(result: Result) -> LimitStates:
     if any(criterion.opening for criterion in watched):
         path._check_openings()
     first: dict[str, LimitState] = {}
-    for criterion in watched:
-        found = _reached(result, criterion)
+    for place, criterion in enumerate(watched):
+        if result.reached is None:
+            found = _in_rows(result, criterion)
+        else:
+            found = _in_time(result, criterion, *result.reached[place])
         if found is not None and (found.name not in first or found.time < first[found.name].time):
             first[found.name] = found
     states = [*first.values(), *_losses(result)]
@@ -39,7 +42,19 @@ def limit_states(result: Result) -> LimitStates:
     return LimitStates(result, states)
 
 
-def _reached(result: Result, criterion: Criterion) -> LimitState | None:
+def _in_time(
+    result: Result, criterion: Criterion, time: float, displacement: float
+) -> LimitState | None:
+    """Return what all steps of an analysis in time have seen."""
+    if math.isnan(time):
+        return None
+    place = float(np.interp(time, result.time, np.arange(result.time.size)))
+    state = _state(result, criterion.name, place, criterion.threshold, criterion.source)
+    at = float(displacement)
+    return replace(state, time=float(time), displacement=at, drift=at / result.column.height)
+
+
+def _in_rows(result: Result, criterion: Criterion) -> LimitState | None:
     values, threshold = criterion.values(result.path), criterion.threshold
     rows = np.flatnonzero(values >= threshold)
     if rows.size == 0:

@@ -15,6 +15,7 @@ module rbs_solve_ensemble_block
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: run_dynamic, plan_dynamic
+   use rbs_solve_time_sight, only: sight_type
    use rbs_solve_time_start, only: resume_state
    use rbs_solve_time_state, only: state_type
    implicit none
@@ -216,22 +217,21 @@ contains
       type(initial_state) :: at_rest
       type(end_state) :: before
       type(tally_recorder) :: tally
+      type(sight_type) :: sight
       type(summary_type) :: summary
       type(error_type), allocatable :: error
 
+      call sight%watch_for(column%watch, column%states)
       if (allocated(unplanned)) then
-         allocate (outcome%reached(column%states))
-         call settle(tally, summary, unplanned, outcome)
+         call settle(tally, sight%reached, summary, unplanned, outcome)
          return
       end if
       loads%ground%time = motion%time
       loads%ground%value = scale*motion%acceleration
       call take_before(column, before)
-      call tally%begin(column%column%n, column%watch, column%states)
-      allocate (outcome%reached(column%states))
       call run_dynamic(column%column, column%analysis, plan, motion%time, loads, at_rest, unset_integer, &
-                       tally, summary, error, before=before)
-      call settle(tally, summary, error, outcome)
+                       tally, summary, error, before=before, sight=sight)
+      call settle(tally, sight%reached, summary, error, outcome)
    end subroutine run_alone
 
 end module rbs_solve_ensemble_block

@@ -8,7 +8,7 @@ module rbs_solve_ensemble_chain_lane
    implicit none
    private
 
-   public :: fit_block, enter_column, enter_springs, enter_tangent, enter_state
+   public :: fit_block, enter_column, enter_springs, enter_tangent, enter_state, enter_bounds
    public :: take_springs, take_state, take_tangent
 
 contains
@@ -28,6 +28,8 @@ contains
                 b%first(few, m), b%last(few, m), b%way(few, m), b%work(few, m), b%damping(few, m), &
                 b%summed(few, m), b%arm(few, m), b%ground_arm(few, m), b%v0(few, m), b%a0(few, m), &
                 b%g0(few, m), source=0.0_wp)
+      allocate (b%lowest(few, m), source=-huge(1.0_wp))
+      allocate (b%highest(few, m), source=huge(1.0_wp))
       allocate (b%mass(few, m), source=1.0_wp)
       allocate (b%lower(few, n), b%upper(few, n), b%inverse_mass(few, n), b%inverse_inertia(few, n), &
                 b%along(few, n), b%across(few, n), source=0.0_wp)
@@ -111,6 +113,17 @@ contains
       b%v(i, :) = state%v
       b%of_damping(i) = state%of_damping
    end subroutine enter_state
+
+   !> The bounds of what is watched for, and the deformations that were seen last.
+   subroutine enter_bounds(b, i, state)
+      type(chain_block), intent(inout) :: b
+      integer, intent(in) :: i
+      type(state_type), intent(in) :: state
+
+      b%lowest(i, :) = state%sight%lowest
+      b%highest(i, :) = state%sight%highest
+      b%from(i, :) = state%sight%q
+   end subroutine enter_bounds
 
    !> What an implicit method starts the next step from, and the factor of its tangent.
    subroutine enter_tangent(b, i, state, h, stepper, ready)

@@ -3,29 +3,28 @@ module rbs_solve_ensemble_chain_team
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
-   use rbs_output_row, only: row_size
+   use rbs_output_row, only: row_joints
    use rbs_output_summary, only: summary_type
    use rbs_solve_ensemble_chain_lane, only: fit_block, enter_column, enter_springs, enter_tangent, &
-                                            enter_state, take_springs, take_state, take_tangent
+                                            enter_state, enter_bounds, take_springs, take_state, take_tangent
    use rbs_solve_ensemble_lane_fields, only: lane_clock, chain_block, lanes, few
    use rbs_solve_ensemble_motions, only: motion_table
    use rbs_solve_ensemble_outcome, only: outcome_type
    use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, lane_task
    use rbs_solve_ensemble_tally, only: tally_recorder, settle_tally => settle
-   use rbs_solve_ensemble_team, only: team_type, begin_run, show_motion
+   use rbs_solve_ensemble_team, only: team_type, begin_run, show_motion, show_seen, take_seen
    use rbs_solve_time_implicit, only: implicit_stepper
    use rbs_solve_time_loads, only: horizontal
-   use rbs_solve_time_march, only: report_state, keep
+   use rbs_solve_time_march, only: report_state, balance
    implicit none
    private
 
    public :: chain_team, new_chain_team
 
-   !> The rows of a run, which are measured as those of a run alone.
+   !> The balance of energy of a run, and a row for it.
    type :: lane_rows
-      type(tally_recorder) :: tally
       type(summary_type) :: summary
-      real(wp), allocatable :: row(:)
+      real(wp) :: row(row_joints) = 0.0_wp
    end type lane_rows
 
    type, extends(team_type) :: chain_team
@@ -69,19 +68,12 @@ contains
       if (allocated(error)) return
       j = (l - 1)/few + 1
       i = l - (j - 1)*few
-      associate (rows => self%rows(l), one => column%column)
-         rows%summary = fresh
-         if (allocated(rows%tally%reached)) deallocate (rows%tally%reached)
-         call rows%tally%begin(one%n, column%watch, column%states)
-         if (allocated(rows%row)) deallocate (rows%row)
-         allocate (rows%row(row_size(one%unknowns, one%damped, 0)))
-         call keep(self%lane(l)%state, rows%row, rows%tally, rows%summary, error)
-         if (allocated(error)) return
-      end associate
-      self%block(j)%turn(i) = 0.0_wp
+      self%rows(l)%summary = fresh
+      call balance(self%lane(l)%state, self%rows(l)%row, self%rows(l)%summary)
       call enter_column(self%block(j), i, self%lane(l)%state%motion)
       call enter_state(self%block(j), i, self%lane(l)%state)
       call enter_springs(self%block(j), i, self%lane(l)%state)
+      call enter_bounds(self%block(j), i, self%lane(l)%state)
    end subroutine enter
 
    subroutine leave(self, l)
@@ -143,8 +135,12 @@ contains
             type is (implicit_stepper)
                call take_tangent(b, i, stepper)
             end select
+            call show_seen(self%x, l, state%sight)
+            state%sight%q(:) = state%q
             call lane%stepper%advance(state, self%x%h(l), error)
             if (allocated(error)) return
+            call take_seen(self%x, l, state%sight)
+            call enter_bounds(b, i, state)
             self%x%ground(l) = state%load(horizontal)
             self%x%of_loads(l) = state%of_loads
             if (.not. (state%lost .or. state%springs%stuck)) then
@@ -169,31 +165,55 @@ contains
       integer, intent(out) :: count, list(lanes)
       real(wp) :: row(lanes)
       logical :: any_row
-      type(error_type), allocatable :: error
       integer :: l, j, i
 
       do j = 1, size(self%block)
-         call self%kernel%measure_chain(self%block(j))
-         self%x%displacement((j - 1)*few + 1:j*few) = self%block(j)%top
+         associate (b => self%block(j), first => (j - 1)*few + 1, last => j*few)
+            call self%kernel%measure_chain(b)
+            self%x%displacement(first:last) = b%top
+            self%x%rotation(first:last) = max(self%x%rotation(first:last), b%turn)
+            where (abs(b%base) > abs(self%x%base(first:last))) self%x%base(first:last) = b%base
+         end associate
       end do
       call self%kernel%turn_clock(self%x, size(table%time), table%time, table%acceleration, row, any_row, &
                                   count, list)
+      call look_closely(self)
       if (.not. any_row) return
       do l = 1, lanes
          if (.not. (row(l) > 0.5_wp .and. self%x%active(l) > 0.5_wp)) cycle
          j = (l - 1)/few + 1
          i = l - (j - 1)*few
-         associate (state => self%lane(l)%state, rows => self%rows(l))
+         associate (state => self%lane(l)%state)
             call take_springs(self%block(j), i, state, self%block(j)%q)
             call take_state(self%block(j), i, state)
-            state%clock = self%x%t(l)
-            state%load(horizontal) = self%x%ground(l)
             state%of_loads = self%x%of_loads(l)
-            ! A tally does not fail.
-            call keep(state, rows%row, rows%tally, rows%summary, error)
+            call balance(state, self%rows(l)%row, self%rows(l)%summary)
          end associate
       end do
    end subroutine finish
+
+   !> Lanes in which a limit state may have been reached.
+   subroutine look_closely(self)
+      class(chain_team), intent(inout) :: self
+      integer :: j, i, l
+
+      do j = 1, size(self%block)
+         associate (b => self%block(j))
+            if (.not. any(b%beyond > 0.5_wp)) cycle
+            do i = 1, few
+               l = (j - 1)*few + i
+               if (.not. (b%beyond(i) > 0.5_wp .and. self%x%active(l) > 0.5_wp)) cycle
+               associate (state => self%lane(l)%state)
+                  state%sight%q(:) = b%from(i, :)
+                  state%sight%clock = self%x%seen(l)
+                  state%q(:) = b%q(i, :)
+                  call state%sight%look(state%springs, state%q, self%x%displacement(l), self%x%t(l))
+                  call enter_bounds(b, i, state)
+               end associate
+            end do
+         end associate
+      end do
+   end subroutine look_closely
 
    subroutine settle(self, l, task, outcome)
       class(chain_team), intent(in) :: self
@@ -201,16 +221,21 @@ contains
       type(lane_task), intent(in) :: task
       type(outcome_type), intent(inout) :: outcome
       type(summary_type) :: summary
+      type(tally_recorder) :: tally
       type(error_type), allocatable :: none
 
       summary = self%rows(l)%summary
+      tally%displacement = self%x%displacement(l)
+      tally%time = self%x%t(l)
       summary%time_step = task%plan%dt
       summary%peak_displacement = self%x%peak(l)
-      summary%peak_rotation = self%block((l - 1)/few + 1)%turn(l - (l - 1)/few*few)
-      summary%collapsed = abs(self%x%displacement(l)) >= self%x%furthest(l)
+      summary%peak_base_shear = self%x%base(l)
+      summary%peak_rotation = self%x%rotation(l)
+      summary%collapsed = abs(self%x%peak(l)) >= self%x%furthest(l)
+      summary%events = self%lane(l)%state%springs%events
       summary%steps = nint(self%x%steps(l)) + self%lane(l)%stepper%steps
       summary%cut_steps = self%lane(l)%stepper%cut_steps
-      call settle_tally(self%rows(l)%tally, summary, none, outcome)
+      call settle_tally(tally, self%lane(l)%state%sight%reached, summary, none, outcome)
    end subroutine settle
 
 end module rbs_solve_ensemble_chain_team

@@ -2,9 +2,10 @@
 module rbs_solve_ensemble_lane_choice
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: finite
-   use rbs_solve_ensemble_subject, only: ensemble_column, watch_type
+   use rbs_solve_ensemble_subject, only: ensemble_column
    use rbs_solve_time_march, only: step_of
    use rbs_solve_time_plan, only: time_plan
+   use rbs_solve_time_sight, only: watch_type
    implicit none
    private
 

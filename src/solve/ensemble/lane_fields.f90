@@ -40,8 +40,10 @@ module rbs_solve_ensemble_lane_fields
       real(wp) :: ground(lanes) = 0.0_wp
       !> Work of the loads, steps taken here, lines left here
       real(wp) :: of_loads(lanes) = 0.0_wp, steps(lanes) = 0.0_wp, events(lanes) = 0.0_wp
-      !> Displacement now, the largest so far, and where the column has collapsed
+      !> Displacement now, the largest so far, and where the column has collapsed; the largest force at the
+      !> base and rotation of a body; time of the step before
       real(wp) :: displacement(lanes) = 0.0_wp, peak(lanes) = 0.0_wp, furthest(lanes) = huge(1.0_wp)
+      real(wp) :: base(lanes) = 0.0_wp, rotation(lanes) = 0.0_wp, seen(lanes) = 0.0_wp
       !> Whether the run has ended: 1 or 0; intervals that are left
       real(wp) :: ended(lanes) = 0.0_wp, left(lanes) = 0.0_wp
       !> Place of the next point of the motion but one
@@ -78,11 +80,10 @@ module rbs_solve_ensemble_lane_fields
       !> load per acceleration of the ground, half of axial force times length
       real(wp) :: mass(lanes, 2) = 1.0_wp, lower(lanes) = 0.0_wp, upper(lanes) = 0.0_wp, &
                   length(lanes) = 0.0_wp, ground_arm(lanes, 2) = 0.0_wp, potential(lanes) = 0.0_wp
-      !> The largest force at the base, rotation, error of the energy and energy in any row; rotation that is
-      !> yielding, and when it was reached first
-      real(wp) :: base(lanes) = 0.0_wp, rotation(lanes) = 0.0_wp, residual(lanes) = 0.0_wp, &
-                  most(lanes) = 0.0_wp, &
-                  yield(lanes) = huge(1.0_wp), first_yield(lanes) = huge(1.0_wp)
+      !> The largest error of the energy and energy at the times of the motion; rotation that is yielding,
+      !> when it was reached first, and rotation after the step before
+      real(wp) :: residual(lanes) = 0.0_wp, most(lanes) = 0.0_wp
+      real(wp) :: yield(lanes) = huge(1.0_wp), first_yield(lanes) = huge(1.0_wp), turned(lanes) = 0.0_wp
    end type one_body_lanes
 
    !> Some columns of n bodies, with or without damping: joints (few, n), unknowns (few, 2 n) in the order of
@@ -91,10 +92,13 @@ module rbs_solve_ensemble_lane_fields
       integer :: n = 0
       !> Whether there is any damping, and modal damping
       logical :: damped = .false., modal = .false.
-      !> Deformations and velocities of the joints, deformations before the step; displacement of the top, and
-      !> the largest rotation of a body so far
-      real(wp), allocatable :: q(:, :), v(:, :), from(:, :)
-      real(wp) :: top(few) = 0.0_wp, turn(few) = 0.0_wp
+      !> Deformations and velocities of the joints, deformations before the step, and those between which no
+      !> limit state is reached for the first time; displacement of the top, largest rotation of a body and
+      !> force at the base
+      real(wp), allocatable :: q(:, :), v(:, :), from(:, :), lowest(:, :), highest(:, :)
+      real(wp) :: top(few) = 0.0_wp, turn(few) = 0.0_wp, base(few) = 0.0_wp
+      !> Whether a deformation is at one of those bounds, 1 or 0
+      real(wp) :: beyond(few) = 0.0_wp
       !> Lines of the springs
       real(wp), allocatable :: d0(:, :), f0(:, :), k(:, :), first(:, :), last(:, :), way(:, :), work(:, :)
       !> Damping of the joints per velocity; what of it stands under the sum of its power, and the factor

@@ -15,7 +15,7 @@ module rbs_solve_ensemble_one_body_team
                                          at_damping, at_residual, at_relative_residual, at_first_yield, &
                                          at_end, at_time_step, at_steps, at_events, at_cut, at_lost_joint
    use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, lane_task
-   use rbs_solve_ensemble_team, only: team_type, lane_type, begin_run, show_motion
+   use rbs_solve_ensemble_team, only: team_type, lane_type, begin_run, show_motion, show_seen, take_seen
    use rbs_solve_time_implicit, only: implicit_stepper
    use rbs_solve_time_loads, only: horizontal
    use rbs_solve_time_march, only: report_state
@@ -80,11 +80,8 @@ contains
          if (one%axially_loaded) x%potential(l) = 0.5_wp*one%axial_body(1)*one%length(1)
          x%yield(l) = huge(1.0_wp)
          if (size(column%watch) > 0) x%yield(l) = column%watch(1)%threshold/abs(column%watch(1)%rotation)
-         x%base(l) = 0.0_wp
-         x%rotation(l) = 0.0_wp
          x%residual(l) = 0.0_wp
          x%most(l) = 0.0_wp
-         x%first_yield(l) = huge(1.0_wp)
          call from_state(x, l, self%lane(l)%state)
       end associate
    end subroutine enter
@@ -308,6 +305,10 @@ contains
       state%clock = x%t(l)
       state%load(horizontal) = x%ground(l)
       state%of_loads = x%of_loads(l)
+      call show_seen(x, l, state%sight)
+      state%sight%reached(1) = x%first_yield(l)
+      state%sight%watching = state%sight%watching .and. .not. x%first_yield(l) < huge(1.0_wp)
+      state%sight%q(:) = state%q
    end subroutine into_state
 
    !> The state as a lane.
@@ -323,6 +324,9 @@ contains
       end do
       x%ground(l) = state%load(horizontal)
       x%of_loads(l) = state%of_loads
+      call take_seen(x, l, state%sight)
+      x%first_yield(l) = state%sight%reached(1)
+      x%turned(l) = state%sight%q(2)
       call from_springs(x, l, state)
    end subroutine from_state
 
@@ -402,7 +406,7 @@ contains
       real(wp) :: value(measure_count)
 
       associate (x => self%x, lane => self%lane(l))
-         outcome%fate = merge(fate_collapsed, fate_completed, abs(x%displacement(l)) >= x%furthest(l))
+         outcome%fate = merge(fate_collapsed, fate_completed, abs(x%peak(l)) >= x%furthest(l))
          value(at_peak_displacement) = x%peak(l)
          value(at_residual_displacement) = x%displacement(l)
          value(at_peak_base_shear) = x%base(l)

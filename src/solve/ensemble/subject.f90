@@ -5,19 +5,11 @@ module rbs_solve_ensemble_subject
    use rbs_case_analysis_record, only: analysis_record
    use rbs_column_column, only: column_type
    use rbs_solve_time_plan, only: time_plan
+   use rbs_solve_time_sight, only: watch_type
    implicit none
    private
 
-   public :: ensemble_column, ensemble_motion, run_type, lane_task, watch_type
-
-   !> A limit state is reached where a sum of a joint's deformations is at a threshold or beyond it.
-   type :: watch_type
-      !> Number of the limit state, 1 for first yield, and joint
-      integer :: state = 1, joint = 1
-      !> Factors of slip, of rotation and of opening; where there is one of the opening, rotations count with
-      !> those at rest
-      real(wp) :: slip = 0.0_wp, rotation = 0.0_wp, opening = 0.0_wp, threshold = huge(1.0_wp)
-   end type watch_type
+   public :: ensemble_column, ensemble_motion, run_type, lane_task
 
    !> A column and what is asked of it.
    type :: ensemble_column

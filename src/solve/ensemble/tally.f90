@@ -1,79 +1,46 @@
-!> The measures of a run, taken row by row as the rows pass; none of them is kept.
+!> The measures of a run whose rows are not kept.
 module rbs_solve_ensemble_tally
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_output_recorder, only: recorder_type
-   use rbs_output_row, only: row_time, row_displacement, row_joints
+   use rbs_output_row, only: row_time, row_displacement
    use rbs_output_summary, only: summary_type
    use rbs_solve_ensemble_outcome, only: outcome_type, fate_completed, fate_collapsed, fate_axial, &
                                          fate_failed, at_peak_displacement, at_residual_displacement, &
                                          at_peak_base_shear, at_peak_rotation, at_input, at_spring, &
                                          at_damping, at_residual, at_relative_residual, at_first_yield, &
                                          at_end, at_time_step, at_steps, at_events, at_cut, at_lost_joint
-   use rbs_solve_ensemble_subject, only: watch_type
    implicit none
    private
 
    public :: tally_recorder, settle
 
+   !> Keeps of the rows when the last one was, and where.
    type, extends(recorder_type) :: tally_recorder
-      !> Number of joints, and what is watched
-      integer :: n = 0
-      type(watch_type), allocatable :: watch(:)
-      !> Displacement and time of the last row [m, s]
+      !> Displacement and time [m, s]
       real(wp) :: displacement = 0.0_wp, time = 0.0_wp
-      !> Time of the first row in which each limit state is reached; `huge` before (states) [s]
-      real(wp), allocatable :: reached(:)
    contains
-      procedure :: begin
       procedure :: record
    end type tally_recorder
 
 contains
 
-   !> Make it ready for a run.
-   subroutine begin(self, n, watch, states)
-      class(tally_recorder), intent(inout) :: self
-      !> Number of joints, and of limit states
-      integer, intent(in) :: n, states
-      type(watch_type), intent(in) :: watch(:)
-
-      self%n = n
-      self%watch = watch
-      self%openings = any(abs(watch%opening) > 0.0_wp)
-      allocate (self%reached(states), source=huge(1.0_wp))
-   end subroutine begin
-
    subroutine record(self, row, error)
       class(tally_recorder), intent(inout) :: self
       real(wp), intent(in) :: row(:)
       type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: value
-      integer :: i, opening
 
       if (allocated(error)) return
       self%time = row(row_time)
       self%displacement = row(row_displacement)
-      ! The row ends with the openings and the rotations at rest.
-      opening = size(row) - 2*self%n
-      do i = 1, size(self%watch)
-         associate (watch => self%watch(i))
-            if (self%reached(watch%state) < huge(1.0_wp)) cycle
-            value = watch%slip*row(row_joints + watch%joint - 1) &
-                    + watch%rotation*row(row_joints + self%n + watch%joint - 1)
-            if (abs(watch%opening) > 0.0_wp) then
-               value = value + watch%opening*row(opening + watch%joint) &
-                       + watch%rotation*row(opening + self%n + watch%joint)
-            end if
-            if (value >= watch%threshold) self%reached(watch%state) = self%time
-         end associate
-      end do
    end subroutine record
 
    !> Fate and measures of a run that has ended.
-   subroutine settle(tally, summary, error, outcome)
+   subroutine settle(tally, reached, summary, error, outcome)
       type(tally_recorder), intent(in) :: tally
+      !> When each limit state was reached, `huge` if it was not (states) [s]
+      real(wp), intent(in) :: reached(:)
       type(summary_type), intent(in) :: summary
       type(error_type), allocatable, intent(in) :: error
       type(outcome_type), intent(inout) :: outcome
@@ -84,7 +51,7 @@ contains
          outcome%fate = fate_failed
          outcome%message = error%message
          outcome%value = nothing
-         outcome%reached = nothing
+         outcome%reached = spread(nothing, 1, size(reached))
          return
       end if
       outcome%fate = fate_completed
@@ -100,7 +67,7 @@ contains
          value(at_damping) = summary%damping
          value(at_residual) = summary%residual
          value(at_relative_residual) = summary%residual/max(summary%largest, tiny(1.0_wp))
-         outcome%reached = merge(tally%reached, nothing, tally%reached < huge(1.0_wp))
+         outcome%reached = merge(reached, nothing, reached < huge(1.0_wp))
          value(at_first_yield) = outcome%reached(1)
          value(at_end) = tally%time
          value(at_time_step) = summary%time_step

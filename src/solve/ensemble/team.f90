@@ -4,7 +4,6 @@
 !> bits of a run alone, and all rules of the program.
 module rbs_solve_ensemble_team
    use, intrinsic :: iso_fortran_env, only: int32
-   use rbs_base_check, only: is_given
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_loading_signal, only: signal_type
@@ -17,11 +16,12 @@ module rbs_solve_ensemble_team
    use rbs_solve_time_loads, only: loads_type, horizontal
    use rbs_solve_time_march, only: initial_state, start_state
    use rbs_solve_time_run_dynamic, only: new_stepper
+   use rbs_solve_time_sight, only: sight_type
    use rbs_solve_time_state, only: state_type, stepper_type
    implicit none
    private
 
-   public :: team_type, lane_type, begin_run, show_motion
+   public :: team_type, lane_type, begin_run, show_motion, show_seen, take_seen
 
    !> What stands beside a lane.
    type :: lane_type
@@ -138,16 +138,18 @@ contains
          end select
          x%ground(l) = lane%state%load(horizontal)
       end associate
-      x%furthest(l) = huge(1.0_wp)
-      if (is_given(column%analysis%collapse_drift)) then
-         x%furthest(l) = column%analysis%collapse_drift*column%column%joint_height(column%column%n + 1)
-      end if
+      associate (state => team%lane(l)%state)
+         call state%sight%watch_for(column%watch, column%states)
+         call state%begin_sight(column%analysis%collapse_drift, .false.)
+         x%furthest(l) = state%sight%furthest
+         call take_seen(x, l, state%sight)
+      end associate
+      x%seen(l) = 0.0_wp
       x%t(l) = 0.0_wp
       x%steps(l) = 0.0_wp
       x%events(l) = 0.0_wp
       x%of_loads(l) = 0.0_wp
       x%displacement(l) = 0.0_wp
-      x%peak(l) = 0.0_wp
       x%ended(l) = 0.0_wp
       x%active(l) = 1.0_wp
       x%ready(l) = 0.0_wp
@@ -202,5 +204,28 @@ contains
       value(3) = x%after_value(l)
       call ground%replace(time, value)
    end subroutine show_motion
+
+   !> What has been seen of a lane before a step that it takes alone: within that step more is seen.
+   pure subroutine show_seen(x, l, sight)
+      class(lane_clock), intent(in) :: x
+      integer, intent(in) :: l
+      type(sight_type), intent(inout) :: sight
+
+      sight%peak_displacement = x%peak(l)
+      sight%peak_base_shear = x%base(l)
+      sight%peak_rotation = x%rotation(l)
+      sight%clock = x%t(l)
+   end subroutine show_seen
+
+   !> What has been seen then.
+   pure subroutine take_seen(x, l, sight)
+      class(lane_clock), intent(inout) :: x
+      integer, intent(in) :: l
+      type(sight_type), intent(in) :: sight
+
+      x%peak(l) = sight%peak_displacement
+      x%base(l) = sight%peak_base_shear
+      x%rotation(l) = sight%peak_rotation
+   end subroutine take_seen
 
 end module rbs_solve_ensemble_team

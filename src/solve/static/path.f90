@@ -234,14 +234,12 @@ contains
       class(observer_type), intent(inout), optional :: progress
       type(error_type), allocatable :: failure
       type(layer_fall) :: fall
-      real(wp) :: height
       logical :: may_collapse
       integer :: i, n
 
       n = every
       if (every == unset_integer) n = 1
       may_collapse = collapse_drift > unset
-      height = self%column%joint_height(self%column%n + 1)
       allocate (self%row_values(row_size(self%column%unknowns, &
                                          layered=merge(self%column%n, 0, recorder%openings))))
       self%summary => summary
@@ -261,11 +259,12 @@ contains
          if (summary%lost_joint > 0 .and. allocated(failure)) deallocate (failure)
          if (allocated(failure)) failure%message = 'row '//to_text(i)//': '//failure%message
          call see_peaks(self)
-         if (may_collapse) summary%collapsed = abs(self%displacement)/height >= collapse_drift
+         if (may_collapse) summary%collapsed = abs(self%displacement)/self%column%height >= collapse_drift
+         call fill_row(self, self%row_values, real(i - 1, wp))
+         call summary%see_energies(self%row_values)
          if (mod(i - 1, n) == 0 .or. i == size(target) .or. allocated(failure) .or. &
              summary%collapsed .or. summary%lost_joint > 0) then
-            call fill_row(self, self%row_values, real(i - 1, wp))
-            call summary%see(self%row_values)
+            summary%rows = summary%rows + 1
             call recorder%record(self%row_values, error)
             if (allocated(error)) return
          end if

@@ -108,6 +108,7 @@ contains
       call self%take_step(state, h, load, converged, busiest)
       if (converged) then
          self%steps = self%steps + 1
+         if (.not. (state%lost .or. state%springs%stuck)) call state%see(state%begin + state%time)
       else
          call halve(self, state, h, cuts, busiest, error)
       end if

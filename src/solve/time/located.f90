@@ -33,9 +33,10 @@ module rbs_solve_time_located
       real(wp), private :: largest = 0.0_wp
       !> The equation of motion where springs stand still, and where one turns back
       type(motion_result), private :: now
-      !> Slopes of the loads in the present part of a step, and velocities at its start (unknowns)
+      !> Slopes of the loads in the present part of a step; deformations and velocities at its start
+      !> (unknowns)
       real(wp), private :: slope(4) = 0.0_wp
-      real(wp), allocatable, private :: v_start(:)
+      real(wp), allocatable, private :: q_start(:), v_start(:)
    contains
       procedure :: advance
       procedure :: resume
@@ -56,7 +57,7 @@ contains
       if (allocated(error)) return
       if (.not. allocated(self%now%a)) then
          call self%now%create(state%motion%column)
-         allocate (self%v_start(size(state%v)))
+         allocate (self%q_start(size(state%q)), self%v_start(size(state%v)))
       end if
       finish = state%time + h
       left = h
@@ -113,6 +114,8 @@ contains
          if (event%spring > 0) then
             if (state%springs%lost_joint() > 0) return
          end if
+         if (state%sight%feels) call state%see(state%begin + state%time)
+         if (state%sight%collapsed) return
       end do
       state%time = finish
    end subroutine advance
@@ -170,6 +173,7 @@ contains
       real(wp), intent(in) :: h, wrong
       integer :: i
 
+      self%q_start(:) = state%q
       self%v_start(:) = state%v
       call self%scheme%accept(state, h)
       state%lost = .not. in_bounds(size(state%q), state%q)
@@ -185,6 +189,8 @@ contains
             state%q(i) = state%springs%end_toward(i, event%way)
          end if
       end if
+      call state%sight%see_within(state%motion, state%springs, self%q_start, self%v_start, state%q, &
+                                  state%v, h, state%begin + state%time)
       if (state%springs%pressed) call carry_planes(self, state, event, h)
       associate (springs => state%springs)
          ! No other spring has passed an end by more than the last digits.

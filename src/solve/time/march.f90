@@ -6,7 +6,7 @@ module rbs_solve_time_march
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
    use rbs_column_energy, only: kinetic_energy, potential_energy
-   use rbs_column_top, only: top_motion, top_position, top_displacement, largest_turn
+   use rbs_column_top, only: top_motion, top_position
    use rbs_hysteresis_layer_fall, only: layer_fall
    use rbs_output_observer, only: observer_type
    use rbs_output_recorder, only: recorder_type
@@ -17,19 +17,19 @@ module rbs_solve_time_march
    use rbs_solve_time_loads, only: loads_type, lateral, horizontal
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_plan, only: time_plan, same_step
+   use rbs_solve_time_sight, only: sight_type
    use rbs_solve_time_start, only: initial_state, start_state, resume_state, resume_steps, keep_state
    use rbs_solve_time_state, only: state_type, stepper_type, out_of_bounds
-   use rbs_base_check, only: is_given
    implicit none
    private
 
-   public :: initial_state, march, start_state, report_state, step_of, keep
+   public :: initial_state, march, start_state, report_state, step_of, balance
 
 contains
 
    !> March through the plan.
    subroutine march(column, planned, stepper, time, loads, initial, collapse_drift, every, recorder, &
-                    summary, error, progress, before, after, method, setting)
+                    summary, error, progress, before, after, method, setting, sight)
       type(column_type), intent(in) :: column
       type(time_plan), intent(in) :: planned
       !> The method
@@ -53,15 +53,13 @@ contains
       !> What the method is and its setting: one that goes on with the same remembers its steps
       integer, intent(in), optional :: method
       real(wp), intent(in), optional :: setting
+      !> What to watch for, and what has been seen
+      type(sight_type), intent(inout), optional :: sight
       type(standing_type) :: standing
       type(time_plan) :: plan
       type(state_type) :: state
-      type(layer_fall) :: fall
-      type(motion_result) :: now
       real(wp), allocatable :: row(:)
-      real(wp) :: begin, finish, displacement, furthest, h
-      integer :: interval, part, parts, step, next_row
-      logical :: ends
+      integer :: step
 
       plan = planned
       if (present(before)) then
@@ -75,19 +73,52 @@ contains
       if (allocated(error)) return
       allocate (row(row_size(column%unknowns, column%damped, merge(column%n, 0, recorder%openings), &
                              recorder%motion)))
-      if (recorder%motion) call now%create(column)
-      furthest = huge(1.0_wp)
-      if (is_given(collapse_drift)) furthest = collapse_drift*column%joint_height(column%n + 1)
+      if (present(sight)) state%sight = sight
+      call state%begin_sight(collapse_drift, recorder%motion)
       summary%time_step = plan%dt
+      call take_steps(state, plan, stepper, time, every, row, step, recorder, summary, error, progress)
+      summary%peaks_type = state%sight%peaks_type
+      summary%collapsed = state%sight%collapsed
+      summary%events = state%springs%events
+      summary%steps = stepper%steps
+      summary%cut_steps = stepper%cut_steps
+      if (stepper%longest_step > 0.0_wp) summary%time_step = stepper%longest_step
+      if (present(sight)) sight = state%sight
+      if (allocated(error) .or. .not. present(after) .or. summary%lost_joint > 0) return
+      call keep_state(state, stepper, plan, step, row(row_residual), method, setting, after)
+   end subroutine march
+
+   !> The steps of the plan, up to the end of the run.
+   subroutine take_steps(state, plan, stepper, time, every, row, step, recorder, summary, error, progress)
+      type(state_type), intent(inout) :: state
+      type(time_plan), intent(in) :: plan
+      class(stepper_type), intent(inout) :: stepper
+      !> See `march`
+      real(wp), intent(in) :: time(:)
+      integer, intent(in) :: every
+      !> The last state in the end
+      real(wp), intent(inout) :: row(:)
+      !> Steps taken, as planned
+      integer, intent(out) :: step
+      class(recorder_type), intent(inout) :: recorder
+      type(summary_type), intent(inout) :: summary
+      type(error_type), allocatable, intent(inout) :: error
+      class(observer_type), intent(inout), optional :: progress
+      type(layer_fall) :: fall
+      type(motion_result) :: now
+      real(wp) :: begin, finish, h
+      integer :: interval, part, parts, next_row, n
+      logical :: ends
+
+      n = state%motion%column%n
+      if (recorder%motion) call now%create(state%motion%column)
       next_row = huge(1)
       if (every /= unset_integer) next_row = min(every, plan%steps)
-      displacement = top_displacement(state%motion%column, state%q)
-      call summary%see_peak(displacement, state%load(lateral))
-      call summary%see_turn(largest_turn(state%motion%column, state%q))
+      step = 0
+      call balance(state, row, summary)
       call keep(state, row, recorder, summary, error, now)
       if (allocated(error)) return
       finish = plan%begin
-      step = 0
       do interval = 1, plan%intervals
          begin = finish
          call interval_of(plan, time, interval, finish, parts)
@@ -95,45 +126,34 @@ contains
          do part = 1, parts
             call stepper%advance(state, h, error)
             if (allocated(error)) then
-               summary%steps = stepper%steps
-               summary%cut_steps = stepper%cut_steps
                call keep_last(state, now, row, recorder, summary)
                return
             end if
             step = step + 1
             if (state%lost .or. state%springs%stuck) then
-               summary%steps = stepper%steps
                call report_state(state, error)
                return
             end if
             state%clock = begin + part*h
             if (part == parts) state%clock = finish
-            summary%lost_joint = max(state%springs%lost_joint() - column%n, 0)
-            ! A joint may have lost its axial load within the step.
-            if (summary%lost_joint > 0) state%clock = min(state%clock, state%begin + state%time)
+            summary%lost_joint = max(state%springs%lost_joint() - n, 0)
+            ends = summary%lost_joint > 0 .or. state%sight%collapsed
+            ! A joint may have lost its axial load, or the column may have collapsed, within the step.
+            associate (at => state%begin + state%time)
+               if (ends .and. at < state%clock - same_step*h) state%clock = at
+            end associate
             state%time = state%clock - state%begin
-            displacement = top_displacement(state%motion%column, state%q)
-            call summary%see_peak(displacement, state%load(lateral))
-            call summary%see_turn(largest_turn(state%motion%column, state%q))
-            summary%collapsed = abs(displacement) >= furthest
-            ends = summary%collapsed .or. summary%lost_joint > 0
+            call state%see(state%clock)
+            ends = ends .or. state%sight%collapsed
             if (summary%lost_joint > 0) then
-               call state%springs%fall_of(column%n + summary%lost_joint, fall)
+               call state%springs%fall_of(n + summary%lost_joint, fall)
                call summary%see_fall(fall)
             end if
-            if (ends .or. step == next_row .or. &
-                (every == unset_integer .and. part == parts)) then
-               summary%steps = stepper%steps
-               summary%cut_steps = stepper%cut_steps
-               if (stepper%longest_step > 0.0_wp) summary%time_step = stepper%longest_step
+            if (ends .or. part == parts) call balance(state, row, summary)
+            if (ends .or. step == next_row .or. (every == unset_integer .and. part == parts)) then
+               if (.not. (ends .or. part == parts)) call balance(state, row)
                call keep(state, row, recorder, summary, error, now)
-               if (allocated(error)) return
-               if (ends .or. step == plan%steps) then
-                  if (present(after) .and. summary%lost_joint == 0) then
-                     call keep_state(state, stepper, plan, step, row(row_residual), method, setting, after)
-                  end if
-                  if (ends) return
-               end if
+               if (allocated(error) .or. ends) return
                if (every /= unset_integer) next_row = min(step + every, plan%steps)
             end if
             if (iand(step, 8191) == 0 .and. present(progress)) then
@@ -141,7 +161,7 @@ contains
             end if
          end do
       end do
-   end subroutine march
+   end subroutine take_steps
 
    !> End of an interval between kept times, and the number of its steps.
    pure subroutine interval_of(plan, time, interval, finish, parts)
@@ -200,26 +220,18 @@ contains
 
       state%clock = state%begin + state%time
       if (state%lost .or. .not. state%clock > row(row_time)) return
+      call state%see(state%clock)
+      call balance(state, row, summary)
       call keep(state, row, recorder, summary, ignored, now)
    end subroutine keep_last
 
-   !> Record the present state.
-   subroutine keep(state, row, recorder, summary, error, now)
+   !> The energies of the present state.
+   subroutine balance(state, row, summary)
       type(state_type), intent(in) :: state
       real(wp), intent(inout) :: row(:)
-      class(recorder_type), intent(inout) :: recorder
-      type(summary_type), intent(inout) :: summary
-      type(error_type), allocatable, intent(inout) :: error
-      !> Needed, and created, if the rows hold how the top moves
-      type(motion_result), intent(inout), optional :: now
-      real(wp) :: top(2), base
-      integer :: m, at
+      !> That takes them into account
+      type(summary_type), intent(inout), optional :: summary
 
-      m = state%springs%count
-      top = top_position(state%motion%column, state%q)
-      row(row_time) = state%clock
-      row(row_displacement) = top(1)
-      row(row_force) = state%load(lateral)
       row(row_input) = state%of_loads
       row(row_kinetic) = kinetic_energy(state%motion%column, state%q, state%v) + state%along_joints
       row(row_spring) = sum(state%springs%work)
@@ -227,27 +239,43 @@ contains
       row(row_axial) = potential_energy(state%motion%column, state%q)
       row(row_residual) = state%of_loads + state%at_begin - row(row_kinetic) - row(row_spring) &
                           - row(row_damping) - row(row_axial)
+      if (present(summary)) call summary%see_energies(row)
+   end subroutine balance
+
+   !> Record the present state, whose energies are in the row.
+   subroutine keep(state, row, recorder, summary, error, now)
+      type(state_type), intent(in) :: state
+      real(wp), intent(inout) :: row(:)
+      class(recorder_type), intent(inout) :: recorder
+      type(summary_type), intent(inout) :: summary
+      type(error_type), allocatable, intent(inout) :: error
+      !> Created if the rows hold how the top moves
+      type(motion_result), intent(inout) :: now
+      real(wp) :: top(2)
+      integer :: m, at
+
+      m = state%springs%count
+      top = top_position(state%motion%column, state%q)
+      row(row_time) = state%clock
+      row(row_displacement) = top(1)
+      row(row_force) = state%load(lateral)
       row(row_top) = top(2)
       row(row_joints:row_joints + m - 1) = state%q
       row(row_joints + m:row_joints + 2*m - 1) = state%springs%f0 &
                                                  + state%springs%k*(state%q - state%springs%d0)
-      base = row(row_joints + m)
       if (state%motion%damped) then
          row(row_joints + 2*m:row_joints + 2*m + 1) = state%motion%base_reaction(state%springs, state%q, &
                                                                                  state%v)
-         base = row(row_joints + 2*m)
       end if
       at = row_joints + 2*m + merge(2, 0, state%motion%damped)
-      if (recorder%motion .and. present(now)) then
+      if (recorder%motion) then
          call state%motion%acceleration(state%springs, state%q, state%v, state%load, now)
          call top_motion(state%motion%column, state%q, state%v, now%a, row(at), row(at + 1))
          row(at + 2) = state%load(horizontal)
          at = at + 3
       end if
       call state%springs%fill_openings(state%motion%column%n, row(at:))
-      call summary%see_base(base)
-      summary%events = state%springs%events
-      call summary%see(row)
+      summary%rows = summary%rows + 1
       call recorder%record(row, error)
    end subroutine keep
 

@@ -78,6 +78,7 @@ module rbs_solve_time_motion
       procedure :: damping_power
       procedure :: top_velocity
       procedure :: momentum
+      procedure :: base_shear
       procedure :: base_reaction
    end type motion_type
 
@@ -442,23 +443,45 @@ contains
       type(spring_array), intent(in) :: springs
       real(wp), intent(in), contiguous :: q(:), v(:)
       real(wp) :: base(2)
-      integer :: i, place
 
-      do i = 1, 2
-         place = merge(1, self%column%n + 1, i == 1)
-         base(i) = springs%f0(place) + springs%k(place)*(q(place) - springs%d0(place))
-         if (.not. self%damped) cycle
-         if (self%column%tangent_damping) then
-            base(i) = base(i) + self%column%stiffness_damping*max(springs%k(place), 0.0_wp)*v(place)
-         else
-            base(i) = base(i) + self%joint_damping(place)*v(place)
-         end if
-         ! The matrix is symmetric: its columns lie together.
-         if (allocated(self%modal)) base(i) = base(i) + inner_product(size(v), self%modal(:, place), v)
-      end do
+      base = [force_at(self, springs, q, v, 1), force_at(self, springs, q, v, self%column%n + 1)]
       if (self%column%mass_damping > 0.0_wp) then
          base = base + self%column%mass_damping*momentum_at_foot(self%column, q, v)
       end if
    end function base_reaction
+
+   !> The shear force alone; asked for in every step.
+   function base_shear(self, springs, q, v) result(shear)
+      class(motion_type), intent(in) :: self
+      type(spring_array), intent(in) :: springs
+      real(wp), intent(in), contiguous :: q(:), v(:)
+      real(wp) :: shear, momentum(2)
+
+      shear = force_at(self, springs, q, v, 1)
+      if (.not. self%damped) return
+      if (self%column%mass_damping > 0.0_wp) then
+         momentum = momentum_at_foot(self%column, q, v)
+         shear = shear + self%column%mass_damping*momentum(1)
+      end if
+   end function base_shear
+
+   !> Force of a spring on its line, and of the damping beside it.
+   function force_at(self, springs, q, v, place) result(force)
+      class(motion_type), intent(in) :: self
+      type(spring_array), intent(in) :: springs
+      real(wp), intent(in), contiguous :: q(:), v(:)
+      integer, intent(in) :: place
+      real(wp) :: force
+
+      force = springs%f0(place) + springs%k(place)*(q(place) - springs%d0(place))
+      if (.not. self%damped) return
+      if (self%column%tangent_damping) then
+         force = force + self%column%stiffness_damping*max(springs%k(place), 0.0_wp)*v(place)
+      else
+         force = force + self%joint_damping(place)*v(place)
+      end if
+      ! The matrix is symmetric: its columns lie together.
+      if (allocated(self%modal)) force = force + inner_product(size(v), self%modal(:, place), v)
+   end function force_at
 
 end module rbs_solve_time_motion

@@ -24,6 +24,7 @@ module rbs_solve_time_run_dynamic
    use rbs_solve_time_pair45, only: pair45_scheme
    use rbs_solve_time_plan, only: time_plan, new_plan, check_times, check_length
    use rbs_solve_time_rk4, only: rk4_stepper, rk4_scheme
+   use rbs_solve_time_sight, only: sight_type
    use rbs_solve_time_state, only: stepper_type
    use rbs_case_analysis_record, only: analysis_record
    use rbs_base_check, only: is_given
@@ -175,7 +176,7 @@ contains
 
    !> Response in time under lateral force, ground motion, axial load, or all of them.
    subroutine run_dynamic(column, analysis, plan, time, loads, initial, every, recorder, summary, error, &
-                          progress, before, after)
+                          progress, before, after, sight)
       type(column_type), intent(in) :: column
       !> Validated settings
       type(analysis_record), intent(in) :: analysis
@@ -193,6 +194,8 @@ contains
       class(observer_type), intent(inout), optional :: progress
       !> The state to begin in, and the one at the end; empty where there is none
       type(end_state), intent(inout), optional :: before, after
+      !> What to watch for, and what has been seen
+      type(sight_type), intent(inout), optional :: sight
       class(stepper_type), allocatable :: stepper
       real(wp) :: setting
       integer :: method
@@ -219,7 +222,7 @@ contains
       setting = 0.0_wp
       if (is_given(analysis%rho_infinity)) setting = analysis%rho_infinity
       call march(column, plan, stepper, time, loads, initial, analysis%collapse_drift, every, recorder, &
-                 summary, error, progress, before, after, method, setting)
+                 summary, error, progress, before, after, method, setting, sight)
    end subroutine run_dynamic
 
    !> The method of a plan, ready for its first step.

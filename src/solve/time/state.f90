@@ -6,6 +6,7 @@ module rbs_solve_time_state
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_time_loads, only: loads_type
    use rbs_solve_time_motion, only: motion_type
+   use rbs_solve_time_sight, only: sight_type
    implicit none
    private
 
@@ -31,6 +32,11 @@ module rbs_solve_time_state
       real(wp) :: along_joints = 0.0_wp
       !> Whether a deformation is out of bounds; the run cannot be continued from there
       logical :: lost = .false.
+      !> What has been seen of the run
+      type(sight_type) :: sight
+   contains
+      procedure :: begin_sight
+      procedure :: see
    end type state_type
 
    !> A method of integration. What it needs from step to step is in its own type.
@@ -60,6 +66,27 @@ module rbs_solve_time_state
    end interface
 
 contains
+
+   !> Look at the state for the first time; what to watch for is known.
+   subroutine begin_sight(self, collapse_drift, floor)
+      class(state_type), intent(inout) :: self
+      !> Displacement of the top over the height at which the column has collapsed; `unset`: none
+      real(wp), intent(in) :: collapse_drift
+      !> Whether the acceleration of the top is looked at
+      logical, intent(in) :: floor
+
+      call self%sight%begin(self%motion, self%springs, self%q, self%v, self%load, self%clock, &
+                            collapse_drift, floor)
+   end subroutine begin_sight
+
+   !> Look at the state, at the end of a step or of a part of one.
+   subroutine see(self, clock)
+      class(state_type), intent(inout) :: self
+      !> [s]
+      real(wp), intent(in) :: clock
+
+      call self%sight%see(self%motion, self%springs, self%q, self%v, self%load, clock)
+   end subroutine see
 
    !> Present to a tape what the next step depends on besides the state. A method whose steps depend on the
    !> state alone inherits this procedure.

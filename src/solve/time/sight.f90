@@ -1,0 +1,400 @@
+!> What is seen of a run at the end of every step, and within the steps of methods that resolve it: the
+!> largest responses, collapse, and limit states. Which rows are kept has no part in it.
+module rbs_solve_time_sight
+   use rbs_base_check, only: is_given
+   use rbs_base_kinds, only: wp
+   use rbs_column_top, only: top_motion, top_displacement, largest_turn
+   use rbs_hysteresis_springs, only: spring_array
+   use rbs_output_summary, only: peaks_type
+   use rbs_solve_time_cubic, only: cubic_type, cubic_through
+   use rbs_solve_time_loads, only: lateral, horizontal
+   use rbs_solve_time_motion, only: motion_type, motion_result
+   implicit none
+   private
+
+   public :: sight_type, watch_type
+
+   !> A limit state is reached where a sum of a joint's deformations is at a threshold or beyond it.
+   type :: watch_type
+      !> Number of the limit state, 1 for first yield, and joint
+      integer :: state = 1, joint = 1
+      !> Factors of slip, of rotation and of opening; where there is one of the opening, rotations count with
+      !> those at rest
+      real(wp) :: slip = 0.0_wp, rotation = 0.0_wp, opening = 0.0_wp, threshold = huge(1.0_wp)
+   end type watch_type
+
+   type, extends(peaks_type) :: sight_type
+      !> Displacement of the top at which the column has collapsed [m], and whether it has
+      real(wp) :: furthest = huge(1.0_wp)
+      logical :: collapsed = .false.
+      !> What is watched for, and when each limit state is reached first; `huge` before (states) [s]
+      type(watch_type), allocatable :: watch(:)
+      real(wp), allocatable :: reached(:)
+      !> Displacement of the top then (states) [m]
+      real(wp), allocatable :: top(:)
+      !> Whether anything is still watched for
+      logical :: watching = .false.
+      !> Deformations between which no limit state is reached for the first time (unknowns)
+      real(wp), allocatable :: lowest(:), highest(:)
+      !> What was seen last: clock [s], displacement of the top [m], deformations (unknowns), openings and
+      !> rotations at rest (2 n, or none)
+      real(wp) :: clock = 0.0_wp, displacement = 0.0_wp
+      real(wp), allocatable :: q(:), openings(:)
+      !> Openings and rotations at rest now
+      real(wp), allocatable, private :: openings_now(:)
+      !> Number of joints, and whether openings are still watched
+      integer, private :: n = 0
+      logical, private :: opens = .false.
+      !> States within a step (unknowns, 4), and openings there
+      real(wp), allocatable, private :: inner_q(:, :), inner_v(:, :), inner_openings(:, :)
+      !> Whether the acceleration of the top is looked at, and the equation of motion for it
+      logical :: feels = .false.
+      type(motion_result), private :: now
+   contains
+      procedure :: watch_for
+      procedure :: begin
+      procedure :: see
+      procedure :: see_within
+      procedure :: look
+   end type sight_type
+
+contains
+
+   !> Limit states to watch for; to be called before `begin`.
+   pure subroutine watch_for(self, watch, states)
+      class(sight_type), intent(inout) :: self
+      type(watch_type), intent(in) :: watch(:)
+      !> Number of limit states
+      integer, intent(in) :: states
+
+      self%watch = watch
+      self%reached = spread(huge(1.0_wp), 1, states)
+      self%top = spread(0.0_wp, 1, states)
+   end subroutine watch_for
+
+   !> The start of a run.
+   subroutine begin(self, motion, springs, q, v, load, clock, collapse_drift, floor)
+      class(sight_type), intent(inout) :: self
+      !> See `see`
+      type(motion_type), intent(in) :: motion
+      type(spring_array), intent(in) :: springs
+      real(wp), intent(in), contiguous :: q(:), v(:)
+      real(wp), intent(in) :: load(4), clock
+      !> Displacement of the top over the height at which the column has collapsed; `unset`: none
+      real(wp), intent(in) :: collapse_drift
+      !> Whether the acceleration of the top is looked at
+      logical, intent(in) :: floor
+      integer :: m, opening
+
+      if (is_given(collapse_drift)) self%furthest = collapse_drift*motion%column%height
+      if (.not. allocated(self%watch)) call self%watch_for([watch_type ::], 0)
+      m = motion%column%unknowns
+      self%n = motion%column%n
+      opening = 0
+      if (any(abs(self%watch%opening) > 0.0_wp)) opening = 2*self%n
+      allocate (self%lowest(m), self%highest(m), self%inner_q(m, 4), self%inner_v(m, 4), &
+                self%openings(opening), self%inner_openings(opening, 4), source=0.0_wp)
+      call set_bounds(self)
+      self%feels = floor
+      if (floor) call self%now%create(motion%column)
+      self%q = q
+      self%clock = clock
+      self%displacement = top_displacement(motion%column, q)
+      call springs%fill_openings(self%n, self%openings)
+      self%openings_now = self%openings
+      call self%see(motion, springs, q, v, load, clock)
+   end subroutine begin
+
+   !> The end of a step.
+   subroutine see(self, motion, springs, q, v, load, clock)
+      class(sight_type), intent(inout) :: self
+      type(motion_type), intent(in) :: motion
+      type(spring_array), intent(in) :: springs
+      !> Deformations and velocities (unknowns), loads
+      real(wp), intent(in), contiguous :: q(:), v(:)
+      real(wp), intent(in) :: load(4)
+      !> [s]
+      real(wp), intent(in) :: clock
+      real(wp) :: displacement, turn, shear, speed, acceleration
+
+      if (motion%plain .and. motion%single) then
+         ! One body, whose steps are short: nothing is called that need not be.
+         displacement = q(1) + motion%column%length(1)*q(2)
+         turn = abs(q(2))
+         shear = springs%f0(1) + springs%k(1)*(q(1) - springs%d0(1))
+      else
+         displacement = top_displacement(motion%column, q)
+         turn = largest_turn(motion%column, q)
+         shear = motion%base_shear(springs, q, v)
+      end if
+      if (abs(displacement) > abs(self%peak_displacement) .or. abs(load(lateral)) > abs(self%peak_force)) then
+         call self%see_peak(displacement, load(lateral))
+         self%collapsed = abs(self%peak_displacement) >= self%furthest
+      end if
+      if (turn > self%peak_rotation) call self%see_turn(turn)
+      if (abs(shear) > abs(self%peak_base_shear)) call self%see_base(shear)
+      if (self%feels) then
+         call motion%acceleration(springs, q, v, load, self%now)
+         call top_motion(motion%column, q, v, self%now%a, speed, acceleration)
+         call self%see_floor(acceleration + load(horizontal))
+      end if
+      if (.not. self%watching) return
+      if (size(q) == 2 .and. .not. self%opens) then
+         if (q(1) < self%highest(1) .and. q(1) > self%lowest(1) .and. &
+             q(2) < self%highest(2) .and. q(2) > self%lowest(2)) then
+            self%clock = clock
+            self%displacement = displacement
+            self%q(1) = q(1)
+            self%q(2) = q(2)
+            return
+         end if
+      end if
+      call self%look(springs, q, displacement, clock)
+   end subroutine see
+
+   !> Limit states at the end of a step; between its ends deformations are straight in time.
+   subroutine look(self, springs, q, displacement, clock)
+      class(sight_type), intent(inout) :: self
+      type(spring_array), intent(in) :: springs
+      real(wp), intent(in), contiguous :: q(:)
+      !> Of the top [m]
+      real(wp), intent(in) :: displacement, clock
+
+      if (self%opens) call springs%fill_openings(self%n, self%openings_now)
+      if (self%opens .or. are_beyond(size(q), self%lowest, self%highest, q, q)) then
+         call look_closely(self, q, displacement, clock)
+      end if
+      self%clock = clock
+      self%displacement = displacement
+      self%q(:) = q
+      if (self%opens) self%openings(:) = self%openings_now
+   end subroutine look
+
+   !> Limit states that may have been reached.
+   subroutine look_closely(self, q, displacement, clock)
+      type(sight_type), intent(inout) :: self
+      real(wp), intent(in) :: q(:), displacement, clock
+      real(wp) :: share, before, after, at
+      logical :: open(size(self%reached))
+      integer :: i
+
+      open = .not. self%reached < huge(1.0_wp)
+      do i = 1, size(self%watch)
+         associate (watch => self%watch(i))
+            if (.not. open(watch%state)) cycle
+            after = value_of(self, watch, q, self%openings_now)
+            if (.not. after >= watch%threshold) cycle
+            before = value_of(self, watch, self%q, self%openings)
+            share = 1.0_wp
+            if (after > before) share = (watch%threshold - before)/(after - before)
+            at = self%clock + share*(clock - self%clock)
+            call reach(self, i, at, self%displacement + share*(displacement - self%displacement))
+         end associate
+      end do
+      call set_bounds(self)
+   end subroutine look_closely
+
+   !> A step from a state that was seen, with springs on their lines; between its ends deformations are cubics
+   !> in time.
+   subroutine see_within(self, motion, springs, q0, v0, q1, v1, h, clock)
+      class(sight_type), intent(inout) :: self
+      type(motion_type), intent(in) :: motion
+      !> On the lines of the step
+      type(spring_array), intent(in) :: springs
+      !> Deformations and velocities at its start and its end (unknowns)
+      real(wp), intent(in), contiguous :: q0(:), v0(:), q1(:), v1(:)
+      !> Its length, and the clock at its end [s]
+      real(wp), intent(in) :: h, clock
+      type(cubic_type) :: top, part
+      real(wp) :: displacement(4), base(4), rotation(4), reach
+      integer :: i, j, m, n
+
+      m = size(q0)
+      n = motion%column%n
+      call fill_inner(m, q0, v0, q1, v1, h, self%inner_q, self%inner_v)
+      do j = 1, 4
+         displacement(j) = top_displacement(motion%column, self%inner_q(:, j))
+         base(j) = motion%base_shear(springs, self%inner_q(:, j), self%inner_v(:, j))
+      end do
+      top = cubic_through(displacement)
+      if (may_exceed(displacement, self%peak_displacement)) call self%see_peak(top%largest(), 0.0_wp)
+      self%collapsed = abs(self%peak_displacement) >= self%furthest
+      if (may_exceed(base, self%peak_base_shear)) then
+         part = cubic_through(base)
+         call self%see_base(part%largest())
+      end if
+      rotation = 0.0_wp
+      do i = n + 1, 2*n
+         do j = 1, 4
+            rotation(j) = rotation(j) + self%inner_q(i, j)
+         end do
+         if (.not. may_exceed(rotation, self%peak_rotation)) cycle
+         part = cubic_through(rotation)
+         call self%see_turn(abs(part%largest()))
+      end do
+      if (.not. self%watching) return
+      self%clock = clock
+      self%displacement = displacement(4)
+      self%q(:) = q1
+      if (self%opens) then
+         call fill_inner_openings(self, springs)
+         self%openings(:) = self%inner_openings(:, 4)
+      end if
+      ! No cubic goes further beyond its ends than that.
+      reach = 4.0_wp/27.0_wp*h
+      if (.not. self%opens) then
+         if (.not. are_beyond(m, self%lowest, self%highest, min(q0, q1) - reach*(abs(v0) + abs(v1)), &
+                              max(q0, q1) + reach*(abs(v0) + abs(v1)))) return
+      end if
+      call look_within(self, top, h, clock)
+   end subroutine see_within
+
+   !> Whether a cubic through four values may exceed another one in size: between them it is at most 1.64
+   !> times the largest of them (the Lebesgue constant of four equal distances).
+   pure logical function may_exceed(value, other)
+      real(wp), intent(in) :: value(4), other
+
+      may_exceed = 1.64_wp*max(abs(value(1)), abs(value(2)), abs(value(3)), abs(value(4))) > abs(other)
+   end function may_exceed
+
+   !> Limit states within a step whose inner states are known.
+   subroutine look_within(self, top, h, clock)
+      type(sight_type), intent(inout) :: self
+      !> Displacement of the top along the step
+      type(cubic_type), intent(in) :: top
+      real(wp), intent(in) :: h, clock
+      type(cubic_type) :: along
+      real(wp) :: value(4), share
+      logical :: open(size(self%reached))
+      integer :: i, j
+
+      open = .not. self%reached < huge(1.0_wp)
+      do i = 1, size(self%watch)
+         associate (watch => self%watch(i))
+            if (.not. open(watch%state)) cycle
+            do j = 1, 4
+               value(j) = value_of(self, watch, self%inner_q(:, j), self%inner_openings(:, j))
+            end do
+            along = cubic_through(value)
+            share = along%first_at(watch%threshold)
+            if (share <= 1.0_wp) call reach(self, i, clock - (1.0_wp - share)*h, top%at(share))
+         end associate
+      end do
+      call set_bounds(self)
+   end subroutine look_within
+
+   !> Openings and rotations at rest of the inner states.
+   subroutine fill_inner_openings(self, springs)
+      type(sight_type), intent(inout) :: self
+      type(spring_array), intent(in) :: springs
+      integer :: i, j
+
+      call springs%fill_openings(self%n, self%openings_now)
+      do j = 1, 4
+         self%inner_openings(:, j) = self%openings_now
+         do i = 1, self%n
+            self%inner_openings(i, j) = springs%opening(self%n + i, self%inner_q(self%n + i, j), &
+                                                        (j - 1)/3.0_wp)
+         end do
+      end do
+   end subroutine fill_inner_openings
+
+   !> The states at the start of a step, at its thirds and at its end.
+   pure subroutine fill_inner(m, q0, v0, q1, v1, h, q, v)
+      integer, intent(in) :: m
+      real(wp), intent(in) :: q0(m), v0(m), q1(m), v1(m), h
+      real(wp), intent(out) :: q(m, 4), v(m, 4)
+      real(wp) :: s
+      integer :: i, j
+
+      q(:, 1) = q0
+      v(:, 1) = v0
+      q(:, 4) = q1
+      v(:, 4) = v1
+      do j = 2, 3
+         s = (j - 1)/3.0_wp
+         do i = 1, m
+            q(i, j) = q0(i) + s**2*(3.0_wp - 2.0_wp*s)*(q1(i) - q0(i)) &
+                      + s*(1.0_wp - s)*h*((1.0_wp - s)*v0(i) - s*v1(i))
+            v(i, j) = 6.0_wp*s*(1.0_wp - s)*(q1(i) - q0(i))/h + (1.0_wp - s)*(1.0_wp - 3.0_wp*s)*v0(i) &
+                      - s*(2.0_wp - 3.0_wp*s)*v1(i)
+         end do
+      end do
+   end subroutine fill_inner
+
+   !> Whether some deformation may be at a bound.
+   pure logical function are_beyond(m, lowest, highest, least, most)
+      integer, intent(in) :: m
+      real(wp), intent(in) :: lowest(m), highest(m), least(m), most(m)
+      integer :: i, beyond
+
+      beyond = 0
+      do i = 1, m
+         beyond = beyond + merge(1, 0, most(i) >= highest(i) .or. least(i) <= lowest(i))
+      end do
+      are_beyond = beyond > 0
+   end function are_beyond
+
+   !> What a watch compares with its threshold.
+   pure real(wp) function value_of(self, watch, q, openings) result(value)
+      type(sight_type), intent(in) :: self
+      type(watch_type), intent(in) :: watch
+      !> See `sight_type`
+      real(wp), intent(in) :: q(:), openings(:)
+
+      value = watch%slip*q(watch%joint) + watch%rotation*q(self%n + watch%joint)
+      if (abs(watch%opening) > 0.0_wp) then
+         value = value + watch%opening*openings(watch%joint) &
+                 + watch%rotation*openings(self%n + watch%joint)
+      end if
+   end function value_of
+
+   !> A limit state may be reached.
+   pure subroutine reach(self, i, at, top)
+      type(sight_type), intent(inout) :: self
+      !> Place of the watch
+      integer, intent(in) :: i
+      !> When [s], and displacement of the top [m]
+      real(wp), intent(in) :: at, top
+
+      associate (state => self%watch(i)%state)
+         if (at >= self%reached(state)) return
+         self%reached(state) = at
+         self%top(state) = top
+      end associate
+   end subroutine reach
+
+   !> The bounds of what is still watched for.
+   pure subroutine set_bounds(self)
+      type(sight_type), intent(inout) :: self
+      integer :: i, at(2)
+
+      self%lowest = -huge(1.0_wp)
+      self%highest = huge(1.0_wp)
+      self%opens = .false.
+      self%watching = .false.
+      do i = 1, size(self%watch)
+         associate (watch => self%watch(i))
+            if (self%reached(watch%state) < huge(1.0_wp)) cycle
+            self%watching = .true.
+            if (abs(watch%opening) > 0.0_wp) then
+               self%opens = .true.
+            else
+               at = [watch%joint, self%n + watch%joint]
+               call narrow(self%lowest(at(1)), self%highest(at(1)), watch%slip, watch%threshold)
+               call narrow(self%lowest(at(2)), self%highest(at(2)), watch%rotation, watch%threshold)
+            end if
+         end associate
+      end do
+   end subroutine set_bounds
+
+   !> The bound of a deformation that has a factor.
+   pure subroutine narrow(lowest, highest, factor, threshold)
+      real(wp), intent(inout) :: lowest, highest
+      real(wp), intent(in) :: factor, threshold
+
+      if (factor > 0.0_wp) highest = min(highest, threshold/factor)
+      if (factor < 0.0_wp) lowest = max(lowest, threshold/factor)
+   end subroutine narrow
+
+end module rbs_solve_time_sight
