@@ -60,9 +60,9 @@ install_rbsdem -Cbuild-dir="$root/build/python" .
 # The tests in Python that bring numbers of all kinds to Fortran; the others see nothing new there.
 say "what calls Fortran once more, with bounds checks and floating-point traps"
 crossing=(tests/regression)
-for name in fuzz extremes_columns extremes_input extremes_rotations extremes_scales extremes_springs \
+for name in fuzz extremes_columns extremes_input extremes_rotations extremes_springs \
     extremes_steps extremes_time static dynamics springs springs_capped layered layered_input interaction \
-    physics column ensembles motions strains doors base_forces section; do
+    physics column ensembles invariants motions strains doors base_forces section; do
     crossing+=("tests/python/test_$name.py")
 done
 result_of "$checks" checked

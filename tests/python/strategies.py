@@ -112,8 +112,13 @@ def spring(rng: Rng, rule: str, force: float, way: float, *, options: float = 0.
     """Return a spring of a rule that yields near a force and a deformation."""
     if rule == "layered":
         return layered(rng, force, way)
-    given = RECIPES[rule](rng, force, way)
-    made = SPRINGS[rule](**given)
+    while True:
+        given = RECIPES[rule](rng, force, way)
+        try:
+            made = SPRINGS[rule](**given)
+        except rbsdem.InputError:
+            continue
+        break
     if rng.random() < 0.4:
         return made
     for key in _core.keys()["rules"][rule]["keys"]:

@@ -301,32 +301,6 @@ def test_momentum_above_the_ground_joint(kinematics):
     assert np.max(np.abs(second - expected)) < (omega * h) ** 4 * np.max(np.abs(expected))
 
 
-@pytest.mark.parametrize("kinematics", ["small", "pdelta", "finite"])
-def test_mirror(kinematics):
-    column = rbsdem.Column(
-        HEIGHT, MASS, SHEAR, FLEXURE, axial_load=7.44e5, kinematics=kinematics,
-        damping=rbsdem.Damping(stiffness=1e-5),
-    )  # fmt: skip
-    loads = random_loads(8, 200) * [6, 20]
-    times = 0.01 * np.arange(200)
-    start = {"slip": [2e-4], "rotation_velocity": [0.3]}
-    one = rbsdem.time_history(
-        column, times, force=loads.T[0], ground_acceleration=loads.T[1], initial=start, method="rk4"
-    )
-    other = rbsdem.time_history(
-        column,
-        times,
-        force=-loads.T[0],
-        ground_acceleration=-loads.T[1],
-        initial={name: [-v[0]] for name, v in start.items()},
-        method="rk4",
-    )
-    for name in ("displacement", "force", "slip", "rotation", "shear", "moment"):
-        assert np.array_equal(getattr(one, name), -getattr(other, name)), name
-    assert np.array_equal(one.energy["input"], other.energy["input"])
-    assert one.summary["events"] > 50
-
-
 # ---- finite rotation -----------------------------------------------------------------------------
 
 
@@ -734,33 +708,6 @@ def test_rows_do_not_depend_on_the_begin_of_time():
     )
     assert np.array_equal(late.time, times + 64)
     np.testing.assert_allclose(late.displacement, early.displacement, rtol=1e-9, atol=1e-14)
-
-
-@pytest.mark.parametrize("every", [2, 3, 10, 99, 100, 10**6])
-@pytest.mark.parametrize("dt", [None, 1e-4, 7e-5])
-def test_every_nth_step_and_the_last(every, dt):
-    column = rbsdem.Column(HEIGHT, MASS, SHEAR, FLEXURE, n=2)
-    times = 1e-3 * np.arange(100)
-    force = 1e5 * np.sin(60 * times)
-    whole = rbsdem.time_history(column, times, force=force, dt=dt, every=1, method="rk4")
-    assert len(whole.time) == whole.summary["steps"] + 1
-    kept = rbsdem.time_history(column, times, force=force, dt=dt, every=every, method="rk4")
-    last = len(whole.time) - 1
-    places = sorted({*range(0, last + 1, every), last})
-    assert np.array_equal(kept.time, whole.time[places])
-    assert np.array_equal(kept.slip, whole.slip[places])
-    assert np.array_equal(kept.energy["input"], whole.energy["input"][places])
-    assert kept.summary["rows"] == len(places)
-    # What the run did does not depend on what is kept of it.
-    for name in (
-        "steps",
-        "events",
-        "peak_displacement",
-        "peak_force",
-        "displacement_at_peak_force",
-    ):
-        assert kept.summary[name] == whole.summary[name], name
-    assert kept.summary["peak_displacement"] in (whole.displacement.max(), whole.displacement.min())
 
 
 def test_rows_at_the_times_are_among_those_of_the_steps():

@@ -121,23 +121,6 @@ def test_layered_joints_with_exact_rotations_stand_in_equilibrium(
 
 
 @pytest.mark.parametrize("axial_spring", [None, Bilinear(k=3e9, d_y=1e-4, k_post=1e9)])
-def test_increments_do_not_matter_with_exact_rotations(
-    axial_spring: rbsdem.Spring | None,
-) -> None:
-    """A history cut into 13 parts leads to the same points."""
-    column = chain("finite", axial_spring=axial_spring)
-    points = WIDE / 20
-    whole = rbsdem.cyclic(column, displacement=points, axial_load=LOAD)
-    fine = np.linspace(0, 5, 5 * 13 + 1)
-    parts = rbsdem.cyclic(
-        column,
-        displacement=np.r_[points[0], np.interp(fine, np.arange(6), points)],
-        axial_load=np.r_[LOAD[0], np.interp(fine, np.arange(6), LOAD)],
-    )
-    np.testing.assert_allclose(parts.force[1::13], whole.force, rtol=1e-10)
-
-
-@pytest.mark.parametrize("axial_spring", [None, Bilinear(k=3e9, d_y=1e-4, k_post=1e9)])
 def test_a_constant_history_is_the_constant_load_with_exact_rotations(
     axial_spring: rbsdem.Spring | None,
 ) -> None:

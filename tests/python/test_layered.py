@@ -38,14 +38,6 @@ def wander(seed: int, points: int = 60) -> np.ndarray:
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_mirror(seed: int) -> None:
-    path = wander(seed)
-    spring = joint(wear=0.03, contact=0.3, misfit=0.3)
-    there, mirrored = spring.response(path, LOAD), spring.response(-path, LOAD)
-    np.testing.assert_allclose(mirrored, -there, atol=1e-7 * np.abs(there).max())
-
-
-@pytest.mark.parametrize("seed", range(20))
 def test_forces_are_continuous(seed: int) -> None:
     path = np.interp(np.arange(0, 20, 0.001), np.arange(21), np.append(0, wander(seed, 20)))
     spring = joint(wear=0.03, contact=0.3, misfit=0.3)

@@ -306,6 +306,13 @@ def test_small_column_is_statically_determinate(n, drive):
     assert run.summary["events"] > 5 * n
 
 
+def subdivided(targets, parts: int) -> np.ndarray:
+    """The same path with `parts` steps to each target."""
+    corners = np.concatenate([[0.0], targets])
+    legs = [np.linspace(a, b, parts + 1)[1:] for a, b in itertools.pairwise(corners)]
+    return np.concatenate(legs)
+
+
 @pytest.mark.parametrize("n", [1, 3, 6])
 def test_pdelta_springs_are_on_their_paths(n):
     """Rows so close that no spring turns unseen between them: each is on its rule's path."""
@@ -349,45 +356,6 @@ def test_weight_and_load_in_equilibrium(kinematics):
         assert np.max(np.abs(run.shear[:, i] - shear_here)) < 1e-10 * np.max(np.abs(shear_here))
         assert np.max(np.abs(run.moment[:, i] - moment)) < 1e-10 * np.max(np.abs(moment))
     assert_energy(run)
-
-
-# ---- independence of the way ---------------------------------------------------------------------
-
-
-def subdivided(targets, parts: int) -> np.ndarray:
-    """The same path with `parts` steps to each target."""
-    corners = np.concatenate([[0.0], targets])
-    legs = [np.linspace(a, b, parts + 1)[1:] for a, b in itertools.pairwise(corners)]
-    return np.concatenate(legs)
-
-
-@pytest.mark.parametrize("n", [1, 4])
-@pytest.mark.parametrize("kinematics", ["small", "pdelta"])
-@pytest.mark.parametrize("drive", ["displacement", "force"])
-def test_increments_do_not_matter(n, kinematics, drive):
-    load = 1.0e5
-    column = random_column(60 + n, n, axial_load=load, kinematics=kinematics)
-    targets = random_history(n, 25, 0.06 if drive == "displacement" else 0.6e5)
-    coarse = rbsdem.cyclic(column, **{drive: targets})
-    for parts in (7, 1000):
-        fine = rbsdem.cyclic(column, **{drive: subdivided(targets, parts)})
-        for name in ("force", "displacement", "slip", "rotation", "shear", "moment"):
-            whole, cut = getattr(coarse, name), getattr(fine, name)[parts - 1 :: parts]
-            assert np.max(np.abs(whole - cut)) < 1e-12 * np.max(np.abs(whole)), name
-        assert fine.summary["events"] == coarse.summary["events"]
-
-
-@pytest.mark.parametrize("n", [1, 5])
-@pytest.mark.parametrize("kinematics", ["small", "pdelta"])
-def test_mirror(n, kinematics):
-    column = random_column(90 + n, n, axial_load=1e5, kinematics=kinematics)
-    targets = random_history(n, 60, 0.08)
-    one = rbsdem.cyclic(column, displacement=targets)
-    other = rbsdem.cyclic(column, displacement=-targets)
-    for name in ("force", "slip", "rotation", "shear", "moment"):
-        assert np.array_equal(getattr(one, name), -getattr(other, name)), name
-    for name in ("input", "spring", "axial"):
-        assert np.array_equal(one.energy[name], other.energy[name])
 
 
 # ---- limits --------------------------------------------------------------------------------------
@@ -666,28 +634,6 @@ def test_a_path_without_points_is_refused():
     for drive in ("displacement", "force"):
         with pytest.raises(rbsdem.InputError, match=f"{drive} is empty; give at least one point"):
             rbsdem.cyclic(column, **{drive: []})
-
-
-@pytest.mark.parametrize("every", [1, 2, 3, 7, 100])
-def test_every_nth_row_and_the_last(every):
-    column = paper_column()
-    targets = random_history(3, 20, 0.05)
-    whole = rbsdem.cyclic(column, displacement=targets)
-    kept = rbsdem.cyclic(column, displacement=targets, every=every)
-    places = sorted({*range(0, 20, every), 19})
-    assert kept.time.tolist() == places
-    assert np.array_equal(kept.force, whole.force[places])
-    assert np.array_equal(kept.moment, whole.moment[places])
-    assert kept.summary["rows"] == len(places)
-    for name in (
-        "steps",
-        "events",
-        "peak_displacement",
-        "peak_force",
-        "displacement_at_peak_force",
-    ):
-        assert kept.summary[name] == whole.summary[name], name
-    assert kept.summary["peak_force"] == whole.force[np.argmax(np.abs(whole.force))]
 
 
 BAD = [
