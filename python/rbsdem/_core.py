@@ -15,12 +15,19 @@ from itertools import islice
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from rbsdem import _rbsdem
+from rbsdem import _arguments, _rbsdem
+from rbsdem._arguments import (  # noqa: F401  for those that take these from here
+    BEYOND_MEANING,
+    Array,
+    finite_vector,
+    number,
+    switch,
+    vector,
+    whole,
+)
 from rbsdem.errors import InputError, SolveError
-
-Array = NDArray[np.float64]
 
 #: Stands for a whole number that is not given (the constant `unset_integer` of the Fortran part).
 UNSET_INTEGER = -int(np.iinfo(np.int32).max)
@@ -28,8 +35,8 @@ UNSET_INTEGER = -int(np.iinfo(np.int32).max)
 #: A number that was not given.
 UNSET = -float(np.finfo(np.float64).max)
 
-#: Larger numbers have no meaning in any unit (the constant `beyond_meaning`).
-BEYOND_MEANING = 1e50
+#: Whole numbers below this are exact as a float.
+_EXACT = 1 << 53
 
 _ANALYSIS_FAILED = 1
 _LITTLE_ROOM = 3
@@ -53,20 +60,6 @@ def methods() -> list[dict[str, str]]:
     return [dict(zip(names, row, strict=True)) for row in rows]
 
 
-def number(value: Any, name: str) -> float:
-    """Return `value` as a float, or raise `InputError` naming it."""
-    if type(value) is float:
-        return value
-    try:
-        if isinstance(value, (bool, np.bool_, str, bytes)):
-            raise TypeError
-        return float(value)
-    except OverflowError:
-        raise InputError(f"{name} is larger than any number of the computer") from None
-    except (TypeError, ValueError):
-        raise InputError(f"{name} = {value!r} must be a number") from None
-
-
 def word(value: Any) -> str:
     """Return a name for the Fortran part, which knows valid names and refuses all others.
 
@@ -74,54 +67,6 @@ def word(value: Any) -> str:
     f2py does not take are replaced.
     """
     return " ".join(str(value).split()).encode("ascii", "replace").decode()
-
-
-def switch(value: Any, name: str) -> bool:
-    """Return `value` as a bool, or raise `InputError` naming it."""
-    if isinstance(value, (bool, np.bool_, int, np.integer)) and value in (0, 1):
-        return bool(value)
-    raise InputError(f"{name} = {value!r} must be True or False")
-
-
-def whole(value: Any, name: str) -> int:
-    """Return `value` as an int, or raise `InputError` naming it."""
-    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
-        raise InputError(f"{name} = {value!r} must be a whole number")
-    if abs(value) > np.iinfo(np.int32).max:
-        raise InputError(f"{name} = {value} is too large")
-    return int(value)
-
-
-def vector(values: ArrayLike, name: str) -> Array:
-    """Return `values` as a one-dimensional array of floats, or raise `InputError` naming it."""
-    try:
-        array = np.asarray(values)
-        if array.dtype.kind in "cSUbO" and array.size:
-            raise TypeError
-        array = array.astype(np.float64)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} must be an array of numbers") from None
-    if array.ndim != 1:
-        raise InputError(f"{name} has shape {array.shape}; it must have one dimension")
-    return np.ascontiguousarray(array)
-
-
-def finite_vector(values: ArrayLike, name: str) -> Array:
-    """Return `vector(values, name)`, or raise `InputError` naming the first value not finite."""
-    array = vector(values, name)
-    bad = np.flatnonzero(~np.isfinite(array))
-    if bad.size:
-        raise InputError(
-            f"{name}: value {bad[0] + 1} of {array.size} is {array[bad[0]]}; "
-            "it must be a finite number"
-        )
-    beyond = np.flatnonzero(np.abs(array) > BEYOND_MEANING)
-    if beyond.size:
-        raise InputError(
-            f"{name}: value {beyond[0] + 1} of {array.size} is {array[beyond[0]]}; "
-            "products of it would not be finite: check its exponent and unit"
-        )
-    return array
 
 
 class Text(str):
@@ -158,22 +103,27 @@ def group(name: str, values: Mapping[str, Any]) -> Statement:
         elif isinstance(value, str):
             text = _one_line(value) if isinstance(value, Text) else word(value)
             words.append(f"{key}={text}")
-        elif isinstance(value, (tuple, list, np.ndarray)):
-            if len(value):
-                words.append(f"{key}:{len(value)}")
-                numbers.extend(value)
+        elif isinstance(value, (tuple, list)) or (isinstance(value, np.ndarray) and value.ndim):
+            plain = all(type(i) is float or (type(i) is int and abs(i) < _EXACT) for i in value)
+            items = value if plain else vector(value, f"{name}: {key}").tolist()
+            if len(items):
+                words.append(f"{key}:{len(items)}")
+                numbers.extend(items)
         else:
-            if not isinstance(value, (int, float, np.generic)):
-                raise InputError(f"{name}: {key} = {_short(value)} is neither a number nor a word")
             words.append(key)
-            numbers.append(value)
+            numbers.append(_number_or_switch(value, f"{name}: {key}"))
     return Statement("\t".join(words), numbers)
 
 
-def _short(value: object) -> str:
-    """Return a value for a message; of a record only its kind."""
-    text = repr(value)
-    return text if len(text) <= 60 else f"a {type(value).__name__}"
+def _number_or_switch(value: Any, name: str) -> float:
+    """Return what a key takes that is no word."""
+    if isinstance(value, (bool, np.bool_)):
+        return value
+    try:
+        return number(value, name)
+    except InputError:
+        given = _arguments.shown(value)
+        raise InputError(f"{name} = {given} is neither a number nor a word") from None
 
 
 def _one_line(text: str) -> str:
@@ -508,14 +458,14 @@ def _columns_crossing(
     before: Sequence[Array],
 ) -> tuple[bytes, Array, NDArray[np.int32], Array, Array]:
     """Return statements, numbers, how many of all each column has, the watches, the states."""
-    whole = [column + settings for column in columns]
+    statements = [column + settings for column in columns]
     return (
-        "".join(statement.text + _AFTER for statement in whole).encode("utf-8", "replace"),
-        np.array([number for statement in whole for number in statement.numbers]),
+        "".join(statement.text + _AFTER for statement in statements).encode("utf-8", "replace"),
+        np.array([number for statement in statements for number in statement.numbers]),
         np.array(
             [
                 (len(statement.numbers), len(watch), len(state))
-                for statement, watch, state in zip(whole, watches, before, strict=True)
+                for statement, watch, state in zip(statements, watches, before, strict=True)
             ],
             dtype=np.int32,
         ).T,
@@ -539,9 +489,10 @@ def _numbered(text: bytes) -> Iterator[tuple[int, str]]:
         yield int(count) - 1, message
 
 
-def read_case(path: str) -> tuple[Statement, Array, Array, NDArray[np.int32]]:
+def read_case(path: str | os.PathLike[str]) -> tuple[Statement, Array, Array, NDArray[np.int32]]:
     """Return a case file as statement, times, values of the five drives, and which of them act."""
-    raw = os.fsencode(_path(path))
+    path = _arguments.file(path)
+    raw = os.fsencode(path)
     size = os.path.getsize(path) if os.path.isfile(path) else 0
     # Enough room for most cases; if not, a second call has the room that the first one asked for.
     sizes = (4 * size + 1024, size // 2 + 64, size // 4 + 4096)
@@ -592,7 +543,7 @@ def spectrum(acceleration: Array, dt: float, period: Array, damping: float) -> A
 
 
 def read_history(
-    path: str,
+    path: str | os.PathLike[str],
     length: str,
     force: str,
     layout: tuple[str, str, int] | None = None,
@@ -604,7 +555,7 @@ def read_history(
     a layout, which is separator, decimal point and the number of lines before the first row, the
     columns are taken by their numbers; else the file says what it has.
     """
-    path = _path(path)
+    path = _arguments.file(path)
     # No row is shorter than two digits, a separator and an end of line.
     most = os.path.getsize(path) // 4 + 1 if os.path.isfile(path) else 1
     if most > np.iinfo(np.int32).max:
@@ -748,12 +699,6 @@ def layer_response(
     states, carried, status, message = _rbsdem.rbs_layer_response(*statement, path)
     _raise(status, message)
     return states, carried
-
-
-def _path(path: str) -> str:
-    if not path or "\0" in path:
-        raise InputError(f"{path!r} is not the path of a file")
-    return path
 
 
 def _empty_rows(shape: Shape, rows: int) -> Array:

@@ -14,6 +14,7 @@ from itertools import count
 from pathlib import Path
 from typing import IO, Any
 
+from rbsdem import _arguments
 from rbsdem.errors import InputError
 
 __all__ = ["harmless", "whole_file", "write_csv", "write_figure"]
@@ -53,7 +54,7 @@ def whole_file(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     OSError
         If the file cannot be written.
     """
-    target = Path(path).expanduser()
+    target = _arguments.path(path)
     try:
         mode = target.stat().st_mode
     except OSError:

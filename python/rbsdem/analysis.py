@@ -13,7 +13,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _core, _views
+from rbsdem import _arguments, _core, _views
 from rbsdem._core import Array
 from rbsdem.column import Column, checked_column
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning
@@ -96,8 +96,7 @@ def mass_matrix(column: Column, form: Literal["symmetric", "paper"] = "symmetric
         In (slip, relative rotation), or the paper's [A B; C D] of eq 3 in (slip, absolute rotation)
         with its misprints corrected. M_symmetric = M_paper T with theta = cumulative sum of phi.
     """
-    if form not in ("symmetric", "paper"):
-        raise InputError(f"form = {form!r} is not known; it is 'symmetric' or 'paper'")
+    _arguments.choice(form, "form", ("symmetric", "paper"))
     return _core.mass_matrix(_checked(column)._statement, column.unknowns, form == "paper")
 
 

@@ -146,7 +146,7 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     InputError
         With a line for each error, as `rbsdem check` reports them.
     """
-    statement, time, values, acting = _core.read_case(os.fspath(path))
+    statement, time, values, acting = _core.read_case(path)
     groups: dict[str, list[dict[str, Any]]] = {}
     for name, given in _core.groups(statement):
         groups.setdefault(name, []).append(given)

@@ -9,10 +9,9 @@ from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import Any, Literal
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _core
+from rbsdem import _arguments, _core
 from rbsdem._renamed import renamed
 from rbsdem.damping import Damping
 from rbsdem.errors import AccuracyWarning, InputError
@@ -42,6 +41,11 @@ _NUMBERS = (
     "depth",
 )
 _SWITCHES = ("self_weight", "axial_follows", "force_follows")
+#: Bodies of a column at the most.
+MOST_BODIES: int = next(
+    key["most"] for key in _core.keys()["groups"]["column"] if key["name"] == "n"
+)
+_PLACES = ("shear", "flexure", "axial_spring")
 _LISTS = ("lengths", "masses", "rotary_inertia")
 
 
@@ -177,8 +181,10 @@ class Column:
         for name in _LISTS:
             if getattr(self, name) is not None:
                 put(name, _parts(getattr(self, name), name))
-        if self.footing is not None and not isinstance(self.footing, Footing):
-            raise InputError(f"column: footing = {self.footing!r} must be a Footing")
+        if self.footing is not None:
+            _arguments.instance(self.footing, "column: footing", Footing)
+        for name in ("kinematics", "model", "top"):
+            _arguments.text(getattr(self, name), f"column: {name}")
         joints = self.n + (self.top == "fixed")
         put("shear", _springs(self.shear, "shear", joints))
         put("flexure", _springs(self.flexure, "flexure", joints))
@@ -244,7 +250,7 @@ class Column:
             If there is no such joint.
         """
         numbers = self.joint_numbers
-        if joint not in numbers:
+        if _core.whole(joint, "joint") not in numbers:
             last = f"n = {self.n}" if self.top == "free" else f"n + 1 = {self.n + 1}"
             raise InputError(f"joint = {joint} must be from {numbers[0]} to {last}")
         return numbers.index(joint)
@@ -257,7 +263,7 @@ class Column:
         name : {"shear", "flexure", "axial_spring"}
             Which springs. Without axial springs the result for them is empty.
         """
-        springs = getattr(self, name)
+        springs = getattr(self, _arguments.choice(name, "joints: name", _PLACES))
         if springs is None:
             return ()
         if isinstance(springs, Spring):
@@ -331,9 +337,8 @@ def _springs_statement(
 
 def _parts(values: ArrayLike, name: str) -> tuple[float, ...]:
     """Return one number for each body; for rotary inertia one number for all is allowed."""
-    parts = _core.vector(
-        np.atleast_1d(values) if name == "rotary_inertia" else values, f"column: {name}"
-    )
+    shape = "1 or m" if name == "rotary_inertia" else "m"
+    parts = _core.vector(values, f"column: {name}", shape=shape)
     if parts.size == 0:
         raise InputError(f"column: {name} is empty; give one for each of the n bodies")
     return tuple(parts.tolist())
@@ -341,18 +346,19 @@ def _parts(values: ArrayLike, name: str) -> tuple[float, ...]:
 
 def _refuse_whole(springs: Spring | Sequence[Spring], name: str, n: int) -> None:
     """Refuse springs of a whole column in the wrong place, or in several joints."""
-    joints = (springs,) * n if isinstance(springs, Spring) else springs
+    joints = (springs,) if isinstance(springs, Spring) else springs
     places = [place for place in map(whole_column, joints) if place]
+    number = len(places) * (n if isinstance(springs, Spring) else 1)
     for place in places:
         if place != name:
             raise InputError(
                 f"column: {name} is the {place} spring of a section; give it as {place}="
             )
-    if len(places) > 1:
+    if number > 1:
         split = f", or give {name}.split({n})" if name == "shear" else ""
         raise InputError(
             f"column: {name} is the spring of a whole column, from section.springs, but stands in "
-            f"{len(places)} joints; section.column(height, axial_load=..., model='paper', n={n}) "
+            f"{number} joints; section.column(height, axial_load=..., model='paper', n={n}) "
             f"shares it among them{split}"
         )
 
@@ -363,13 +369,14 @@ def _springs(springs: Any, name: str, n: int) -> Spring | tuple[Spring, ...]:
         return springs
     try:
         several = tuple(springs)
-    except TypeError:
+    except Exception:  # Of any class of the caller.
         several = (springs,)
     for spring in several:
         if not isinstance(spring, Spring):
             names = ", ".join(classes_for("axial" if name == "axial_spring" else name))
             raise InputError(
-                f"column: {name} = {spring!r} must be a spring ({names}) or a sequence of them"
+                f"column: {name} = {_arguments.shown(spring)} must be a spring ({names}) or a "
+                "sequence of them"
             )
     if not several:
         raise InputError(f"column: {name} is empty; give one spring, or one for each joint")
@@ -395,9 +402,7 @@ def checked_column(column: object, who: str = "") -> Column:
     """
     if isinstance(column, Column):
         return column
-    given = repr(column)
-    if len(given) > 60:
-        given = f"a {type(column).__name__}"
+    given = _arguments.shown(column)
     remedy = ""
     if hasattr(column, "column"):
         remedy = "; its method column(height, axial_load=...) makes one"

@@ -6,8 +6,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from rbsdem import _core
 from rbsdem.errors import InputError
 
@@ -47,10 +45,7 @@ class Damping:
         object.__setattr__(self, "tangent", _core.switch(self.tangent, "damping: tangent"))
         if self.modal is None:
             return
-        if np.ndim(self.modal) == 0:
-            object.__setattr__(self, "modal", _core.number(self.modal, "damping: modal"))
-            return
-        ratios = _core.vector(self.modal, "damping: modal")
+        ratios = _core.vector(self.modal, "damping: modal", shape="1 or m")
         if ratios.size == 0:
             raise InputError("damping: modal is empty; give a ratio, or None")
         # A single ratio is for all modes, whether it is in a list or not.

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _core
+from rbsdem import _arguments, _core
 from rbsdem._core import Array
 from rbsdem.errors import InputError
 
@@ -81,13 +81,13 @@ def protocol(
             raise InputError(
                 "protocol: reference and largest belong to a named protocol; leave them out"
             )
-        steps = _core.finite_vector(np.atleast_1d(amplitudes), "amplitudes")
-        several = np.atleast_1d(np.asarray(1 if cycles is None else cycles))
-        whole = [_core.whole(count, "cycles") for count in several.tolist()]
+        steps = _core.finite_vector(amplitudes, "amplitudes", shape="1 or m")
+        several = [1] if cycles is None else [cycles] if np.isscalar(cycles) else cycles
+        whole = [_core.whole(count, "cycles") for count in _arguments.several(several, "cycles")]
         counts = np.array(whole, dtype=np.int32)
         if negative_amplitudes is not None:
             one_side = _core.finite_vector(
-                np.atleast_1d(negative_amplitudes), "negative_amplitudes"
+                negative_amplitudes, "negative_amplitudes", shape="1 or m"
             )
             if one_side.size == 0:
                 raise InputError("protocol: negative_amplitudes must not be empty")

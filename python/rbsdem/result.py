@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from rbsdem import _core, _views
+from rbsdem import _arguments, _core, _views
 from rbsdem._core import Array
 from rbsdem.column import Column
 from rbsdem.errors import InputError, SolveError
@@ -253,6 +253,8 @@ class Result:
             is known of the lengths of the layers.
         """
         deformation = self.layer_deformation(joint)
+        if gauge is not None:
+            _arguments.instance(gauge, "gauge", Gauge)
         known = gauge or self.column.gauge(joint)
         if known is None:
             raise InputError(

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _core
+from rbsdem import _arguments, _core
 from rbsdem._core import Array
 from rbsdem._renamed import renamed
 from rbsdem.errors import InputError
@@ -74,6 +74,8 @@ class Spring:
             if type(given) is not float and not (given is None and may_lack):
                 given = _core.number(given, f"{self.rule} spring: {field}")
                 object.__setattr__(self, field, given)
+        for field in _words(type(self)):
+            _arguments.text(getattr(self, field), f"{self.rule} spring: {field}")
         self._check()
 
     def _check(self) -> None:
@@ -215,6 +217,13 @@ def _numbers(kind: type[Spring]) -> tuple[tuple[str, bool], ...]:
         for field in fields(kind)
         if field.name not in ("inner", "layers")
     )
+
+
+@cache
+def _words(kind: type[Spring]) -> tuple[str, ...]:
+    """Return the names of the parameters that are words."""
+    keys = _core.keys()["rules"][kind.rule]["keys"]
+    return tuple(key["name"] for key in keys if key["kind"] == "word")
 
 
 @cache

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rbsdem import _core
+from rbsdem import _arguments, _core
 from rbsdem._core import Array
 from rbsdem._files import whole_file
 from rbsdem._views import view_of
@@ -36,7 +36,7 @@ def state_of(initial: Any, call: str) -> Array:
         If it is neither, has no state, or the file is damaged.
     """
     if isinstance(initial, (str, os.PathLike)):
-        return _read_state(initial)
+        return _read_state(_arguments.file(initial, f"{call}: initial"))
     if isinstance(initial, Result):
         return _of_result(initial)
     if isinstance(initial, np.ndarray):
@@ -44,8 +44,8 @@ def state_of(initial: Any, call: str) -> Array:
         return _core.vector(initial, "initial")
     a_dict = " or a dict, as {'slip': [0.001]}" if call == "time_history" else ""
     raise InputError(
-        f"{call}: initial = {initial!r:.60} must be a Result of this column, the path of a state"
-        f"{a_dict}"
+        f"{call}: initial = {_arguments.shown(initial)} must be a Result of this column, the path "
+        f"of a state{a_dict}"
     )
 
 

@@ -11,6 +11,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from rbsdem import _arguments
 from rbsdem._core import Array
 from rbsdem._files import whole_file
 from rbsdem.errors import InputError
@@ -42,15 +43,17 @@ class Gauge:
     length: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "part", tuple(self.part))
-        object.__setattr__(self, "length", tuple(map(float, self.length)))
+        parts = _arguments.several(self.part, "gauge: part", "words")
+        object.__setattr__(self, "part", tuple(parts))
+        lengths = _arguments.vector(self.length, "gauge: length")
+        object.__setattr__(self, "length", tuple(lengths.tolist()))
         if len(self.part) != len(self.length):
             raise InputError(
                 f"gauge: {len(self.part)} parts and {len(self.length)} lengths; give one of each "
                 "for each layer"
             )
         for number, (part, length) in enumerate(zip(self.part, self.length, strict=True), 1):
-            if part not in _PARTS:
+            if not _arguments.is_one_of(part, _PARTS):
                 raise InputError(
                     f"gauge: part of layer {number} is {part!r}; it is one of {', '.join(_PARTS)}"
                 )

@@ -156,7 +156,8 @@ contains
    pure integer function joints(self)
       class(column_record), intent(in) :: self
 
-      joints = self%n + merge(1, 0, self%top == 'fixed') + merge(1, 0, self%footing)
+      ! More bodies are refused, and have no joints that are counted or placed before.
+      joints = min(self%n, most_bodies) + merge(1, 0, self%top == 'fixed') + merge(1, 0, self%footing)
    end function joints
 
    !> Number by which a joint is known: from 1 at the bottom of the column, 0 beneath a footing.

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from rbsdem import _arguments
 from rbsdem.accuracy.answer import Run, Setting
 from rbsdem.accuracy.path import common_interval
 from rbsdem.accuracy.scene import Scene
@@ -229,12 +230,10 @@ def checked_methods(methods: Sequence[str] | None) -> tuple[str, ...]:
     """
     if methods is None:
         return METHODS
-    wanted = (methods,) if isinstance(methods, str) else tuple(methods)
+    wanted = (methods,) if isinstance(methods, str) else methods
+    wanted = tuple(_arguments.several(wanted, "trade: methods", "names"))
     for method in wanted:
-        if method not in METHODS:
-            raise InputError(
-                f"trade: method {method!r} is not known; it is one of {', '.join(METHODS)}"
-            )
+        _arguments.choice(method, "trade: method", METHODS)
     if not wanted:
         raise InputError("trade: methods is empty; name one, or leave it out to try all")
     return wanted

@@ -9,6 +9,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
+from rbsdem import _arguments
 from rbsdem._renamed import renamed_keywords
 from rbsdem.accuracy.answer import Run
 from rbsdem.accuracy.ladder import Budget, checked_methods, climb, ladders, own_setting, probe
@@ -154,18 +155,19 @@ def trade(
 
 
 def _check(tolerance: float | None, budget: float, digits: float, repeats: int) -> None:
-    if tolerance is not None and not 0 < tolerance < 1:
+    if tolerance is not None and not 0 < _arguments.number(tolerance, "trade: tolerance") < 1:
         raise InputError(f"trade: tolerance = {tolerance!r} must be above 0 and below 1")
-    if not 0 < budget < math.inf:
+    if not 0 < _arguments.number(budget, "trade: budget") < math.inf:
         raise InputError(f"trade: budget = {budget!r} must be a positive number of seconds")
-    if not 0 < digits <= 15:
+    if not 0 < _arguments.number(digits, "trade: digits") <= 15:
         raise InputError(f"trade: digits = {digits!r} must be above 0 and at most 15")
-    if not isinstance(repeats, int) or isinstance(repeats, bool) or repeats < 1:
+    if _arguments.whole(repeats, "trade: repeats") < 1:
         raise InputError(f"trade: repeats = {repeats!r} must be a whole number, 1 or more")
 
 
 def _telling(progress: bool, clock: Budget) -> AbstractContextManager[Callable[[str], None]]:
-    return telling(clock) if progress else nullcontext(lambda text: None)
+    wanted = _arguments.switch(progress, "trade: progress")
+    return telling(clock) if wanted else nullcontext(lambda text: None)
 
 
 def _need_one(runs: Sequence[Run]) -> None:

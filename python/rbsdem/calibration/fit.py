@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _core
+from rbsdem import _arguments, _core
 from rbsdem._core import Array
 from rbsdem.calibration.determined import (
     Determined,
@@ -199,8 +199,7 @@ def calibrate(
 
 
 def _check(loss: str, seed: int, jobs: int, evaluations: int, seconds: float | None) -> None:
-    if loss not in LOSSES:
-        raise InputError(f"calibrate: loss = {loss!r} is not known; it is {' or '.join(LOSSES)}")
+    _arguments.choice(loss, "calibrate: loss", LOSSES)
     for name, value in (("seed", seed), ("jobs", jobs), ("evaluations", evaluations)):
         least = 0 if name == "seed" else 1
         if _core.whole(value, f"calibrate: {name}") < least:

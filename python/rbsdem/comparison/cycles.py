@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _core
 from rbsdem._core import Array
@@ -99,7 +99,7 @@ def turning_points(displacement: ArrayLike, *, share: float = TURN) -> np.ndarra
         If a number is not finite, or if `share` is out of its range.
     """
     d = _core.finite_vector(displacement, "displacement")
-    if not 0 <= share <= 1:
+    if not 0 <= _core.number(share, "share") <= 1:
         raise InputError(f"share = {share} must be from 0 to 1")
     if d.size < 3:
         return np.empty(0, dtype=np.intp)
@@ -176,7 +176,7 @@ def half_cycles(
         If the arrays differ in length or a number is not finite.
     """
     d, f = _columns(displacement, force)
-    rows = tip_rows(d, f) if tips is None else np.asarray(tips, dtype=np.intp)
+    rows = tip_rows(d, f) if tips is None else _checked_tips(tips, d.size)
     works = work(d, f) if done is None else columns(("displacement", "work"), d, done, least=0)[1]
     before = np.concatenate(([0], rows[:-1])) if rows.size else rows
     sides = np.sign(d[rows] - d[before])
@@ -375,7 +375,7 @@ def strength_loss_point(
     InputError
         As `strength_loss`.
     """
-    if not 0 < share < 1:
+    if not 0 < _core.number(share, "share") < 1:
         raise InputError(f"share = {share} must be above 0 and below 1")
     found = (math.nan, math.nan)
     turns = turning_points(displacement)
@@ -425,3 +425,13 @@ def _to_side(displacement: ArrayLike, force: ArrayLike, side: int) -> tuple[Arra
 def _columns(displacement: ArrayLike, force: ArrayLike) -> tuple[Array, Array]:
     d, f = columns(("displacement", "force"), displacement, force, least=0)
     return d, f
+
+
+def _checked_tips(tips: ArrayLike, rows: int) -> NDArray[np.intp]:
+    """Return rows of tips as the user gave them."""
+    given = _core.finite_vector(tips, "tips")
+    if (given != np.round(given)).any() or (np.diff(given) <= 0).any():
+        raise InputError("tips must be numbers of rows that ascend")
+    if given.size and not (given[0] >= 0 and given[-1] < rows):
+        raise InputError(f"tips must be from 0 to {rows - 1}")
+    return given.astype(np.intp)

@@ -65,6 +65,10 @@ class Loop:
     stiffness: float
 
 
+#: Points along a path at the most.
+_MOST_POINTS = 10_000_000
+
+
 class PathPoints:
     """Points spaced evenly along the path of what drives a model.
 
@@ -98,8 +102,8 @@ class PathPoints:
 
     def __init__(self, driver: ArrayLike, n: int = N_POINTS, name: str = "driver") -> None:
         (d,) = columns((name,), driver)
-        if n < 2:
-            raise InputError(f"resample: n = {n} points; give at least 2")
+        if not 2 <= _core.whole(n, "resample: n") <= _MOST_POINTS:
+            raise InputError(f"resample: n = {n} points must be from 2 to {_MOST_POINTS}")
         self.row_path = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(d)))))
         if not self.row_path[-1] > 0:
             raise InputError(f"{name} is {d[0]:g} in every row; a loop needs a {name} that changes")

@@ -20,7 +20,7 @@ from rbsdem.ensembles.fragility import Fragility
 from rbsdem.ensembles.hazard import Hazard
 from rbsdem.ensembles.intensity import Name, make_intensity, motions_by_name
 from rbsdem.ensembles.limits import is_switch
-from rbsdem.ensembles.measures import Measure
+from rbsdem.ensembles.measures import Measure, measures_in_a_list
 from rbsdem.ensembles.regression import Logistic, PowerLaw, fit_line, fit_logistic
 from rbsdem.ensembles.runs import Collector, Runs, checked_drift, columns_by_name
 from rbsdem.errors import InputError
@@ -282,7 +282,7 @@ def cloud(
     begin = time.perf_counter()
     columns = columns_by_name(column, "cloud")
     found = motions_by_name(motions)
-    factors = _core.finite_vector(np.atleast_1d(scales), "scales")
+    factors = _core.finite_vector(scales, "scales", shape="1 or m")
     if factors.size not in (1, len(found)) or not (factors > 0).all():
         raise InputError(
             f"scales: {factors.size} factors for {len(found)} motions; give one, or one for each, "
@@ -297,7 +297,7 @@ def cloud(
         "jobs": jobs,
         "progress": progress,
     }
-    work = Collector(columns, found, measure, list(measures), settings)
+    work = Collector(columns, found, measure, measures_in_a_list(measures), settings)
     levels = np.broadcast_to((factors * work.unit)[:, None], (len(columns), len(found), 1))
     work.run(levels.copy())
     return Cloud(work.finish(), time.perf_counter() - begin)

@@ -7,14 +7,12 @@ import os
 import time
 from collections.abc import Sequence
 from contextlib import ExitStack
-from pathlib import Path
-from types import NoneType
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rbsdem import _core
+from rbsdem import _arguments, _core
 from rbsdem._core import Array
 from rbsdem.analysis import Method
 from rbsdem.ensembles.cluster import Cluster, check_client
@@ -182,7 +180,7 @@ def ensemble(
     kept = None
     if store is not None:
         own_names = column_names, [item.name for item in motion_items]
-        kept = Store(Path(store).expanduser(), plan, own_names, part, seeds)
+        kept = Store(_arguments.path(store), plan, own_names, part, seeds)
     own = _of_part(each, lanes, part)
     workers = jobs or available_processors()
     collected, resumed, asked = _carried_out(
@@ -322,8 +320,11 @@ def _plain(value: Any) -> Any:
 
 def _checked_part(shard: Any, store: Any, faults: list[str]) -> tuple[int, int]:
     """Return which part of how many this process does; without parts the first of one."""
-    if not isinstance(store, (str, os.PathLike, NoneType)):
-        faults.append(f"store = {store!r:.40} must be the path of a folder")
+    try:
+        if store is not None:
+            _arguments.path(store, "store")
+    except InputError as error:
+        faults.append(str(error))
     if shard is None:
         return 1, 1
     try:
@@ -331,7 +332,9 @@ def _checked_part(shard: Any, store: Any, faults: list[str]) -> tuple[int, int]:
         if not 1 <= place <= parts:
             raise ValueError
     except (InputError, TypeError, ValueError):
-        faults.append(f"shard = {shard!r} must be two whole numbers (i, n) with 1 <= i <= n")
+        faults.append(
+            f"shard = {_arguments.shown(shard)} must be two whole numbers (i, n) with 1 <= i <= n"
+        )
         return 1, 1
     if store is None:
         faults.append("shard: parts come together in a store; give store=")

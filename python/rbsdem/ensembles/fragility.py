@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rbsdem import _core, _views
+from rbsdem import _arguments, _core, _views
 from rbsdem._core import Array
 from rbsdem._optional import need_scipy
 from rbsdem.ensembles.hazard import Hazard
@@ -20,6 +20,8 @@ from rbsdem.errors import AccuracyWarning, InputError
 NARROW = 1.05
 #: Share of bootstrap samples without a curve beyond which one is warned.
 _LOST = 0.1
+#: Bootstrap samples at the most.
+_MOST_SAMPLES = 100_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +163,10 @@ class Fragility:
         """Return the probability of the limit state at intensities."""
         special = need_scipy("special")
         with np.errstate(divide="ignore"):
-            z = np.log(np.asarray(intensity, dtype=float) / self.theta) / self.beta
+            z = (
+                np.log(_arguments.vector(intensity, "intensity", shape="any") / self.theta)
+                / self.beta
+            )
         return np.asarray(special.ndtr(z))
 
     def samples(self, n: int = 1000, seed: int = 1) -> tuple[Array, Array]:
@@ -180,9 +185,9 @@ class Fragility:
             If these are more than half.
         """
         number = _core.whole(n, "n")
-        if number < 10:
-            raise InputError(f"samples: n = {n} must be 10 or more")
-        random = np.random.default_rng(_core.whole(seed, "seed"))
+        if not 10 <= number <= _MOST_SAMPLES:
+            raise InputError(f"samples: n = {n} must be from 10 to {_MOST_SAMPLES}")
+        random = np.random.default_rng(_arguments.seed(seed))
         mu, beta = self.data.fit_samples(random, number, self.beta if self.stated else None)
         good = np.isfinite(mu)
         lost = 1.0 - float(good.mean())
@@ -220,7 +225,7 @@ class Fragility:
         special = need_scipy("special")
         theta, beta = self.samples(n, seed)
         with np.errstate(divide="ignore"):
-            u = np.log(np.atleast_1d(np.asarray(intensity, dtype=float)))
+            u = np.log(_arguments.vector(intensity, "intensity", shape="1 or m"))
         curves = special.ndtr((u - np.log(theta)[:, None]) / beta[:, None])
         ends = np.quantile(curves, [0.5 - level / 2, 0.5 + level / 2], axis=0)
         return ends[0], ends[1]
@@ -285,7 +290,10 @@ def fit_fragility(
         beta: runs of which at most one level has both outcomes, and bounds that have a value in
         common, or touch. The message gives between what the median lies.
     """
-    who = f"fragility of {name}: "
+    who = f"fragility of {_arguments.text(name, 'fragility: name')}: "
+    _arguments.text(intensity_name, "fragility: intensity_name")
+    if not isinstance(data, (Counts, Capacities)):
+        raise InputError(f"{who}data = {_arguments.shown(data)} must be Counts or Capacities")
     if beta is not None:
         beta = _core.number(beta, "beta")
         if not 0 < beta < np.inf:

@@ -59,7 +59,7 @@ class Hazard:
 
     def exceeded(self, intensity: ArrayLike) -> Array:
         """Return the mean annual frequency with which intensities are exceeded."""
-        u = np.log(np.asarray(intensity, dtype=float))
+        u = np.log(_core.vector(intensity, "intensity", shape="any"))
         x, y = np.log(self.intensity), np.log(self.frequency)
         place = np.clip(np.searchsorted(x, u) - 1, 0, x.size - 2)
         slope = np.diff(y) / np.diff(x)
@@ -86,6 +86,7 @@ class Hazard:
         InputError
             If mu is not finite, or beta not above 0.
         """
+        mu, beta = _core.number(mu, "hazard: mu"), _core.number(beta, "hazard: beta")
         if not (np.isfinite(mu) and np.isfinite(beta) and beta > 0):
             raise InputError(
                 f"hazard: mu = {mu:g}, beta = {beta:g}: the capacity needs a finite mu, and a beta "

@@ -67,6 +67,7 @@ class Hunt:
         }
         for name, (least, most) in bounds.items():
             value = _core.number(getattr(self, name), f"hunt: {name}")
+            object.__setattr__(self, name, value)
             if not least < value <= most:
                 faults.append(f"hunt: {name} = {value:g} must be above {least:g}, at most {most:g}")
         _core.switch(self.yielding, "hunt: yielding")

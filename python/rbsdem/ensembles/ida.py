@@ -6,13 +6,12 @@ import os
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rbsdem import _core, _views
+from rbsdem import _arguments, _core, _views
 from rbsdem._core import Array
 from rbsdem.analysis import Method
 from rbsdem.column import Column
@@ -21,7 +20,7 @@ from rbsdem.ensembles.fragility import Capacities, Fragility, fit_fragility
 from rbsdem.ensembles.hunt import Hunt, hunt_and_fill
 from rbsdem.ensembles.intensity import Name, checked_levels, make_intensity, motions_by_name
 from rbsdem.ensembles.limits import is_switch, limit_states
-from rbsdem.ensembles.measures import Measure
+from rbsdem.ensembles.measures import Measure, measures_in_a_list
 from rbsdem.ensembles.runs import MEASURES, Collector, Runs, checked_drift, columns_by_name
 from rbsdem.errors import InputError
 from rbsdem.motions.motion import GroundMotion
@@ -262,7 +261,7 @@ def ida(
         "initial": initial,
         "jobs": jobs,
         "progress": progress,
-        "store": None if store is None else Path(store),
+        "store": None if store is None else _arguments.path(store, "store"),
     }
     names = _with_drift(measures)
     hunt = _hunt(levels)
@@ -295,8 +294,9 @@ def _hunt(levels: Any) -> Hunt | None:
 
 
 def _with_drift(measures: Sequence[str | Measure]) -> list[Any]:
-    given = [measures] if isinstance(measures, str) or callable(measures) else list(measures)
-    return given if "peak_drift" in given else ["peak_drift", *given]
+    given = measures_in_a_list(measures)
+    kept = any(isinstance(measure, str) and measure == "peak_drift" for measure in given)
+    return given if kept else ["peak_drift", *given]
 
 
 def _first(levels: Array, collapsed: NDArray[np.bool_]) -> tuple[Array, Array]:

@@ -12,7 +12,7 @@ from unicodedata import category
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _core
+from rbsdem import _arguments, _core
 from rbsdem._core import Array
 from rbsdem.column import Column, checked_column
 from rbsdem.errors import InputError
@@ -206,9 +206,9 @@ def _state(initial: Any, who: str, faults: list[str]) -> Array:
 def scale_array(scales: ArrayLike, columns: int, motions: int, faults: list[str]) -> Array:
     """Return the scales for each column and motion, shape (columns, motions, k); NaN: no run."""
     try:
-        given = np.asarray(scales, dtype=np.float64)
-    except (TypeError, ValueError):
-        faults.append("scales must be numbers")
+        given = _arguments.vector(scales, "scales", shape="any")
+    except InputError as error:
+        faults.append(str(error))
         return np.ones((columns, motions, 1))
     if given.ndim == 0:
         given = given[None]

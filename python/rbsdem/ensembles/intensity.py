@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from rbsdem import _core
+from rbsdem import _arguments, _core
 from rbsdem._core import Array
 from rbsdem.analysis import modes
 from rbsdem.column import Column
@@ -61,8 +61,7 @@ class Intensity:
 
 def make_intensity(name: str, column: Column, period: float | None, damping: float) -> Intensity:
     """Return an intensity measure; its period is that of the column unless one is given."""
-    if name not in NAMES:
-        raise InputError(f"intensity = {name!r} is not one of {', '.join(NAMES)}")
+    _arguments.choice(name, "intensity", NAMES)
     if name == "pga":
         if period is not None:
             raise InputError("intensity: 'pga' has no period; leave period out, or take 'sa_t1'")
@@ -111,7 +110,7 @@ def motions_by_name(motions: Any) -> dict[str, GroundMotion]:
 
 def checked_levels(levels: Any) -> Array:
     """Return levels of intensity, ascending."""
-    found = np.unique(_core.finite_vector(np.atleast_1d(levels), "levels"))
+    found = np.unique(_core.finite_vector(levels, "levels", shape="1 or m"))
     if found.size == 0 or found[0] <= 0:
         raise InputError("levels must be intensities above 0, in m/s2; give at least one")
     return found

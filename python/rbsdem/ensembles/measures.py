@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any, TypeAlias
 
-from rbsdem import _core
+from rbsdem import _arguments, _core
 from rbsdem.errors import InputError
 from rbsdem.limit_states.criteria import WATCHED
 from rbsdem.result import Result
@@ -61,6 +61,13 @@ def limit_states_among(names: Sequence[str]) -> tuple[str, ...]:
     return tuple(name for name in LIMIT_STATES if name in names)
 
 
+def measures_in_a_list(measures: Any) -> list[Any]:
+    """Return measures, of which one may stand alone, as a list."""
+    if isinstance(measures, str) or callable(measures):
+        return [measures]
+    return _arguments.several(measures, "measures", "names and functions")
+
+
 def checked_measures(
     measures: Sequence[str | Measure] | None,
 ) -> tuple[tuple[str, ...], dict[str, Measure]]:
@@ -73,8 +80,7 @@ def checked_measures(
     """
     if measures is None:
         return tuple(MEASURES), {}
-    if isinstance(measures, str) or callable(measures):
-        measures = [measures]
+    measures = measures_in_a_list(measures)
     names: list[str] = []
     functions: dict[str, Measure] = {}
     for measure in measures:
@@ -92,7 +98,7 @@ def checked_measures(
             functions[name] = measure
         else:
             raise InputError(
-                f"measures: {measure!r} is neither the name of a measure nor a function with a "
-                "name of its own"
+                f"measures: {_arguments.shown(measure)} is neither the name of a measure nor a "
+                "function with a name of its own"
             )
     return tuple(dict.fromkeys(names)), functions

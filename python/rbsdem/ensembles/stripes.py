@@ -18,7 +18,7 @@ from rbsdem.ensembles.fragile import Fragile
 from rbsdem.ensembles.fragility import Counts, Fragility, fit_fragility
 from rbsdem.ensembles.intensity import Name, checked_levels, make_intensity, motions_by_name
 from rbsdem.ensembles.limits import limit_states
-from rbsdem.ensembles.measures import Measure
+from rbsdem.ensembles.measures import Measure, measures_in_a_list
 from rbsdem.ensembles.runs import MEASURES, Collector, Runs, checked_drift, columns_by_name
 from rbsdem.errors import InputError
 from rbsdem.motions.motion import GroundMotion
@@ -153,7 +153,7 @@ def stripes(
         "jobs": jobs,
         "progress": progress,
     }
-    work = Collector(columns, found, measure, list(measures), settings)
+    work = Collector(columns, found, measure, measures_in_a_list(measures), settings)
     work.run(wanted)
     return Stripes(work.finish(), at, by_level is None, time.perf_counter() - begin)
 

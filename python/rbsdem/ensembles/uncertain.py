@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _core
+from rbsdem import _arguments, _core
 from rbsdem._core import Array
 from rbsdem._optional import need_scipy
 from rbsdem.column import Column, without_notes
@@ -86,6 +86,9 @@ class Uncertain:
         faults = []
         if not callable(self.make):
             faults.append("uncertain: make must be a function that returns a Column")
+        _arguments.instance(self.variables, "uncertain: variables", Mapping)
+        if self.correlation is not None:
+            _arguments.instance(self.correlation, "uncertain: correlation", Mapping)
         if not self.variables:
             faults.append("uncertain: variables is empty; give at least one distribution")
         for name, distribution in self.variables.items():
@@ -131,12 +134,13 @@ class Uncertain:
         seed : int, optional
             The same seed gives the same values.
         """
-        number, start = _core.whole(n, "n"), _core.whole(seed, "seed")
+        number, start = _core.whole(n, "n"), _arguments.seed(seed)
         if not 1 <= number <= _MOST:
             raise InputError(f"uncertain: n = {n} must be from 1 to {_MOST}")
         size = len(self.variables)
         random = np.random.default_rng(start)
         qmc, special = need_scipy("stats.qmc"), need_scipy("special")
+        _arguments.choice(method, "method", ("sobol", "lhs", "random"))
         if method == "sobol":
             if number & (number - 1):
                 near = 2 ** round(np.log2(number))
@@ -144,10 +148,8 @@ class Uncertain:
             points = qmc.Sobol(size, rng=random).random(number)
         elif method == "lhs":
             points = qmc.LatinHypercube(size, rng=random).random(number)
-        elif method == "random":
-            points = random.random((number, size))
         else:
-            raise InputError(f"method = {method!r} is not one of sobol, lhs, random")
+            points = random.random((number, size))
         normal = special.ndtri(np.clip(points, 1e-12, 1 - 1e-12)) @ self._factor().T
         shares = special.ndtr(normal)
         parts = [d.ppf(shares[:, i]) for i, d in enumerate(self.variables.values())]
@@ -233,7 +235,7 @@ def variance_split(capacity: ArrayLike) -> VarianceSplit:
     InputError
         If a capacity is missing, or there are fewer than two columns or motions.
     """
-    values = np.asarray(capacity, dtype=float)
+    values = _arguments.vector(capacity, "variance_split: capacity", shape="any")
     if values.ndim != 2 or min(values.shape) < 2:
         raise InputError(
             f"variance_split: capacities have shape {values.shape}; give two or more columns under "

@@ -8,6 +8,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from rbsdem import _arguments
 from rbsdem._core import Array
 from rbsdem.errors import InputError
 
@@ -83,14 +84,13 @@ class Idealisation:
 
 def idealise(x: Array, y: Array, method: str, end: float | None = None) -> Idealisation:
     """Return the two lines of an envelope that begins at zero; see `Envelope.idealise`."""
-    if method not in IDEALISATIONS:
-        raise InputError(f"method = {method!r} is not known; it is one of {IDEALISATIONS}")
+    _arguments.choice(method, "method", IDEALISATIONS)
     if end is not None and method not in ("asce_41", "ec_8"):
         raise InputError(f"method = {method!r} has an end of its own; leave out end")
     top = int(np.argmax(y))
     if not (y[top] > 0 and x[top] > 0):
         raise InputError("the envelope has no force; it cannot be idealised")
-    limit = x[top] if end is None else float(end)
+    limit = x[top] if end is None else _arguments.number(end, "end")
     if not 0 < limit <= x[-1]:
         raise InputError(
             f"end = {limit:g} m must be above 0 and up to the end of the envelope, {x[-1]:g} m"

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from rbsdem import _core
+from rbsdem import _arguments, _core
 from rbsdem._files import whole_file
 from rbsdem._optional import need_xarray
 from rbsdem._views import view_of
@@ -101,7 +101,7 @@ def load(path: str | os.PathLike[str]) -> Result:
 
 
 def _kind(path: str | os.PathLike[str]) -> str:
-    kind = Path(path).suffix.lower()
+    kind = _arguments.path(path).suffix.lower()
     if kind not in (".npz", ".nc"):
         raise InputError(
             f"{os.fspath(path)}: the name of a saved result ends in .npz (numpy) or .nc (netCDF)"

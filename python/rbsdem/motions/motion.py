@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _core, _views
+from rbsdem import _arguments, _core, _views
 from rbsdem._core import Array
 from rbsdem._files import whole_file
 from rbsdem.errors import InputError
@@ -52,7 +52,8 @@ class GroundMotion:
     def __init__(
         self, acceleration: ArrayLike, dt: float, name: str = "", description: str = ""
     ) -> None:
-        who = f"motion {name}" if name else "motion"
+        _arguments.text(description, "motion: description")
+        who = f"motion {name}" if _arguments.text(name, "motion: name") else "motion"
         faults, values, step = [], np.empty(0), 0.0
         try:
             values = np.array(_core.finite_vector(acceleration, f"{who}: acceleration"))

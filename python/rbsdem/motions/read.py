@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from rbsdem import _core
+from rbsdem import _arguments, _core
 from rbsdem.errors import InputError
 from rbsdem.motions.at2 import is_at2, read_at2
 from rbsdem.motions.motion import GroundMotion
@@ -46,7 +46,7 @@ def read_motion(
     RepairWarning
         If a few of the last values of an AT2 file are missing.
     """
-    name = os.fspath(path)
+    name = _arguments.file(path)
     lines = _lines(name)
     # The name of a file may have bytes that are no text.
     stem = Path(name).stem.encode("utf-8", "replace").decode()
@@ -83,7 +83,8 @@ def read_motions(
     RepairWarning
         As `read_motion`.
     """
-    place = Path(folder)
+    place = _arguments.path(folder, "folder")
+    _arguments.text(pattern, "pattern")
     if not place.is_dir():
         raise InputError(f"{place} is not a folder; for one record call read_motion")
     paths = sorted(
@@ -114,8 +115,6 @@ def _lines(path: str) -> list[str]:
             f"{path}: the format {ending} is not read here; gmprocess (USGS) or obspy reads it, "
             "and GroundMotion(acceleration, dt) takes the values in m/s2"
         )
-    if not path or "\0" in path:
-        raise InputError(f"{path!r} is not the path of a file")
     if os.path.isdir(path):
         raise InputError(f"{path} is a folder; read_motions reads all records of one")
     try:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rbsdem import _core
+from rbsdem import _arguments, _core
 from rbsdem._core import Array
 from rbsdem.errors import InputError
 from rbsdem.motions.motion import GroundMotion, checked_motion
@@ -88,7 +88,8 @@ def sequence(
     name : str, optional
         Name of the whole, by default those of the parts, joined.
     """
-    parts = [checked_motion(motion) for motion in motions]
+    given = _arguments.several(motions, "sequence: motions", "GroundMotion")
+    parts = [checked_motion(motion) for motion in given]
     if not parts:
         raise InputError("sequence: there are no motions; give at least one")
     pause = _core.number(rest, "rest")

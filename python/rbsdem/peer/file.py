@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass
 from typing import Literal
 
-from rbsdem import _core
+from rbsdem import _arguments, _core
 from rbsdem._core import Array
 
 
@@ -57,4 +57,8 @@ def read_peer(
     InputError
         If the file cannot be read; the message names file, line and remedy.
     """
-    return PeerTest(*_core.read_history(os.fspath(path), length or "", force or ""))
+    units = (
+        "" if unit is None else _arguments.text(unit, name)
+        for name, unit in (("length", length), ("force", force))
+    )
+    return PeerTest(*_core.read_history(path, *units))

@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from rbsdem import _core
+from rbsdem import _arguments, _core
 from rbsdem._core import Array
 from rbsdem.errors import InputError
 from rbsdem.peer.layout import UNITS, Layout, find_layout
@@ -140,7 +140,7 @@ def read_test(
     columns are exchanged it is negative; if the sign of one column is wrong, so is that of the
     correlation of the two.
     """
-    where = os.fspath(path)
+    where = _arguments.file(path)
     code = _code(pdelta_code, length, axial_load)
     if force_sign not in (1, -1):
         raise InputError(f"force_sign = {force_sign!r} must be 1 or -1")
@@ -190,8 +190,8 @@ def read_test(
 
 def _code(code: int | None, length: float | None, axial_load: float | None) -> int:
     """Return the P-Delta code, if it is one and what it needs is there."""
-    if code not in _CODES:
-        missing = "is needed" if code is None else f"= {code!r} is not known"
+    if isinstance(code, bool) or not isinstance(code, int) or code not in _CODES:
+        missing = "is needed" if code is None else f"= {_arguments.shown(code)} is not known"
         codes = "; ".join(f"{key}: {text}" for key, text in _CODES.items())
         raise InputError(f"pdelta_code {missing}. It says what the force column is: {codes}")
     for value, needed, what in (

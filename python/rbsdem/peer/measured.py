@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _core
+from rbsdem import _arguments, _core
 from rbsdem._core import Array
 from rbsdem.errors import InputError
 
@@ -150,8 +150,21 @@ def net_force(
     f = _core.finite_vector(force, "force")
     if d.shape != f.shape:
         raise InputError(f"displacement has {d.size} rows, force {f.size}; they must be equal")
-    measured = measured_length or length
-    top, bottom = top_length or 0.0, bottom_length or 0.0
+    if code is not None:
+        code = _arguments.whole(code, "code")
+    axial_load, length = (
+        _arguments.number(axial_load, "axial_load"),
+        _arguments.number(length, "length"),
+    )
+    measured, top, bottom = (
+        default if value is None else _arguments.number(value, name)
+        for name, value, default in (
+            ("measured_length", measured_length, length),
+            ("top_length", top_length, 0.0),
+            ("bottom_length", bottom_length, 0.0),
+        )
+    )
+    measured = measured or length
     if code in (None, 2):
         return f.copy()
     if code == 1:

@@ -12,6 +12,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, overload
 
+from rbsdem import _arguments
 from rbsdem._optional import need_pandas
 from rbsdem.errors import InputError
 from rbsdem.peer.specimen import Observed, Specimen
@@ -260,8 +261,8 @@ def read_specimens(path: str | os.PathLike[str]) -> Specimens:
     Columns and units: `docs/peer.md`. The properties come from the PEER Structural Performance
     Database (Berry, Parrish and Eberhard 2004), which does not come with rbsdem.
     """
-    given = Path(path).expanduser()
-    table = given / TABLE if given.is_dir() else given
+    given = _arguments.path(path)
+    table = Path(_arguments.file(given / TABLE if given.is_dir() else given))
     try:
         with table.open(encoding="utf-8-sig", newline="") as file:
             reader = csv.DictReader(file, skipinitialspace=True)

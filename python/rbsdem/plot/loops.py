@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rbsdem import _arguments
 from rbsdem._curve import Curve, loop_pair
 from rbsdem._optional import need_matplotlib
 from rbsdem.errors import InputError
@@ -231,12 +232,9 @@ def four_panels(
 
 def _curve(curve: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return displacements [mm] and forces [kN] of a result, a test or a pair of arrays."""
-    d, f = (np.asarray(values) for values in loop_pair(curve, name))
-    try:
-        d, f = d.astype(np.float64), f.astype(np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"{name}: displacements and forces must be arrays of numbers") from error
-    if d.ndim != 1 or d.shape != f.shape or d.size == 0:
+    names = (f"{name}: displacements", f"{name}: forces")
+    d, f = map(_arguments.vector, loop_pair(curve, name), names)
+    if d.shape != f.shape or d.size == 0:
         raise InputError(
             f"{name}: displacements have shape {d.shape}, forces {f.shape}; "
             f"they must be vectors of one length"
@@ -268,6 +266,7 @@ def _dress(ax: Axes, height: float | None) -> None:
     ax.set_ylabel("Lateral force (kN)")
     ax.tick_params(right=True, top=height is None)
     if height is not None:
+        height = _arguments.number(height, "height")
         if not height > 0:
             raise InputError(f"height = {height} m; give a positive height for the drift ratios")
         if any(child.get_gid() == "drift" for child in ax.child_axes):

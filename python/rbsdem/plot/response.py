@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _core, _views
+from rbsdem import _arguments, _core, _views
 from rbsdem._core import Array
 from rbsdem.errors import InputError
 from rbsdem.plot.style import MODEL_LINE, ZERO_LINE, axes_or_new, line_of, new_axes, style_of
@@ -77,8 +77,8 @@ def history(
     ImportError
         If matplotlib is not installed.
     """
-    if over not in _OVER:
-        raise InputError(f"over = {over!r} is not known; it is one of {', '.join(_OVER)}")
+    _arguments.instance(result, "history: result", Result)
+    _arguments.choice(over, "over", _OVER)
     factor, label = _OVER[over]
     with axes_or_new(ax, (5.2, 2.4)) as drawn:
         drawn.plot(result.time, factor * getattr(result, over), **line_of(MODEL_LINE, line))

@@ -13,8 +13,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from weakref import WeakSet
 
+from rbsdem import _arguments
 from rbsdem._files import write_figure
 from rbsdem._optional import need_matplotlib
+from rbsdem.errors import InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -146,6 +148,8 @@ def axes_or_new(ax: Axes | None, size: tuple[float, float] = (3.5, 3.0)) -> Iter
         Width and height of a new figure [in].
     """
     if ax is not None:
+        if not hasattr(ax, "get_figure"):
+            raise InputError(f"ax = {_arguments.shown(ax)} must be axes of matplotlib")
         with style_of(ax):
             yield ax
         return

@@ -166,6 +166,10 @@ def make_point(values: dict[str, float]) -> Point | None:
     return Point(**{field.name: values[field.name] for field in fields(Point)})
 
 
+#: Points of a diagram at the most.
+_MOST_POINTS = 100_000
+
+
 def make_diagram(
     section: Section,
     axial_load: float,
@@ -196,8 +200,8 @@ def make_diagram(
         if not 0.0 < furthest * section.depth <= 1.0:
             raise InputError(f"furthest = {furthest} 1/m must be above zero and below 1/depth")
     points = _core.whole(points, "points")
-    if points < 2:
-        raise InputError(f"points = {points} must be 2 or more")
+    if not 2 <= points <= _MOST_POINTS:
+        raise InputError(f"points = {points} must be from 2 to {_MOST_POINTS}")
     named = [point.curvature for point in (*_points(events), end) if point.curvature <= furthest]
     # Closer together where the diagram turns, at small curvatures.
     curvature = np.unique(np.concatenate([furthest * np.linspace(0.0, 1.0, points) ** 2, named]))

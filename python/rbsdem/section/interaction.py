@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _core, _views
+from rbsdem import _arguments, _core, _views
 from rbsdem._core import Array
 from rbsdem.errors import InputError
 from rbsdem.section.diagram import largest_moment
@@ -210,10 +210,14 @@ def joint_loads(joint: Layered, closing: float) -> tuple[float, float]:
     return float(least), float(most)
 
 
+#: Points of a diagram at the most.
+_MOST_POINTS = 10_000
+
+
 def _points(points: int) -> int:
     count = _core.whole(points, "interaction: points")
-    if count < 5:
-        raise InputError(f"interaction: points = {count} must be 5 or more")
+    if not 5 <= count <= _MOST_POINTS:
+        raise InputError(f"interaction: points = {count} must be from 5 to {_MOST_POINTS}")
     return count
 
 
@@ -224,11 +228,7 @@ def interaction_diagram(
     count = _points(points)
     if code is None:
         return _own(section, count, confined)
-    if code not in get_args(Code):
-        raise InputError(
-            f"interaction: code = {code!r} is not known; it is one of {get_args(Code)}, or None "
-            "for the section's own laws"
-        )
+    _arguments.choice(code, "interaction: code", get_args(Code))
     if confined:
         raise InputError("interaction: the blocks of codes are those of unconfined concrete")
     if not section.bars:

@@ -84,10 +84,10 @@ class Concrete:
         InputError
             If a strain is not a finite number.
         """
-        strain = np.asarray(strain)
-        flat = _core.finite_vector(strain.ravel(), "strain")
+        given = _core.finite_vector(strain, "strain", shape="any")
+        flat = given.ravel()
         stress = _core.concrete_response(self.statement(), tension, flat)
-        return stress.reshape(strain.shape)[()]
+        return stress.reshape(given.shape)[()]
 
 
 @dataclass(frozen=True)
@@ -152,6 +152,6 @@ class Steel:
         InputError
             If a strain is not a finite number.
         """
-        strain = np.asarray(strain)
-        flat = _core.finite_vector(strain.ravel(), "strain")
-        return _core.steel_response(self.statement(), flat).reshape(strain.shape)[()]
+        given = _core.finite_vector(strain, "strain", shape="any")
+        flat = given.ravel()
+        return _core.steel_response(self.statement(), flat).reshape(given.shape)[()]

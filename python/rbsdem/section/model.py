@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 from numpy.typing import ArrayLike
 
-from rbsdem import _core
+from rbsdem import _arguments, _core
 from rbsdem.column import Column, without_notes
 from rbsdem.ends import double_curvature, turned
 from rbsdem.errors import AccuracyWarning, InputError
@@ -65,10 +65,9 @@ CONCRETE_DENSITY = 2400.0
 
 def check_model(model: str) -> None:
     """Raise `InputError` if there is no model of this name."""
-    if model == "best":
+    if _arguments.is_one_of(model, ("best",)):
         raise InputError("model = 'best' is now 'layered'")
-    if model not in MODELS:
-        raise InputError(f"model = {model!r} is not known; there are {', '.join(MODELS)}")
+    _arguments.choice(model, "model", MODELS)
 
 
 def model_name(

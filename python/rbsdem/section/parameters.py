@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass, fields, replace
 from difflib import get_close_matches
 
-from rbsdem import _core
+from rbsdem import _arguments, _core
 from rbsdem.errors import InputError
 from rbsdem.section.directions import DIRECTIONS, factors
 
@@ -598,7 +598,7 @@ def parameters(version: str | None = None) -> ModelParameters:
     """
     if version is None:
         return next(reversed(VERSIONS.values()))
-    if version in _GONE:
+    if _arguments.text(version, "version") in _GONE:
         raise InputError(f"version = {version!r} of the layered model is gone: {_GONE[version]}")
     if version not in VERSIONS:
         raise InputError(

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Literal, get_args, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _core, _views
+from rbsdem import _arguments, _core, _views
 from rbsdem._core import Array
-from rbsdem.column import Top
+from rbsdem.column import MOST_BODIES, Top
 from rbsdem.ends import double_curvature
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.footing import Footing
@@ -106,8 +106,8 @@ class Section(DrawnSection):
     def _strains(
         self, axial_load: float, curvature: ArrayLike, tension: Tension, confined: bool
     ) -> tuple[Array, Array]:
-        shape = np.shape(curvature)
-        flat = _core.finite_vector(np.ravel(np.asarray(curvature)), "curvature")
+        given = _core.finite_vector(curvature, "curvature", shape="any")
+        shape, flat = given.shape, given.ravel()
         over = np.flatnonzero(np.abs(flat) * self.depth > 1.0)
         if over.size:
             raise InputError(
@@ -397,8 +397,11 @@ class Section(DrawnSection):
                 f"model_parameters = {model_parameters!r} must be ModelParameters, as of "
                 "rbsdem.section.parameters()"
             )
-        if top not in get_args(Top):
-            raise InputError(f"top = {top!r} is not known; it is one of {', '.join(get_args(Top))}")
+        if n is not None and not 1 <= _core.whole(n, "n") <= MOST_BODIES:
+            raise InputError(f"n = {n} must be from 1 to {MOST_BODIES}")
+        if axial_height is not None:
+            axial_height = _core.number(axial_height, "axial_height")
+        _arguments.choice(top, "top", get_args(Top))
         parts = 2 if top == "fixed" else 1
         column = make_column(
             self,

@@ -1,0 +1,205 @@
+"""What a caller may give: one function for each kind of argument.
+
+Each returns the value in its own type, or raises `InputError` with the name, the value and what it
+must be.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rbsdem.errors import InputError
+
+__all__ = [
+    "BEYOND_MEANING",
+    "choice",
+    "file",
+    "finite_vector",
+    "instance",
+    "is_one_of",
+    "number",
+    "path",
+    "seed",
+    "several",
+    "shown",
+    "switch",
+    "text",
+    "vector",
+    "whole",
+]
+
+Array = NDArray[np.float64]
+T = TypeVar("T")
+
+#: Larger numbers have no meaning in any unit (the constant `beyond_meaning`).
+BEYOND_MEANING = 1e50
+
+#: Letters of a value in a message.
+_MOST = 60
+#: What `float` takes, but is no number.
+_NO_NUMBERS = (bool, np.bool_, str, bytes, bytearray, np.datetime64, np.timedelta64)
+
+
+def shown(value: object) -> str:
+    """Return a value for a message; of a record, or where it is long, only its kind."""
+    try:
+        told = repr(value)
+    except Exception:  # Of any class of the caller, and of whole numbers of many digits.
+        told = ""
+    return told if 0 < len(told) <= _MOST and "\n" not in told else f"a {type(value).__name__}"
+
+
+def number(value: Any, name: str) -> float:
+    """Return `value` as a float."""
+    if type(value) is float:
+        return value
+    try:
+        if isinstance(value, _NO_NUMBERS) or np.ma.is_masked(value):
+            raise TypeError
+        if isinstance(value, np.ndarray) and (value.ndim or value.dtype.kind not in "iuf"):
+            raise TypeError
+        return float(value)
+    except OverflowError:
+        raise InputError(f"{name} = {shown(value)} is too large") from None
+    except Exception:  # Of any class of the caller.
+        raise InputError(f"{name} = {shown(value)} must be a number") from None
+
+
+def whole(value: Any, name: str) -> int:
+    """Return `value` as an int."""
+    # A time of numpy is one of its whole numbers.
+    if isinstance(value, _NO_NUMBERS) or not isinstance(value, (int, np.integer)):
+        raise InputError(f"{name} = {shown(value)} must be a whole number")
+    if abs(int(value)) > np.iinfo(np.int32).max:
+        raise InputError(f"{name} = {shown(value)} is too large")
+    return int(value)
+
+
+def switch(value: Any, name: str) -> bool:
+    """Return `value` as a bool."""
+    if isinstance(value, (bool, np.bool_, int, np.integer)) and value in (0, 1):
+        return bool(value)
+    raise InputError(f"{name} = {shown(value)} must be True or False")
+
+
+def text(value: Any, name: str) -> str:
+    """Return `value` if it is a text."""
+    if isinstance(value, str):
+        return value
+    raise InputError(f"{name} = {shown(value)} must be a text")
+
+
+def is_one_of(value: Any, words: Iterable[str]) -> bool:
+    """Return whether `value` is one of some words; an array, for one, is none."""
+    return isinstance(value, str) and value in words
+
+
+def seed(value: Any, name: str = "seed") -> int:
+    """Return `value` as the seed of random numbers."""
+    start = whole(value, name)
+    if start < 0:
+        raise InputError(f"{name} = {start} must be 0 or more")
+    return start
+
+
+def choice(value: Any, name: str, words: Iterable[str]) -> str:
+    """Return `value` if it is one of some words."""
+    words = tuple(words)
+    if is_one_of(value, words):
+        return str(value)
+    raise InputError(f"{name} = {shown(value)} is not known; it is one of {', '.join(words)}")
+
+
+def vector(values: ArrayLike, name: str, *, shape: str = "m") -> Array:
+    """Return `values` as an array of floats.
+
+    `shape` is "m" for one dimension, "1 or m" where one number stands for an array of one, "any".
+    """
+    if np.ma.is_masked(values):
+        raise InputError(
+            f"{name} has masked values, which would be taken as they are; leave them out, or fill "
+            "them"
+        )
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind not in "iuf" and array.size:
+            raise TypeError
+        array = array.astype(np.float64)
+    except Exception:  # Of any class of the caller.
+        raise InputError(f"{name} must be an array of numbers") from None
+    if shape == "any":
+        return array
+    if shape == "1 or m" and array.ndim == 0:
+        array = array[None]
+    if array.ndim != 1:
+        raise InputError(f"{name} has shape {array.shape}; it must have one dimension")
+    return np.ascontiguousarray(array)
+
+
+def finite_vector(values: ArrayLike, name: str, *, shape: str = "m") -> Array:
+    """Return `vector` of them; every value must be finite and have a meaning."""
+    array = vector(values, name, shape=shape)
+    bad = np.flatnonzero(~np.isfinite(array))
+    if bad.size:
+        raise InputError(
+            f"{name}: value {bad[0] + 1} of {array.size} is {array.flat[bad[0]]}; "
+            "it must be a finite number"
+        )
+    beyond = np.flatnonzero(np.abs(array) > BEYOND_MEANING)
+    if beyond.size:
+        raise InputError(
+            f"{name}: value {beyond[0] + 1} of {array.size} is {array.flat[beyond[0]]}; "
+            "products of it would not be finite: check its exponent and unit"
+        )
+    return array
+
+
+def path(value: Any, name: str = "path") -> Path:
+    """Return `value` as a path, with the home folder in place of a tilde."""
+    if isinstance(value, (str, os.PathLike)):
+        try:
+            plain = os.fspath(value)
+            if isinstance(plain, str) and plain and "\0" not in plain:
+                os.fsencode(plain)
+                return Path(plain).expanduser()
+        except Exception:  # Of any class of the caller; a name that no file can have.
+            pass
+    raise InputError(f"{name} = {shown(value)} is not the path of a file or folder")
+
+
+def file(value: Any, name: str = "path") -> str:
+    """Return the path of a file that can be read to its end: a device has none."""
+    plain = os.fspath(path(value, name))
+    try:
+        mode = os.stat(plain).st_mode
+    except OSError:
+        # Its reader says what is wrong.
+        return plain
+    if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
+        raise InputError(f"{plain} is a device; give the path of a file")
+    return plain
+
+
+def instance(value: Any, name: str, kind: type[T], remedy: str = "") -> T:
+    """Return `value` if it is of a class."""
+    if isinstance(value, kind):
+        return value
+    remedy = f"; {remedy}" if remedy else ""
+    raise InputError(f"{name} = {shown(value)} must be a {kind.__name__}{remedy}")
+
+
+def several(values: Any, name: str, of: str = "whole numbers") -> list[Any]:
+    """Return the items of a sequence; a text and a mapping are none."""
+    if not isinstance(values, (str, bytes, dict)):
+        try:
+            return list(values)
+        except Exception:  # Of any class of the caller.
+            pass
+    raise InputError(f"{name} = {shown(values)} must be a sequence of {of}")
