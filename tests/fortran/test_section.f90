@@ -422,7 +422,7 @@ contains
                       'f_c A_c < most < f_c A_c + f_y A_s')
       phi = [1.0e-3_wp, 5.0e-2_wp]
       call follow(section, laws, 1.01_wp*most%n, phi, moment, eps0, outcome)
-      call check_failed(error, outcome, bad_input, 'above what the section carries')
+      call check_failed(error, outcome, bad_input, 'more compression than the section carries')
       call follow(section, laws, 1.01_wp*least%n, phi, moment, eps0, outcome)
       call check_failed(error, outcome, bad_input, 'above what the bars carry')
       call follow(section, laws, 0.9_wp*most%n, phi, moment, eps0, outcome)

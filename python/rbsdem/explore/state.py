@@ -85,7 +85,8 @@ _FIELDS = {
     "layout": {name: f"bars.{name}" for name in ("number", "diameter", "face")},
     "ties": {name: f"ties.{name}" for name in ("diameter", "spacing", "legs", "legs_across")},
     "section": {name: f"section.{name}" for name in ("width", "depth", "diameter", "wall", "cover")}
-    | {"spacing": "ties.spacing", "face": "bars.face", "number": "bars.number"},
+    | {"spacing": "ties.spacing", "face": "bars.face", "number": "bars.number"}
+    | {"legs": "ties.legs", "legs_across": "ties.legs_across"},
     "column": {"height": "column.height", "axial_load": "column.axial_load"},
     "top_mass": {},
     "loading": {
