@@ -21,6 +21,7 @@ from strategies import (
     MOST_STEPS,
     Rng,
     any_column,
+    between,
     motion,
     rules,
     static_path,
@@ -770,6 +771,19 @@ def test_cut_and_restart_in_time(rng: Rng) -> None:
         assert np.array_equal(values, at), difference(name, values, at)
     if whole.state is not None:
         assert np.array_equal(rest.state, whole.state)
+
+
+@relation(60, judged=0.4)
+def test_few_rows_in_time(rng: Rng) -> None:
+    """Which rows are kept is of no weight: bits, and the same figures."""
+    column, loading, chosen = motion_case(rng)
+    every = int(rng.choice([2, 3, 1000]))
+    drift = {"collapse_drift": between(rng, 0.005, 0.1)} if rng.random() < 0.3 else {}
+    more = {"motion": bool(rng.random() < 0.5)}
+    whole = move(column, loading, every=1, **chosen, **drift, **more)
+    if whole.summary["status"] == "failed":
+        raise Discard
+    few_rows(whole, move(column, loading, every=every, **chosen, **drift, **more), every)
 
 
 @relation(60, judged=0.4)
