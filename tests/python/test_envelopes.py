@@ -94,6 +94,22 @@ def test_asce_41_finds_the_highest_balanced_lines_or_says_that_there_are_none():
     assert 0 < refused < 15
 
 
+def test_steps_of_an_envelope_have_no_width():
+    """The force falls by a tenth from one cycle to the next, at 30 mm: area 1 + 4 + 4 kN m.
+
+    On the elastic part (v = 2e7 u): 0.05 v - 2.2e5 u = 0.6 (18000 - 11000) N m. Up to the step the
+    force is that before it.
+    """
+    x, y = np.array([[0, 0], [10, 200], [30, 200], [30, 180], [50, 220]]).T
+    own = Envelope(1, 1e-3 * x, 1e3 * y)
+    lines = own.idealise("asce_41")
+    u = 4200 / (0.05 * 2e7 - 2.2e5)
+    assert lines.yield_displacement == pytest.approx(u / 0.6, rel=1e-9)
+    assert lines.yield_force == pytest.approx(2e7 * u / 0.6, rel=1e-9)
+    step = own.idealise("ec_8", end=0.03)
+    assert (step.yield_displacement, step.yield_force) == pytest.approx((0.01, 2e5))
+
+
 def test_elastic_envelope_is_one_line():
     lines = Envelope(1, np.array([0.0, 0.02]), np.array([0.0, 1e5])).idealise()
     assert (lines.yield_displacement, lines.yield_force) == pytest.approx((0.02, 1e5))

@@ -99,14 +99,14 @@ def idealise(x: Array, y: Array, method: str, end: float | None = None) -> Ideal
     lost = not math.isnan(fall)
     ultimate = fall if lost else float(x[-1])
     if method == "asce_41":
-        points = _asce_41(x, y, limit)
+        points = _asce_41(*_up_to(x, y, limit))
     elif method == "ec_8":
-        points = _ec_8(x, y, limit)
+        points = _ec_8(*_up_to(x, y, limit))
     elif method == "park":
         at = crossing(x, y, 0.75 * y[top]) / 0.75
         points = (at, y[top], max(at, ultimate), y[top])
     else:
-        points = _equal_energy(x, y, ultimate)
+        points = _equal_energy(*_up_to(x, y, ultimate), float(y[top]))
     numbers = tuple(float(value) for value in points)
     return Idealisation(method, _SOURCES[method], *numbers, ultimate, lost)
 
@@ -127,54 +127,58 @@ def crossing(x: Array, y: Array, level: float, *, falling: bool = False) -> floa
     return float(x[at - 1] + share * (x[at] - x[at - 1]))
 
 
-def area(x: Array, y: Array, end: float) -> float:
-    """Return the area below a curve up to a displacement."""
-    inside = x < end
-    xs = np.append(x[inside], end)
-    ys = np.append(y[inside], np.interp(end, x, y))
-    return float(np.sum(0.5 * (ys[1:] + ys[:-1]) * np.diff(xs)))
+def _up_to(x: Array, y: Array, end: float) -> tuple[Array, Array]:
+    """Return a curve up to a displacement, where it steps there up to the larger force."""
+    first, after = np.searchsorted(x, end, side="left"), np.searchsorted(x, end, side="right")
+    if first < after:
+        last = int(first + np.argmax(y[first:after])) + 1
+        return x[:last], y[:last]
+    return np.append(x[:first], end), np.append(y[:first], np.interp(end, x, y))
 
 
-def _asce_41(x: Array, y: Array, end: float) -> tuple[float, float, float, float]:
+def _area(x: Array, y: Array) -> float:
+    """Return the area below a curve."""
+    return float(np.sum(0.5 * (y[1:] + y[:-1]) * np.diff(x)))
+
+
+def _asce_41(x: Array, y: Array) -> tuple[float, float, float, float]:
     """Return the lines with equal areas whose first one goes through 0.6 of the yield force.
 
     With a point (u, v) of the envelope at 0.6 of the yield force, the area of the lines is
     (v end/0.6 + last end - last u/0.6)/2. Those points where it is that of the envelope lie on a
     straight line, parallel to the chord; of all of them the highest is taken.
     """
-    xs = np.append(x[x < end], end)
-    ys = np.append(y[x < end], np.interp(end, x, y))
-    total, last, reach = area(x, y, end), float(ys[-1]), float(ys.max())
-    # Corners where the bounds are: at <= end, and no more force than the envelope has.
-    more = np.array([0.6 * end, crossing(xs, ys, 0.6 * reach)])
-    corners = np.union1d(xs, more)
-    force = np.interp(corners, xs, ys)
-    off = end * force - last * corners - 0.6 * (2.0 * total - last * end)
+    total, end, last, reach = _area(x, y), float(x[-1]), float(y[-1]), float(y.max())
+    off = end * y - last * x - 0.6 * (2.0 * total - last * end)
     off[np.abs(off) <= 1e-12 * end * reach] = 0.0
-    crossed = np.flatnonzero(off[:-1] * off[1:] < 0)
-    share = off[crossed] / (off[crossed] - off[crossed + 1])
-    u = np.append(corners[off == 0], corners[crossed] + share * np.diff(corners)[crossed]) / 0.6
-    v = np.interp(0.6 * u, xs, ys) / 0.6
+    low, high = off[:-1], off[1:]
+    # On a part that lies on that line, the furthest point with at <= end and no more than `reach`.
+    along, up = np.diff(x), np.diff(y)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        room = np.minimum(
+            np.where(along > 0, (0.6 * end - x[:-1]) / along, 1.0),
+            np.where(up > 0, (0.6 * reach - y[:-1]) / up, 1.0),
+        )
+        share = np.where(low == high, np.clip(room, 0.0, 1.0), low / (low - high))
+    met = np.flatnonzero((low == high) & (low == 0) | (low * high < 0) | (high == 0))
+    at = (x[:-1] + share * along)[met] / 0.6
+    force = (y[:-1] + share * up)[met] / 0.6
     slack = 1.0 + 1e-9
-    found = [
-        (top, at)
-        for at, top in zip(u.tolist(), v.tolist(), strict=True)
-        if 0 < at <= end * slack and 0 < top <= reach * slack
-    ]
-    if not found:
+    good = (at > 0) & (at <= end * slack) & (force > 0) & (force <= reach * slack)
+    if not good.any():
         raise InputError(
             "ASCE 41, 7.4.3.2.4: no two lines through the envelope at 0.6 of the yield force have "
             f"its area up to end = {end:g} m; choose another end or another method"
         )
-    top, at = max(found)
-    return min(at, end), top, end, last
+    top, place = max(zip(force[good].tolist(), at[good].tolist(), strict=True))
+    return min(place, end), top, end, last
 
 
-def _ec_8(x: Array, y: Array, end: float) -> tuple[float, float, float, float]:
-    force = float(np.interp(end, x, y))
+def _ec_8(x: Array, y: Array) -> tuple[float, float, float, float]:
+    end, force = float(x[-1]), float(y[-1])
     if not force > 0:
         raise InputError(f"the envelope has no force at end = {end:g} m; choose another end")
-    at = 2.0 * (end - area(x, y, end) / force)
+    at = 2.0 * (end - _area(x, y) / force)
     if not 0 < at <= end * (1 + 1e-12):
         raise InputError(
             "EN 1998-1, B.3, finds no yield point: the envelope lies too far above its force at "
@@ -183,10 +187,10 @@ def _ec_8(x: Array, y: Array, end: float) -> tuple[float, float, float, float]:
     return min(at, end), force, end, force
 
 
-def _equal_energy(x: Array, y: Array, end: float) -> tuple[float, float, float, float]:
-    top = float(y.max())
+def _equal_energy(x: Array, y: Array, top: float) -> tuple[float, float, float, float]:
+    end = float(x[-1])
     stiffness = 0.4 * top / crossing(x, y, 0.4 * top)
-    root = end**2 - 2.0 * area(x, y, end) / stiffness
+    root = end**2 - 2.0 * _area(x, y) / stiffness
     force = stiffness * (end - math.sqrt(root)) if root >= 0 else 0.85 * top
     at = min(force / stiffness, end)
     return at, force, end, force
