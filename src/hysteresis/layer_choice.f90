@@ -1,6 +1,6 @@
 !> The lines on which the layers of a joint go on along a straight path in rotation and axial load.
 module rbs_hysteresis_layer_choice
-   use rbs_base_constants, only: unbounded
+   use rbs_base_constants, only: no_stiffness, unbounded
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_layer_kernels, only: look_along, look_back
    use rbs_hysteresis_layer_lines, only: layer_lines, no_rate
@@ -14,8 +14,6 @@ module rbs_hysteresis_layer_choice
    integer, parameter :: most_passes = 4
    !> Lines without length that one layer may pass at one point.
    integer, parameter :: most_lines = 8
-   !> Below this share of the initial axial stiffness the layers count as having none.
-   real(wp), parameter, public :: no_stiffness = 1.0e-12_wp
 
    !> A way beyond this, in units of the rates, is none; a rate below the other is none.
    real(wp), parameter, public :: beyond = 1.0e100_wp

@@ -76,8 +76,9 @@ module rbs_hysteresis_layer_lines
       real(wp), allocatable :: k(:), c(:), lo(:), hi(:), slack(:), one_way(:), both_ways(:)
       !> Ways to their ends on the chosen path, ahead and behind (count)
       real(wp), allocatable :: ahead(:), behind(:)
-      !> Initial axial stiffness [N/m], distance of the outermost layer and of the centre of stiffness [m]
-      real(wp) :: stiffness = 0.0_wp, reach = 0.0_wp, centre = 0.0_wp
+      !> Initial stiffness, axial and about the centre of stiffness [N/m, N m/rad]; distance of the outermost
+      !> layer and of that centre [m]
+      real(wp) :: stiffness = 0.0_wp, turning = 0.0_wp, reach = 0.0_wp, centre = 0.0_wp
       !> What `mark` has saved: state, and the layers that have changed since
       type(bank_state), private :: kept_state
       type(layer_slot), allocatable, private :: kept_slot(:)
@@ -130,6 +131,7 @@ contains
       call self%sum_up()
       self%stiffness = self%a
       self%centre = self%s/self%a
+      self%turning = sum(self%k*(self%y - self%centre)**2)
    end subroutine start
 
    !> Sums over the layers on their present lines.

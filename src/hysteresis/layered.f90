@@ -10,7 +10,7 @@
 !> layer reaches an end (`next`). Where the axial load varies, the joint follows a straight path in both from
 !> event to event (`go`).
 module rbs_hysteresis_layered
-   use rbs_base_constants, only: unbounded
+   use rbs_base_constants, only: no_stiffness, unbounded
    use rbs_base_keys, only: key_type
    use rbs_base_kinds, only: wp
    use rbs_base_memory, only: memory_type
@@ -150,6 +150,7 @@ contains
             return
          end if
          line%k = layers%ends%stiffness
+         if (abs(line%k) <= no_stiffness*layers%turning) line%k = 0.0_wp
          far = direction*unbounded
          near = -direction*unbounded
          if (layers%ends%ahead < unbounded) far = line%d0 + direction*layers%ends%ahead

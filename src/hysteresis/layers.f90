@@ -9,9 +9,9 @@
 !> hold until the first layer reaches an end of its own. Nothing is added up along the path: w is corrected by
 !> what is missing from equilibrium wherever a line changes.
 module rbs_hysteresis_layers
-   use rbs_base_constants, only: unbounded
+   use rbs_base_constants, only: no_stiffness, unbounded
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_layer_choice, only: choosing_layers, no_stiffness, beyond
+   use rbs_hysteresis_layer_choice, only: choosing_layers, beyond
    use rbs_hysteresis_layer_kernels, only: look_along
    implicit none
    private
@@ -91,6 +91,7 @@ contains
       do i = 1, self%count
          stiffness = stiffness + self%k(i)*(self%y(i) - centre)**2
       end do
+      if (abs(stiffness) <= no_stiffness*self%turning) stiffness = 0.0_wp
    end subroutine find_plane
 
    !> How far a path goes from a point on the present lines until a layer reaches the end of its line.

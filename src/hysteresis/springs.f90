@@ -133,18 +133,18 @@ contains
          room = huge(1.0_wp)
          if (rate(i) > 0.0_wp) room = distance(self%last(i) - q(i), rate(i))
          if (rate(i) < 0.0_wp) room = distance(q(i) - self%first(i), -rate(i))
-         if (room < way) then
-            way = room
-            ends = i
+         if (.not. room < way) cycle
+         ! The end itself may lie beyond the last deformation of the line: far beyond, as ways go, where the
+         ! rate is next to nothing.
+         if (rate(i) > 0.0_wp) then
+            room = distance(self%end_toward(i, 1) - q(i), rate(i))
+         else
+            room = distance(q(i) - self%end_toward(i, -1), -rate(i))
          end if
+         if (.not. room < way) cycle
+         way = room
+         ends = i
       end do
-      if (ends == 0) return
-      ! The end itself may lie beyond the last deformation of the line.
-      if (rate(ends) > 0.0_wp) then
-         way = distance(self%end_toward(ends, 1) - q(ends), rate(ends))
-      else
-         way = distance(q(ends) - self%end_toward(ends, -1), -rate(ends))
-      end if
    end subroutine nearest_end
 
    !> How long a spring needs for a distance; `huge` on a line without end.

@@ -8,7 +8,7 @@
 !> deformation inside the reach may reduce the strength through the factor w (wear).
 module rbs_hysteresis_steel
    use rbs_base_check, only: is_given
-   use rbs_base_constants, only: unbounded, unset
+   use rbs_base_constants, only: no_stiffness, unbounded, unset
    use rbs_base_error, only: message_list
    use rbs_base_keys, only: key_type, above_zero, not_negative, share_below_one, force, stiffness, deformation
    use rbs_base_kinds, only: wp
@@ -260,6 +260,7 @@ contains
       f = f + direction*sum(s(:n))
       slope = self%k
       if (one_slips) slope = sum(self%rate)
+      if (abs(slope) <= no_stiffness*self%k) slope = 0.0_wp
       far = direction*unbounded
       if (ahead < unbounded) far = self%d + direction*ahead
       if (.not. growing .and. direction*(end_of_reach - far) <= 0.0_wp) far = end_of_reach

@@ -386,6 +386,32 @@ def test_force_beyond_the_capacity_keeps_the_path(sign):
     assert_energy(kept)
 
 
+@pytest.mark.parametrize("kinematics", ["small", "pdelta", "finite"])
+def test_a_joint_that_rocks_on_its_edge(kinematics):
+    """Two contacts at b from the middle carry N: M = N b, so F = N (b - l sin(phi))/(l cos(phi)).
+
+    On the edge k_1 (y_1 - s/a)^2 is round-off of zero, and was taken for a slope.
+    """
+    load, edge, height = 687e3, 0.2, 2.0
+    contact = rbsdem.Compression(k=105981656.0)
+    rock = rbsdem.Layered([(-edge, contact), (edge, contact)])
+    column = rbsdem.Column(
+        height, 500.0, rbsdem.Elastic(1e9), rock, axial_load=load, kinematics=kinematics
+    )
+    peaks = np.array([0.0362, -0.0362, 0.0423, -0.0423, 0.0454, -0.0454, 0.0497, -0.0497])
+    run = rbsdem.cyclic(column, displacement=peaks)
+    turn = run.rotation[:, 0]
+    sine, cosine = {
+        "small": (0.0 * turn, 1.0), "pdelta": (turn, 1.0), "finite": (np.sin(turn), np.cos(turn))
+    }[kinematics]  # fmt: skip
+    across = sine if kinematics == "finite" else turn
+    np.testing.assert_allclose(run.slip[:, 0] + height * across, peaks, rtol=1e-10)
+    force = load * (np.sign(peaks) * edge - height * sine) / (height * cosine)
+    np.testing.assert_allclose(run.force, force, rtol=1e-9)
+    if kinematics != "finite":
+        assert_energy(run)
+
+
 def test_capacity_itself_can_be_reached():
     column = rbsdem.Column(2.0, 100.0, PLASTIC, rbsdem.Elastic(5e8))
     run = rbsdem.cyclic(column, force=[1.0e5, -1.0e5, 1.0e5])

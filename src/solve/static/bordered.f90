@@ -6,6 +6,7 @@
 !> has one. There a plain block elimination fails; the mixed one used here does not (W. Govaerts, Stable
 !> solvers and block elimination for bordered systems, SIAM J. Matrix Anal. Appl. 12 (1991) 469-483).
 module rbs_solve_static_bordered
+   use rbs_base_constants, only: no_stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: solve_general_band
    use rbs_base_narrow_band, only: factor_narrow_band, solve_narrow_band
@@ -13,9 +14,6 @@ module rbs_solve_static_bordered
    private
 
    public :: bordered_band
-
-   !> A pivot below this share of the initial stiffness is round-off.
-   real(wp), parameter :: no_stiffness = 1.0e-12_wp
 
    !> Added in proportion to the initial stiffness where elimination meets a zero: no more than round-off.
    real(wp), parameter :: round_off = 8.0_wp*epsilon(1.0_wp)

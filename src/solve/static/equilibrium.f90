@@ -10,6 +10,7 @@
 !> rotations, the axial load only the slip of a joint and the rotation below it. A held top is solved there
 !> too: its rotation is the last unknown, and is left out.
 module rbs_solve_static_equilibrium
+   use rbs_base_constants, only: no_stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: factor_positive, solve_positive, solve_general
    use rbs_column_axial, only: geometric_stiffness, geometric_forces
@@ -17,14 +18,12 @@ module rbs_solve_static_equilibrium
    use rbs_column_column, only: column_type
    use rbs_column_dead_loads, only: to_joints
    use rbs_solve_static_bordered, only: bordered_band
+   use rbs_solve_static_diagonal, only: follow_diagonal
    use rbs_solve_static_few_bodies, only: few_bodies
    implicit none
    private
 
    public :: equilibrium_type
-
-   !> A pivot below this share of the initial stiffness is round-off.
-   real(wp), parameter :: no_stiffness = 1.0e-12_wp
 
    !> A relative rotation is a small difference of absolute ones. The digits that this costs are
    !> recovered: the residual is taken in the deformations of the joints and solved for again.
@@ -162,7 +161,7 @@ contains
       else if (self%coupled) then
          call follow_force_full(self, k, r, rate, correction, positive)
       else
-         positive = minval(k) > 0.0_wp
+         positive = all(k > no_stiffness*self%initial_stiffness)
          if (positive) then
             rate = self%arm/k
             correction = r/k
@@ -252,27 +251,9 @@ contains
          correction = self%found(:, 2)
          force_rate = y(1)
          force_correction = y(2)
-      else if (minval(abs(k)) > 0.0_wp) then
-         ! Softening joints have a negative flexibility; with that of the others it may vanish.
-         flexibility = sum(self%arm**2/k)
-         regular = abs(flexibility) > no_stiffness*sum(self%arm**2/abs(k))
-         if (.not. regular) return
-         force_rate = 1.0_wp/flexibility
-         rate = self%arm/k*force_rate
-         correction = r/k
-         force_correction = (gap - sum(self%arm*correction))*force_rate
-         correction = correction + self%arm/k*force_correction
       else
-         regular = .true.
-         call follow_mechanism(self, k, rate)
-         force_rate = 0.0_wp
-         force_correction = 0.0_wp
-         where (abs(k) > 0.0_wp)
-            correction = r/sign(max(abs(k), tiny(1.0_wp)), k)
-         else where
-            correction = 0.0_wp
-         end where
-         correction = correction + rate*(gap - sum(self%arm*correction))
+         call follow_diagonal(self%arm, self%initial_stiffness, k, r, gap, rate, force_rate, correction, &
+                              force_correction, regular)
       end if
    end subroutine follow_displacement
 
@@ -348,18 +329,6 @@ contains
          q(:, j) = q(:, j) + change
       end do
    end subroutine add_joints
-
-   !> Joints without stiffness take all the motion. Several share it as they would with a hardening in
-   !> proportion to their initial stiffness, however small.
-   subroutine follow_mechanism(self, k, rate)
-      type(equilibrium_type), intent(in) :: self
-      real(wp), intent(in) :: k(:)
-      real(wp), intent(out) :: rate(:)
-
-      rate = 0.0_wp
-      where (.not. abs(k) > 0.0_wp) rate = self%arm/self%initial_stiffness
-      rate = rate/sum(self%arm*rate)
-   end subroutine follow_mechanism
 
    !> Tangent stiffness diag(k) + K_G.
    pure subroutine fill_full(self, k, a)

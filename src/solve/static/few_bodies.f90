@@ -14,6 +14,9 @@ module rbs_solve_static_few_bodies
    !> Most lines in a row whose rates are updated and not solved for.
    integer, parameter :: most_updates = 8
 
+   !> What an updated solution may miss of an equation, as a share of its terms.
+   real(wp), parameter :: lost_digits = 1.0e-14_wp
+
    type :: few_bodies
       integer :: unknowns = 0
       !> Whether the equations are as few as `solve_rows` takes
@@ -123,6 +126,10 @@ contains
             solved(right, j) = solved(right, j) - change*solved(right + 2, j)
             solved(right + 2, j) = solved(right + 2, j)/growth
          end do
+         if (.not. still_solves(self, k)) then
+            self%updates = most_updates
+            return
+         end if
          do j = 1, m
             rate(j) = solved(right, j)
          end do
@@ -132,6 +139,29 @@ contains
       self%updates = self%updates + 1
       done = .true.
    end subroutine update
+
+   !> Whether the updated rates solve the equations: from a soft line to a stiff one digits are lost.
+   pure logical function still_solves(self, k)
+      class(few_bodies), intent(in) :: self
+      real(wp), intent(in), contiguous :: k(:)
+      integer, parameter :: right = row_length - 2
+      real(wp) :: term, missing, size
+      integer :: i, j, m
+
+      m = self%unknowns
+      still_solves = .true.
+      do j = 1, m + 1
+         missing = self%row(right, j)
+         size = abs(missing)
+         do i = 1, m + 1
+            term = self%row(i, j)*self%solved(right, i)
+            if (i == j .and. j <= m) term = term + k(j)*self%solved(right, j)
+            missing = missing - term
+            size = size + abs(term)
+         end do
+         still_solves = still_solves .and. abs(missing) <= lost_digits*size
+      end do
+   end function still_solves
 
    !> Present to a tape the last solution, from which the next one may follow.
    pure subroutine walk(self, memory)

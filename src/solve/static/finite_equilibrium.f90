@@ -53,6 +53,7 @@ module rbs_solve_static_finite_equilibrium
       procedure :: settle
       procedure :: remember
       procedure :: find_balance
+      procedure :: unbalance
    end type finite_equilibrium
 
 contains
@@ -146,6 +147,26 @@ contains
       correction = self%joints
       if (regular) regular = reasonable(self)
    end subroutine find_balance
+
+   !> The largest force by which a point is out of equilibrium, moments over the height [N].
+   real(wp) function unbalance(self, springs, point)
+      class(finite_equilibrium), intent(inout) :: self
+      type(spring_array), intent(in) :: springs
+      type(path_point), intent(inout) :: point
+      real(wp) :: displacement
+      integer :: i
+
+      displacement = point%displacement
+      call see(self, springs, point)
+      point%displacement = displacement
+      unbalance = 0.0_wp
+      do i = 1, self%column%unknowns
+         associate (off => abs(self%load(i, 1)))
+            unbalance = max(unbalance, merge(off/self%column%joint_height(self%column%n + 1), off, &
+                                             modulo(i, per_joint(self%column)) == 0))
+         end associate
+      end do
+   end function unbalance
 
    !> Loads less springs and the tangent, and the displacement of the top.
    subroutine see(self, springs, point)

@@ -6,8 +6,8 @@ module rbs_solve_static_path
    use rbs_base_kinds, only: wp
    use rbs_base_memory, only: memory_type
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type, joint_name, small
-   use rbs_column_top, only: largest_turn
+   use rbs_column_column, only: column_type, joint_name, small, finite
+   use rbs_column_top, only: largest_turn, top_displacement
    use rbs_hysteresis_layer_fall, only: layer_fall
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_observer, only: observer_type
@@ -15,16 +15,20 @@ module rbs_solve_static_path
    use rbs_output_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
                               row_spring, row_damping, row_axial, row_residual, row_top, row_joints
    use rbs_output_summary, only: summary_type
+   use rbs_solve_static_row_check, only: row_check
    implicit none
    private
 
-   public :: static_path, kept_rows, is_on_end, top_height, describe_state, name_spring, on_the_end, &
-             walk_path
+   public :: static_path, kept_rows, is_on_end, top_height, describe_state, missing_work, name_spring, &
+             on_the_end, walk_path
 
    !> A spring this close to an end of its line, relative to the end, is on it. Not a tolerance of the
    !> solution: where a cycle returns to its peak, round-off would otherwise decide between outer and inner
    !> unloading.
    real(wp), parameter :: on_the_end = 1.0e-11_wp
+
+   !> What round-off alone moves the top, as a share of what all joints do.
+   real(wp), parameter :: same_place = 2.0e-13_wp
 
    !> A force is reached if less than this share of it is missing.
    real(wp), parameter :: no_force = 1.0e-12_wp
@@ -69,6 +73,7 @@ module rbs_solve_static_path
       procedure(solve_line_interface), deferred :: solve_line
       procedure(measure_interface), deferred :: measure
       procedure(balance_interface), deferred :: find_balance
+      procedure(unbalance_interface), deferred :: unbalance
       procedure(stand_interface), deferred :: stand_still
    end type static_path
 
@@ -111,6 +116,13 @@ module rbs_solve_static_path
          real(wp), intent(out) :: correction(:), force
          logical, intent(out) :: found
       end subroutine balance_interface
+
+      !> The largest force by which a joint is out of equilibrium, moments over the height [N].
+      real(wp) function unbalance_interface(self)
+         import :: static_path, wp
+         implicit none
+         class(static_path), intent(inout) :: self
+      end function unbalance_interface
 
       !> The springs stand where the path begins: take their place as the present point.
       subroutine stand_interface(self)
@@ -234,6 +246,7 @@ contains
       class(observer_type), intent(inout), optional :: progress
       type(error_type), allocatable :: failure
       type(layer_fall) :: fall
+      type(row_check) :: check
       logical :: may_collapse
       integer :: i, n
 
@@ -244,12 +257,23 @@ contains
                                          layered=merge(self%column%n, 0, recorder%openings))))
       self%summary => summary
       if (recorder%corners) self%corners => recorder
+      call check%begin(self%column, missing_work(self))
       do i = 1, size(target)
          self%number = i - 1
          self%way_begin = self%control
          ! A path whose first target is not where it begins has a way to it.
          if (i == 1 .and. abs(target(1) - self%control) > 0.0_wp) call self%see_corner(0.0_wp)
          call self%advance(target(i), failure)
+         if (.not. allocated(failure) .and. self%springs%lost_joint() == 0) then
+            call stand_on_ends(self)
+            call check_row(self, check, target(i), failure)
+            if (allocated(failure)) then
+               ! What is no state of the column is no row.
+               failure%message = 'row '//to_text(i)//': '//failure%message
+               call move_alloc(failure, error)
+               return
+            end if
+         end if
          summary%lost_joint = max(self%springs%lost_joint() - self%column%n, 0)
          if (summary%lost_joint > 0) then
             call self%springs%fall_of(self%column%n + summary%lost_joint, fall)
@@ -324,6 +348,52 @@ contains
       end if
    end function is_on_end
 
+   !> A spring that was put on the end of its line has moved the top by as little: that is where the top is.
+   subroutine stand_on_ends(self)
+      class(static_path), intent(inout) :: self
+      real(wp) :: there, reach
+
+      if (self%by_force .or. self%direction /= 0 .or. self%column%kinematics == finite) return
+      there = top_displacement(self%column, self%springs%d)
+      reach = sum(abs(self%column%arm*self%springs%d))
+      if (abs(there - self%displacement) <= same_place*reach .or. &
+          abs(there - self%displacement) > 2.0_wp*on_the_end*reach) return
+      self%work = self%work + self%force*(there - self%displacement)
+      self%displacement = there
+      self%control = there
+   end subroutine stand_on_ends
+
+   !> Whether the present row is a state of the column.
+   subroutine check_row(self, check, target, failure)
+      class(static_path), intent(inout) :: self
+      type(row_check), intent(inout) :: check
+      real(wp), intent(in) :: target
+      type(error_type), allocatable, intent(inout) :: failure
+      character(len=:), allocatable :: fault, spring
+      real(wp) :: axial_work, height
+
+      call self%measure(axial_work, height)
+      call check%look(self%column, self%springs, self%displacement, self%force, self%unbalance(), &
+                      [self%work, sum(self%springs%work), axial_work], missing_work(self), fault)
+      if (.not. allocated(fault)) return
+      call name_spring(self, spring)
+      call fatal_error(failure, analysis_failed, 'on the way to '//to_text(target)//' '// &
+                       merge('N', 'm', self%by_force)//' the arithmetic has lost the static path: at a '// &
+                       'displacement of '//to_text(self%displacement)//' m '//fault//'. The path up to '// &
+                       'there is kept. The stiffnesses of the springs are too far apart ('//spring// &
+                       ' has the least left): give it more stiffness after yield, or take stiff springs '// &
+                       'less stiff')
+   end subroutine check_row
+
+   !> Work that the balance of energy misses [J].
+   pure real(wp) function missing_work(self)
+      class(static_path), intent(in) :: self
+      real(wp) :: axial_work, height
+
+      call self%measure(axial_work, height)
+      missing_work = self%work + self%at_begin - sum(self%springs%work) - self%damped_before - axial_work
+   end function missing_work
+
    !> The present state as a row.
    subroutine fill_row(self, row, number)
       class(static_path), intent(in) :: self
@@ -342,8 +412,7 @@ contains
          row(row_spring) = sum(springs%work)
          row(row_damping) = self%damped_before
          call self%measure(row(row_axial), row(row_top))
-         row(row_residual) = row(row_input) + self%at_begin - row(row_spring) - row(row_damping) &
-                             - row(row_axial)
+         row(row_residual) = missing_work(self)
          row(row_joints:row_joints + m - 1) = springs%d
          row(row_joints + m:row_joints + 2*m - 1) = springs%f0 + springs%k*(springs%d - springs%d0)
          call springs%fill_openings(self%column%n, row(row_joints + 2*m:))

@@ -52,6 +52,8 @@ module rbs_solve_static_pressed_balance
       procedure :: hold_top
       procedure :: to_deformations
       procedure :: solve_point
+      procedure :: unbalance
+      procedure :: is_moment
       procedure :: find_press
       procedure :: top_load
       procedure :: plane_forces
@@ -248,6 +250,34 @@ contains
       point%axial_power = -dot_product(axial, b(:m, 1))
       call self%find_press(point)
    end subroutine solve_point
+
+   !> The largest force by which a point is out of equilibrium, moments over the height [N].
+   real(wp) function unbalance(self, springs, point)
+      class(pressed_balance), intent(inout) :: self
+      type(spring_array), intent(in) :: springs
+      type(pressed_point), intent(inout) :: point
+      real(wp), dimension(size(point%q), size(point%q)) :: tangent
+      real(wp), dimension(size(point%q)) :: arm, pushed, axial, missing
+      real(wp) :: displacement
+      integer :: i
+
+      call self%find_press(point)
+      call self%assemble(springs, point, tangent, missing, arm, pushed, axial, displacement)
+      if (self%column%held) call self%hold_top(tangent, missing, pushed, axial)
+      unbalance = 0.0_wp
+      do i = 1, size(missing)
+         unbalance = max(unbalance, merge(abs(missing(i))/self%column%joint_height(self%column%n + 1), &
+                                          abs(missing(i)), self%is_moment(i)))
+      end do
+   end function unbalance
+
+   !> Whether an unknown is a rotation.
+   pure logical function is_moment(self, i)
+      class(pressed_balance), intent(in) :: self
+      integer, intent(in) :: i
+
+      is_moment = i > self%column%n .and. i <= 2*self%column%n
+   end function is_moment
 
    !> Whether a stiffness is positive definite; it is overwritten.
    logical function is_stable(stiffness)

@@ -26,6 +26,7 @@ module rbs_solve_static_pressed_finite
       procedure :: assemble
       procedure :: hold_top
       procedure :: to_deformations
+      procedure :: is_moment
    end type pressed_finite
 
 contains
@@ -88,6 +89,13 @@ contains
 
       call hold(self%column%unknowns, tangent, missing, pushed, axial)
    end subroutine hold_top
+
+   pure logical function is_moment(self, i)
+      class(pressed_finite), intent(in) :: self
+      integer, intent(in) :: i
+
+      is_moment = modulo(i, per_joint(self%column)) == 0
+   end function is_moment
 
    pure subroutine to_deformations(self, z, q)
       class(pressed_finite), intent(in) :: self

@@ -6,7 +6,7 @@ module rbs_solve_static_resume
    use rbs_column_column, only: column_type, joint_name
    use rbs_column_top, only: top_displacement
    use rbs_solve_end_state, only: end_state, standing_type, static_state
-   use rbs_solve_static_path, only: static_path
+   use rbs_solve_static_path, only: static_path, missing_work
    implicit none
    private
 
@@ -51,7 +51,7 @@ contains
       logical, intent(in) :: varies
       type(error_type), allocatable, intent(out) :: error
       type(standing_type) :: standing
-      real(wp) :: press(path%column%n), axial_work, height, missing
+      real(wp) :: press(path%column%n), missing
       integer :: joint
       logical :: goes_on
 
@@ -96,9 +96,7 @@ contains
          call path%stand_still()
       end if
       if (path%direction == 0) path%control = merge(path%force, path%displacement, path%by_force)
-      call path%measure(axial_work, height)
-      missing = standing%residual - (path%work + path%at_begin - sum(path%springs%work) - path%damped_before &
-                                     - axial_work)
+      missing = standing%residual - missing_work(path)
       if (abs(missing) > 0.0_wp) path%at_begin = path%at_begin + missing
    end subroutine begin_from
 
@@ -208,10 +206,8 @@ contains
       logical, intent(in) :: varies
       type(end_state), intent(inout) :: after
       type(standing_type) :: standing
-      real(wp) :: axial_work, height
       integer :: i
 
-      call path%measure(axial_work, height)
       standing%kind = static_state
       standing%pressed = path%springs%pressed
       standing%displacement = path%displacement
@@ -233,7 +229,7 @@ contains
       standing%input = path%work
       standing%damping = path%damped_before
       standing%at_begin = path%at_begin
-      standing%residual = path%work + path%at_begin - sum(path%springs%work) - path%damped_before - axial_work
+      standing%residual = missing_work(path)
       standing%load(1) = path%force
       standing%method = kind_of(path, varies)
       call after%start_saving(path%column, standing, path%springs)

@@ -43,6 +43,7 @@ module rbs_solve_static_trace
       procedure :: solve_line
       procedure :: measure
       procedure :: find_balance
+      procedure :: unbalance
       procedure :: stand_still
       procedure :: walk
    end type straight_path
@@ -159,12 +160,23 @@ contains
    subroutine begin_line(self, direction)
       class(straight_path), intent(inout) :: self
       integer, intent(in) :: direction
-      real(wp) :: way
+      real(wp) :: way, missing
+      integer :: i
 
       self%start = self%control
       self%displacement_start = self%displacement
-      self%q(:) = self%springs%d(:self%moving) + self%correction
-      if (self%by_force) self%displacement_start = sum(self%equilibrium%arm*self%q)
+      do i = 1, self%moving
+         ! What is no more than round-off of the equilibrium moves no spring off its line, however soft it is.
+         self%q(i) = min(max(self%springs%d(i) + self%correction(i), self%springs%first(i)), &
+                         self%springs%last(i))
+      end do
+      missing = self%displacement - sum(self%equilibrium%arm*self%q)
+      if (self%by_force) then
+         self%displacement_start = self%displacement - missing
+      else if (abs(missing) > 0.0_wp) then
+         self%q(:) = self%q + direction*missing*self%rate(:self%moving)
+         self%force_start = self%force_start + self%force_rate*missing
+      end if
       call self%springs%nearest_end(self%q, self%rate, way, self%ends)
       self%finish = direction*huge(1.0_wp)
       if (self%ends > 0) self%finish = self%start + direction*way
@@ -234,6 +246,21 @@ contains
                                                    force_rate, correction(:m), force, found)
       end associate
    end subroutine find_balance
+
+   !> The largest force by which a joint is out of equilibrium, moments over the height [N].
+   real(wp) function unbalance(self)
+      class(straight_path), intent(inout) :: self
+      integer :: m, n
+
+      n = self%column%n
+      m = self%moving
+      self%f = self%springs%f0(:m) + self%springs%k(:m)*(self%springs%d(:m) - self%springs%d0(:m))
+      call self%equilibrium%residual(self%springs%d(:m), self%f, self%force, self%residual)
+      ! The moment that holds the top acts on all rotations.
+      if (self%column%held) self%residual(n + 1:) = self%residual(n + 1:) - self%residual(m)
+      unbalance = max(maxval(abs(self%residual(:n))), &
+                      maxval(abs(self%residual(n + 1:)))/self%column%joint_height(n + 1))
+   end function unbalance
 
    !> Nothing but the springs tells where the path is.
    subroutine stand_still(self)

@@ -49,6 +49,7 @@ module rbs_solve_static_trace_finite
       procedure :: solve_line
       procedure :: measure
       procedure :: find_balance
+      procedure :: unbalance
       procedure :: stand_still
       procedure :: walk
    end type turning_path
@@ -311,6 +312,13 @@ contains
       self%here%force = self%force
       call self%equilibrium%find_balance(self%springs, self%here, self%displacement, correction, force, found)
    end subroutine find_balance
+
+   !> The largest force by which a joint is out of equilibrium, moments over the height [N].
+   real(wp) function unbalance(self)
+      class(turning_path), intent(inout) :: self
+
+      unbalance = self%equilibrium%unbalance(self%springs, self%here)
+   end function unbalance
 
    !> The springs stand where the path begins.
    subroutine stand_still(self)

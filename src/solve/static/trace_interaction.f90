@@ -28,6 +28,8 @@ module rbs_solve_static_trace_interaction
 
    public :: trace_interaction
 
+   !> Most lines in a row without progress
+   integer, parameter :: most_standing = 2000
    !> How often a stride is cut because of what a cubic shows between its ends
    integer, parameter :: most_looks = 6
    !> Bends this small are round-off [rad].
@@ -52,6 +54,7 @@ module rbs_solve_static_trace_interaction
       procedure :: solve_line
       procedure :: measure
       procedure :: find_balance
+      procedure :: unbalance
       procedure :: stand_still
       procedure :: walk
    end type pressed_path
@@ -104,7 +107,8 @@ contains
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
       character(len=:), allocatable :: state
-      integer :: lines
+      real(wp) :: before
+      integer :: lines, standing
       logical :: found
 
       self%row = self%row + 1
@@ -114,7 +118,9 @@ contains
          if (.not. any(abs(way) > 0.0_wp)) return
       end associate
       self%at%share = 0.0_wp
+      standing = 0
       do lines = 1, 10000 + 1000*self%springs%count
+         before = self%at%share
          call stand(self)
          call find_lines(self%balance, self%springs, self%at, found)
          if (self%springs%lost_joint() > 0) return
@@ -137,6 +143,9 @@ contains
             end if
             return
          end if
+         ! Many springs and layers may change their lines at one point, but not for ever.
+         standing = merge(0, standing + 1, self%at%share > before)
+         if (standing > most_standing + self%springs%count) exit
       end do
       call describe_state(self, state)
       call fatal_error(error, analysis_failed, 'the static path makes no progress at '//state//'; the '// &
@@ -347,6 +356,14 @@ contains
          end associate
       end do
    end subroutine find_balance
+
+   !> The largest force by which a joint is out of equilibrium, moments over the height [N].
+   real(wp) function unbalance(self)
+      class(pressed_path), intent(inout) :: self
+
+      call stand(self)
+      unbalance = self%balance%unbalance(self%springs, self%at)
+   end function unbalance
 
    !> The springs stand where the path begins.
    subroutine stand_still(self)
