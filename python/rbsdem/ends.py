@@ -48,6 +48,8 @@ def double_curvature(column: C, *, top_mass: float = 0.0, prismatic: bool | None
     InputError
         If the column is no such cantilever, or a spring cannot be turned.
     """
+    if prismatic is None:
+        prismatic = column._prismatic
     prismatic = _core.switch(prismatic, "double_curvature: prismatic")
     checked_column(column, "double_curvature: ")
     refused = {
@@ -63,8 +65,6 @@ def double_curvature(column: C, *, top_mass: float = 0.0, prismatic: bool | None
                 f"double_curvature: the column must be a plain cantilever, without {name}; "
                 "give the ends of the whole column afterwards, with dataclasses.replace"
             )
-    if prismatic is None:
-        prismatic = column._prismatic
     n = 2 * column.n - 1
     lengths = list(column.lengths or [column.height / column.n] * column.n)
     changes: dict[str, Any] = {

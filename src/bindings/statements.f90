@@ -7,11 +7,10 @@ module rbs_bindings_statements
    use, intrinsic :: iso_c_binding, only: c_double
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_key_setter, only: key_setter
-   use rbs_base_text, only: to_text
    use rbs_case_case_record, only: case_record
    use rbs_case_setter, only: setter_type
    use rbs_column_column, only: column_type
-   use rbs_hysteresis_spring_record, only: spring_record, carries_axial_load
+   use rbs_hysteresis_spring_record, only: spring_record, carries_axial_load, told_capacity
    use rbs_solve_make_column, only: make_column
    implicit none
    private
@@ -136,8 +135,7 @@ contains
       call messages%raise(error)
       if (allocated(error)) return
       if (.not. carries_axial_load(spring)) then
-         call fatal_error(error, bad_input, 'layered spring: its layers cannot carry the axial load of '// &
-                          to_text(axial_load)//' N (compression positive); lower it, or give stronger layers')
+         call fatal_error(error, bad_input, 'layered spring: '//told_capacity(spring))
       end if
    end subroutine spring_from_statements
 

@@ -16,7 +16,7 @@ module rbs_hysteresis_spring_record
    implicit none
    private
 
-   public :: spring_record, carries_axial_load
+   public :: spring_record, carries_axial_load, told_capacity
 
    !> The place of a rule among `rule_names`, stored for layers.
    integer, parameter :: no_rule = 0
@@ -354,5 +354,28 @@ contains
          carries_axial_load = rule%carries
       end select
    end function carries_axial_load
+
+   !> What is said of an axial load that the layers of a spring do not carry.
+   function told_capacity(self) result(text)
+      type(spring_record), intent(in) :: self
+      character(len=:), allocatable :: text
+      type(spring_record) :: other
+      real(wp) :: carried, refused
+      integer :: i
+
+      other = self
+      carried = 0.0_wp
+      refused = self%axial_load
+      do i = 1, 50
+         other%axial_load = 0.5_wp*(carried + refused)
+         if (carries_axial_load(other)) then
+            carried = other%axial_load
+         else
+            refused = other%axial_load
+         end if
+      end do
+      text = 'its layers cannot carry the axial load of '//to_text(self%axial_load)//' N, but '// &
+             to_text(carried)//' N (compression positive); lower it, or give stronger layers'
+   end function told_capacity
 
 end module rbs_hysteresis_spring_record

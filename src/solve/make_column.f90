@@ -3,7 +3,7 @@ module rbs_solve_make_column
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, new_column
-   use rbs_hysteresis_spring_record, only: carries_axial_load
+   use rbs_hysteresis_spring_record, only: carries_axial_load, told_capacity
    use rbs_column_column_record, only: column_record
    implicit none
    private
@@ -28,9 +28,7 @@ contains
          associate (spring => column%spring(column%n + i))
             if (carries_axial_load(spring)) cycle
             call fatal_error(error, bad_input, 'flexure spring of joint '// &
-                             to_text(spec%joint_number(i))// &
-                             ': its layers cannot carry the axial load of '//to_text(spring%axial_load)// &
-                             ' N (compression positive); lower it, or give stronger layers')
+                             to_text(spec%joint_number(i))//': '//told_capacity(spring))
          end associate
          return
       end do

@@ -22,7 +22,7 @@ from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.parameter import Parameter
 from rbsdem.section.directions import DIRECTIONS
 from rbsdem.section.hinge import HingeJoint, hinge_joint
-from rbsdem.section.interaction import InteractionDiagram, joint_interaction, joint_loads
+from rbsdem.section.interaction import InteractionDiagram, joint_interaction
 from rbsdem.section.parameters import FACTORS, ModelParameters, parameters
 from rbsdem.section.ranges import axial_load_note, column_length, outside
 from rbsdem.section.scatter import Scatter
@@ -432,8 +432,7 @@ class LayeredColumn(Column):
         try:
             super().__post_init__()
         except InputError:
-            # What the hinge carries or a spring says is nearer the fault; neither was asked before.
-            self._check_load()
+            # What a spring of the model says, which was not asked before, is nearer the fault.
             for name in ("flexure", "shear"):
                 check_springs(self.recipe.made[name])
             raise
@@ -613,24 +612,6 @@ class LayeredColumn(Column):
             Where the column is outside the range of the tests.
         """
         return spread(self, displacement, samples=samples, scatter=scatter)
-
-    def _check_load(self) -> None:
-        """Refuse an axial load that the hinge of the model does not carry."""
-        joint = self._recipe.joint
-        if self.flexure[0] != joint.spring:
-            return
-        least, most = joint_loads(joint.spring, _CRUSHED * joint.length)
-        if not least <= self.axial_load <= most:
-            kind = "compression" if self.axial_load > 0.0 else "tension"
-            raise InputError(
-                f"axial_load = {self.axial_load:g} N is more {kind} than the hinge of the model "
-                f"carries; compression is positive: give {least:g} to {most:g} N"
-            )
-
-    @property
-    def replaced(self) -> tuple[str, ...]:
-        """What of shear and flexure is not that of the model."""
-        return tuple(name for name in ("shear", "flexure") if self._kept(name))
 
     @property
     def _prismatic(self) -> bool:
