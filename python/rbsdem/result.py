@@ -350,6 +350,8 @@ class Result:
     def at(self, time: float) -> dict[str, Any]:
         """Return the state at a time, or at a point of a static path, linear between rows.
 
+        The rows are those of `path`: between two points of a static path the state is exact.
+
         Parameters
         ----------
         time : float
@@ -368,13 +370,14 @@ class Result:
             If the time is outside of the rows.
         """
         at = _core.number(time, "time")
-        if not self.time.size or not self.time[0] <= at <= self.time[-1]:
-            span = f"{self.time[0]:g} to {self.time[-1]:g}" if self.time.size else "nothing"
+        path, times = self.path, self.path.time
+        if not times.size or not times[0] <= at <= times[-1]:
+            span = f"{times[0]:g} to {times[-1]:g}" if times.size else "nothing"
             raise InputError(f"time = {at:g} is outside of the rows, which hold {span}")
-        row = int(np.searchsorted(self.time, at, side="right")) - 1
-        after = min(row + 1, self.time.size - 1)
-        length = self.time[after] - self.time[row]
-        share = (at - self.time[row]) / length if length > 0 else 0.0
+        row = int(np.searchsorted(times, at, side="right")) - 1
+        after = min(row + 1, times.size - 1)
+        length = times[after] - times[row]
+        share = (at - times[row]) / length if length > 0 else 0.0
 
         def between(values: Any) -> Any:
             if isinstance(values, dict):
@@ -384,11 +387,11 @@ class Result:
 
         arrays = {
             name: value
-            for name, value in vars(self).items()
+            for name, value in vars(path).items()
             if isinstance(value, np.ndarray) and name not in ("state", "reached")
         }
         state: dict[str, Any] = {name: between(values) for name, values in arrays.items()}
-        return state | {"energy": between(self.energy), "time": at}
+        return state | {"energy": between(path.energy), "time": at}
 
     def envelope(self, side: Literal[1, -1] = 1) -> Envelope:
         """Return the envelope of the loop to one side; see `rbsdem.envelope`."""

@@ -12,7 +12,7 @@ import pytest
 from conftest import REPOSITORY
 
 import rbsdem
-from rbsdem.comparison import SCORES, cycles
+from rbsdem.comparison import SCORES, cycles, strength_loss
 from rbsdem.errors import InputError
 
 DEFINITIONS = REPOSITORY.parent / "shared" / "loop_metrics.py"
@@ -274,44 +274,44 @@ def test_test_and_model_share_their_tips(curves):
 def test_strength_loss_of_a_softening_push():
     # 100 at 1, down to 0 at 5: 80 at 1.8.
     d, f = [0.0, 1.0, 5.0], [0.0, 100.0, 0.0]
-    assert cycles.strength_loss(d, f) == pytest.approx(1.8)
-    assert cycles.strength_loss([-x for x in d], [-x for x in f]) == pytest.approx(1.8)
-    assert cycles.strength_loss(d, f, share=0.5) == pytest.approx(3.0)
+    assert strength_loss(d, f) == pytest.approx(1.8)
+    assert strength_loss([-x for x in d], [-x for x in f]) == pytest.approx(1.8)
+    assert strength_loss(d, f, share=0.5) == pytest.approx(3.0)
 
 
 def test_strength_loss_at_a_repeated_cycle():
     """The second cycle to 2 carries 70 of 100: 80 was passed at 2."""
     d = [0.0, 2.0, 0.0, -2.0, 0.0, 2.0, 0.0]
     f = [0.0, 100.0, 0.0, -100.0, 0.0, 70.0, 0.0]
-    assert cycles.strength_loss(d, f) == pytest.approx(2.0)
+    assert strength_loss(d, f) == pytest.approx(2.0)
     # Not if it only goes half as far.
     d[5] = 1.0
-    assert math.isnan(cycles.strength_loss(d, f))
+    assert math.isnan(strength_loss(d, f))
 
 
 def test_strength_loss_of_the_side_that_comes_first():
     d = [0.0, 1.0, -1.0, 1.0, 2.0, -3.0]
     f = [0.0, 100.0, -100.0, 100.0, 60.0, -50.0]
     # Positive side: 80 at 1.5; the negative one loses more, but later.
-    assert cycles.strength_loss(d, f) == pytest.approx(1.5)
+    assert strength_loss(d, f) == pytest.approx(1.5)
     # A cycle that crosses its former peak with less than 80 and stays below has lost it there, row
     # or no row; one that rises to 90 again has not.
     del d[3], f[3]
-    assert cycles.strength_loss(d, f) == pytest.approx(1.0)
-    assert math.isnan(cycles.strength_loss(d[:4], [0.0, 100.0, -100.0, 90.0]))
+    assert strength_loss(d, f) == pytest.approx(1.0)
+    assert math.isnan(strength_loss(d[:4], [0.0, 100.0, -100.0, 90.0]))
 
 
 def test_a_force_between_the_envelopes_is_no_strength():
     """On the way back from 2 the force is 300; pushed on it goes from 100 to 70: 80 at 8/3."""
     d = [0.0, 1.0, 2.0, 1.0, 0.0, 2.0, 3.0]
     f = [0.0, 100.0, 100.0, 300.0, 0.0, 100.0, 70.0]
-    assert cycles.strength_loss(d, f) == pytest.approx(8 / 3)
+    assert strength_loss(d, f) == pytest.approx(8 / 3)
 
 
 @pytest.mark.parametrize("rows", [0, 1, 2])
 def test_few_rows_lose_nothing(rows):
     d, f = np.arange(rows) * 1.0, np.arange(rows) * 1.0
-    assert math.isnan(cycles.strength_loss(d, f))
+    assert math.isnan(strength_loss(d, f))
     assert len(cycles.half_cycles(d, f)) == (1 if rows == 2 else 0)
 
 

@@ -49,9 +49,7 @@ from rbsdem.comparison import view as view
 from rbsdem.comparison.cycles import (
     TURN,
     HalfCycles,
-    envelope,
     half_cycles,
-    strength_loss,
     turning_points,
 )
 from rbsdem.comparison.metrics import (
@@ -70,6 +68,7 @@ from rbsdem.comparison.scores import (
     compare,
     displacement_metrics,
 )
+from rbsdem.comparison.strength import envelope, strength_loss
 
 __all__ = [
     "N_POINTS",

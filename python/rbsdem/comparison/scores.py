@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike
 from rbsdem import _core, _views
 from rbsdem._core import Array
 from rbsdem._curve import Curve, columns, pair
-from rbsdem.comparison.cycles import HalfCycles, half_cycles, strength_loss, tip_rows
+from rbsdem.comparison.cycles import HalfCycles, half_cycles, tip_rows
 from rbsdem.comparison.metrics import Loop, PathPoints, loop_of, ratio, rms
+from rbsdem.comparison.strength import strength_loss
 from rbsdem.errors import InputError
 
 if TYPE_CHECKING:

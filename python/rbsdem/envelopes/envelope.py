@@ -10,7 +10,7 @@ import numpy as np
 from rbsdem import _views
 from rbsdem._core import Array
 from rbsdem._curve import Curve, columns, loop_pair
-from rbsdem.comparison import cycles
+from rbsdem.comparison.strength import beyond
 from rbsdem.envelopes.idealise import Idealisation, Method, crossing, idealise
 from rbsdem.errors import InputError
 
@@ -151,7 +151,7 @@ def envelope(curve: Curve, side: Literal[1, -1] = 1) -> Envelope:
         If the curve has no displacement with a force to that side.
     """
     d, f = columns(("displacement", "force"), *loop_pair(curve, "the curve"))
-    _, x, y = cycles.beyond(d, f, side)
+    _, x, y = beyond(d, f, side)
     if x.size == 0 or not y.max() > 0:
         way = "positive" if side > 0 else "negative"
         raise InputError(

@@ -6,7 +6,8 @@ from typing import Literal
 
 from rbsdem._core import Array
 from rbsdem._views import view_of
-from rbsdem.comparison.cycles import HalfCycles, half_cycles, strength_loss
+from rbsdem.comparison.cycles import HalfCycles, half_cycles
+from rbsdem.comparison.strength import strength_loss
 from rbsdem.envelopes.envelope import Envelope, envelope
 from rbsdem.envelopes.idealise import Idealisation, Method
 from rbsdem.result import Result

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from rbsdem._views import view_of
-from rbsdem.comparison.cycles import strength_loss_point
+from rbsdem.comparison.strength import strength_loss_point
 from rbsdem.limit_states.criteria import Criterion, criteria
 from rbsdem.limit_states.record import LimitState, LimitStates
 from rbsdem.result import Result
