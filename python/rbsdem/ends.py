@@ -48,10 +48,10 @@ def double_curvature(column: C, *, top_mass: float = 0.0, prismatic: bool | None
     InputError
         If the column is no such cantilever, or a spring cannot be turned.
     """
+    checked_column(column, "double_curvature: ")
     if prismatic is None:
         prismatic = column._prismatic
     prismatic = _core.switch(prismatic, "double_curvature: prismatic")
-    checked_column(column, "double_curvature: ")
     refused = {
         "top": column.top != "free",
         "footing": column.footing is not None,

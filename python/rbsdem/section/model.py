@@ -614,6 +614,11 @@ class LayeredColumn(Column):
         return spread(self, displacement, samples=samples, scatter=scatter)
 
     @property
+    def replaced(self) -> tuple[str, ...]:
+        """What of shear and flexure is not that of the model."""
+        return tuple(name for name in ("shear", "flexure") if self._kept(name))
+
+    @property
     def _prismatic(self) -> bool:
         return not self._recipe.section.symmetric
 
