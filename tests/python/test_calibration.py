@@ -566,7 +566,7 @@ ZERO = replace(COLUMNS["zahn_7"], flexure=replace(COLUMNS["zahn_7"].flexure, k_u
         ({"test": (0 * D, F)}, "displacement of the test is 0 m in every row"),
         ({"test": (D, 0 * F)}, "force of the test is 0 in every row"),
         ({"test": (D[:2], F[:2])}, "2 rows; a loop needs at least 3"),
-        ({"loss": "rms"}, "loss = 'rms' is not known; it is nrmse or balanced"),
+        ({"loss": "rms"}, "loss = 'rms' is not known; it is one of nrmse, balanced"),
         ({"seed": -1}, "seed = -1 must be 0 or more"),
         ({"seed": 1.5}, "seed = 1.5 must be a whole number"),
         ({"jobs": 0}, "jobs = 0 must be 1 or more"),
