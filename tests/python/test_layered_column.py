@@ -114,10 +114,10 @@ def test_strength_of_the_hinge_is_that_of_the_section():
     ("model", "options", "text"),
     [
         ("layered", {"n": 1}, "n = 1: the layered model needs a joint above the hinge; give 2"),
-        ("paper", {"n": 0}, "n = 0; give 1 or more"),
+        ("paper", {"n": 0}, "n = 0 must be from 1"),
         ("layered", {"n": 2.5}, "n = 2.5 must be a whole number"),
         ("best", {}, "model = 'best' is now 'layered'"),
-        ("bets", {}, "'bets' is not known; there are layered, paper"),
+        ("bets", {}, "'bets' is not known; it is one of layered, paper"),
     ],
 )
 def test_wrong_choices_are_refused(model, options, text):
