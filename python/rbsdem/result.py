@@ -175,12 +175,13 @@ class Result:
     def path(self) -> Result:
         """A static path from corner to corner: the rows of all points, and of the events between.
 
-        Between two rows a static path is straight with small rotations, and a short piece of curve
-        with exact ones; `time` of a row between two points holds the share of the way. If the first
-        point is not where the path begins, its beginning is the first row, at time -1. What is
-        measured on a path is measured here, so that it depends neither on `every` nor on points put
-        on the way. The openings are kept. It is found by the same analysis once more, when it is
-        first asked for. A response in time is its own path.
+        Between two rows a static path is straight with small rotations under a constant axial load;
+        with exact rotations, or a load that varies, it is a piece of curve. `time` of a row between
+        two points holds the share of the way. If the first point is not where the path begins, its
+        beginning is the first row, at time -1. What is measured on a path is measured here, so that
+        it depends neither on `every` nor on points put on the way. The openings are kept. It is
+        found by the same analysis once more, when it is first asked for. A response in time is its
+        own path.
         """
         own = vars(self)
         if self.dynamic or "_is_path" in own:

@@ -73,10 +73,12 @@ def with_points_on_the_way(values: Array, seed: int) -> Array:
     return np.concatenate(([0.0], *parts))
 
 
-def figures(column: rbsdem.Column, path: Array, **options: Any) -> dict[str, float]:
+def figures(
+    column: rbsdem.Column, path: Array, driven: str = "displacement", **options: Any
+) -> dict[str, float]:
     """Every number that a result tells of its loop; of a path that breaks off, up to there."""
     try:
-        result = rbsdem.cyclic(column, displacement=path, **options)
+        result = rbsdem.cyclic(column, **{driven: path}, **options)
     except rbsdem.SolveError as error:
         result = error.result
     cycles = result.half_cycles()
@@ -111,6 +113,16 @@ def test_figures_do_not_depend_on_the_rows(seed: int) -> None:
     for every in (None, 3, 100):
         again = figures(column, more, every=every)
         assert again == pytest.approx(told, rel=1e-7, abs=1e-9, nan_ok=True)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_figures_under_a_driven_force_do_not_depend_on_the_rows(seed: int) -> None:
+    column, path = random_case(seed)
+    peak = np.abs(rbsdem.cyclic(column, displacement=path[:4]).force).max()
+    force = 0.6 * peak * np.sign(path) * np.linspace(0.3, 1.0, path.size)
+    told = figures(column, force, "force")
+    again = figures(column, with_points_on_the_way(force, seed), "force", every=7)
+    assert again == pytest.approx(told, rel=1e-7, abs=1e-9, nan_ok=True)
 
 
 @pytest.mark.parametrize("seed", range(8))
