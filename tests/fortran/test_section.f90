@@ -424,7 +424,7 @@ contains
       call follow(section, laws, 1.01_wp*most%n, phi, moment, eps0, outcome)
       call check_failed(error, outcome, bad_input, 'more compression than the section carries')
       call follow(section, laws, 1.01_wp*least%n, phi, moment, eps0, outcome)
-      call check_failed(error, outcome, bad_input, 'above what the bars carry')
+      call check_failed(error, outcome, bad_input, 'more tension than the section carries')
       call follow(section, laws, 0.9_wp*most%n, phi, moment, eps0, outcome)
       call check_failed(error, outcome, analysis_failed, 'no longer carries the axial load')
       call check_true(error, moment(1) > 0.0_wp, 'the moment before is there')

@@ -119,7 +119,7 @@ def _parameters(version: str, changes: dict[str, float]) -> ModelParameters:
 
 
 def _section(groups: Groups) -> Section:
-    steels = {}
+    steels: dict[int | None, Steel] = {}
     for one in groups.get("steel", []):
         values = _core.typed("steel", one)
         number = values.pop("id", None)
