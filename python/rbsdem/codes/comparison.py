@@ -183,12 +183,14 @@ def _measured(found: CodeComparison) -> dict[str, dict[str, float]]:
 
 
 def _idealised(d: Array, f: Array) -> float:
-    """Return the displacement at yield of the side with the larger force [m]."""
-    side: Literal[1, -1] = 1 if f[np.argmax(np.abs(f))] > 0 else -1
-    try:
-        return envelope((d, f), side).idealise("asce_41").yield_displacement
-    except InputError:  # The loop has no such envelope.
-        return math.nan
+    """Return the displacement at yield of the side with the larger force, else the other [m]."""
+    sides: tuple[Literal[1, -1], ...] = (1, -1) if f[np.argmax(np.abs(f))] > 0 else (-1, 1)
+    for side in sides:
+        try:
+            return envelope((d, f), side).idealise("asce_41").yield_displacement
+        except InputError:  # The loop has no such envelope.
+            continue
+    return math.nan
 
 
 def _at_yield(found: CodeComparison, drift: float) -> float:
