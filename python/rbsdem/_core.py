@@ -365,7 +365,11 @@ def time_history(
         elif ended > room:
             room, wanted = ended, rows.shape[1]
         elif status != _LITTLE_ROOM:
-            return _finish(rows, wanted, after[:ended], *rest), reached.T
+            run = _finish(rows, wanted, after[:ended], *rest)
+            if "force" not in loads:
+                for name in ("peak_force", "displacement_at_peak_force"):
+                    del run[2][name]
+            return run, reached.T
 
 
 def settings(given: Mapping[str, Any]) -> Statement:

@@ -113,13 +113,13 @@ class Result:
         "method" that was used and, if the program chose it, the "reason"; "status": "completed",
         "collapsed" (`collapse_drift` was reached) or "failed" (the result of a `SolveError`).
         Values: steps, rows, events (how often a spring left its line), time_step and stable_step
-        [s], peak_displacement [m], peak_force [N] (in a static analysis where it has the sign of
-        the displacement), displacement_at_peak_force [m], peak_base_shear [N], peak_rotation
-        (largest absolute rotation of a body [rad]), energies at the end [J], energy_residual [J]
-        and relative_energy_residual (the largest), cut_steps (steps cut at an event, for accuracy,
-        or because they did not converge). Whatever rows are kept, they are those of all points or
-        steps, the residual that of all points or times of the loading; "rk45" and located events
-        resolve peaks within a step.
+        [s], peak_displacement [m], peak_force [N] and displacement_at_peak_force [m] (static, where
+        the force has the sign of the displacement; in time of a lateral force, if there is one),
+        peak_base_shear [N], peak_rotation (largest absolute rotation of a body [rad]), energies at
+        the end [J], energy_residual [J] and relative_energy_residual (the largest), cut_steps
+        (steps cut at an event, for accuracy, or because they did not converge). Whatever rows are
+        kept, they are those of all points or steps, the residual that of all points or times of the
+        loading; "rk45" and located events resolve peaks within a step.
     opening : ndarray, shape (steps, n)
         Opening of the joints at the middle of the section [m]: of axial springs, and, if the
         analysis was called with ``openings=True``, of layered joints. Zero for other joints.
@@ -566,7 +566,11 @@ class Result:
         return (
             f"Result({about['method']}, {self.time.size} rows, {about['status']}, "
             f"peak displacement {about['peak_displacement']:.4g} m, "
-            f"peak force {about['peak_force']:.4g} N)"
+            + (
+                f"peak base shear {about['peak_base_shear']:.4g} N)"
+                if self.dynamic
+                else f"peak force {about['peak_force']:.4g} N)"
+            )
         )
 
     def __eq__(self, other: object) -> bool:

@@ -385,8 +385,10 @@ contains
             if (summary_names(i) == 'peak_floor_acceleration' .and. .not. values(i) >= 0.0_wp) cycle
             if (summary_names(i) == 'collapsed' .or. summary_names(i) == 'lost_joint') cycle
             if (i > findloc(summary_names, 'lost_joint', dim=1)) exit
-            ! Without inertia it is the peak force.
+            ! Without inertia the base holds the force at the top; in time there mostly is none.
             if (summary_names(i) == 'peak_base_shear' .and. .not. case%analysis%dynamic()) cycle
+            if (index(summary_names(i), 'peak_force') > 0 .and. case%analysis%dynamic() .and. &
+                .not. abs(summary%peak_force) > 0.0_wp) cycle
             name = summary_names(i)
             if (summary_units(i) /= '') name = trim(name)//'_'//summary_units(i)
             call say('  '//name//'  '//to_text(values(i)), error)

@@ -170,3 +170,13 @@ def test_the_drift_of_collapse_counts_the_height_of_the_column(analysis):
     assert result.summary["status"] == "collapsed"
     before, after = np.abs(result.displacement[-2:]) / 1.6
     assert before < 0.01 <= after
+
+
+def test_a_response_in_time_tells_its_base_shear():
+    """Without a lateral force at the top there is none to tell."""
+    shaken = solve("newmark", column())
+    assert f"peak base shear {shaken.summary['peak_base_shear']:.4g} N" in repr(shaken)
+    assert not {"peak_force", "displacement_at_peak_force"} & set(shaken.summary)
+    pushed = rbsdem.time_history(column(), TIME, force=1e4 * TIME, method="newmark")
+    assert pushed.summary["peak_force"] == pytest.approx(1e4 * TIME[-1])
+    assert "peak force" in repr(solve("static", column()))
