@@ -214,6 +214,7 @@ def time_history(
     rho_infinity: float | None = None,
     collapse_drift: float | None = None,
     allow_unstable: bool = False,
+    max_seconds: float | None = None,
     every: int | None = None,
     openings: bool = False,
     motion: bool = False,
@@ -269,6 +270,9 @@ def time_history(
         analysis ends there, and `summary["status"]` is "collapsed".
     allow_unstable : bool, optional
         For "rk4": accept a `dt` beyond the stability limit.
+    max_seconds : float, optional
+        A run that is expected to take longer is refused before it starts [s]; the message says how
+        long, and which method is faster. The default is 300.
     every : int, optional
         Keep every n-th step and the last one. By default rows are kept as described for `dt`.
     openings : bool, optional
@@ -288,7 +292,8 @@ def time_history(
     Raises
     ------
     InputError
-        For bad input, and for a step beyond the stability limit; the message gives the limit.
+        For bad input, for a step beyond the stability limit (the message gives the limit), and for
+        a run that is expected to take more than `max_seconds`.
     SolveError
         If the motion grows without bounds, or a step does not converge; its attribute `result`
         holds the rows up to that point.
@@ -323,6 +328,7 @@ def time_history(
         "rho_infinity": rho_infinity,
         "collapse_drift": collapse_drift,
         "allow_unstable": _core.switch(allow_unstable, "allow_unstable") or None,
+        "max_seconds": max_seconds,
     }
     kept = not _checked(column).opens and _core.switch(openings, "openings")
     moves = _core.switch(motion, "motion")

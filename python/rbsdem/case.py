@@ -45,8 +45,8 @@ class Case:
         Axial load at the top in place of that of the column [N].
     settings : dict
         The settings of the analysis that were given, as keywords of `cyclic` or `time_history`: dt,
-        events, tolerance, rho_infinity, collapse_drift, allow_unstable, every, openings,
-        motion, initial (path of a state).
+        events, tolerance, rho_infinity, collapse_drift, allow_unstable, max_seconds, every,
+        openings, motion, initial (path of a state).
     """
 
     title: str

@@ -34,6 +34,8 @@ module rbs_case_analysis_record
       real(wp) :: rho_infinity = unset
       real(wp) :: collapse_drift = unset
       logical :: allow_unstable = .false.
+      !> A run in time that is expected to take longer is not begun [s]; `unset`: five minutes
+      real(wp) :: max_seconds = unset
       !> Path of the state that the analysis begins in; not allocated: at rest
       character(len=:), allocatable :: initial
    contains
@@ -87,6 +89,9 @@ contains
                  optional=.true.)
       call v%key('allow_unstable', self%allow_unstable, &
                  'rk4: take a step beyond the stability limit all the same')
+      call v%key('max_seconds', self%max_seconds, 's', above_zero, &
+                 'a run in time that is expected to take longer is not begun; without it 300', &
+                 optional=.true.)
       call v%long_text('initial', self%initial, &
                        'path of the state that another analysis ended in, to begin there')
    end subroutine visit_analysis
@@ -159,6 +164,7 @@ contains
       if (method%name == '') return
       call refuse(is_given(self%dt) .and. .not. method%dt, 'dt')
       call refuse(is_given(self%duration) .and. .not. method%in_time, 'duration')
+      call refuse(is_given(self%max_seconds) .and. .not. method%in_time, 'max_seconds')
       call refuse(self%events /= '' .and. .not. method%events, 'events')
       call refuse(is_given(self%tolerance) .and. .not. method%tolerance, 'tolerance')
       call refuse(is_given(self%rho_infinity) .and. .not. method%rho_infinity, 'rho_infinity')

@@ -98,7 +98,7 @@ contains
       select case (key)
       case ('dt')
          takes = methods%dt
-      case ('duration')
+      case ('duration', 'max_seconds')
          takes = methods%in_time
       case ('events')
          takes = methods%events

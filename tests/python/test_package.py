@@ -135,7 +135,7 @@ def test_signatures_of_the_analyses_are_the_promised_ones():
     ]  # fmt: skip
     assert names(rbsdem.time_history)[7:] == [
         "vertical_acceleration", "axial_load", "events", "tolerance", "rho_infinity",
-        "collapse_drift", "allow_unstable", "every", "openings", "motion",
+        "collapse_drift", "allow_unstable", "max_seconds", "every", "openings", "motion",
     ]  # fmt: skip
     assert names(rbsdem.mass_matrix) == ["column", "form"]
     assert names(rbsdem.modes) == ["column"]

@@ -41,6 +41,7 @@ _SETTINGS = (
     "rho_infinity",
     "collapse_drift",
     "allow_unstable",
+    "max_seconds",
     "initial",
 )
 

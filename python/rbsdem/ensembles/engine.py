@@ -55,6 +55,7 @@ def ensemble(
     collapse_drift: float | None = None,
     initial: Any = None,
     allow_unstable: bool = False,
+    max_seconds: float | None = None,
     jobs: int | None = None,
     store: str | os.PathLike[str] | None = None,
     shard: tuple[int, int] | None = None,
@@ -97,6 +98,8 @@ def ensemble(
         of its own.
     allow_unstable : bool, optional
         As for `time_history`.
+    max_seconds : float, optional
+        As for `time_history`: the longest that one run may be expected to take [s].
     jobs : int, optional
         Threads; by default one for each processor that this process may use.
     store : path, optional
@@ -139,6 +142,7 @@ def ensemble(
         "rho_infinity": rho_infinity,
         "collapse_drift": collapse_drift,
         "allow_unstable": _core.switch(allow_unstable, "allow_unstable") or None,
+        "max_seconds": max_seconds,
     }
     settings = {name: _plain(value) for name, value in settings.items() if value is not None}
     faults: list[str] = []

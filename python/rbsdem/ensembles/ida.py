@@ -199,6 +199,7 @@ def ida(
     events: Literal["step", "located"] | None = None,
     rho_infinity: float | None = None,
     allow_unstable: bool = False,
+    max_seconds: float | None = None,
     initial: Any = None,
     jobs: int | None = None,
     progress: bool = False,
@@ -229,9 +230,11 @@ def ida(
     initial : Result, path, or sequence or mapping of them, optional
         The state that all runs of a column begin in, as for `rbsdem.ensemble`: what an aftershock
         finds. The curves begin at what the column does in it without motion.
-    method, dt, tolerance, events, rho_infinity, allow_unstable, jobs, progress : optional
+    method, dt, tolerance, events, rho_infinity, allow_unstable, max_seconds : optional
         As for `rbsdem.ensemble`. A run that fails is tried again with "rk45"; one that fails
         twice counts as a collapse, with a warning.
+    jobs, progress : optional
+        As for `rbsdem.ensemble`.
     store : path, optional
         Folder that keeps the runs, as for `rbsdem.ensemble`; a second start, with more records too,
         goes on from there.
@@ -257,6 +260,7 @@ def ida(
         "events": events,
         "rho_infinity": rho_infinity,
         "allow_unstable": _core.switch(allow_unstable, "allow_unstable"),
+        "max_seconds": max_seconds,
         "collapse_drift": checked_drift(collapse_drift),
         "initial": initial,
         "jobs": jobs,

@@ -42,7 +42,7 @@ Exit codes: 0 all went well, 1 the analysis failed, 2 the input is wrong, 130 in
 _DRIFT = 0.1
 _WORD = "synthetic"
 #: Settings of a case that go with its method.
-_OF_METHOD = ("dt", "events", "tolerance", "rho_infinity", "allow_unstable")
+_OF_METHOD = ("dt", "events", "tolerance", "rho_infinity", "allow_unstable", "max_seconds")
 
 
 def parser() -> CommandParser:

@@ -1,7 +1,8 @@
 !> How long a run in time will take, told before it starts, and which method is faster.
 module rbs_solve_time_effort
    use rbs_base_constants, only: pi
-   use rbs_base_error, only: error_type
+   use rbs_base_check, only: is_given
+   use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_case_methods, only: method_type, method_named
@@ -11,10 +12,13 @@ module rbs_solve_time_effort
    implicit none
    private
 
-   public :: patience, expected_seconds, long_run_note
+   public :: patience, expected_seconds, long_run_note, check_effort
 
    !> Runs that are expected to be shorter start without a word [s].
    real(wp), parameter :: patience = 5.0_wp
+
+   !> Longer ones do not start unless the user allows it [s].
+   real(wp), parameter :: usual_max_seconds = 300.0_wp
 
    !> Exact rotations make a step this much longer.
    real(wp), parameter :: cost_of_finite = 6.0_wp
@@ -78,6 +82,27 @@ contains
              to_text(one_digit(expected_seconds(column, short)))//' s, with errors of about '// &
              to_text(other%usual_error)//' in place of '//to_text(method%usual_error)
    end subroutine long_run_note
+
+   !> Refuse a run that is expected to take longer than the user allows.
+   subroutine check_effort(column, max_seconds, plan, error)
+      type(column_type), intent(in) :: column
+      !> `unset`: the usual time [s]
+      real(wp), intent(in) :: max_seconds
+      type(time_plan), intent(in) :: plan
+      type(error_type), allocatable, intent(out) :: error
+      character(len=:), allocatable :: text
+      real(wp) :: most, seconds
+
+      most = usual_max_seconds
+      if (is_given(max_seconds)) most = max_seconds
+      seconds = expected_seconds(column, plan)
+      if (.not. seconds > most) return
+      call long_run_note(column, plan, text)
+      if (text == '') text = 'analysis: the run will take some '//to_text(one_digit(seconds))//' s'
+      call fatal_error(error, bad_input, text//'. It is not begun, as it is expected to take more than '// &
+                       to_text(most)//' s; if it is wanted, give max_seconds = '// &
+                       to_text(3.0_wp*one_digit(seconds)))
+   end subroutine check_effort
 
    !> One digit is all that is known.
    elemental real(wp) function one_digit(seconds)

@@ -16,6 +16,7 @@ module rbs_solve_time_run_dynamic
    use rbs_solve_check_values, only: check_values
    use rbs_solve_modal_modes, only: frequency_bounds, stability_limit
    use rbs_solve_end_state, only: end_state
+   use rbs_solve_time_effort, only: check_effort
    use rbs_solve_time_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha, &
                                       with_finite_rotations
    use rbs_solve_time_loads, only: loads_type
@@ -64,6 +65,8 @@ contains
          if (allocated(error)) return
       end if
       call plan_steps(column, analysis, time, loads, plan, error)
+      if (allocated(error)) return
+      call check_effort(column, analysis%max_seconds, plan, error)
    end subroutine plan_dynamic
 
    !> Steps of the method chosen.

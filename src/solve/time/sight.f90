@@ -209,6 +209,8 @@ contains
       real(wp) :: displacement(4), base(4), rotation(4), reach
       integer :: i, j, m, n
 
+      ! Steps up to an event may have no length.
+      if (.not. h > tiny(1.0_wp)) return
       m = size(q0)
       n = motion%column%n
       call fill_inner(m, q0, v0, q1, v1, h, self%inner_q, self%inner_v)
@@ -304,7 +306,7 @@ contains
       integer, intent(in) :: m
       real(wp), intent(in) :: q0(m), v0(m), q1(m), v1(m), h
       real(wp), intent(out) :: q(m, 4), v(m, 4)
-      real(wp) :: s
+      real(wp) :: s, bulge
       integer :: i, j
 
       q(:, 1) = q0
@@ -316,8 +318,10 @@ contains
          do i = 1, m
             q(i, j) = q0(i) + s**2*(3.0_wp - 2.0_wp*s)*(q1(i) - q0(i)) &
                       + s*(1.0_wp - s)*h*((1.0_wp - s)*v0(i) - s*v1(i))
-            v(i, j) = 6.0_wp*s*(1.0_wp - s)*(q1(i) - q0(i))/h + (1.0_wp - s)*(1.0_wp - 3.0_wp*s)*v0(i) &
-                      - s*(2.0_wp - 3.0_wp*s)*v1(i)
+            ! What the mean velocity has beyond that of the ends; in a very short step it would be round-off.
+            bulge = (q1(i) - q0(i))/h - 0.5_wp*(v0(i) + v1(i))
+            bulge = min(max(bulge, -abs(v1(i) - v0(i))), abs(v1(i) - v0(i)))
+            v(i, j) = (1.0_wp - s)*v0(i) + s*v1(i) + 6.0_wp*s*(1.0_wp - s)*bulge
          end do
       end do
    end subroutine fill_inner
@@ -393,6 +397,8 @@ contains
       real(wp), intent(inout) :: lowest, highest
       real(wp), intent(in) :: factor, threshold
 
+      ! Beyond all meaning it would overflow.
+      if (abs(threshold) > 1.0e100_wp) return
       if (factor > 0.0_wp) highest = min(highest, threshold/factor)
       if (factor < 0.0_wp) lowest = max(lowest, threshold/factor)
    end subroutine narrow
