@@ -175,14 +175,15 @@ REFUSED = (
 
 
 def test_a_run_of_many_minutes_needs_a_yes(tmp_path, run_cli):
-    """The run above, half an hour by its estimate, without the time that it is allowed."""
-    text = LONG.replace(", max_seconds = 1e5", "")
+    """The run above, half as long again, without the time that it is allowed: six minutes or so."""
+    allowed = LONG.replace("duration = 20", "duration = 30")
+    text = allowed.replace(", max_seconds = 1e5", "")
     (tmp_path / "case.nml").write_text(text, "utf-8")
     case = rbsdem.read_case(tmp_path / "case.nml")
     with pytest.raises(InputError, match=REFUSED) as caught:
         case.run()
     assert "Faster: method = 'generalised_alpha'" in str(caught.value)
-    motion = np.linspace(0.0, 20.0, 100), np.ones(100)
+    motion = np.linspace(0.0, 30.0, 100), np.ones(100)
     with pytest.raises(InputError, match=REFUSED):
         rbsdem.ensemble(case.column, motion, method="rk45")
     for verb in ("check", "run"):
@@ -192,7 +193,7 @@ def test_a_run_of_many_minutes_needs_a_yes(tmp_path, run_cli):
     # Warnings are errors here: allowed, it would start.
     with pytest.raises(rbsdem.LongRunWarning, match="will take some"):
         case.run(max_seconds=1e6)
-    (tmp_path / "allowed.nml").write_text(LONG, "utf-8")
+    (tmp_path / "allowed.nml").write_text(allowed, "utf-8")
     assert run_cli(["check", "allowed.nml"], tmp_path).returncode == 0
     # The bound is the user's.
     with pytest.raises(InputError, match="more than 1e-09 s"):
