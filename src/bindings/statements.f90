@@ -135,7 +135,7 @@ contains
       call messages%raise(error)
       if (allocated(error)) return
       if (.not. carries_axial_load(spring)) then
-         call fatal_error(error, bad_input, 'layered spring: '//told_capacity(spring))
+         call fatal_error(error, bad_input, 'layered spring: '//trim(told_capacity(spring)))
       end if
    end subroutine spring_from_statements
 

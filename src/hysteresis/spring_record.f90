@@ -358,7 +358,7 @@ contains
    !> What is said of an axial load that the layers of a spring do not carry.
    function told_capacity(self) result(text)
       type(spring_record), intent(in) :: self
-      character(len=:), allocatable :: text
+      character(len=200) :: text
       type(spring_record) :: other
       real(wp) :: carried, refused
       integer :: i

@@ -28,7 +28,7 @@ contains
          associate (spring => column%spring(column%n + i))
             if (carries_axial_load(spring)) cycle
             call fatal_error(error, bad_input, 'flexure spring of joint '// &
-                             to_text(spec%joint_number(i))//': '//told_capacity(spring))
+                             to_text(spec%joint_number(i))//': '//trim(told_capacity(spring)))
          end associate
          return
       end do
