@@ -439,7 +439,10 @@ def test_all_bad_samples_are_told_at_once():
         (lambda: Uncertain(make, VARIABLES, {("k", "mass"): 1.5}), "contradict each other"),
         (lambda: Uncertain(make, VARIABLES).values(10, "sobol"), "n = 10 must be a power of 2"),
         (lambda: Uncertain(make, VARIABLES).values(0), "n = 0 must be from 1"),
-        (lambda: Uncertain(make, VARIABLES).values(8, "halton"), "method = 'halton' is not one of"),
+        (
+            lambda: Uncertain(make, VARIABLES).values(8, "halton"),
+            "method = 'halton' is not known; it is one of",
+        ),
         (lambda: Uncertain(lambda k, mass: 3, VARIABLES).sample(1), "make returned a int"),
         (lambda: lognormal(-1.0, 0.2), "must be above 0"),
     ],
