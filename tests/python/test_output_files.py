@@ -186,8 +186,8 @@ def test_full_disk_is_told(run_cli, case_text, folder, points):
 def test_lack_of_memory_is_told(run_cli, case_text, folder):
     """The limits lie between what the program needs for a small case and what the large one needs.
 
-    The first depends on the libraries. OpenBLAS takes a buffer for each thread when it is loaded, and
-    waits for ever where there is no room for them.
+    The first depends on the libraries. OpenBLAS takes a buffer for each thread when it is loaded,
+    and waits for ever where there is no room for them.
     """
 
     def within(megabytes, *words):
