@@ -1,58 +1,22 @@
 !> Linear algebra, dense and banded: the only place that calls LAPACK.
 !>
+!> No analysis calls it for a dense system at each event or step: that is for `rbs_base_small_systems`.
 !> Symmetric matrices are passed whole; only the lower triangle is read. `info` of LAPACK becomes a
 !> logical where the caller can write a better message, and an error otherwise.
 module rbs_base_linalg
    use, intrinsic :: ieee_exceptions, only: ieee_all, ieee_get_status, ieee_set_halting_mode, &
                                             ieee_set_status, ieee_status_type
    use rbs_base_kinds, only: wp
-   use rbs_base_small_systems, only: eliminate
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_text, only: to_text
    implicit none
    private
 
-   public :: factor_positive, solve_positive, invert_positive, solve_general, solve_eigen
+   public :: solve_eigen
    public :: factor_band, solve_band, solve_tridiagonal, solve_general_band
    public :: singular_values, solve_upper, is_dominated
 
    interface
-      subroutine dpotrf(uplo, n, a, lda, info)
-         import :: wp
-         implicit none
-         character(len=1), intent(in) :: uplo
-         integer, intent(in) :: n, lda
-         real(wp), intent(inout) :: a(lda, *)
-         integer, intent(out) :: info
-      end subroutine dpotrf
-
-      subroutine dpotrs(uplo, n, nrhs, a, lda, b, ldb, info)
-         import :: wp
-         implicit none
-         character(len=1), intent(in) :: uplo
-         integer, intent(in) :: n, nrhs, lda, ldb
-         real(wp), intent(in) :: a(lda, *)
-         real(wp), intent(inout) :: b(ldb, *)
-         integer, intent(out) :: info
-      end subroutine dpotrs
-
-      subroutine dpotri(uplo, n, a, lda, info)
-         import :: wp
-         implicit none
-         character(len=1), intent(in) :: uplo
-         integer, intent(in) :: n, lda
-         real(wp), intent(inout) :: a(lda, *)
-         integer, intent(out) :: info
-      end subroutine dpotri
-
-      subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
-         import :: wp
-         implicit none
-         integer, intent(in) :: n, nrhs, lda, ldb
-         real(wp), intent(inout) :: a(lda, *), b(ldb, *)
-         integer, intent(out) :: ipiv(*), info
-      end subroutine dgesv
-
       subroutine dpbtrf(uplo, n, kd, ab, ldab, info)
          import :: wp
          implicit none
@@ -121,69 +85,7 @@ module rbs_base_linalg
       end subroutine dtrtrs
    end interface
 
-   !> Largest system for which elimination is written out.
-   integer, parameter :: small_size = 6
-
 contains
-
-   !> Cholesky factor of a symmetric matrix, in place; it exists if the matrix is positive definite.
-   subroutine factor_positive(a, positive)
-      !> Matrix (n, n); on return its factor in the lower triangle
-      real(wp), intent(inout) :: a(:, :)
-      !> Whether the matrix is positive definite
-      logical, intent(out) :: positive
-      integer :: info
-
-      call dpotrf('L', size(a, 1), a, size(a, 1), info)
-      positive = info == 0
-   end subroutine factor_positive
-
-   !> Solve with the factor of `factor_positive`.
-   subroutine solve_positive(factor, b)
-      !> Factor (n, n)
-      real(wp), intent(in) :: factor(:, :)
-      !> Right-hand side (n), replaced by the solution
-      real(wp), intent(inout) :: b(:)
-      integer :: info
-
-      call dpotrs('L', size(b), 1, factor, size(factor, 1), b, size(b), info)
-   end subroutine solve_positive
-
-   !> Inverse of a symmetric positive definite matrix, in place and whole.
-   subroutine invert_positive(a, positive)
-      !> Matrix (n, n), replaced by its inverse
-      real(wp), intent(inout) :: a(:, :)
-      !> Whether the matrix is positive definite; if not, `a` is useless on return
-      logical, intent(out) :: positive
-      integer :: i, info
-
-      call factor_positive(a, positive)
-      if (.not. positive) return
-      call dpotri('L', size(a, 1), a, size(a, 1), info)
-      positive = info == 0
-      do i = 2, size(a, 1)
-         a(:i - 1, i) = a(i, :i - 1)
-      end do
-   end subroutine invert_positive
-
-   !> Solve a general system by elimination with pivots.
-   subroutine solve_general(a, b, regular)
-      !> Matrix (n, n), overwritten
-      real(wp), intent(inout) :: a(:, :)
-      !> Right-hand sides (n, m), replaced by the solutions
-      real(wp), intent(inout) :: b(:, :)
-      !> Whether the matrix has an inverse
-      logical, intent(out) :: regular
-      integer :: pivot(size(a, 1))
-      integer :: info
-
-      if (size(a, 1) <= small_size) then
-         call eliminate(size(a, 1), size(b, 2), a, b, regular)
-         return
-      end if
-      call dgesv(size(a, 1), size(b, 2), a, size(a, 1), pivot, b, size(b, 1), info)
-      regular = info == 0
-   end subroutine solve_general
 
    !> Cholesky factor of a symmetric band matrix, in place, in time and memory proportional to n.
    subroutine factor_band(band, positive)

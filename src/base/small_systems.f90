@@ -1,23 +1,82 @@
-!> Systems so small that calls of LAPACK cost more than their arithmetic: elimination with partial pivoting.
+!> Dense systems that are solved at every event or step, in loops of our own. They are small: a call of
+!> LAPACK costs more than their arithmetic, and one with threads wakes them for nothing, which on a busy
+!> machine takes a thousand times as long.
 module rbs_base_small_systems
    use rbs_base_kinds, only: wp
    implicit none
    private
 
-   public :: eliminate, solve_rows, row_length
+   public :: factor_positive, solve_positive, solve_general, solve_rows, row_length
 
    !> Length of an equation in `solve_rows`: up to five unknowns and three right-hand sides.
    integer, parameter :: row_length = 8
 
 contains
 
-   !> Elimination with partial pivoting for a system so small that the calls of LAPACK cost more than its
-   !> arithmetic.
+   !> Cholesky factor of a symmetric matrix, in place; it exists if the matrix is positive definite.
+   pure subroutine factor_positive(a, positive)
+      !> Matrix (n, n), of which only the lower triangle is read; on return its factor there
+      real(wp), intent(inout) :: a(:, :)
+      !> Whether the matrix is positive definite
+      logical, intent(out) :: positive
+      integer :: i, j, k
+
+      positive = .false.
+      do k = 1, size(a, 1)
+         if (.not. a(k, k) > 0.0_wp) return
+         a(k, k) = sqrt(a(k, k))
+         do i = k + 1, size(a, 1)
+            a(i, k) = a(i, k)/a(k, k)
+         end do
+         do j = k + 1, size(a, 1)
+            do i = j, size(a, 1)
+               a(i, j) = a(i, j) - a(i, k)*a(j, k)
+            end do
+         end do
+      end do
+      positive = .true.
+   end subroutine factor_positive
+
+   !> Solve with the factor of `factor_positive`.
+   pure subroutine solve_positive(factor, b)
+      !> Factor (n, n)
+      real(wp), intent(in) :: factor(:, :)
+      !> Right-hand side (n), replaced by the solution
+      real(wp), intent(inout) :: b(:)
+      integer :: i, k
+
+      do k = 1, size(b)
+         b(k) = b(k)/factor(k, k)
+         do i = k + 1, size(b)
+            b(i) = b(i) - factor(i, k)*b(k)
+         end do
+      end do
+      do k = size(b), 1, -1
+         do i = k + 1, size(b)
+            b(k) = b(k) - factor(i, k)*b(i)
+         end do
+         b(k) = b(k)/factor(k, k)
+      end do
+   end subroutine solve_positive
+
+   !> Solve a general system by elimination with partial pivoting.
+   pure subroutine solve_general(a, b, regular)
+      !> Matrix (n, n), overwritten
+      real(wp), intent(inout) :: a(:, :)
+      !> Right-hand sides (n, m), replaced by the solutions
+      real(wp), intent(inout) :: b(:, :)
+      !> Whether the matrix has an inverse
+      logical, intent(out) :: regular
+
+      call eliminate(size(a, 1), size(b, 2), a, b, regular)
+   end subroutine solve_general
+
+   !> The same with arrays of known shape: column by column, as they stand in memory.
    pure subroutine eliminate(n, m, a, b, regular)
       integer, intent(in) :: n, m
       real(wp), intent(inout) :: a(n, n), b(n, m)
       logical, intent(out) :: regular
-      real(wp) :: factor, swap
+      real(wp) :: swap
       integer :: i, j, k, p
 
       regular = .false.
@@ -40,12 +99,16 @@ contains
             end do
          end if
          do i = k + 1, n
-            factor = a(i, k)/a(k, k)
-            do j = k + 1, n
-               a(i, j) = a(i, j) - factor*a(k, j)
+            a(i, k) = a(i, k)/a(k, k)
+         end do
+         do j = k + 1, n
+            do i = k + 1, n
+               a(i, j) = a(i, j) - a(i, k)*a(k, j)
             end do
-            do j = 1, m
-               b(i, j) = b(i, j) - factor*b(k, j)
+         end do
+         do j = 1, m
+            do i = k + 1, n
+               b(i, j) = b(i, j) - a(i, k)*b(k, j)
             end do
          end do
       end do

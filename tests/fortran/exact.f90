@@ -3,7 +3,7 @@
 module exact
    use rbs_base_constants, only: pi
    use rbs_base_kinds, only: wp
-   use rbs_base_linalg, only: solve_general
+   use rbs_base_small_systems, only: solve_general
    use rbs_column_column, only: column_type
    use rbs_column_column_record, only: column_record
    use samples, only: chain, elastic, random_type

@@ -4,7 +4,7 @@ module test_chain
    use check, only: unit_test, check_close, check_same, check_true
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_base_linalg, only: factor_positive, solve_positive
+   use rbs_base_small_systems, only: factor_positive, solve_positive
    use rbs_base_text, only: to_text
    use rbs_column_band, only: from_joints, to_joints
    use rbs_column_chain, only: body_velocities, kinetic_of

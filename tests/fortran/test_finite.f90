@@ -4,7 +4,7 @@ module test_finite
    use rbs_base_constants, only: pi
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_base_linalg, only: solve_general
+   use rbs_base_small_systems, only: solve_general
    use rbs_base_text, only: to_text
    use rbs_column_axial, only: geometric_forces, axial_energy
    use rbs_column_column, only: column_type

@@ -61,6 +61,10 @@ MACHINE_PATH = re.compile(
 Fault = tuple[Path, str]
 
 
+#: Dense solvers of LAPACK, which may start threads, belong to one analysis that calls them once.
+ONCE = {"solve_eigen", "singular_values", "solve_upper"}
+
+
 # ---- Fortran -------------------------------------------------------------------------------------
 
 
@@ -590,3 +594,17 @@ def test_a_bad_tree_has_its_fault(name: str, tmp_path: Path) -> None:
     assert len(found) == 1, found
     assert found[0].startswith(path + ": ")
     assert expected in found[0]
+
+
+def test_no_dense_solver_of_lapack_stands_in_a_loop_over_events_or_steps():
+    """Modes alone take them, once. What is solved again has a band, or loops of our own."""
+    used = {}
+    for path in sorted((ROOT / "src").rglob("*.f90")):
+        for line in statements(path.read_text()):
+            if found := re.fullmatch(r"use rbs_base_linalg *, *only *: *(.*)", line):
+                used[path.parent.name] = used.get(path.parent.name, set()) | set(
+                    re.split(r" *, *", found[1])
+                )
+    assert ONCE & used.pop("modal")
+    bands = {"solve_general_band", "solve_tridiagonal", "is_dominated"}
+    assert set().union(*used.values()) <= bands, used

@@ -2,7 +2,8 @@
 module rbs_solve_modal_modes
    use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_base_linalg, only: factor_positive, singular_values, solve_upper
+   use rbs_base_linalg, only: singular_values, solve_upper
+   use rbs_base_small_systems, only: factor_positive
    use rbs_base_text, only: to_text
    use rbs_column_axial, only: geometric_stiffness, critical_factor, check_stable
    use rbs_column_band, only: to_joints

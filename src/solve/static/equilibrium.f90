@@ -12,7 +12,7 @@
 module rbs_solve_static_equilibrium
    use rbs_base_constants, only: no_stiffness
    use rbs_base_kinds, only: wp
-   use rbs_base_linalg, only: factor_positive, solve_positive, solve_general
+   use rbs_base_small_systems, only: factor_positive, solve_positive, solve_general
    use rbs_column_axial, only: geometric_stiffness, geometric_forces
    use rbs_column_band, only: hold_last
    use rbs_column_column, only: column_type

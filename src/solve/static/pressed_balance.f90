@@ -12,7 +12,7 @@
 !> (K_G = N K_1 + K_weight); axial springs carry -N. Exact rotations: `rbs_solve_static_pressed_finite`.
 module rbs_solve_static_pressed_balance
    use rbs_base_kinds, only: wp
-   use rbs_base_linalg, only: factor_positive, solve_general
+   use rbs_base_small_systems, only: factor_positive, solve_general
    use rbs_column_axial, only: geometric_stiffness
    use rbs_column_column, only: column_type, small
    use rbs_hysteresis_springs, only: spring_array

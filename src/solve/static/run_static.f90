@@ -17,6 +17,9 @@ module rbs_solve_static_run_static
 
    public :: run_static
 
+   !> Axial loads that differ by less than this share are one constant load.
+   real(wp), parameter :: same_load = 1.0e-12_wp
+
 contains
 
    !> Static path through displacements of the top or lateral forces.
@@ -39,17 +42,22 @@ contains
       real(wp), intent(in), optional :: axial_load(:)
       !> The state to begin in, and the one at the end; empty where there is none
       type(end_state), intent(inout), optional :: before, after
+      type(column_type) :: loaded
       real(wp) :: load(size(target))
       logical :: varies
 
+      loaded = column
       load = column%axial_load
       varies = abs(column%axial_force_ratio) > 0.0_wp
       if (present(axial_load)) then
          if (size(axial_load) > 0) then
-            varies = .true.
             call check_axial_load(column, axial_load, size(target), error)
             if (allocated(error)) return
             load = axial_load
+            ! From the state of another analysis the load goes to its first value.
+            if (present(before)) varies = varies .or. before%is_given()
+            varies = varies .or. any(abs(load - load(1)) > same_load*maxval(abs(load)))
+            call put_under(loaded, load(1))
          end if
       end if
       if (varies) then
@@ -66,16 +74,37 @@ contains
          call trace_interaction(column, by_force, target, load, every, collapse_drift, recorder, summary, &
                                 error, progress, before, after)
       else if (column%kinematics == finite) then
-         call trace_finite(column, by_force, target, every, collapse_drift, recorder, summary, error, &
+         call trace_finite(loaded, by_force, target, every, collapse_drift, recorder, summary, error, &
                            progress, before, after)
       else
-         call trace(column, by_force, target, every, collapse_drift, recorder, summary, error, progress, &
+         call trace(loaded, by_force, target, every, collapse_drift, recorder, summary, error, progress, &
                     before, after)
       end if
       ! Without inertia the ground holds what drives the column.
       summary%peak_base_shear = summary%peak_force
       summary%method = 'static'
    end subroutine run_static
+
+   !> Put a column under another constant axial load at its top.
+   pure subroutine put_under(column, load)
+      type(column_type), intent(inout) :: column
+      real(wp), intent(in) :: load
+      real(wp) :: more
+
+      more = load - column%axial_load
+      if (.not. abs(more) > 0.0_wp) return
+      associate (n => column%n)
+         column%axial_load = load
+         column%axial_body = column%axial_body + more*column%axial_lever
+         column%axial_joint = column%axial_joint + more*column%axial_lever
+         column%axial_slip = column%axial_joint
+         if (column%held) column%axial_slip(n) = 0.0_wp
+         column%compression = column%compression + more
+         column%spring(n + 1:2*n)%axial_load = column%compression
+         column%axially_loaded = column%kinematics /= small .and. &
+                                 (abs(load) > 0.0_wp .or. column%gravity > 0.0_wp)
+      end associate
+   end subroutine put_under
 
    !> One axial load for each target.
    subroutine check_axial_load(column, axial_load, targets, error)

@@ -78,6 +78,7 @@ contains
       type(end_state), intent(inout), optional :: before, after
       type(pressed_path) :: path
       type(column_type) :: first
+      logical :: resumed
       integer :: m, n
 
       n = column%n
@@ -94,8 +95,16 @@ contains
       first%spring(n + 1:2*n)%axial_load = first%compression
       first%axial_load = load(1)
       allocate (path%at%q(m), path%at%rate(m), path%at%press(n), path%at%press_rate(n), source=0.0_wp)
+      resumed = .false.
+      if (present(before)) resumed = before%is_given()
+      first%axial_joint = column%axial_joint + (load(1) - column%axial_load)*column%axial_lever
       call begin_path(path, first, by_force, m, .true., error, before)
       if (allocated(error)) return
+      if (column%opens .and. .not. resumed) then
+         ! The load has done its work on the openings before the path begins.
+         path%axial_work = sum(first%axial_joint*path%springs%d(2*n + 1:))
+         path%at_begin = path%at_begin + path%axial_work
+      end if
       call path%follow(target, every, collapse_drift, recorder, summary, error, progress)
       if (allocated(error) .or. .not. present(after)) return
       if (summary%lost_joint == 0) call end_path(path, .true., after)
