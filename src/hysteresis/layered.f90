@@ -139,6 +139,8 @@ contains
       type(segment), intent(out) :: line
       real(wp) :: near, far
 
+      ! Both ends belong to the line: where a joint stands exactly on a corner, as one of contacts without an
+      ! axial load does at rest, it would otherwise have no line.
       associate (layers => self%layers)
          call layers%choose(real(direction, wp), 0.0_wp)
          line%d0 = layers%rotation - self%rest
@@ -155,7 +157,7 @@ contains
          near = -direction*unbounded
          if (layers%ends%ahead < unbounded) far = line%d0 + direction*layers%ends%ahead
          if (layers%ends%behind < unbounded) near = line%d0 - direction*layers%ends%behind
-         line = line%outward(direction, near=near, far=far, near_closed=.false., one_way=layers%ends%one_way)
+         line = line%outward(direction, near=near, far=far, near_closed=.true., one_way=layers%ends%one_way)
       end associate
    end subroutine make_line
 

@@ -47,6 +47,28 @@ def test_forces_are_continuous(seed: int) -> None:
     assert jump.max() < 1e-6 * np.abs(moment).max()
 
 
+def test_contacts_without_an_axial_load_stand_on_a_corner() -> None:
+    """All contacts touch and carry nothing: one closes, whichever way the joint turns.
+
+    With bars k_b at +-a and contacts k_c at +-c, of which one is closed, the opening at the middle
+    is w = k_c c turn/(2 k_b + k_c), and M = 2 k_b a^2 turn + k_c c (c turn - w).
+    """
+    k_b, k_c, a, c = 1.3e9, 1.05e9, 0.16, 0.1
+    bar, contact = rbsdem.Elastic(k_b), rbsdem.Compression(k_c)
+    spring = rbsdem.Layered([(-a, bar), (-c, contact), (c, contact), (a, bar)])
+    turn = np.array([0.0, 1e-3, 0.0, -1e-3, 1e-9, 0.0, 0.0, 2e-3])
+    stiffness = 2 * k_b * a**2 + k_c * c**2 * (1 - k_c / (2 * k_b + k_c))
+    np.testing.assert_allclose(spring.response(turn), stiffness * turn, rtol=1e-12)
+    beneath = rbsdem.Column(1.5, 3000.0, rbsdem.Elastic(1e9), spring)
+    time = 0.005 * np.arange(100)
+    for method in ("rk4", "rk45", "newmark"):
+        run = rbsdem.time_history(
+            beneath, time, ground_acceleration=np.sin(20 * time), method=method
+        )
+        size = stiffness * np.abs(run.rotation).max()
+        np.testing.assert_allclose(run.moment, stiffness * run.rotation, rtol=0, atol=1e-9 * size)
+
+
 def test_steel_that_turns_back_at_once_stays_where_it_is() -> None:
     d_y = FY / K
     path = [5 * d_y, -3 * d_y, 2 * d_y]
