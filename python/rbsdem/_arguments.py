@@ -53,7 +53,10 @@ def shown(value: object) -> str:
         told = repr(value)
     except Exception:  # Of any class of the caller, and of whole numbers of many digits.
         told = ""
-    return told if 0 < len(told) <= _MOST and "\n" not in told else f"a {type(value).__name__}"
+    if 0 < len(told) <= _MOST and "\n" not in told:
+        return told
+    kind = type(value).__name__
+    return f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
 
 
 def number(value: Any, name: str) -> float:

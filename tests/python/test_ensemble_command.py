@@ -163,7 +163,7 @@ def test_ctrl_c_keeps_what_is_done(case: Path) -> None:
     case.write_text(text)
     out = case.parent / "out"
     scales = ",".join(f"{0.1 + 0.001 * k:.4g}" for k in range(1500))
-    code = "from rbsdem.ensembles import engine; engine._LONGEST = 0.05\n"
+    code = "from rbsdem.ensembles import engine, store; engine._LONGEST = store._BEAT = 0.05\n"
     code += "import sys; from rbsdem.__main__ import main; sys.exit(main())"
     words = ["ensemble", case, "--scales", scales, "--out", out, "--jobs", "1"]
     with subprocess.Popen([sys.executable, "-c", code, *words], stdout=subprocess.PIPE) as process:

@@ -222,7 +222,7 @@ def jobs():
 
 def same(one, other) -> bool:
     if isinstance(one, np.ndarray):
-        return np.array_equal(one, other)
+        return np.array_equal(one, other, equal_nan=True)
     if isinstance(one, dict):
         return all(same(one[key], other[key]) for key in one)
     if hasattr(one, "__dataclass_fields__"):

@@ -273,7 +273,7 @@ def test_band_holds_the_curve():
         ),
         (lambda: fit_fragility("x", Capacities(np.ones(1), np.ones(1))), "1 records; give two"),
         (lambda: FOUND.band([1.0], 90), "level = 90 must be above 0 and below 1"),
-        (lambda: FOUND.samples(3), "n = 3 must be 10 or more"),
+        (lambda: FOUND.samples(3), "n = 3 must be from 10 to 100000"),
         (lambda: FOUND.mean_annual_frequency(3.0), "must be a Hazard"),
         (lambda: Hazard([1.0], [1.0]), "1 intensities and 1 frequencies"),
         (lambda: Hazard([1.0, 2.0], [0.1, 0.2]), "must be above 0 and descend strictly"),

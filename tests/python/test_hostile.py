@@ -342,5 +342,5 @@ def test_what_is_no_number(value: Any) -> None:
 def test_a_large_value_is_named_short() -> None:
     """Also where it cannot be written at all, as a whole number of 5000 digits."""
     for value in (10**400, 10**5000):
-        with pytest.raises(InputError, match=r"^a = a int is too large$"):
+        with pytest.raises(InputError, match=r"^a = an int is too large$"):
             _arguments.number(value, "a")

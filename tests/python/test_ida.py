@@ -330,7 +330,10 @@ def test_figures(hunted, column, records, tmp_path):
         (lambda c, m: rbsdem.ida(c, m[0].scaled(0.0)), "has no acceleration"),
         (lambda c, m: rbsdem.ida("c", m), "must be a Column"),
         (lambda c, m: rbsdem.ida([], m), "columns is empty"),
-        (lambda c, m: rbsdem.ida(c, m, intensity="sa"), "intensity = 'sa' is not known; it is one of sa_t1"),
+        (
+            lambda c, m: rbsdem.ida(c, m, intensity="sa"),
+            "intensity = 'sa' is not known; it is one of sa_t1",
+        ),
         (lambda c, m: rbsdem.ida(c, m, intensity="pga", period=1.0), "'pga' has no period"),
         (lambda c, m: rbsdem.ida(c, m, levels="find"), "levels = 'find' must be 'hunt'"),
         (lambda c, m: rbsdem.ida(c, m, levels=[-1.0]), "levels must be intensities above 0"),

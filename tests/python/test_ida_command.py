@@ -133,7 +133,7 @@ def test_the_command_starts_from_the_shell(folder, tmp_path):
         ([str(CASE), "synthetic", "--limit", "0.01"], "--limit 0.01: give a name and a drift"),
         ([str(CASE), "synthetic", "--beta", "light=0.4"], "give a limit state (yield, collapse)"),
         ([str(CASE), "synthetic", "--beta", "yield"], "--beta yield: give a limit state"),
-        ([str(CASE), "synthetic", "--intensity", "sa"], "intensity = 'sa' is not one of"),
+        ([str(CASE), "synthetic", "--intensity", "sa"], "intensity = 'sa' is not known"),
         ([str(CASE), "synthetic", "--jobs", "0"], "jobs = 0 must be 1 or more"),
         ([str(CASE), "synthetic", "--parquet"], "say where with --out"),
         ([str(CASE), "synthetic", "--hazard", "no.csv"], "no.csv: cannot be read"),

@@ -224,7 +224,7 @@ def test_broken_off_keeps_what_is_done(table):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ({"model": "nonsense"}, "'nonsense' is not known; there are layered, paper"),
+        ({"model": "nonsense"}, "'nonsense' is not known; it is one of layered, paper"),
         (
             {"version": "1.0"},
             "version = '1.0' of the layered model is not known; there are 2026.2, 2026.3, 2026.4",

@@ -415,7 +415,7 @@ def ring(**changes):
         (lambda: tied(cover=-0.01), "negative"),
         (lambda: tied(cover=1e308), "no core"),
         (lambda: RectangularSection(0.4, 0.4, Concrete(30e6), cover=0.2), "leave nothing"),
-        (lambda: tied(cover=10**400), "larger than any number"),
+        (lambda: tied(cover=10**400), "cover = an int is too large"),
         (lambda: tied(ties=Ties(0.01, 0.1, STEEL, legs=2.0**53)), "legs = 9.00.* do not fit"),
         (lambda: tied(ties=Ties(0.01, 0.1, STEEL, legs_across=1e6)), "legs_across = 1e.06 bars"),
         (lambda: tied(strips=10**400), "strips"),

@@ -258,6 +258,9 @@ contains
       self%summary => summary
       if (recorder%corners) self%corners => recorder
       call check%begin(self%column, missing_work(self))
+      ! A path that goes on has forces and works from before, and the round-off of theirs.
+      call check_row(self, check, self%control, failure)
+      if (allocated(failure)) deallocate (failure)
       do i = 1, size(target)
          self%number = i - 1
          self%way_begin = self%control

@@ -17,9 +17,11 @@ module rbs_solve_static_row_check
    !> follows a curve, and work is an integral over it, place and work have limits of their own.
    real(wp), parameter :: of_place = 1.0e-12_wp, of_force = 1.0e-9_wp, of_work = 1.0e-9_wp
    real(wp), parameter :: of_place_on_curve = 1.0e-10_wp, of_work_on_curve = 1.0e-5_wp
-   !> A way below this share of the height, a rotation below it, and a force below the second share of the
-   !> axial load have no digits to lose.
-   real(wp), parameter :: no_way = 1.0e-6_wp, of_press = 1.0e-3_wp
+   !> A way below this share of the height and a force below this share of the axial load have no digits to
+   !> lose.
+   real(wp), parameter :: no_digits = 1.0e-3_wp
+   !> Way, in shares of the height, and rotation by which stiff springs have forces and works.
+   real(wp), parameter :: no_way = 1.0e-6_wp
    !> Round-off of forces and works by the initial stiffness of the springs.
    real(wp), parameter :: digits = 1.0e-13_wp
 
@@ -45,8 +47,8 @@ contains
       self%at_begin = missing_work
       associate (n => column%n, k => column%initial_stiffness, &
                  way => no_way*column%joint_height(column%n + 1))
-         self%largest_place = way
-         self%largest_force = of_press*maxval(abs(column%compression))
+         self%largest_place = no_digits*column%joint_height(column%n + 1)
+         self%largest_force = no_digits*maxval(abs(column%compression))
          self%stiff_force = max(maxval(k(:n))*way, maxval(k(n + 1:2*n))*no_way**2/way)
          self%stiff_work = sum(k(:n))*way**2 + sum(k(n + 1:2*n))*no_way**2
       end associate
