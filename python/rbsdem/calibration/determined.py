@@ -214,7 +214,9 @@ def _clustered(jacobian: Array, error: Array, inverse: Array, groups: Array) -> 
     if several.size <= jacobian.shape[1]:
         return np.full(inverse.shape, np.nan)
     scores = np.array([error[groups == g] @ jacobian[groups == g] for g in several])
-    return inverse @ (scores.T @ scores) @ inverse * (several.size / (several.size - 1.0))
+    # As a square, so that round-off leaves no variance below 0.
+    root = scores @ inverse
+    return root.T @ root * (several.size / (several.size - 1.0))
 
 
 def _sensitivity(

@@ -20,6 +20,8 @@ module rbs_solve_static_pressed_search
    !> A motion that goes back by less than this share of its rates has not turned, and one that is beyond an
    !> end by less than the second share of its deformation is not beyond it.
    real(wp), parameter :: no_turn = 1.0e-7_wp, no_overshoot = 1.0e-9_wp
+   !> Deformations [rad, m] below this are those of a column that stands straight, but for round-off.
+   real(wp), parameter :: straight_column = 1.0e-12_wp
 
 contains
 
@@ -159,12 +161,12 @@ contains
    end function hides_event
 
    !> Whether a correction is such that the next one would be round-off: Newton's method squares it. The way
-   !> counts as well as the point, which may be the straight column.
+   !> counts as well as the point, and both may be round-off of the straight column.
    pure logical function is_small(correction, point)
       real(wp), intent(in) :: correction(:)
       type(pressed_point), intent(in) :: point
 
-      is_small = maxval(abs(correction)) <= 1.0e-11_wp*max(maxval(abs(point%q)), &
+      is_small = maxval(abs(correction)) <= 1.0e-11_wp*max(maxval(abs(point%q)), straight_column, &
                                                            1.0e-4_wp*maxval(abs(point%rate)))
    end function is_small
 
