@@ -249,7 +249,7 @@ contains
       spec = hand('peak_oriented')
       call spec%set('lambda_h', 2.0_wp)
       call spec%set('s_min', 0.2_wp)
-      call springs%create([spec, hinge()])
+      call springs%create([spec, hinge()], told=[2, 0])
       call springs%move(2, 5.0_wp)
       call springs%move(1, 2.0_wp)
       call check_same(error, springs%force(1), 110.0_wp, 'not yet')
@@ -291,7 +291,7 @@ contains
             if (random%uniform(0.0_wp, 1.0_wp) < 0.3_wp) d(:, step) = 0.01_wp*d(:, step)
          end do
          do i = 1, 2
-            call springs(i)%create([spec, hinge()])
+            call springs(i)%create([spec, hinge()], told=[2, 0])
          end do
          do step = 1, size(d, 2)
             do i = 1, 2
