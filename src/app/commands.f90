@@ -17,7 +17,7 @@ module rbs_app_commands
    use rbs_io_output_file, only: partial
    use rbs_io_state_file, only: read_state, write_state
    use rbs_io_posix, only: is_standard_output, same_file, standard_input
-   use rbs_output_notes, only: column_notes, rotation_note
+   use rbs_output_notes, only: column_notes, drift_note, rotation_note
    use rbs_output_row, only: row_labels
    use rbs_output_summary, only: summary_type, summary_names, summary_units
    use rbs_solve_end_state, only: end_state
@@ -147,7 +147,10 @@ contains
       call say(path//': no errors', error)
       if (plan%reason /= '') call say('method: '//method_text(plan%method, plan%reason), error)
       call print_notes(case, error)
-      if (.not. case%analysis%dynamic()) return
+      if (.not. case%analysis%dynamic()) then
+         call print_drift(case, history, error)
+         return
+      end if
       call long_run_note(column, plan, text)
       if (text /= '') call say('note: '//text, error)
    end subroutine check_case
@@ -423,6 +426,18 @@ contains
          first = last + 2
       end do
    end subroutine print_notes
+
+   !> Print a note if a path leads further than a column goes.
+   subroutine print_drift(case, history, error)
+      type(case_record), intent(in) :: case
+      type(case_history), intent(in) :: history
+      type(error_type), allocatable, intent(inout) :: error
+      character(len=:), allocatable :: text
+
+      if (any(case%loading(:case%loadings)%drive == 'force') .or. case%column%kinematics == 'finite') return
+      call drift_note(maxval(abs(history%target)), case%column%height, text)
+      if (text /= '') call say('note: '//text, error)
+   end subroutine print_drift
 
    !> Print a note if rotations are larger than the kinematics allow.
    subroutine print_rotation(column, summary, error)

@@ -1,22 +1,40 @@
 !> Notes on a column and on a run: what is allowed but perhaps not intended.
 module rbs_output_notes
+   use rbs_base_check, only: is_given
    use rbs_base_constants, only: standard_gravity
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, small, finite
    use rbs_column_column_record, only: column_record
+   use rbs_hysteresis_springs, only: follow_path
    use rbs_output_summary, only: summary_type
    implicit none
    private
 
-   public :: column_notes, rotation_note
+   public :: column_notes, drift_note, rotation_note
 
    !> Least and largest height of a column [m]: one in millimetres is outside.
    real(wp), parameter :: shortest = 0.05_wp, longest = 100.0_wp
 
    !> Rotations larger than this are not small [rad].
    real(wp), parameter :: largest_small = 0.1_wp
+
+   !> Displacements beyond this share of the height are hardly meant.
+   real(wp), parameter :: far = 0.5_wp
+
+   !> No hinge of concrete or steel yields later [rad].
+   real(wp), parameter :: late_yield = 0.2_wp
+
+   !> Axial loads below this share of the lateral strength are hardly meant.
+   real(wp), parameter :: hardly_any = 0.005_wp
+
+   !> No column is weaker beside its own weight.
+   real(wp), parameter :: too_weak = 0.1_wp
+
+   !> What a note on large displacements ends with.
+   character(len=*), parameter :: units = 'mind the units: displacements are in m (16 mm is 0.016), '// &
+      'drifts are parts of the height (2 per cent is 0.02), forces are in N'
 
 contains
 
@@ -55,6 +73,7 @@ contains
                         'is zero; give axial_load = '//to_text(anint(spec%top_mass*standard_gravity))// &
                         " N with kinematics = 'pdelta', or gravity = 0 if something else carries it")
       end if
+      call balance_notes(spec, notes)
    end subroutine column_notes
 
    !> Rotations that are taken as small but have grown large. The first term that is left out of sin(th) is
@@ -68,18 +87,73 @@ contains
 
       text = ''
       ! A run to its collapse was asked for, and its rotations are known to be large.
-      if (summary%collapsed) return
-      if (column%kinematics == finite .or. .not. summary%peak_rotation > largest_small) return
+      if (summary%collapsed .or. column%kinematics == finite) return
+      call drift_note(summary%peak_displacement, sum(column%length), text)
+      if (.not. summary%peak_rotation > largest_small) return
       kinematics = 'pdelta'
       if (column%kinematics == small) kinematics = 'small'
       ! Without a number of its own, so that a session that makes many runs is told once.
-      if (summary%peak_rotation < 1.0_wp) then
+      if (text == '' .and. summary%peak_rotation < 1.0_wp) then
          text = "the rotation of a body goes beyond 0.1 rad; with kinematics = '"//trim(kinematics)// &
                 "' the displacement errs by about th^2/6 of it, where th is peak_rotation; use 'finite'"
       else
-         text = "the rotation of a body goes beyond 1 rad; with kinematics = '"//trim(kinematics)// &
-                "' the displacement has no meaning then (displacements are in m, forces in N); use 'finite'"
+         text = 'the rotation of a body goes beyond '//trim(merge('1 rad  ', '0.1 rad', &
+                summary%peak_rotation > 1.0_wp))//"; with kinematics = '"//trim(kinematics)// &
+                "' the displacement has no meaning then; use 'finite', or "//units
       end if
    end subroutine rotation_note
+
+   !> A displacement beyond half of the height, which a number in another unit is.
+   pure subroutine drift_note(displacement, height, text)
+      !> Largest of the top, and height [m]
+      real(wp), intent(in) :: displacement, height
+      !> Empty if there is no note
+      character(len=:), allocatable, intent(out) :: text
+
+      text = ''
+      if (.not. abs(displacement) > far*height) return
+      text = 'the top goes beyond half of the height; if that is not meant, '//units
+   end subroutine drift_note
+
+   !> Springs and loads that do not go together, as numbers in another unit do: the strength of the lowest
+   !> flexural spring is that of a rotation of 0.05 rad.
+   subroutine balance_notes(spec, notes)
+      !> Validated
+      type(column_record), intent(in) :: spec
+      type(message_list), intent(inout) :: notes
+      real(wp) :: moment(2), stiffness, least, weight
+
+      associate (hinge => spec%flexure(1))
+         ! What was drawn is judged where it is drawn; what never yields has no strength.
+         if (hinge%rule == 'layered' .or. hinge%rule == 'elastic') return
+         call follow_path(hinge, [0.05_wp, late_yield], moment)
+         stiffness = hinge%initial_stiffness()
+      end associate
+      if (spec%kinematics /= 'small' .and. spec%axial_load < 0.0_wp) then
+         call notes%add('column: axial_load = '//to_text(spec%axial_load)//' N is tension; compression '// &
+                        'is positive')
+      end if
+      if (moment(2) >= (1.0_wp - 1.0e-9_wp)*stiffness*late_yield) then
+         call notes%add('column: flexure does not yield before a rotation of '//to_text(late_yield)// &
+                        ' rad; deformations are in rad, and 2.7 mrad is 0.0027')
+      end if
+      least = moment(1)/spec%height
+      if (spec%kinematics /= 'small' .and. spec%axial_load*spec%height > stiffness) then
+         call notes%add('column: axial_load = '//to_text(spec%axial_load)//' N is more than the column '// &
+                        'carries upright: the stiffness of flexure over the height is '// &
+                        to_text(stiffness/spec%height)//' N; moments are in N m and loads in N, '// &
+                        '744 kN is 744e3')
+      else if (spec%axial_load > 0.0_wp .and. spec%axial_load < hardly_any*least .and. &
+               .not. spec%top_mass > 0.0_wp) then
+         call notes%add('column: axial_load = '//to_text(spec%axial_load)//' N is hardly any beside the '// &
+                        'lateral strength of '//to_text(least)//' N; loads are in N, and 744 kN is 744e3')
+      end if
+      weight = standard_gravity*spec%mass
+      if (is_given(spec%mass) .and. least < too_weak*weight) then
+         call notes%add('column: flexure resists a lateral force of '//to_text(least)//' N, and the mass '// &
+                        'of the column weighs '//to_text(weight)//' N; stiffness is in N/m and N m/rad, '// &
+                        'mass in kg')
+      end if
+   end subroutine balance_notes
 
 end module rbs_output_notes
