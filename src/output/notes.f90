@@ -1,6 +1,5 @@
 !> Notes on a column and on a run: what is allowed but perhaps not intended.
 module rbs_output_notes
-   use rbs_base_check, only: is_given
    use rbs_base_constants, only: standard_gravity
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
@@ -29,12 +28,8 @@ module rbs_output_notes
    !> Axial loads below this share of the lateral strength are hardly meant.
    real(wp), parameter :: hardly_any = 0.005_wp
 
-   !> No column is weaker beside its own weight.
-   real(wp), parameter :: too_weak = 0.1_wp
-
-   !> What a note on large displacements ends with.
-   character(len=*), parameter :: units = 'mind the units: displacements are in m (16 mm is 0.016), '// &
-      'drifts are parts of the height (2 per cent is 0.02), forces are in N'
+   !> Lateral strength beside the axial load, M/(h P): a column ten times as long as deep has 0.01 or more.
+   real(wp), parameter :: too_weak = 0.003_wp
 
 contains
 
@@ -87,19 +82,22 @@ contains
 
       text = ''
       ! A run to its collapse was asked for, and its rotations are known to be large.
-      if (summary%collapsed .or. column%kinematics == finite) return
-      call drift_note(summary%peak_displacement, sum(column%length), text)
-      if (.not. summary%peak_rotation > largest_small) return
+      if (summary%collapsed) return
+      if (column%kinematics == finite) return
+      ! A path is given; a response in time goes where it goes.
+      if (.not. summary%time_step > 0.0_wp) then
+         call drift_note(summary%peak_displacement, sum(column%length), text)
+      end if
+      if (text /= '' .or. .not. summary%peak_rotation > largest_small) return
       kinematics = 'pdelta'
       if (column%kinematics == small) kinematics = 'small'
       ! Without a number of its own, so that a session that makes many runs is told once.
-      if (text == '' .and. summary%peak_rotation < 1.0_wp) then
+      if (summary%peak_rotation < 1.0_wp) then
          text = "the rotation of a body goes beyond 0.1 rad; with kinematics = '"//trim(kinematics)// &
                 "' the displacement errs by about th^2/6 of it, where th is peak_rotation; use 'finite'"
       else
-         text = 'the rotation of a body goes beyond '//trim(merge('1 rad  ', '0.1 rad', &
-                summary%peak_rotation > 1.0_wp))//"; with kinematics = '"//trim(kinematics)// &
-                "' the displacement has no meaning then; use 'finite', or "//units
+         text = "the rotation of a body goes beyond 1 rad; with kinematics = '"//trim(kinematics)// &
+                "' the displacement has no meaning then (displacements are in m, forces in N); use 'finite'"
       end if
    end subroutine rotation_note
 
@@ -112,7 +110,9 @@ contains
 
       text = ''
       if (.not. abs(displacement) > far*height) return
-      text = 'the top goes beyond half of the height; if that is not meant, '//units
+      text = 'the top goes beyond half of the height; displacements are in m (16 mm is 0.016), drifts '// &
+             'are parts of the height (2 per cent is 0.02), forces are in N; if it is meant, use '// &
+             "kinematics = 'finite'"
    end subroutine drift_note
 
    !> Springs and loads that do not go together, as numbers in another unit do: the strength of the lowest
@@ -121,7 +121,7 @@ contains
       !> Validated
       type(column_record), intent(in) :: spec
       type(message_list), intent(inout) :: notes
-      real(wp) :: moment(2), stiffness, least, weight
+      real(wp) :: moment(2), stiffness, least
 
       associate (hinge => spec%flexure(1))
          ! What was drawn is judged where it is drawn; what never yields has no strength.
@@ -138,21 +138,14 @@ contains
                         ' rad; deformations are in rad, and 2.7 mrad is 0.0027')
       end if
       least = moment(1)/spec%height
-      if (spec%kinematics /= 'small' .and. spec%axial_load*spec%height > stiffness) then
-         call notes%add('column: axial_load = '//to_text(spec%axial_load)//' N is more than the column '// &
-                        'carries upright: the stiffness of flexure over the height is '// &
-                        to_text(stiffness/spec%height)//' N; moments are in N m and loads in N, '// &
-                        '744 kN is 744e3')
+      if (spec%kinematics /= 'small' .and. least > 0.0_wp .and. least < too_weak*spec%axial_load) then
+         call notes%add('column: the lateral strength of flexure, '//to_text(least)//' N, is hardly any '// &
+                        'beside axial_load = '//to_text(spec%axial_load)//' N; stiffness is in N m/rad, '// &
+                        'forces are in N')
       else if (spec%axial_load > 0.0_wp .and. spec%axial_load < hardly_any*least .and. &
                .not. spec%top_mass > 0.0_wp) then
          call notes%add('column: axial_load = '//to_text(spec%axial_load)//' N is hardly any beside the '// &
                         'lateral strength of '//to_text(least)//' N; loads are in N, and 744 kN is 744e3')
-      end if
-      weight = standard_gravity*spec%mass
-      if (is_given(spec%mass) .and. least < too_weak*weight) then
-         call notes%add('column: flexure resists a lateral force of '//to_text(least)//' N, and the mass '// &
-                        'of the column weighs '//to_text(weight)//' N; stiffness is in N/m and N m/rad, '// &
-                        'mass in kg')
       end if
    end subroutine balance_notes
 

@@ -9,8 +9,8 @@ module rbs_section_section_check
 
    public :: check_section
 
-   !> The thickest bar [m].
-   real(wp), parameter :: thickest = 0.075_wp
+   !> The thinnest bar, that of a small model, and the thickest [m].
+   real(wp), parameter :: thinnest = 0.003_wp, thickest = 0.075_wp
 
 contains
 
@@ -47,6 +47,9 @@ contains
       end if
       if (.not. section%bar_diameter > 0.0_wp) then
          call messages%add('section: bar_diameter is missing; give it a value in m')
+      else if (section%bar_diameter < thinnest) then
+         call messages%add('section: bar_diameter = '//to_text(section%bar_diameter)//' m is thinner '// &
+                           'than any bar; a diameter is in m and no area: 20 mm is 0.02')
       else if (section%bar_diameter > thickest) then
          call messages%add('section: bar_diameter = '//to_text(section%bar_diameter)//' m is larger than '// &
                            'any bar; if the entries of bars are rows, give the bar_diameter of one bar')

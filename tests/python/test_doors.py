@@ -382,10 +382,10 @@ def test_faults_of_a_case_are_those_of_check(run_cli, case_text, tmp_path):
 
 def test_loads_that_follow_have_no_static_path_through_either_door(run_cli, case_text, tmp_path):
     column = "height = 1.6, mass = 614.4, kinematics = 'finite'"
-    write(tmp_path, case_text(column=column + ", axial_load = 1e3, axial_follows = T"))
+    write(tmp_path, case_text(column=column + ", axial_load = 1e5, axial_follows = T"))
     said = run_cli(["check", "case.nml"], tmp_path).stderr
     finite = rbsdem.Column(
-        1.6, 614.4, BILINEAR, TAKEDA, kinematics="finite", axial_load=1e3, axial_follows=True
+        1.6, 614.4, BILINEAR, TAKEDA, kinematics="finite", axial_load=1e5, axial_follows=True
     )
     with pytest.raises(rbsdem.InputError) as caught:
         rbsdem.cyclic(finite, displacement=[0.01])

@@ -112,7 +112,7 @@ def test_collapse_that_was_asked_for_is_no_warning():
     assert run.summary["status"] == "collapsed"
     assert run.summary["peak_rotation"] > 0.1
     with pytest.warns(rbsdem.AccuracyWarning, match="the rotation of a body goes beyond 0.1 rad"):
-        rbsdem.cyclic(column, displacement=[0.0, 0.6])
+        rbsdem.cyclic(column, displacement=[0.0, 0.4])
 
 
 def test_many_runs_are_warned_of_once():
@@ -177,3 +177,57 @@ def test_at2_file_that_is_not_right(tmp_path, given, words):
     at2(tmp_path, **given)
     with pytest.raises(InputError, match=words):
         rbsdem.read_case(tmp_path / "AT2.nml")
+
+
+FLEXURE = rbsdem.Takeda(k_c=2e9, d_c=4e-5, k_y=5e8, d_y=3.4e-4, k_u=6e7)
+IN_KN = rbsdem.Takeda(k_c=2e6, d_c=4e-5, k_y=5e5, d_y=3.4e-4, k_u=6e4)
+IN_MRAD = rbsdem.Bilinear(k=5e7, d_y=2.7, k_post=1e6)
+SMALL_CYCLES = [0.004, 0.016, 0.04]
+
+
+@pytest.mark.parametrize(
+    ("flexure", "load", "amplitudes", "words"),
+    [
+        (FLEXURE, 744e3, SMALL_CYCLES, ""),
+        (FLEXURE, 0.0, SMALL_CYCLES, ""),
+        (rbsdem.Elastic(k=2e9), 744.0, SMALL_CYCLES, ""),
+        (FLEXURE, 744.0, SMALL_CYCLES, "is hardly any beside the lateral strength"),
+        (FLEXURE, -744e3, SMALL_CYCLES, "N is tension; compression is positive"),
+        (IN_KN, 744e3, [4e-5], "the lateral strength of flexure, "),
+        (IN_MRAD, 0.0, SMALL_CYCLES, "flexure does not yield before a rotation of 0.2 rad"),
+        (FLEXURE, 744e3, [0.25, 0.5, 1, 2], "the top goes beyond half of the height"),
+        (FLEXURE, 744e3, [4, 8, 16], "the top goes beyond half of the height"),
+    ],
+)
+def test_numbers_in_other_units_are_told_once(tmp_path, run_cli, flexure, load, amplitudes, words):
+    # Nothing here is an error: a case is judged by its own strength, stiffness and height.
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        column = rbsdem.Column(
+            1.6, 614.4, rbsdem.Elastic(k=1e9), flexure, axial_load=load, kinematics="pdelta"
+        )
+        path = rbsdem.protocol(amplitudes, points=3)
+        try:
+            rbsdem.cyclic(column, displacement=path)
+        except rbsdem.SolveError:
+            assert flexure is IN_KN  # it falls under its load
+        case = column.to_namelist()
+    notes = [str(one.message) for one in told]
+    assert len(notes) == (1 if words else 0)
+    assert words in "".join(notes)
+    values = ", ".join(map(str, amplitudes))
+    (tmp_path / "a.nml").write_text(
+        f"{case}\n&loading drive = 'displacement', amplitudes = {values}, points = 3 /\n"
+    )
+    for command in ("check", "run"):
+        output = run_cli([command, "a.nml"], cwd=tmp_path)
+        lines = (output.stdout + output.stderr).splitlines()
+        found = [line.removeprefix("note: ") for line in lines if line.startswith("note: ")]
+        if command == "check" or flexure is not IN_KN:
+            assert found == notes
+
+
+def test_an_area_is_no_diameter():
+    bars = Layout(12, 314e-6, STEEL)
+    with pytest.raises(InputError, match=r"bar_diameter = 0.000314 m is thinner .* 20 mm is 0.02"):
+        RectangularSection(0.4, 0.4, Concrete(46.5e6), layout=bars, cover=0.013)
