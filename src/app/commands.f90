@@ -385,7 +385,8 @@ contains
             ! A static path has no steps in time, and an implicit method no stability limit. A collapse is
             ! reported apart.
             if (summary_units(i) == 's' .and. .not. values(i) > 0.0_wp) cycle
-            if (summary_names(i) == 'peak_floor_acceleration' .and. .not. values(i) >= 0.0_wp) cycle
+            if (summary_names(i) == 'peak_floor_acceleration' .and. &
+                summary%peak_floor_acceleration < 0.0_wp) cycle
             if (summary_names(i) == 'collapsed' .or. summary_names(i) == 'lost_joint') cycle
             if (i > findloc(summary_names, 'lost_joint', dim=1)) exit
             ! Without inertia the base holds the force at the top; in time there mostly is none.
