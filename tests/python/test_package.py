@@ -326,7 +326,7 @@ def test_errors_survive_pickling(protocol):
 
 def test_columns_and_results_survive_pickling():
     """For pools of processes."""
-    column = replace(COLUMN, n=2, kinematics="pdelta", axial_load=1e3)
+    column = replace(COLUMN, n=2, kinematics="pdelta", axial_load=1e5)
     back = pickle.loads(pickle.dumps(column))
     assert back == column
     run = rbsdem.cyclic(column, displacement=[0.01, -0.01])
