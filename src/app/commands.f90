@@ -237,7 +237,7 @@ contains
 
       plan%method = 'static'
       if (allocated(case%analysis%initial)) then
-         call read_state(beside(case_path, case%analysis%initial), before%tape, error)
+         call read_state(beside(case_path, case%analysis%initial), before%stream, error)
          if (.not. allocated(error)) call before%check(column, error)
          if (allocated(error)) return
       end if
@@ -268,7 +268,7 @@ contains
       end if
       call progress%finish()
       if (allocated(error) .or. .not. allocated(case%output%state)) return
-      if (after%is_given()) call write_state(beside(case_path, case%output%state), after%tape, error)
+      if (after%is_given()) call write_state(beside(case_path, case%output%state), after%stream, error)
    end subroutine solve
 
    !> A path from the folder of the case.

@@ -82,8 +82,8 @@ contains
       type(end_state), intent(inout) :: state
 
       if (size(numbers) == 0) return
-      state%tape%value = numbers
-      state%tape%count = size(numbers)
+      state%stream%value = numbers
+      state%stream%count = size(numbers)
    end subroutine take_from
 
    !> A state into an array of the user, if there is room.
@@ -92,8 +92,8 @@ contains
       real(c_double), intent(inout) :: numbers(:)
       integer(c_int), intent(out) :: count
 
-      count = state%tape%count
-      if (count > 0 .and. count <= size(numbers)) numbers(:count) = state%tape%value(:count)
+      count = state%stream%count
+      if (count > 0 .and. count <= size(numbers)) numbers(:count) = state%stream%value(:count)
    end subroutine hand_over
 
    !> Validate the case without its column.

@@ -6,7 +6,7 @@
 !> residual are the points where the lines meet; beyond `d_u` the force drops to zero.
 module rbs_hysteresis_backbone
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_backbone_parameters, only: backbone_parameters
@@ -33,7 +33,7 @@ module rbs_hysteresis_backbone
       procedure :: meeting
       procedure :: add_corner
       procedure :: end_at_rupture
-      procedure :: walk
+      procedure :: serialize
    end type backbone_side
 
 contains
@@ -191,17 +191,17 @@ contains
       meeting = max(start + self%f(self%last)/k, self%d(self%last))
    end function meeting
 
-   !> Present to a tape what deterioration has made of the backbone.
-   pure subroutine walk(self, memory)
+   !> Save or restore what deterioration has made of the backbone.
+   pure subroutine serialize(self, stream)
       class(backbone_side), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call memory%keep(self%strength)
-      call memory%keep(self%softening)
-      call memory%keep_count(self%last, ubound(self%d, 1))
-      call memory%keep(self%d)
-      call memory%keep(self%f)
-      call memory%keep(self%d_y)
-   end subroutine walk
+      call stream%item(self%strength)
+      call stream%item(self%softening)
+      call stream%item_count(self%last, ubound(self%d, 1))
+      call stream%item(self%d)
+      call stream%item(self%f)
+      call stream%item(self%d_y)
+   end subroutine serialize
 
 end module rbs_hysteresis_backbone

@@ -6,7 +6,7 @@ module rbs_hysteresis_bilinear
    use rbs_base_error, only: message_list
    use rbs_base_keys, only: key_type, above_zero, not_negative, deformation, stiffness
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_rule, only: rule_type, check_product, places_length, in_shear, in_flexure, &
@@ -41,7 +41,7 @@ module rbs_hysteresis_bilinear
       procedure :: start
       procedure :: next
       procedure :: copy_memory
-      procedure :: walk
+      procedure :: serialize
    end type bilinear_rule
 
 contains
@@ -124,11 +124,11 @@ contains
    end subroutine copy_memory
 
    !> There is no memory: the line says all.
-   pure subroutine walk(self, memory)
+   pure subroutine serialize(self, stream)
       class(bilinear_rule), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      memory%broken = memory%broken .or. .not. self%k > 0.0_wp
-   end subroutine walk
+      stream%broken = stream%broken .or. .not. self%k > 0.0_wp
+   end subroutine serialize
 
 end module rbs_hysteresis_bilinear

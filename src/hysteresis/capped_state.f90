@@ -3,7 +3,7 @@
 module rbs_hysteresis_capped_state
    use rbs_base_check, only: is_given
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_hysteresis_backbone, only: backbone_side
    use rbs_hysteresis_backbone_parameters, only: backbone_parameters
    use rbs_hysteresis_deterioration, only: deterioration_type
@@ -95,7 +95,7 @@ module rbs_hysteresis_capped_state
       procedure :: find_turns
       procedure :: goal_from
       procedure :: copy_memory
-      procedure :: walk
+      procedure :: serialize
    end type capped_state
 
 contains
@@ -308,41 +308,41 @@ contains
       self%turned = other%turned
    end subroutine copy_memory
 
-   !> Present the memory to a tape.
-   pure subroutine walk(self, memory)
+   !> Save or restore all history variables.
+   pure subroutine serialize(self, stream)
       class(capped_state), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
       integer :: s
 
       do s = -1, 1, 2
-         call self%backbone(s)%walk(memory)
-         call self%open(s)%walk(memory)
+         call self%backbone(s)%serialize(stream)
+         call self%open(s)%serialize(stream)
       end do
-      call memory%keep(self%branch)
-      call memory%keep(self%side)
-      call memory%keep(self%peak)
-      call memory%keep(self%time)
-      call memory%keep(self%closed_time)
-      call memory%keep(self%target_left)
-      call memory%keep(self%heard)
-      call memory%keep(self%heard_at_cracking)
-      call memory%keep(self%left_by_hinge)
-      call memory%keep(self%entered)
-      call memory%keep(self%way_back)
-      call memory%keep(self%start_at)
-      call self%goal%walk(memory)
-      call memory%keep(self%to_turn)
-      call memory%keep(self%closed_start)
-      call memory%keep(self%closed_at)
-      call memory%keep(self%work)
-      call memory%keep(self%work_at_zero)
-      call self%begun%walk(memory)
-      call memory%keep(self%dissipated)
-      call memory%keep(self%yielded)
-      call memory%keep(self%worn)
-      call self%left%walk(memory)
-      call memory%keep(self%left_branch)
-      call self%turned%walk(memory)
-   end subroutine walk
+      call stream%item(self%branch)
+      call stream%item(self%side)
+      call stream%item(self%peak)
+      call stream%item(self%time)
+      call stream%item(self%closed_time)
+      call stream%item(self%target_left)
+      call stream%item(self%heard)
+      call stream%item(self%heard_at_cracking)
+      call stream%item(self%left_by_hinge)
+      call stream%item(self%entered)
+      call stream%item(self%way_back)
+      call stream%item(self%start_at)
+      call self%goal%serialize(stream)
+      call stream%item(self%to_turn)
+      call stream%item(self%closed_start)
+      call stream%item(self%closed_at)
+      call stream%item(self%work)
+      call stream%item(self%work_at_zero)
+      call self%begun%serialize(stream)
+      call stream%item(self%dissipated)
+      call stream%item(self%yielded)
+      call stream%item(self%worn)
+      call self%left%serialize(stream)
+      call stream%item(self%left_branch)
+      call self%turned%serialize(stream)
+   end subroutine serialize
 
 end module rbs_hysteresis_capped_state

@@ -3,7 +3,7 @@
 module rbs_hysteresis_compression
    use rbs_base_keys, only: key_type, above_zero, not_negative, deformation, stiffness
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_rule, only: rule_type, places_length, in_axial, in_layer
    use rbs_hysteresis_segment, only: segment
@@ -30,7 +30,7 @@ module rbs_hysteresis_compression
       procedure :: initial_stiffness
       procedure :: start
       procedure :: next
-      procedure :: walk
+      procedure :: serialize
    end type compression_rule
 
 contains
@@ -86,11 +86,11 @@ contains
    end subroutine next
 
    !> There is no memory: the line says all.
-   pure subroutine walk(self, memory)
+   pure subroutine serialize(self, stream)
       class(compression_rule), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      memory%broken = memory%broken .or. .not. self%k > 0.0_wp
-   end subroutine walk
+      stream%broken = stream%broken .or. .not. self%k > 0.0_wp
+   end subroutine serialize
 
 end module rbs_hysteresis_compression

@@ -19,7 +19,7 @@ module rbs_hysteresis_concrete
    use rbs_base_keys, only: bound_type, key_type, above_zero, not_negative, share_below_one, &
                            force, deformation, stiffness
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_rule, only: rule_type, check_product, places_length, in_axial, in_layer
@@ -100,7 +100,7 @@ module rbs_hysteresis_concrete
       procedure :: start
       procedure :: next
       procedure :: copy_memory
-      procedure :: walk
+      procedure :: serialize
    end type concrete_rule
 
 contains
@@ -556,20 +556,20 @@ contains
       end select
    end subroutine copy_memory
 
-   !> Present the memory to a tape.
-   pure subroutine walk(self, memory)
+   !> Save or restore all history variables.
+   pure subroutine serialize(self, stream)
       class(concrete_rule), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call memory%keep(self%stage)
-      call memory%keep(self%c_u)
-      call memory%keep(self%f_u)
-      call memory%keep(self%c_p)
-      call memory%keep(self%f_largest)
-      call memory%keep(self%gap)
-      call memory%keep(self%widest)
-      call memory%keep(self%c_opened)
-      call memory%keep(self%strength)
-   end subroutine walk
+      call stream%item(self%stage)
+      call stream%item(self%c_u)
+      call stream%item(self%f_u)
+      call stream%item(self%c_p)
+      call stream%item(self%f_largest)
+      call stream%item(self%gap)
+      call stream%item(self%widest)
+      call stream%item(self%c_opened)
+      call stream%item(self%strength)
+   end subroutine serialize
 
 end module rbs_hysteresis_concrete

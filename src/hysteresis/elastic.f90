@@ -2,7 +2,7 @@
 module rbs_hysteresis_elastic
    use rbs_base_keys, only: key_type, above_zero, stiffness
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_hysteresis_rule, only: rule_type, places_length, in_shear, in_flexure, in_axial, in_layer
    use rbs_hysteresis_segment, only: segment
    implicit none
@@ -24,7 +24,7 @@ module rbs_hysteresis_elastic
       procedure :: initial_stiffness
       procedure :: start
       procedure :: next
-      procedure :: walk
+      procedure :: serialize
    end type elastic_rule
 
 contains
@@ -72,11 +72,11 @@ contains
    end subroutine next
 
    !> There is no memory: the line says all.
-   pure subroutine walk(self, memory)
+   pure subroutine serialize(self, stream)
       class(elastic_rule), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      memory%broken = memory%broken .or. .not. self%k > 0.0_wp
-   end subroutine walk
+      stream%broken = stream%broken .or. .not. self%k > 0.0_wp
+   end subroutine serialize
 
 end module rbs_hysteresis_elastic

@@ -2,7 +2,7 @@
 module rbs_hysteresis_inner_peaks
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_hysteresis_segment, only: segment
    implicit none
    private
@@ -18,7 +18,7 @@ module rbs_hysteresis_inner_peaks
       !> Deformation [m or rad] and force [N or N m]
       real(wp) :: d = 0.0_wp, f = 0.0_wp
    contains
-      procedure :: walk => walk_point
+      procedure :: serialize => serialize_point
    end type point
 
    !> A reloading line, with all that is needed to continue on it later.
@@ -32,7 +32,7 @@ module rbs_hysteresis_inner_peaks
       !> The crossing of zero force at which it started [m or rad]
       real(wp) :: zero = 0.0_wp
    contains
-      procedure :: walk => walk_reloading
+      procedure :: serialize => serialize_reloading
    end type reloading_line
 
    !> A point where reloading turned back.
@@ -56,7 +56,7 @@ module rbs_hysteresis_inner_peaks
    contains
       procedure :: push
       procedure :: take
-      procedure :: walk => walk_peaks
+      procedure :: serialize => serialize_peaks
       procedure :: newest_of_side
       procedure :: place_of
    end type inner_peaks
@@ -144,44 +144,44 @@ contains
       place = 0
    end function place_of
 
-   pure subroutine walk_point(self, memory)
+   pure subroutine serialize_point(self, stream)
       class(point), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call memory%keep(self%d)
-      call memory%keep(self%f)
-   end subroutine walk_point
+      call stream%item(self%d)
+      call stream%item(self%f)
+   end subroutine serialize_point
 
-   pure subroutine walk_reloading(self, memory)
+   pure subroutine serialize_reloading(self, stream)
       class(reloading_line), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call self%line%walk(memory)
-      call self%target%walk(memory)
-      call memory%keep(self%target_serial)
-      call memory%keep(self%zero)
-   end subroutine walk_reloading
+      call self%line%serialize(stream)
+      call self%target%serialize(stream)
+      call stream%item(self%target_serial)
+      call stream%item(self%zero)
+   end subroutine serialize_reloading
 
-   !> Present the open peaks to a tape; they come back into the room that is there if it is enough.
-   pure subroutine walk_peaks(self, memory)
+   !> Save or restore the open peaks; they come back into the room that is there if it is enough.
+   pure subroutine serialize_peaks(self, stream)
       class(inner_peaks), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
       integer :: i
 
-      call memory%keep_count(self%count, most_peaks)
-      call memory%keep(self%last_serial)
-      if (memory%restoring) then
+      call stream%item_count(self%count, most_peaks)
+      call stream%item(self%last_serial)
+      if (stream%restoring) then
          if (allocated(self%peak)) then
             if (size(self%peak) < self%count) deallocate (self%peak)
          end if
          if (.not. allocated(self%peak) .and. self%count > 0) allocate (self%peak(self%count))
       end if
       do i = 1, self%count
-         call memory%keep(self%peak(i)%side)
-         call memory%keep(self%peak(i)%serial)
-         call self%peak(i)%at%walk(memory)
-         call self%peak(i)%left%walk(memory)
+         call stream%item(self%peak(i)%side)
+         call stream%item(self%peak(i)%serial)
+         call self%peak(i)%at%serialize(stream)
+         call self%peak(i)%left%serialize(stream)
       end do
-   end subroutine walk_peaks
+   end subroutine serialize_peaks
 
 end module rbs_hysteresis_inner_peaks

@@ -4,7 +4,7 @@
 module rbs_hysteresis_layer_lines
    use rbs_base_constants, only: unbounded
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_hysteresis_layer_kernels, only: add_lines
    use rbs_hysteresis_rule, only: rule_type
    use rbs_hysteresis_segment, only: segment
@@ -102,7 +102,7 @@ module rbs_hysteresis_layer_lines
       procedure :: forget
       procedure :: remember
       procedure :: go_back
-      procedure :: walk
+      procedure :: serialize
    end type layer_lines
 
 contains
@@ -292,46 +292,46 @@ contains
       self%bank_state = self%kept_state
    end subroutine restore
 
-   !> Present to a tape where the joint stands, and lines and memory of its layers.
-   pure subroutine walk(self, memory)
+   !> Save or restore where the joint stands, and lines and memory of its layers.
+   pure subroutine serialize(self, stream)
       class(layer_lines), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
       integer :: i
 
-      call walk_state(self%bank_state, memory)
+      call serialize_state(self%bank_state, stream)
       do i = 1, self%count
-         call self%line(i)%walk(memory)
-         call self%slot(i)%rule%walk(memory)
-         if (memory%restoring) call put_line(self, i)
+         call self%line(i)%serialize(stream)
+         call self%slot(i)%rule%serialize(stream)
+         if (stream%restoring) call put_line(self, i)
       end do
-   end subroutine walk
+   end subroutine serialize
 
-   pure subroutine walk_state(self, memory)
+   pure subroutine serialize_state(self, stream)
       type(bank_state), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call memory%keep(self%rotation)
-      call memory%keep(self%axial_load)
-      call memory%keep(self%opening)
-      call memory%keep(self%on_end)
-      call memory%keep(self%largest)
-      call memory%keep(self%a)
-      call memory%keep(self%s)
-      call memory%keep(self%q)
-      call memory%keep(self%force_0)
-      call memory%keep(self%moment_0)
-      call memory%keep(self%moment)
-      call memory%keep(self%turn)
-      call memory%keep(self%press)
-      call memory%keep(self%open)
-      call memory%keep(self%ends%ahead)
-      call memory%keep(self%ends%behind)
-      call memory%keep(self%ends%first_ahead)
-      call memory%keep(self%ends%first_behind)
-      call memory%keep(self%ends%one_way)
-      call memory%keep(self%ends%stiffness)
-      call memory%keep(self%failed)
-      call memory%keep(self%failure_way)
-   end subroutine walk_state
+      call stream%item(self%rotation)
+      call stream%item(self%axial_load)
+      call stream%item(self%opening)
+      call stream%item(self%on_end)
+      call stream%item(self%largest)
+      call stream%item(self%a)
+      call stream%item(self%s)
+      call stream%item(self%q)
+      call stream%item(self%force_0)
+      call stream%item(self%moment_0)
+      call stream%item(self%moment)
+      call stream%item(self%turn)
+      call stream%item(self%press)
+      call stream%item(self%open)
+      call stream%item(self%ends%ahead)
+      call stream%item(self%ends%behind)
+      call stream%item(self%ends%first_ahead)
+      call stream%item(self%ends%first_behind)
+      call stream%item(self%ends%one_way)
+      call stream%item(self%ends%stiffness)
+      call stream%item(self%failed)
+      call stream%item(self%failure_way)
+   end subroutine serialize_state
 
 end module rbs_hysteresis_layer_lines

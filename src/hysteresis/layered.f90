@@ -13,7 +13,7 @@ module rbs_hysteresis_layered
    use rbs_base_constants, only: no_stiffness, unbounded
    use rbs_base_keys, only: key_type
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_hysteresis_layers, only: layer_bank
    use rbs_hysteresis_rule, only: rule_type, places_length, in_flexure
    use rbs_hysteresis_segment, only: segment
@@ -54,7 +54,7 @@ module rbs_hysteresis_layered
       procedure :: mark
       procedure :: restore
       procedure :: forget
-      procedure :: walk
+      procedure :: serialize
       procedure :: line_under
    end type layered_rule
 
@@ -300,14 +300,14 @@ contains
       call self%layers%forget()
    end subroutine forget
 
-   !> Present the memory to a tape.
-   pure subroutine walk(self, memory)
+   !> Save or restore all history variables.
+   pure subroutine serialize(self, stream)
       class(layered_rule), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call memory%keep(self%rest)
-      call self%layers%walk(memory)
-   end subroutine walk
+      call stream%item(self%rest)
+      call self%layers%serialize(stream)
+   end subroutine serialize
 
    !> At a rotation the axial load changes at once; the line of the joint from there on.
    subroutine line_under(self, rotation, axial_load, work, line)

@@ -17,7 +17,7 @@ module rbs_hysteresis_lone_spring
    contains
       procedure :: side
       procedure :: move
-      procedure :: walk
+      procedure :: advance_on_branch
       procedure :: change_line
    end type lone_spring
 
@@ -51,7 +51,7 @@ contains
       do events = 0, most_lines - 1
          way = self%side(d)
          if (way == 0) then
-            call self%walk(d)
+            call self%advance_on_branch(d)
             return
          end if
          call self%change_line(rule, way)
@@ -60,7 +60,7 @@ contains
    end subroutine move
 
    !> Move along the line to d; the rear end of a one-way line follows.
-   pure subroutine walk(self, d)
+   pure subroutine advance_on_branch(self, d)
       class(lone_spring), intent(inout) :: self
       !> New deformation on the present line [m or rad]
       real(wp), intent(in) :: d
@@ -71,7 +71,7 @@ contains
          if (line%one_way > 0) self%first = d
          if (line%one_way < 0) self%last = d
       end associate
-   end subroutine walk
+   end subroutine advance_on_branch
 
    !> Move to the end of the line and get the line that follows from the rule. When the motion turns back, a
    !> one-way line ends at the present deformation.
@@ -84,7 +84,7 @@ contains
       associate (line => self%line)
          if (line%one_way > 0) line%lo = self%d
          if (line%one_way < 0) line%hi = self%d
-         if (line%one_way /= -way) call self%walk(merge(line%hi, line%lo, way > 0))
+         if (line%one_way /= -way) call self%advance_on_branch(merge(line%hi, line%lo, way > 0))
          call rule%next(line, way)
          self%first = first_on(line)
          self%last = last_on(line)

@@ -2,7 +2,7 @@
 module rbs_hysteresis_open_turns
    use rbs_base_constants, only: unbounded
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_hysteresis_inner_peaks, only: point
    implicit none
    private
@@ -33,7 +33,7 @@ module rbs_hysteresis_open_turns
       real(wp) :: fades_from = unbounded
    contains
       procedure :: shift
-      procedure :: walk => walk_turn
+      procedure :: serialize => serialize_turn
    end type turn
 
    type :: open_turns
@@ -47,7 +47,7 @@ module rbs_hysteresis_open_turns
       procedure :: fade
       procedure :: move_with_peak
       procedure :: copy
-      procedure :: walk => walk_turns
+      procedure :: serialize => serialize_turns
    end type open_turns
 
 contains
@@ -172,33 +172,33 @@ contains
       self%list(:self%count) = other%list(:self%count)
    end subroutine copy
 
-   pure subroutine walk_turn(self, memory)
+   pure subroutine serialize_turn(self, stream)
       class(turn), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call self%at%walk(memory)
-      call memory%keep(self%start)
-      call self%goal%walk(memory)
-      call memory%keep(self%time)
-      call memory%keep(self%fades_from)
-   end subroutine walk_turn
+      call self%at%serialize(stream)
+      call stream%item(self%start)
+      call self%goal%serialize(stream)
+      call stream%item(self%time)
+      call stream%item(self%fades_from)
+   end subroutine serialize_turn
 
-   !> Present the turns to a tape; they come back into the room that is there if it is enough.
-   pure subroutine walk_turns(self, memory)
+   !> Save or restore the turns; they come back into the room that is there if it is enough.
+   pure subroutine serialize_turns(self, stream)
       class(open_turns), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
       integer :: i
 
-      call memory%keep_count(self%count, most_turns)
-      if (memory%restoring) then
+      call stream%item_count(self%count, most_turns)
+      if (stream%restoring) then
          if (allocated(self%list)) then
             if (size(self%list) < self%count) deallocate (self%list)
          end if
          if (.not. allocated(self%list) .and. self%count > 0) allocate (self%list(self%count))
       end if
       do i = 1, self%count
-         call self%list(i)%walk(memory)
+         call self%list(i)%serialize(stream)
       end do
-   end subroutine walk_turns
+   end subroutine serialize_turns
 
 end module rbs_hysteresis_open_turns

@@ -6,7 +6,7 @@ module rbs_hysteresis_peak_oriented
    use rbs_base_error, only: message_list
    use rbs_base_keys, only: key_type, bound_type, not_negative, share_below_one
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_hysteresis_backbone_parameters, only: backbone_parameters, backbone_keys, other_side_keys, &
                                                   from_values
@@ -59,7 +59,7 @@ module rbs_hysteresis_peak_oriented
       procedure :: start
       procedure :: next
       procedure :: copy_memory
-      procedure :: walk
+      procedure :: serialize
       procedure :: hears
       procedure :: hear
    end type peak_oriented_rule
@@ -194,12 +194,12 @@ contains
       self%part%heard = work
    end subroutine hear
 
-   !> Present the memory to a tape.
-   pure subroutine walk(self, memory)
+   !> Save or restore all history variables.
+   pure subroutine serialize(self, stream)
       class(peak_oriented_rule), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call self%part%walk(memory)
-   end subroutine walk
+      call self%part%serialize(stream)
+   end subroutine serialize
 
 end module rbs_hysteresis_peak_oriented

@@ -9,7 +9,7 @@
 module rbs_hysteresis_pinching
    use rbs_base_keys, only: key_type, share_above_zero
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_hysteresis_capped, only: capped_part
    use rbs_hysteresis_peak_oriented, only: peak_oriented_rule, capped_keys
    use rbs_hysteresis_rule, only: rule_type
@@ -39,7 +39,7 @@ module rbs_hysteresis_pinching
       procedure :: start
       procedure :: next
       procedure :: copy_memory
-      procedure :: walk
+      procedure :: serialize
       procedure :: hear
    end type pinching_rule
 
@@ -146,15 +146,15 @@ contains
       self%slipping%heard = work
    end subroutine hear
 
-   !> Present the memory to a tape.
-   pure subroutine walk(self, memory)
+   !> Save or restore all history variables.
+   pure subroutine serialize(self, stream)
       class(pinching_rule), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call self%part%walk(memory)
-      call self%slipping%walk(memory)
-      call self%line%walk(memory)
-      call self%slipping_line%walk(memory)
-   end subroutine walk
+      call self%part%serialize(stream)
+      call self%slipping%serialize(stream)
+      call self%line%serialize(stream)
+      call self%slipping_line%serialize(stream)
+   end subroutine serialize
 
 end module rbs_hysteresis_pinching

@@ -3,7 +3,7 @@ module rbs_hysteresis_rule
    use rbs_base_error, only: message_list
    use rbs_base_keys, only: key_type
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_hysteresis_segment, only: segment
    implicit none
@@ -31,7 +31,7 @@ module rbs_hysteresis_rule
       procedure :: check
       procedure(start_interface), deferred :: start
       procedure(next_interface), deferred :: next
-      procedure(walk_interface), deferred :: walk
+      procedure(serialize_interface), deferred :: serialize
       procedure :: copy_memory
       procedure :: hears
       procedure :: hear
@@ -87,14 +87,14 @@ module rbs_hysteresis_rule
          integer, intent(in) :: direction
       end subroutine next_interface
 
-      !> Present to a tape everything that `next` changes, the parameters not: what another analysis needs to
+      !> Save or restore everything that `next` changes, not the parameters: what another analysis needs to
       !> go on.
-      pure subroutine walk_interface(self, memory)
-         import :: rule_type, memory_type
+      pure subroutine serialize_interface(self, stream)
+         import :: rule_type, stream_type
          implicit none
          class(rule_type), intent(inout) :: self
-         type(memory_type), intent(inout) :: memory
-      end subroutine walk_interface
+         type(stream_type), intent(inout) :: stream
+      end subroutine serialize_interface
    end interface
 
 contains

@@ -2,7 +2,7 @@
 module rbs_hysteresis_segment
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unbounded
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    implicit none
    private
 
@@ -29,7 +29,7 @@ module rbs_hysteresis_segment
       procedure :: force
       procedure :: end_toward
       procedure :: outward
-      procedure :: walk
+      procedure :: serialize
    end type segment
 
 contains
@@ -78,19 +78,19 @@ contains
       if (one_way) line%one_way = s
    end function outward
 
-   !> Present the line to a tape.
-   pure subroutine walk(self, memory)
+   !> Save or restore the line.
+   pure subroutine serialize(self, stream)
       class(segment), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call memory%keep(self%d0)
-      call memory%keep(self%f0)
-      call memory%keep(self%k)
-      call memory%keep(self%lo)
-      call memory%keep(self%hi)
-      call memory%keep(self%lo_closed)
-      call memory%keep(self%hi_closed)
-      call memory%keep(self%one_way)
-   end subroutine walk
+      call stream%item(self%d0)
+      call stream%item(self%f0)
+      call stream%item(self%k)
+      call stream%item(self%lo)
+      call stream%item(self%hi)
+      call stream%item(self%lo_closed)
+      call stream%item(self%hi_closed)
+      call stream%item(self%one_way)
+   end subroutine serialize
 
 end module rbs_hysteresis_segment

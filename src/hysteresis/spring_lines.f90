@@ -2,7 +2,7 @@
 module rbs_hysteresis_spring_lines
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_journal, only: journal_type, rule_slot
    use rbs_hysteresis_segment, only: segment
@@ -52,7 +52,7 @@ module rbs_hysteresis_spring_lines
       procedure :: force
       procedure :: end_toward
       procedure :: move
-      procedure :: walk
+      procedure :: advance_on_branch
       procedure :: leave
       procedure :: arrive
       procedure :: load_to
@@ -61,7 +61,7 @@ module rbs_hysteresis_spring_lines
       procedure :: mark
       procedure :: restore
       procedure :: forget_mark
-      procedure :: walk_lines
+      procedure :: serialize_lines
    end type spring_lines
 
 contains
@@ -149,7 +149,7 @@ contains
          else if (d < self%first(i)) then
             call change_line(self, i, -1)
          else
-            call walk(self, i, d)
+            call advance_on_branch(self, i, d)
             return
          end if
       end do
@@ -157,7 +157,7 @@ contains
    end subroutine move
 
    !> Move along the present line to d; the rear end of a one-way line follows.
-   pure subroutine walk(self, i, d)
+   pure subroutine advance_on_branch(self, i, d)
       class(spring_lines), intent(inout) :: self
       integer, intent(in) :: i
       !> New deformation on the present line [m or rad]
@@ -172,7 +172,7 @@ contains
       else if (self%one_way(i) < 0) then
          self%last(i) = d
       end if
-   end subroutine walk
+   end subroutine advance_on_branch
 
    !> Move to the end of the present line and get the line that follows from the rule. When the motion turns
    !> back, a one-way line ends at the present deformation.
@@ -183,7 +183,7 @@ contains
 
       line = self%line_of(i)
       if (self%journal%open) call self%journal%keep(i, line, self%slot(i))
-      if (self%one_way(i) /= -direction) call walk(self, i, merge(line%hi, line%lo, direction > 0))
+      if (self%one_way(i) /= -direction) call advance_on_branch(self, i, merge(line%hi, line%lo, direction > 0))
       associate (j => self%heard(i))
          if (j > 0) call self%slot(i)%rule%hear(self%work_before(j) + self%work(j))
       end associate
@@ -214,7 +214,7 @@ contains
       logical :: closed
 
       closed = merge(self%hi_closed(i), self%lo_closed(i), direction > 0)
-      call walk(self, i, self%end_toward(i, direction))
+      call advance_on_branch(self, i, self%end_toward(i, direction))
       if (.not. closed) call self%leave(i, direction)
    end subroutine arrive
 
@@ -241,7 +241,7 @@ contains
                is_there = k > 0.0_wp .and. abs(far) >= unbounded
                if (abs(far) < unbounded) is_there = direction*(f0 + k*(far - d0) - f) >= 0.0_wp
                if (is_there) then
-                  call walk(self, i, d0 + (f - f0)/k)
+                  call advance_on_branch(self, i, d0 + (f - f0)/k)
                   return
                end if
             end associate
@@ -292,27 +292,27 @@ contains
       end associate
    end subroutine restore
 
-   !> Present to a tape where the springs are, and what their rules remember.
-   subroutine walk_lines(self, memory)
+   !> Save or restore where the springs are, and what their rules remember.
+   subroutine serialize_lines(self, stream)
       class(spring_lines), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
       integer :: i
 
-      call memory%keep(self%d)
-      call memory%keep(self%d0)
-      call memory%keep(self%f0)
-      call memory%keep(self%k)
-      call memory%keep(self%first)
-      call memory%keep(self%last)
-      call memory%keep(self%work)
-      call memory%keep(self%lo_closed)
-      call memory%keep(self%hi_closed)
+      call stream%item(self%d)
+      call stream%item(self%d0)
+      call stream%item(self%f0)
+      call stream%item(self%k)
+      call stream%item(self%first)
+      call stream%item(self%last)
+      call stream%item(self%work)
+      call stream%item(self%lo_closed)
+      call stream%item(self%hi_closed)
       do i = 1, self%count
-         call memory%keep(self%one_way(i))
-         call self%slot(i)%rule%walk(memory)
+         call stream%item(self%one_way(i))
+         call self%slot(i)%rule%serialize(stream)
       end do
       self%version = modulo(self%version + 1, huge(1))
-   end subroutine walk_lines
+   end subroutine serialize_lines
 
    !> The present line of a spring, in the form that its rule takes.
    pure type(segment) function line_of(self, i) result(line)

@@ -2,7 +2,7 @@
 !> load, and are on planes where other springs are on lines.
 module rbs_hysteresis_spring_planes
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_layer_fall, only: layer_fall, find_fall
    use rbs_hysteresis_layered, only: layered_rule
@@ -34,7 +34,7 @@ module rbs_hysteresis_spring_planes
       procedure :: way_on_plane
       procedure :: put_on_plane
       procedure :: turns_on_plane
-      procedure :: walk_memory
+      procedure :: serialize
       procedure :: go_under
    end type spring_planes
 
@@ -245,15 +245,15 @@ contains
       end do
    end subroutine restore
 
-   !> Present to a tape where the springs are, and what they remember.
-   subroutine walk_memory(self, memory)
+   !> Save or restore where the springs are, and what they remember.
+   subroutine serialize(self, stream)
       class(spring_planes), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call self%walk_lines(memory)
-      if (.not. (self%pressed .and. memory%restoring)) return
+      call self%serialize_lines(stream)
+      if (.not. (self%pressed .and. stream%restoring)) return
       call read_planes(self)
-   end subroutine walk_memory
+   end subroutine serialize
 
    subroutine read_planes(self)
       type(spring_planes), intent(inout) :: self

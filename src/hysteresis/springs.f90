@@ -33,7 +33,7 @@ contains
          ! One body: while both springs stay on their lines, neither a loop nor a call is needed.
          if (d(1) <= self%last(1) .and. d(1) >= self%first(1) .and. &
              d(2) <= self%last(2) .and. d(2) >= self%first(2)) then
-            call walk_pair(d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, &
+            call advance_pair(d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, &
                            self%last)
             return
          end if
@@ -45,7 +45,7 @@ contains
          if (self%stuck) return
       end if
       ! Springs that have arrived do not move any more.
-      call walk_all(self%count, d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, &
+      call advance_all(self%count, d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, &
                     self%last)
    end subroutine move_all
 
@@ -70,8 +70,8 @@ contains
       are_within = outside == 0
    end function are_within
 
-   !> `walk` for the two springs of one body.
-   pure subroutine walk_pair(to, d0, f0, k, one_way, d, work, first, last)
+   !> `advance_on_branch` for the two springs of one body.
+   pure subroutine advance_pair(to, d0, f0, k, one_way, d, work, first, last)
       integer, intent(in) :: one_way(2)
       real(wp), intent(in) :: to(2), d0(2), f0(2), k(2)
       real(wp), intent(inout) :: d(2), work(2), first(2), last(2)
@@ -83,10 +83,10 @@ contains
          if (one_way(i) > 0) first(i) = to(i)
          if (one_way(i) < 0) last(i) = to(i)
       end do
-   end subroutine walk_pair
+   end subroutine advance_pair
 
-   !> `walk` for all springs at once.
-   pure subroutine walk_all(n, to, d0, f0, k, one_way, d, work, first, last)
+   !> `advance_on_branch` for all springs at once.
+   pure subroutine advance_all(n, to, d0, f0, k, one_way, d, work, first, last)
       integer, intent(in) :: n, one_way(n)
       real(wp), intent(in) :: to(n), d0(n), f0(n), k(n)
       real(wp), intent(inout) :: d(n), work(n), first(n), last(n)
@@ -98,7 +98,7 @@ contains
          first(i) = merge(to(i), first(i), one_way(i) > 0)
          last(i) = merge(to(i), last(i), one_way(i) < 0)
       end do
-   end subroutine walk_all
+   end subroutine advance_all
 
    !> Move every spring to a deformation on its present line.
    subroutine carry_to(self, d)
@@ -108,10 +108,10 @@ contains
 
       if (self%pressed) call self%press_joints(d)
       if (self%count == 2) then
-         call walk_pair(d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, self%last)
+         call advance_pair(d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, self%last)
          return
       end if
-      call walk_all(self%count, d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, &
+      call advance_all(self%count, d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, &
                     self%last)
    end subroutine carry_to
 

@@ -12,7 +12,7 @@ module rbs_hysteresis_steel
    use rbs_base_error, only: message_list
    use rbs_base_keys, only: key_type, above_zero, not_negative, share_below_one, force, stiffness, deformation
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_hysteresis_rule, only: rule_type, check_product, places_length, in_shear, in_flexure, &
       in_axial, in_layer
@@ -114,7 +114,7 @@ module rbs_hysteresis_steel
       procedure :: start
       procedure :: next
       procedure :: copy_memory
-      procedure :: walk
+      procedure :: serialize
    end type steel_rule
 
 contains
@@ -489,18 +489,18 @@ contains
       end select
    end subroutine copy_memory
 
-   !> Present the memory to a tape.
-   pure subroutine walk(self, memory)
+   !> Save or restore all history variables.
+   pure subroutine serialize(self, stream)
       class(steel_rule), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call memory%keep(self%s)
-      call memory%keep(self%rate)
-      call memory%keep(self%d)
-      call memory%keep(self%highest)
-      call memory%keep(self%lowest)
-      call memory%keep(self%worn)
-      call memory%keep(self%wear_rate)
-   end subroutine walk
+      call stream%item(self%s)
+      call stream%item(self%rate)
+      call stream%item(self%d)
+      call stream%item(self%highest)
+      call stream%item(self%lowest)
+      call stream%item(self%worn)
+      call stream%item(self%wear_rate)
+   end subroutine serialize
 
 end module rbs_hysteresis_steel

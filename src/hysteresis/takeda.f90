@@ -17,7 +17,7 @@ module rbs_hysteresis_takeda
    use rbs_base_error, only: message_list
    use rbs_base_keys, only: key_type, word_kind, above_zero, not_negative, deformation, stiffness
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_inner_peaks, only: point, reloading_line, inner_peaks
@@ -88,7 +88,7 @@ module rbs_hysteresis_takeda
       procedure :: start
       procedure :: next
       procedure :: copy_memory
-      procedure :: walk
+      procedure :: serialize
    end type takeda_rule
 
 contains
@@ -463,21 +463,21 @@ contains
       end select
    end subroutine copy_memory
 
-   !> Present the memory to a tape.
-   pure subroutine walk(self, memory)
+   !> Save or restore all history variables.
+   pure subroutine serialize(self, stream)
       class(takeda_rule), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
       integer :: s
 
-      call memory%keep(self%branch)
-      call memory%keep(self%side)
-      call memory%keep(self%cracked)
+      call stream%item(self%branch)
+      call stream%item(self%side)
+      call stream%item(self%cracked)
       do s = -1, 1, 2
-         call self%peak(s)%walk(memory)
+         call self%peak(s)%serialize(stream)
       end do
-      call memory%keep(self%k_r)
-      call self%aim%walk(memory)
-      call self%open%walk(memory)
-   end subroutine walk
+      call stream%item(self%k_r)
+      call self%aim%serialize(stream)
+      call self%open%serialize(stream)
+   end subroutine serialize
 
 end module rbs_hysteresis_takeda

@@ -2,7 +2,7 @@
 module rbs_io_state_file
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_io_output_file, only: output_file
    use rbs_version, only: version
@@ -19,9 +19,9 @@ module rbs_io_state_file
 contains
 
    !> Read the numbers of a state.
-   subroutine read_state(path, tape, error)
+   subroutine read_state(path, stream, error)
       character(len=*), intent(in) :: path
-      type(memory_type), intent(inout) :: tape
+      type(stream_type), intent(inout) :: stream
       type(error_type), allocatable, intent(out) :: error
       integer :: unit, status
       logical :: understood
@@ -31,16 +31,16 @@ contains
          call fatal_error(error, bad_input, 'analysis: initial: '//path//' cannot be read; check the path')
          return
       end if
-      call read_numbers(unit, tape, understood)
+      call read_numbers(unit, stream, understood)
       close (unit)
       if (understood) return
       call fatal_error(error, bad_input, 'analysis: initial: '//path//' is no state of rbsdem, or it is '// &
                        'damaged; the key state of the group output writes one')
    end subroutine read_state
 
-   subroutine read_numbers(unit, tape, understood)
+   subroutine read_numbers(unit, stream, understood)
       integer, intent(in) :: unit
-      type(memory_type), intent(inout) :: tape
+      type(stream_type), intent(inout) :: stream
       logical, intent(out) :: understood
       character(len=80) :: line
       integer :: status, i, count
@@ -55,20 +55,20 @@ contains
       end do
       read (line, *, iostat=status) count
       if (status /= 0 .or. count < 1 .or. count > most_numbers) return
-      if (allocated(tape%value)) deallocate (tape%value)
-      allocate (tape%value(count))
+      if (allocated(stream%value)) deallocate (stream%value)
+      allocate (stream%value(count))
       do i = 1, count
-         read (unit, *, iostat=status) tape%value(i)
+         read (unit, *, iostat=status) stream%value(i)
          if (status /= 0) return
       end do
       understood = .true.
-      tape%count = count
+      stream%count = count
    end subroutine read_numbers
 
    !> Write the numbers of a state, whole or not at all.
-   subroutine write_state(path, tape, error)
+   subroutine write_state(path, stream, error)
       character(len=*), intent(in) :: path
-      type(memory_type), intent(in) :: tape
+      type(stream_type), intent(in) :: stream
       type(error_type), allocatable, intent(inout) :: error
       type(output_file) :: file
       character(len=32) :: number
@@ -77,9 +77,9 @@ contains
       call file%open(path, error)
       if (allocated(error)) return
       call file%put(first_line//new_line('a')//'# version: '//trim(version)//new_line('a')// &
-                    to_text(tape%count)//new_line('a'), error)
-      do i = 1, tape%count
-         write (number, '(es24.16e3)') tape%value(i)
+                    to_text(stream%count)//new_line('a'), error)
+      do i = 1, stream%count
+         write (number, '(es24.16e3)') stream%value(i)
          call file%put(trim(adjustl(number))//new_line('a'), error)
       end do
       call file%close(.not. allocated(error), .false., error)

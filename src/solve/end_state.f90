@@ -10,7 +10,7 @@ module rbs_solve_end_state
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_keys, only: key_type
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
    use rbs_hysteresis_registry, only: keys_of, rule_names
@@ -55,11 +55,11 @@ module rbs_solve_end_state
       integer :: method = 0
       real(wp) :: setting = 0.0_wp
    contains
-      procedure :: walk => walk_standing
+      procedure :: serialize => serialize_standing
    end type standing_type
 
    type :: end_state
-      type(memory_type) :: tape
+      type(stream_type) :: stream
    contains
       procedure :: is_given
       procedure :: start_saving
@@ -74,35 +74,35 @@ contains
    pure logical function is_given(self)
       class(end_state), intent(in) :: self
 
-      is_given = self%tape%count > 0
+      is_given = self%stream%count > 0
    end function is_given
 
-   pure subroutine walk_standing(self, memory)
+   pure subroutine serialize_standing(self, stream)
       class(standing_type), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call memory%keep(self%kind)
-      call memory%keep(self%pressed)
-      call memory%keep(self%displacement)
-      call memory%keep(self%force)
-      call memory%keep(self%axial_load)
-      call memory%keep(self%press)
-      call memory%keep(self%v)
-      call memory%keep(self%input)
-      call memory%keep(self%damping)
-      call memory%keep(self%at_begin)
-      call memory%keep(self%residual)
-      call memory%keep(self%along_joints)
-      call memory%keep(self%begin)
-      call memory%keep(self%clock)
-      call memory%keep(self%time)
-      call memory%keep(self%load)
-      call memory%keep(self%dt)
-      call memory%keep(self%origin)
-      call memory%keep(self%offset)
-      call memory%keep(self%method)
-      call memory%keep(self%setting)
-   end subroutine walk_standing
+      call stream%item(self%kind)
+      call stream%item(self%pressed)
+      call stream%item(self%displacement)
+      call stream%item(self%force)
+      call stream%item(self%axial_load)
+      call stream%item(self%press)
+      call stream%item(self%v)
+      call stream%item(self%input)
+      call stream%item(self%damping)
+      call stream%item(self%at_begin)
+      call stream%item(self%residual)
+      call stream%item(self%along_joints)
+      call stream%item(self%begin)
+      call stream%item(self%clock)
+      call stream%item(self%time)
+      call stream%item(self%load)
+      call stream%item(self%dt)
+      call stream%item(self%origin)
+      call stream%item(self%offset)
+      call stream%item(self%method)
+      call stream%item(self%setting)
+   end subroutine serialize_standing
 
    !> Begin a state with what every analysis has. What the solver remembers follows.
    subroutine start_saving(self, column, standing, springs)
@@ -118,21 +118,21 @@ contains
       first(6) = column%n
       first(7) = column%kinematics
       first(8) = merge(1.0_wp, 0.0_wp, column%opens)
-      call self%tape%save()
-      call self%tape%keep(first)
-      call standing%walk(self%tape)
-      call springs%walk_memory(self%tape)
+      call self%stream%save()
+      call self%stream%item(first)
+      call standing%serialize(self%stream)
+      call springs%serialize(self%stream)
    end subroutine start_saving
 
    !> The state is whole. One with a number that is none is not kept: nothing could go on from it.
    subroutine finish_saving(self)
       class(end_state), intent(inout) :: self
 
-      if (.not. all(ieee_is_finite(self%tape%value(:self%tape%count)))) then
-         self%tape%count = 0
+      if (.not. all(ieee_is_finite(self%stream%value(:self%stream%count)))) then
+         self%stream%count = 0
          return
       end if
-      call find_sum(self%tape%value(head + 1:self%tape%count), self%tape%value(4:5))
+      call find_sum(self%stream%value(head + 1:self%stream%count), self%stream%value(4:5))
    end subroutine finish_saving
 
    !> Whether an analysis of a column can begin from the state.
@@ -143,7 +143,7 @@ contains
       character(len=*), parameter :: kinematics(3) = [character(len=6) :: 'small', 'pdelta', 'finite']
       real(wp) :: expected(2)
 
-      associate (value => self%tape%value, count => self%tape%count)
+      associate (value => self%stream%value, count => self%stream%count)
          if (count <= head) then
             call fatal_error(error, bad_input, 'initial: this is no state of an analysis, or it is '// &
                              'damaged; '// &
@@ -183,7 +183,7 @@ contains
    end subroutine check
 
    !> Take up what every analysis has; springs are those of the column, virgin. What the solver remembers
-   !> comes next on the tape.
+   !> comes next in the stream.
    subroutine take_up(self, column, standing, springs, error)
       class(end_state), intent(inout) :: self
       type(column_type), intent(in) :: column
@@ -195,11 +195,11 @@ contains
       call self%check(column, error)
       if (allocated(error)) return
       allocate (standing%press(column%n), standing%v(column%unknowns), source=0.0_wp)
-      call self%tape%restore()
-      call self%tape%keep(first)
-      call standing%walk(self%tape)
-      call springs%walk_memory(self%tape)
-      if (self%tape%broken) then
+      call self%stream%restore()
+      call self%stream%item(first)
+      call standing%serialize(self%stream)
+      call springs%serialize(self%stream)
+      if (self%stream%broken) then
          call fatal_error(error, bad_input, 'initial: the state was written by a version of rbsdem whose '// &
                           'springs remember other things; run the first analysis again with this version')
       end if

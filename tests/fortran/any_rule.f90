@@ -272,7 +272,7 @@ contains
             s = merge(1, -1, d(j) > spring%d(1))
             k = max(k, -spring%k(1))
             if (s*(d(j) - spring%end_toward(1, s)) <= 0.0_wp) exit
-            call spring%walk(1, spring%end_toward(1, s))
+            call spring%advance_on_branch(1, spring%end_toward(1, s))
             call spring%leave(1, s)
          end do
          call spring%move(1, d(j))

@@ -5,7 +5,7 @@ module test_rules
    use check, only: unit_test, check_true
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_hysteresis_registry, only: rule_names
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: spring_array
@@ -58,7 +58,7 @@ contains
    end subroutine dissipative
 
    !> A path that is cut anywhere goes on with the same bits in springs that were made anew and given the
-   !> memory: a rule that leaves something out of its `walk` fails.
+   !> memory: a rule that leaves something out of `serialize` fails.
    subroutine resumes(error)
       type(error_type), allocatable, intent(inout) :: error
       integer :: i, history
@@ -78,7 +78,7 @@ contains
       type(random_type) :: random
       type(spring_record) :: spec(2)
       type(spring_array) :: whole, part
-      type(memory_type) :: memory
+      type(stream_type) :: stream
       real(wp) :: d(24, 2), f(24, 2), w(24, 2)
       integer :: cut, i, j
       logical :: equal
@@ -93,16 +93,16 @@ contains
       do j = 1, size(d, 1)
          call whole%move_all(d(j, :))
          if (j == cut) then
-            call memory%save()
-            call whole%walk_memory(memory)
+            call stream%save()
+            call whole%serialize(stream)
          end if
          f(j, :) = [whole%force(1), whole%force(2)]
          w(j, :) = whole%work
       end do
       call part%create(spec)
-      call memory%restore()
-      call part%walk_memory(memory)
-      call check_true(error, memory%at == memory%count .and. .not. memory%broken, rule//': all is read')
+      call stream%restore()
+      call part%serialize(stream)
+      call check_true(error, stream%at == stream%count .and. .not. stream%broken, rule//': all is read')
       equal = .true.
       do j = cut, size(d, 1)
          if (j > cut) call part%move_all(d(j, :))

@@ -80,8 +80,8 @@ contains
       type(end_state), intent(inout) :: before
 
       if (.not. allocated(column%before)) return
-      before%tape%value = column%before
-      before%tape%count = size(column%before)
+      before%stream%value = column%before
+      before%stream%count = size(column%before)
    end subroutine take_before
 
    !> Run them all.

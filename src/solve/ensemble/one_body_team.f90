@@ -154,7 +154,7 @@ contains
       do i = 1, 2
          call take_spring(x, l, i, x%from(l, i), spring)
          if (spring%side(x%q(l, i)) == 0) then
-            call spring%walk(x%q(l, i))
+            call spring%advance_on_branch(x%q(l, i))
          else
             ! The first spring is told what the second has done up to the start of the step.
             if (springs%heard(i) > 0) call springs%slot(i)%rule%hear(x%work(l, 2))

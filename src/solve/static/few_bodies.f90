@@ -4,7 +4,7 @@
 !>     K rate = a dF,   a rate = 1        K = diag(k) + K_G
 module rbs_solve_static_few_bodies
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_small_systems, only: solve_rows, row_length
    implicit none
    private
@@ -31,7 +31,7 @@ module rbs_solve_static_few_bodies
       procedure :: create
       procedure :: solve
       procedure :: update
-      procedure :: walk
+      procedure :: serialize
    end type few_bodies
 
 contains
@@ -163,16 +163,16 @@ contains
       end do
    end function still_solves
 
-   !> Present to a tape the last solution, from which the next one may follow.
-   pure subroutine walk(self, memory)
+   !> Save or restore the last solution, from which the next one may follow.
+   pure subroutine serialize(self, stream)
       class(few_bodies), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
       if (.not. allocated(self%solved)) return
-      call memory%keep(self%solved)
-      call memory%keep(self%k)
-      call memory%keep(self%changing)
-      call memory%keep(self%updates)
-   end subroutine walk
+      call stream%item(self%solved)
+      call stream%item(self%k)
+      call stream%item(self%changing)
+      call stream%item(self%updates)
+   end subroutine serialize
 
 end module rbs_solve_static_few_bodies

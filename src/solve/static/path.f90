@@ -4,7 +4,7 @@ module rbs_solve_static_path
    use rbs_base_constants, only: unset, unset_integer
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, joint_name, small, finite
    use rbs_column_top, only: largest_turn, top_displacement
@@ -20,7 +20,7 @@ module rbs_solve_static_path
    private
 
    public :: static_path, kept_rows, is_on_end, top_height, describe_state, missing_work, name_spring, &
-             on_the_end, walk_path
+             on_the_end, serialize_path
 
    !> A spring this close to an end of its line, relative to the end, is on it. Not a tolerance of the
    !> solution: where a cycle returns to its peak, round-off would otherwise decide between outer and inner
@@ -68,7 +68,7 @@ module rbs_solve_static_path
       procedure :: compress
       procedure :: follow
       procedure :: see_corner
-      procedure(walk_interface), deferred :: walk
+      procedure(serialize_interface), deferred :: serialize
       procedure(advance_interface), deferred :: advance
       procedure(solve_line_interface), deferred :: solve_line
       procedure(measure_interface), deferred :: measure
@@ -131,13 +131,13 @@ module rbs_solve_static_path
          class(static_path), intent(inout) :: self
       end subroutine stand_interface
 
-      !> Present to a tape all that the next target depends on, the springs excepted.
-      subroutine walk_interface(self, memory)
-         import :: static_path, memory_type
+      !> Save or restore all that the next target depends on, the springs excepted.
+      subroutine serialize_interface(self, stream)
+         import :: static_path, stream_type
          implicit none
          class(static_path), intent(inout) :: self
-         type(memory_type), intent(inout) :: memory
-      end subroutine walk_interface
+         type(stream_type), intent(inout) :: stream
+      end subroutine serialize_interface
    end interface
 
 contains
@@ -191,19 +191,19 @@ contains
       self%at_begin = sum(self%springs%work) + axial_work
    end subroutine begin
 
-   !> Present to a tape what every path remembers; solvers add what is their own.
-   subroutine walk_path(self, memory)
+   !> Save or restore what every path remembers; solvers add what is their own.
+   subroutine serialize_path(self, stream)
       class(static_path), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call memory%keep(self%displacement)
-      call memory%keep(self%force)
-      call memory%keep(self%work)
-      call memory%keep(self%control)
-      call memory%keep(self%direction)
-      call memory%keep(self%rate)
-      call memory%keep(self%load_now)
-   end subroutine walk_path
+      call stream%item(self%displacement)
+      call stream%item(self%force)
+      call stream%item(self%work)
+      call stream%item(self%control)
+      call stream%item(self%direction)
+      call stream%item(self%rate)
+      call stream%item(self%load_now)
+   end subroutine serialize_path
 
    !> The axial springs follow their lines to the forces of load and weight.
    subroutine compress(self, error)

@@ -78,8 +78,8 @@ contains
          path%displacement = standing%displacement
          path%force = standing%force
          if (standing%method == kind_of(path, varies)) then
-            call path%walk(before%tape)
-            if (before%tape%broken) then
+            call path%serialize(before%stream)
+            if (before%stream%broken) then
                call fatal_error(error, analysis_failed, 'initial: the state ends too early; run the '// &
                                 'first analysis again')
                return
@@ -233,7 +233,7 @@ contains
       standing%load(1) = path%force
       standing%method = kind_of(path, varies)
       call after%start_saving(path%column, standing, path%springs)
-      call path%walk(after%tape)
+      call path%serialize(after%stream)
       call after%finish_saving()
    end subroutine end_path
 

@@ -4,7 +4,7 @@
 module rbs_solve_static_trace
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_column_axial, only: axial_energy
    use rbs_column_column, only: column_type
@@ -15,7 +15,7 @@ module rbs_solve_static_trace
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_path, only: static_path, describe_state, kept_rows, is_on_end, on_the_end, &
-                                    top_height, walk_path
+                                    top_height, serialize_path
    use rbs_solve_static_resume, only: begin_path, end_path
    implicit none
    private
@@ -45,7 +45,7 @@ module rbs_solve_static_trace
       procedure :: find_balance
       procedure :: unbalance
       procedure :: stand_still
-      procedure :: walk
+      procedure :: serialize
    end type straight_path
 
 contains
@@ -269,22 +269,22 @@ contains
       self%direction = 0
    end subroutine stand_still
 
-   !> Present to a tape the line that the column is on.
-   subroutine walk(self, memory)
+   !> Save or restore the line that the column is on.
+   subroutine serialize(self, stream)
       class(straight_path), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call walk_path(self, memory)
-      call memory%keep(self%start)
-      call memory%keep(self%q)
-      call memory%keep(self%force_start)
-      call memory%keep(self%force_rate)
-      call memory%keep(self%displacement_start)
-      call memory%keep(self%displacement_rate)
-      call memory%keep(self%finish)
-      call memory%keep(self%ends)
-      call self%equilibrium%few%walk(memory)
-   end subroutine walk
+      call serialize_path(self, stream)
+      call stream%item(self%start)
+      call stream%item(self%q)
+      call stream%item(self%force_start)
+      call stream%item(self%force_rate)
+      call stream%item(self%displacement_start)
+      call stream%item(self%displacement_rate)
+      call stream%item(self%finish)
+      call stream%item(self%ends)
+      call self%equilibrium%few%serialize(stream)
+   end subroutine serialize
 
    !> The second-order work of the axial load and its work on the openings; the height of the top, with
    !> `pdelta` to second order, as the axial load sees it.

@@ -7,7 +7,7 @@
 module rbs_solve_static_trace_finite
    use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
    use rbs_column_finite, only: finite_potential, finite_top
@@ -19,7 +19,7 @@ module rbs_solve_static_trace_finite
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_curve, only: clean, first_ahead, most_turn
    use rbs_solve_static_finite_search, only: turning_search
-   use rbs_solve_static_path, only: describe_state, name_spring, is_on_end, on_the_end, walk_path
+   use rbs_solve_static_path, only: describe_state, name_spring, is_on_end, on_the_end, serialize_path
    use rbs_solve_static_resume, only: begin_path, end_path
    implicit none
    private
@@ -51,7 +51,7 @@ module rbs_solve_static_trace_finite
       procedure :: find_balance
       procedure :: unbalance
       procedure :: stand_still
-      procedure :: walk
+      procedure :: serialize
    end type turning_path
 
 contains
@@ -271,7 +271,7 @@ contains
 
       associate (springs => self%springs, q => self%there%q, rate => self%there%rate)
          do i = 1, self%moving
-            call springs%walk(i, min(max(q(i), springs%first(i)), springs%last(i)))
+            call springs%advance_on_branch(i, min(max(q(i), springs%first(i)), springs%last(i)))
             if (.not. is_on_end(springs, i, q(i), rate(i))) cycle
             call springs%arrive(i, merge(1, -1, rate(i) > 0.0_wp))
             self%direction = 0
@@ -332,24 +332,24 @@ contains
       call self%equilibrium%remember(self%here%q)
    end subroutine stand_still
 
-   !> Present to a tape where the path is and how far it may stride.
-   subroutine walk(self, memory)
+   !> Save or restore where the path is and how far it may stride.
+   subroutine serialize(self, stream)
       class(turning_path), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call walk_path(self, memory)
-      call memory%keep(self%stride)
-      call memory%keep(self%target)
-      call memory%keep(self%extent)
-      call memory%keep(self%most_work)
-      call memory%keep(self%here%q)
-      call memory%keep(self%here%rate)
-      call memory%keep(self%here%force)
-      call memory%keep(self%here%displacement)
-      call memory%keep(self%here%force_rate)
-      call memory%keep(self%here%displacement_rate)
-      call memory%keep(self%equilibrium%scale)
-   end subroutine walk
+      call serialize_path(self, stream)
+      call stream%item(self%stride)
+      call stream%item(self%target)
+      call stream%item(self%extent)
+      call stream%item(self%most_work)
+      call stream%item(self%here%q)
+      call stream%item(self%here%rate)
+      call stream%item(self%here%force)
+      call stream%item(self%here%displacement)
+      call stream%item(self%here%force_rate)
+      call stream%item(self%here%displacement_rate)
+      call stream%item(self%equilibrium%scale)
+   end subroutine serialize
 
    pure subroutine measure(self, axial_work, height)
       class(turning_path), intent(in) :: self

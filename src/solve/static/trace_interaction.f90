@@ -7,7 +7,7 @@
 module rbs_solve_static_trace_interaction
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, finite
    use rbs_column_top, only: top_position, top_displacement, largest_turn
@@ -17,7 +17,7 @@ module rbs_solve_static_trace_interaction
    use rbs_solve_end_state, only: end_state
    use rbs_solve_static_corner, only: report_no_line
    use rbs_solve_static_curve, only: most_turn, most_bend
-   use rbs_solve_static_path, only: static_path, describe_state, name_spring, is_on_end, walk_path
+   use rbs_solve_static_path, only: static_path, describe_state, name_spring, is_on_end, serialize_path
    use rbs_solve_static_pressed_balance, only: pressed_balance, pressed_point
    use rbs_solve_static_pressed_corner, only: find_lines
    use rbs_solve_static_pressed_finite, only: pressed_finite
@@ -56,7 +56,7 @@ module rbs_solve_static_trace_interaction
       procedure :: find_balance
       procedure :: unbalance
       procedure :: stand_still
-      procedure :: walk
+      procedure :: serialize
    end type pressed_path
 
 contains
@@ -332,7 +332,7 @@ contains
                call springs%put_on_plane(i, point%q(i), point%press(i - n), point%rate(i), &
                                          point%press_rate(i - n), merge(layer, 0, i == spring))
             else
-               call springs%walk(i, min(max(point%q(i), springs%first(i)), springs%last(i)))
+               call springs%advance_on_branch(i, min(max(point%q(i), springs%first(i)), springs%last(i)))
                if (i == spring .or. is_on_end(springs, i, point%q(i), point%rate(i))) then
                   call springs%arrive(i, merge(1, -1, point%rate(i) > 0.0_wp))
                end if
@@ -382,24 +382,24 @@ contains
       call stand(self)
    end subroutine stand_still
 
-   !> Present to a tape where the path is.
-   subroutine walk(self, memory)
+   !> Save or restore where the path is.
+   subroutine serialize(self, stream)
       class(pressed_path), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call walk_path(self, memory)
-      call memory%keep(self%axial_work)
-      call memory%keep(self%at%q)
-      call memory%keep(self%at%rate)
-      call memory%keep(self%at%press)
-      call memory%keep(self%at%press_rate)
-      call memory%keep(self%at%share)
-      call memory%keep(self%at%force)
-      call memory%keep(self%at%force_rate)
-      call memory%keep(self%at%displacement)
-      call memory%keep(self%at%displacement_rate)
-      call memory%keep(self%at%axial_power)
-   end subroutine walk
+      call serialize_path(self, stream)
+      call stream%item(self%axial_work)
+      call stream%item(self%at%q)
+      call stream%item(self%at%rate)
+      call stream%item(self%at%press)
+      call stream%item(self%at%press_rate)
+      call stream%item(self%at%share)
+      call stream%item(self%at%force)
+      call stream%item(self%at%force_rate)
+      call stream%item(self%at%displacement)
+      call stream%item(self%at%displacement_rate)
+      call stream%item(self%at%axial_power)
+   end subroutine serialize
 
    !> The values of a row that do not follow from the springs.
    pure subroutine measure(self, axial_work, height)

@@ -121,7 +121,7 @@ contains
       call self%fit()
       do i = 1, 2
          self%v1(i) = self%v0(i) + (self%h*(1.0_wp - self%gamma))*self%a0(i) + (self%h*self%gamma)*self%a1(i)
-         call self%spring(i)%walk(self%q(i))
+         call self%spring(i)%advance_on_branch(self%q(i))
       end do
    end subroutine solve
 

@@ -11,7 +11,7 @@
 !> Syst. Dyn. 18 (2007) 185-203).
 module rbs_solve_time_finite_step
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_linalg, only: solve_general_band
    use rbs_column_column, only: column_type
    use rbs_column_energy, only: kinetic_energy
@@ -56,7 +56,7 @@ module rbs_solve_time_finite_step
       procedure :: find_residual
       procedure :: find_correction
       procedure :: finish
-      procedure :: walk
+      procedure :: serialize
    end type finite_step
 
 contains
@@ -97,17 +97,17 @@ contains
       self%largest = self%scale
    end subroutine start
 
-   !> Present to a tape what the bodies do at the start of a step.
-   subroutine walk(self, memory)
+   !> Save or restore what the bodies do at the start of a step.
+   subroutine serialize(self, stream)
       class(finite_step), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call memory%keep(self%v0)
-      call memory%keep(self%a0)
-      call memory%keep(self%g0)
-      call memory%keep(self%tension)
-      call memory%keep(self%largest)
-   end subroutine walk
+      call stream%item(self%v0)
+      call stream%item(self%a0)
+      call stream%item(self%g0)
+      call stream%item(self%tension)
+      call stream%item(self%largest)
+   end subroutine serialize
 
    !> Half-width of the band.
    pure integer function beside_diagonal(column) result(beside)

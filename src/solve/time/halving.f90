@@ -2,7 +2,7 @@
 module rbs_solve_time_halving
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_column_column, only: joint_name
    use rbs_solve_time_state, only: state_type, stepper_type
@@ -21,7 +21,7 @@ module rbs_solve_time_halving
       procedure :: resume
       procedure(prepare_interface), deferred :: prepare
       procedure(take_step_interface), deferred :: take_step
-      procedure(walk_interface), deferred :: walk
+      procedure(serialize_interface), deferred :: serialize
    end type halving_stepper
 
    abstract interface
@@ -46,13 +46,13 @@ module rbs_solve_time_halving
          integer, intent(out) :: busiest
       end subroutine take_step_interface
 
-      !> Present to a tape what the bodies do at the start of a step.
-      subroutine walk_interface(self, memory)
-         import :: halving_stepper, memory_type
+      !> Save or restore what the bodies do at the start of a step.
+      subroutine serialize_interface(self, stream)
+         import :: halving_stepper, stream_type
          implicit none
          class(halving_stepper), intent(inout) :: self
-         type(memory_type), intent(inout) :: memory
-      end subroutine walk_interface
+         type(stream_type), intent(inout) :: stream
+      end subroutine serialize_interface
    end interface
 
 contains
@@ -82,14 +82,14 @@ contains
    end subroutine advance
 
    !> Accelerations and forces at the start of a step are those that the step before ended with.
-   subroutine resume(self, state, memory)
+   subroutine resume(self, state, stream)
       class(halving_stepper), intent(inout) :: self
       type(state_type), intent(in) :: state
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
       if (.not. self%ready) call self%prepare(state)
       self%ready = .true.
-      call self%walk(memory)
+      call self%serialize(stream)
    end subroutine resume
 
    !> Take a step, or its two halves if it does not converge.

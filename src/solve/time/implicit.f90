@@ -7,7 +7,7 @@
 module rbs_solve_time_implicit
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_column_band, only: to_joints
    use rbs_solve_time_halving, only: halving_stepper
    use rbs_solve_time_implicit_finite, only: finite_stepper
@@ -43,7 +43,7 @@ module rbs_solve_time_implicit
    contains
       procedure :: prepare
       procedure :: take_step
-      procedure :: walk
+      procedure :: serialize
    end type implicit_stepper
 
 contains
@@ -376,12 +376,12 @@ contains
       call self%step%go_on()
    end subroutine commit
 
-   !> Present to a tape what the bodies do at the start of a step.
-   subroutine walk(self, memory)
+   !> Save or restore what the bodies do at the start of a step.
+   subroutine serialize(self, stream)
       class(implicit_stepper), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call self%step%walk(memory)
-   end subroutine walk
+      call self%step%serialize(stream)
+   end subroutine serialize
 
 end module rbs_solve_time_implicit

@@ -7,7 +7,7 @@
 !> with G the forces on the bodies (J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993)).
 module rbs_solve_time_implicit_balance
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_column_band, only: to_joints
    use rbs_column_chain, only: body_velocities
    use rbs_solve_time_loads, only: lateral, horizontal, vertical
@@ -43,7 +43,7 @@ module rbs_solve_time_implicit_balance
       procedure :: find_residual
       procedure :: is_round_off
       procedure :: go_on
-      procedure :: walk
+      procedure :: serialize
    end type step_balance
 
 contains
@@ -82,16 +82,16 @@ contains
       self%g0 = self%g1
    end subroutine go_on
 
-   !> Present to a tape what the bodies do at the start of a step.
-   subroutine walk(self, memory)
+   !> Save or restore what the bodies do at the start of a step.
+   subroutine serialize(self, stream)
       class(step_balance), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call memory%keep(self%v0)
-      call memory%keep(self%a0)
-      call memory%keep(self%g0)
-      call memory%keep(self%largest)
-   end subroutine walk
+      call stream%item(self%v0)
+      call stream%item(self%a0)
+      call stream%item(self%g0)
+      call stream%item(self%largest)
+   end subroutine serialize
 
    !> Residual of the step for what the bodies have moved, and its size relative to the forces.
    subroutine find_residual(self, state, h, load, relative)

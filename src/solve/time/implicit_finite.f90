@@ -2,7 +2,7 @@
 !> (`rbs_solve_time_finite_step`), a number of operations a step in proportion to n.
 module rbs_solve_time_implicit_finite
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_solve_time_finite_step, only: finite_step
    use rbs_solve_time_halving, only: halving_stepper
    use rbs_solve_time_state, only: state_type, in_bounds, out_of_bounds
@@ -31,7 +31,7 @@ module rbs_solve_time_implicit_finite
    contains
       procedure :: prepare
       procedure :: take_step
-      procedure :: walk
+      procedure :: serialize
    end type finite_stepper
 
 contains
@@ -181,12 +181,12 @@ contains
       call self%step%find_residual(state, h, load, marked, size_now)
    end subroutine try
 
-   !> Present to a tape what the bodies do at the start of a step.
-   subroutine walk(self, memory)
+   !> Save or restore what the bodies do at the start of a step.
+   subroutine serialize(self, stream)
       class(finite_stepper), intent(inout) :: self
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      call self%step%walk(memory)
-   end subroutine walk
+      call self%step%serialize(stream)
+   end subroutine serialize
 
 end module rbs_solve_time_implicit_finite

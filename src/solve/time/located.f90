@@ -5,7 +5,7 @@ module rbs_solve_time_located
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_column_chain, only: kinetic_of
    use rbs_column_column, only: joint_name
@@ -121,14 +121,14 @@ contains
    end subroutine advance
 
    !> With a tolerance the length of the next step and the measure of its error depend on the steps before.
-   subroutine resume(self, state, memory)
+   subroutine resume(self, state, stream)
       class(located_stepper), intent(inout) :: self
       type(state_type), intent(in) :: state
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      memory%broken = memory%broken .or. state%lost
-      call memory%keep(self%next_step)
-      call memory%keep(self%largest)
+      stream%broken = stream%broken .or. state%lost
+      call stream%item(self%next_step)
+      call stream%item(self%largest)
    end subroutine resume
 
    !> How many parts of no length a step may have in a row.

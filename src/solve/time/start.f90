@@ -101,7 +101,7 @@ contains
       if (.not. (present(method) .and. present(setting))) return
       if (standing%kind /= moving_state .or. standing%method /= method) return
       if (abs(standing%setting - setting) > 0.0_wp .or. any(abs(state%load - standing%load) > 0.0_wp)) return
-      call stepper%resume(state, before%tape)
+      call stepper%resume(state, before%stream)
    end subroutine resume_steps
 
    !> Keep the state at the end.
@@ -148,7 +148,7 @@ contains
          ! The motion stands where its springs do.
          call after%start_saving(column, standing, state%springs)
       end associate
-      call stepper%resume(state, after%tape)
+      call stepper%resume(state, after%stream)
       call after%finish_saving()
    end subroutine keep_state
 

@@ -2,7 +2,7 @@
 module rbs_solve_time_state
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_base_memory, only: memory_type
+   use rbs_base_stream, only: stream_type
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_time_loads, only: loads_type
    use rbs_solve_time_motion, only: motion_type
@@ -88,14 +88,14 @@ contains
       call self%sight%see(self%motion, self%springs, self%q, self%v, self%load, clock)
    end subroutine see
 
-   !> Present to a tape what the next step depends on besides the state. A method whose steps depend on the
+   !> Save or restore what the next step depends on besides the state. A method whose steps depend on the
    !> state alone inherits this procedure.
-   subroutine resume(self, state, memory)
+   subroutine resume(self, state, stream)
       class(stepper_type), intent(inout) :: self
       type(state_type), intent(in) :: state
-      type(memory_type), intent(inout) :: memory
+      type(stream_type), intent(inout) :: stream
 
-      memory%broken = memory%broken .or. self%steps < 0 .or. state%lost
+      stream%broken = stream%broken .or. self%steps < 0 .or. state%lost
    end subroutine resume
 
    !> Whether all deformations are within bounds.

@@ -1,17 +1,17 @@
-!> A tape of numbers on which an object keeps what it remembers. One procedure of the object, `walk`, presents
-!> each component once; the tape takes the values when it saves and gives them back, to the last bit, when it
-!> restores. So the two cannot differ, and the numbers can go through an array or a file.
-module rbs_base_memory
+!> A stream of numbers in which an object saves its history variables. One procedure of the object, `serialize`,
+!> names each component once; the stream takes the values when it saves and returns them, to the last bit, when
+!> it restores. So the two cannot differ, and the numbers can go through an array or a file.
+module rbs_base_stream
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_kinds, only: wp
    implicit none
    private
 
-   public :: memory_type
+   public :: stream_type
 
    integer, parameter :: first_room = 16
 
-   type :: memory_type
+   type :: stream_type
       !> The numbers, of which the first `count` are used
       real(wp), allocatable :: value(:)
       integer :: count = 0
@@ -24,20 +24,20 @@ module rbs_base_memory
    contains
       procedure :: save
       procedure :: restore
-      procedure, private :: keep_real, keep_reals, keep_table, keep_integer, keep_long, keep_logical
-      procedure, private :: keep_logicals
-      !> `call memory%keep(component)`
-      generic :: keep => keep_real, keep_reals, keep_table, keep_integer, keep_long, keep_logical, &
-         keep_logicals
-      procedure :: keep_count
+      procedure, private :: item_real, item_reals, item_table, item_integer, item_long, item_logical
+      procedure, private :: item_logicals
+      !> `call stream%item(component)`
+      generic :: item => item_real, item_reals, item_table, item_integer, item_long, item_logical, &
+         item_logicals
+      procedure :: item_count
       procedure, private :: step
-   end type memory_type
+   end type stream_type
 
 contains
 
-   !> The next walk saves, from the start of the tape.
+   !> The next `serialize` saves, from the start of the stream.
    pure subroutine save(self)
-      class(memory_type), intent(inout) :: self
+      class(stream_type), intent(inout) :: self
 
       self%restoring = .false.
       self%broken = .false.
@@ -45,9 +45,9 @@ contains
       self%count = 0
    end subroutine save
 
-   !> The next walk restores, from the start of the tape.
+   !> The next `serialize` restores, from the start of the stream.
    pure subroutine restore(self)
-      class(memory_type), intent(inout) :: self
+      class(stream_type), intent(inout) :: self
 
       self%restoring = .true.
       self%broken = .false.
@@ -56,7 +56,7 @@ contains
 
    !> Go on by n numbers; `from` is the place before the first of them.
    pure subroutine step(self, n, from)
-      class(memory_type), intent(inout) :: self
+      class(stream_type), intent(inout) :: self
       integer, intent(in) :: n
       integer, intent(out) :: from
       real(wp), allocatable :: longer(:)
@@ -75,8 +75,8 @@ contains
       call move_alloc(longer, self%value)
    end subroutine step
 
-   pure subroutine keep_real(self, x)
-      class(memory_type), intent(inout) :: self
+   pure subroutine item_real(self, x)
+      class(stream_type), intent(inout) :: self
       real(wp), intent(inout) :: x
       integer :: from
 
@@ -86,10 +86,10 @@ contains
       else if (.not. self%broken) then
          x = self%value(from + 1)
       end if
-   end subroutine keep_real
+   end subroutine item_real
 
-   pure subroutine keep_reals(self, x)
-      class(memory_type), intent(inout) :: self
+   pure subroutine item_reals(self, x)
+      class(stream_type), intent(inout) :: self
       real(wp), intent(inout), contiguous :: x(:)
       integer :: from, i
 
@@ -103,74 +103,74 @@ contains
             x(i) = self%value(from + i)
          end do
       end if
-   end subroutine keep_reals
+   end subroutine item_reals
 
-   pure subroutine keep_table(self, x)
-      class(memory_type), intent(inout) :: self
+   pure subroutine item_table(self, x)
+      class(stream_type), intent(inout) :: self
       real(wp), intent(inout), contiguous :: x(:, :)
       integer :: j
 
       do j = 1, size(x, 2)
-         call self%keep_reals(x(:, j))
+         call self%item_reals(x(:, j))
       end do
-   end subroutine keep_table
+   end subroutine item_table
 
-   pure subroutine keep_integer(self, i)
-      class(memory_type), intent(inout) :: self
+   pure subroutine item_integer(self, i)
+      class(stream_type), intent(inout) :: self
       integer, intent(inout) :: i
       real(wp) :: x
 
       x = real(i, wp)
-      call self%keep_real(x)
+      call self%item_real(x)
       if (.not. self%restoring .or. self%broken) return
       self%broken = .not. abs(x) <= real(huge(i), wp)
       if (.not. self%broken) i = nint(x)
-   end subroutine keep_integer
+   end subroutine item_integer
 
    !> Serial numbers stay far below 2**53, up to which they are exact.
-   pure subroutine keep_long(self, i)
-      class(memory_type), intent(inout) :: self
+   pure subroutine item_long(self, i)
+      class(stream_type), intent(inout) :: self
       integer(int64), intent(inout) :: i
       real(wp) :: x
 
       x = real(i, wp)
-      call self%keep_real(x)
+      call self%item_real(x)
       if (.not. self%restoring .or. self%broken) return
       self%broken = .not. abs(x) <= 2.0_wp**53
       if (.not. self%broken) i = nint(x, int64)
-   end subroutine keep_long
+   end subroutine item_long
 
-   pure subroutine keep_logical(self, is)
-      class(memory_type), intent(inout) :: self
+   pure subroutine item_logical(self, is)
+      class(stream_type), intent(inout) :: self
       logical, intent(inout) :: is
       real(wp) :: x
 
       x = merge(1.0_wp, 0.0_wp, is)
-      call self%keep_real(x)
+      call self%item_real(x)
       if (self%restoring .and. .not. self%broken) is = x > 0.5_wp
-   end subroutine keep_logical
+   end subroutine item_logical
 
-   pure subroutine keep_logicals(self, are)
-      class(memory_type), intent(inout) :: self
+   pure subroutine item_logicals(self, are)
+      class(stream_type), intent(inout) :: self
       logical, intent(inout) :: are(:)
       integer :: i
 
       do i = 1, size(are)
-         call self%keep_logical(are(i))
+         call self%item_logical(are(i))
       end do
-   end subroutine keep_logicals
+   end subroutine item_logicals
 
    !> The length of a list that has room for `most`.
-   pure subroutine keep_count(self, count, most)
-      class(memory_type), intent(inout) :: self
+   pure subroutine item_count(self, count, most)
+      class(stream_type), intent(inout) :: self
       integer, intent(inout) :: count
       integer, intent(in) :: most
       integer :: n
 
       n = count
-      call self%keep_integer(n)
+      call self%item_integer(n)
       self%broken = self%broken .or. n < 0 .or. n > most
       if (.not. self%broken) count = n
-   end subroutine keep_count
+   end subroutine item_count
 
-end module rbs_base_memory
+end module rbs_base_stream
