@@ -51,7 +51,7 @@ contains
       real(wp), intent(in) :: h
       type(error_type), allocatable, intent(inout) :: error
       type(event_type) :: event
-      real(wp) :: finish, left, part, corner, wrong
+      real(wp) :: finish, left, part, corner, wrong, no_length, clock_digits
       integer :: tries, idle
 
       if (allocated(error)) return
@@ -62,14 +62,16 @@ contains
       finish = state%time + h
       left = h
       idle = 0
+      no_length = 4.0_wp*spacing(h)
+      clock_digits = 8.0_wp*spacing(finish)
       do
          ! A remainder below the last digits of the step is ignored. It is not read off the clock, which
          ! rounds where times are large.
-         if (.not. left > 4.0_wp*spacing(h)) exit
+         if (.not. left > no_length) exit
          ! A corner of the loading would lower the order as an event does.
          part = left
          corner = state%loads%corner_after(state%time) - state%time
-         if (corner < left - 8.0_wp*spacing(finish)) then
+         if (corner < left - clock_digits) then
             part = corner
             self%cut_steps = self%cut_steps + 1
          end if
@@ -89,7 +91,7 @@ contains
             wrong = error_of(self, state)
             if (.not. wrong > 1.0_wp) exit
             ! A load may jump within the last digits of the clock; a shorter step would not help then.
-            if (part <= 8.0_wp*spacing(finish) .and. wrong < not_finite) exit
+            if (part <= clock_digits .and. wrong < not_finite) exit
             if (self%tolerance > 0.0_wp .and. part > self%shortest) then
                part = max(part*max(0.2_wp, 0.9_wp*wrong**(-1.0_wp/self%scheme%order)), 0.5_wp*self%shortest)
                self%cut_steps = self%cut_steps + 1
@@ -103,7 +105,7 @@ contains
          call accept(self, state, event, part, wrong)
          left = left - part
          state%time = finish - left
-         idle = merge(0, idle + 1, part > 4.0_wp*spacing(h))
+         idle = merge(0, idle + 1, part > no_length)
          if (idle > most_idle(state)) then
             call report_standstill(state, event%spring, error)
             return

@@ -3,6 +3,7 @@
 module rbs_solve_time_sight
    use rbs_base_check, only: is_given
    use rbs_base_kinds, only: wp
+   use rbs_column_column, only: finite
    use rbs_column_top, only: top_motion, top_displacement, largest_turn
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_summary, only: peaks_type
@@ -205,28 +206,101 @@ contains
       real(wp), intent(in), contiguous :: q0(:), v0(:), q1(:), v1(:)
       !> Its length, and the clock at its end [s]
       real(wp), intent(in) :: h, clock
-      type(cubic_type) :: top, part
-      real(wp) :: displacement(4), base(4), rotation(4), reach
-      integer :: i, j, m, n
+      real(wp) :: displacement(2), reach
+      integer :: m
 
       ! Steps up to an event may have no length.
       if (.not. h > tiny(1.0_wp)) return
       m = size(q0)
-      n = motion%column%n
+      ! No cubic goes further beyond its ends than that.
+      reach = 4.0_wp/27.0_wp*h
+      displacement = [top_displacement(motion%column, q0), top_displacement(motion%column, q1)]
+      if (peaks_may_grow(self, motion, springs, displacement, q0, v0, q1, v1, reach)) then
+         call fill_inner(m, q0, v0, q1, v1, h, self%inner_q, self%inner_v)
+         call find_peaks(self, motion, springs)
+      end if
+      if (.not. self%watching) return
+      self%clock = clock
+      self%displacement = displacement(2)
+      self%q(:) = q1
+      if (self%opens) then
+         call fill_inner_openings(self, springs)
+         self%openings(:) = self%inner_openings(:, 4)
+      else
+         if (.not. are_beyond(m, self%lowest, self%highest, min(q0, q1) - reach*(abs(v0) + abs(v1)), &
+                              max(q0, q1) + reach*(abs(v0) + abs(v1)))) return
+      end if
       call fill_inner(m, q0, v0, q1, v1, h, self%inner_q, self%inner_v)
+      call look_within(self, motion, h, clock)
+   end subroutine see_within
+
+   !> Whether the largest responses may grow within a step: each is a cubic in time, as the deformations are,
+   !> but with finite rotations and damping, which are looked at in every step.
+   logical function peaks_may_grow(self, motion, springs, displacement, q0, v0, q1, v1, reach) result(grow)
+      type(sight_type), intent(in) :: self
+      type(motion_type), intent(in) :: motion
+      type(spring_array), intent(in) :: springs
+      !> Of the top at both ends [m]
+      real(wp), intent(in) :: displacement(2)
+      !> See `see_within`
+      real(wp), intent(in), contiguous :: q0(:), v0(:), q1(:), v1(:)
+      !> How far a cubic goes beyond its ends, for the sum of both velocities there [s]
+      real(wp), intent(in) :: reach
+      real(wp) :: turn(2), turning(2)
+      integer :: i, n
+
+      n = motion%column%n
+      grow = .true.
+      if (motion%column%kinematics == finite .or. motion%damped) return
+      if (goes_beyond(displacement(1), displacement(2), &
+                      reach*(abs(motion%top_velocity(v0)) + abs(motion%top_velocity(v1))), &
+                      self%peak_displacement)) return
+      associate (d0 => springs%d0(1), f0 => springs%f0(1), k => springs%k(1))
+         if (goes_beyond(f0 + k*(q0(1) - d0), f0 + k*(q1(1) - d0), &
+                         reach*abs(k)*(abs(v0(1)) + abs(v1(1))), self%peak_base_shear)) return
+      end associate
+      turn = 0.0_wp
+      turning = 0.0_wp
+      do i = n + 1, 2*n
+         turn = turn + [q0(i), q1(i)]
+         turning = turning + [v0(i), v1(i)]
+         if (goes_beyond(turn(1), turn(2), reach*(abs(turning(1)) + abs(turning(2))), &
+                         self%peak_rotation)) return
+      end do
+      grow = .false.
+   end function peaks_may_grow
+
+   !> Whether a value between two others, or somewhat beyond them, may exceed a peak in size.
+   pure logical function goes_beyond(start, finish, more, peak)
+      real(wp), intent(in) :: start, finish, more, peak
+
+      goes_beyond = max(abs(start), abs(finish)) + more > abs(peak)*(1.0_wp - 1.0e-12_wp)
+   end function goes_beyond
+
+   !> The largest responses within a step whose inner states are known.
+   subroutine find_peaks(self, motion, springs)
+      type(sight_type), intent(inout) :: self
+      type(motion_type), intent(in) :: motion
+      type(spring_array), intent(in) :: springs
+      type(cubic_type) :: part
+      real(wp) :: displacement(4), base(4), rotation(4)
+      integer :: i, j
+
       do j = 1, 4
          displacement(j) = top_displacement(motion%column, self%inner_q(:, j))
          base(j) = motion%base_shear(springs, self%inner_q(:, j), self%inner_v(:, j))
       end do
-      top = cubic_through(displacement)
-      if (may_exceed(displacement, self%peak_displacement)) call self%see_peak(top%largest(), 0.0_wp)
-      self%collapsed = abs(self%peak_displacement) >= self%furthest
+      if (may_exceed(displacement, self%peak_displacement)) then
+         part = cubic_through(displacement)
+         call self%see_peak(part%largest(), 0.0_wp)
+         self%collapsed = abs(self%peak_displacement) >= self%furthest
+      end if
       if (may_exceed(base, self%peak_base_shear)) then
          part = cubic_through(base)
          call self%see_base(part%largest())
       end if
       rotation = 0.0_wp
-      do i = n + 1, 2*n
+      do i = motion%column%n + 1, 2*motion%column%n
          do j = 1, 4
             rotation(j) = rotation(j) + self%inner_q(i, j)
          end do
@@ -234,22 +308,7 @@ contains
          part = cubic_through(rotation)
          call self%see_turn(abs(part%largest()))
       end do
-      if (.not. self%watching) return
-      self%clock = clock
-      self%displacement = displacement(4)
-      self%q(:) = q1
-      if (self%opens) then
-         call fill_inner_openings(self, springs)
-         self%openings(:) = self%inner_openings(:, 4)
-      end if
-      ! No cubic goes further beyond its ends than that.
-      reach = 4.0_wp/27.0_wp*h
-      if (.not. self%opens) then
-         if (.not. are_beyond(m, self%lowest, self%highest, min(q0, q1) - reach*(abs(v0) + abs(v1)), &
-                              max(q0, q1) + reach*(abs(v0) + abs(v1)))) return
-      end if
-      call look_within(self, top, h, clock)
-   end subroutine see_within
+   end subroutine find_peaks
 
    !> Whether a cubic through four values may exceed another one in size: between them it is at most 1.64
    !> times the largest of them (the Lebesgue constant of four equal distances).
@@ -260,16 +319,19 @@ contains
    end function may_exceed
 
    !> Limit states within a step whose inner states are known.
-   subroutine look_within(self, top, h, clock)
+   subroutine look_within(self, motion, h, clock)
       type(sight_type), intent(inout) :: self
-      !> Displacement of the top along the step
-      type(cubic_type), intent(in) :: top
+      type(motion_type), intent(in) :: motion
       real(wp), intent(in) :: h, clock
-      type(cubic_type) :: along
+      type(cubic_type) :: along, top
       real(wp) :: value(4), share
       logical :: open(size(self%reached))
       integer :: i, j
 
+      do j = 1, 4
+         value(j) = top_displacement(motion%column, self%inner_q(:, j))
+      end do
+      top = cubic_through(value)
       open = .not. self%reached < huge(1.0_wp)
       do i = 1, size(self%watch)
          associate (watch => self%watch(i))
