@@ -24,6 +24,7 @@ module rbs_app_commands
    use rbs_solve_make_column, only: make_column
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_solve_static_run_static, only: run_static
+   use rbs_solve_task, only: task_type
    use rbs_solve_time_effort, only: long_run_note
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
@@ -225,11 +226,12 @@ contains
       type(case_history), intent(in) :: history
       !> Paths of the case and of the csv
       character(len=*), intent(in) :: case_path, path
-      type(csv_recorder), intent(inout) :: recorder
+      type(csv_recorder), intent(inout), target :: recorder
       type(summary_type), intent(out) :: summary
       logical, intent(in) :: quiet
       type(error_type), allocatable, intent(out) :: error
-      type(terminal_progress) :: progress
+      type(terminal_progress), target :: progress
+      type(task_type) :: task
       type(time_plan) :: plan
       type(initial_state) :: at_rest
       type(end_state) :: before, after
@@ -262,9 +264,16 @@ contains
          call run_dynamic(column, case%analysis, plan, history%time, history%loads, at_rest, &
                           case%output%every, recorder, summary, error, progress, before, after)
       else
-         call run_static(column, any(case%loading(:case%loadings)%drive == 'force'), history%target, &
-                         case%output%every, case%analysis%collapse_drift, recorder, summary, error, &
-                         progress, history%axial_load, before, after)
+         task%recorder => recorder
+         task%progress => progress
+         task%every = case%output%every
+         task%collapse_drift = case%analysis%collapse_drift
+         task%before = before
+         task%keeps_end = .true.
+         call run_static(column, any(case%loading(:case%loadings)%drive == 'force'), history%target, task, &
+                         error, history%axial_load)
+         summary = task%summary
+         after = task%after
       end if
       call progress%finish()
       if (allocated(error) .or. .not. allocated(case%output%state)) return

@@ -440,7 +440,7 @@ end subroutine rbs_read_history
 
 subroutine rbs_kept_rows(points, every, rows)
    use iso_c_binding, only: c_int
-   use rbs_solve_static_trace, only: kept_rows
+   use rbs_solve_static_path, only: kept_rows
    implicit none
    integer(c_int), intent(in) :: points, every
    integer(c_int), intent(out) :: rows

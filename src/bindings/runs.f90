@@ -15,6 +15,7 @@ module rbs_bindings_runs
    use rbs_output_summary, only: summary_type
    use rbs_solve_end_state, only: end_state
    use rbs_solve_static_run_static, only: run_static
+   use rbs_solve_task, only: task_type
    use rbs_solve_time_effort, only: expected_seconds, long_run_note, patience
    use rbs_solve_time_loads, only: loads_type
    use rbs_solve_time_march, only: initial_state
@@ -58,8 +59,8 @@ contains
       integer(c_int), intent(out) :: ended
       type(summary_type), intent(out) :: summary
       type(error_type), allocatable, intent(out) :: error
-      type(array_recorder) :: recorder
-      type(end_state) :: from, at_end
+      type(array_recorder), target :: recorder
+      type(task_type) :: task
 
       count = 0
       ended = 0
@@ -69,11 +70,15 @@ contains
       recorder%rows => rows
       recorder%openings = case%output%openings .and. .not. column%opens
       recorder%corners = corners
-      call take_from(before, from)
-      call run_static(column, by_force, target_values, case%output%every, case%analysis%collapse_drift, &
-                      recorder, summary, error, axial_load=axial_load, before=from, after=at_end)
+      task%recorder => recorder
+      task%every = case%output%every
+      task%collapse_drift = case%analysis%collapse_drift
+      task%keeps_end = .true.
+      call take_from(before, task%before)
+      call run_static(column, by_force, target_values, task, error, axial_load)
+      summary = task%summary
       count = recorder%offered
-      call hand_over(at_end, after, ended)
+      call hand_over(task%after, after, ended)
    end subroutine into_rows_static
 
    !> A state from the numbers of the user.

@@ -12,7 +12,7 @@
 !> peak displacement [m] (static: force [N]), and the memory that the process held at the most [kB].
 program time_solver
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
-   use rbs_base_constants, only: pi, unset, unset_integer
+   use rbs_base_constants, only: pi
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
@@ -22,6 +22,7 @@ program time_solver
    use rbs_output_summary, only: summary_type
    use rbs_solve_make_column, only: make_column
    use rbs_solve_static_run_static, only: run_static
+   use rbs_solve_task, only: task_type
    use rbs_solve_time_loads, only: loads_type
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
@@ -238,8 +239,8 @@ contains
    !> Static cyclic path of one body, driven by displacement, per increment.
    subroutine time_static()
       type(column_type) :: column
-      type(array_recorder) :: recorder
-      type(summary_type) :: summary
+      type(array_recorder), target :: recorder
+      type(task_type) :: task
       type(error_type), allocatable :: error
       real(wp), allocatable, target :: rows(:, :)
       real(wp), allocatable :: x(:)
@@ -251,7 +252,8 @@ contains
       allocate (rows(row_size(column%unknowns), m))
       recorder%rows => rows
       call cpu_time(begin)
-      call run_static(column, .false., x, unset_integer, unset, recorder, summary, error)
+      task%recorder => recorder
+      call run_static(column, .false., x, task, error)
       call tell('static', begin, m)
       if (allocated(error)) error stop 'time_solver: the static path failed'
    end subroutine time_static
@@ -366,8 +368,8 @@ contains
    subroutine compare_static(points)
       integer, intent(in) :: points
       type(column_type) :: column
-      type(array_recorder) :: recorder
-      type(summary_type) :: summary
+      type(array_recorder), target :: recorder
+      type(task_type) :: task
       type(error_type), allocatable :: error
       real(wp), allocatable, target :: rows(:, :)
       real(wp), allocatable :: x(:)
@@ -378,10 +380,12 @@ contains
       allocate (rows(row_size(column%unknowns), points/1000 + 2))
       recorder%rows => rows
       call cpu_time(begin)
-      call run_static(column, .false., x, 1000, unset, recorder, summary, error)
+      task%recorder => recorder
+      task%every = 1000
+      call run_static(column, .false., x, task, error)
       call cpu_time(finish)
       if (allocated(error)) call give_up(error)
-      call tell_case((finish - begin)/points, summary%peak_force)
+      call tell_case((finish - begin)/points, task%summary%peak_force)
    end subroutine compare_static
 
    subroutine tell_case(seconds, peak)

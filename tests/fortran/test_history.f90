@@ -16,6 +16,7 @@ module test_history
    use rbs_output_summary, only: summary_type
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_solve_static_run_static, only: run_static
+   use rbs_solve_task, only: task_type
    use rbs_solve_time_loads, only: loads_type
    use rbs_solve_time_march, only: initial_state, march
    use rbs_solve_time_motion, only: motion_type, motion_result
@@ -530,8 +531,8 @@ contains
       type(error_type), allocatable :: outcome
       type(column_record) :: spec
       type(run_data) :: data
-      type(array_recorder) :: recorder
-      type(summary_type) :: summary
+      type(array_recorder), target :: recorder
+      type(task_type) :: task
       real(wp), allocatable, target :: kept(:, :)
       real(wp) :: wrong(2)
       integer :: i
@@ -547,7 +548,9 @@ contains
          allocate (kept(row_size(2), size(data%force)))
          recorder%rows => kept
          recorder%count = 0
-         call run_static(made(spec), .true., data%force, 1, unset, recorder, summary, outcome)
+         task%recorder => recorder
+         task%every = 1
+         call run_static(made(spec), .true., data%force, task, outcome)
          call check_passed(error, outcome, 'static path')
          wrong(i) = maxval(abs(data%rows(row_displacement, :) - kept(row_displacement, :))) &
                     /maxval(abs(kept(row_displacement, :)))

@@ -2,7 +2,7 @@
 module test_static
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_true
-   use rbs_base_constants, only: unset, unset_integer
+   use rbs_base_constants, only: unset_integer
    use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -15,7 +15,8 @@ module test_static
    use rbs_output_summary, only: summary_type
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_run_static, only: run_static
-   use rbs_solve_static_trace, only: kept_rows
+   use rbs_solve_static_path, only: kept_rows
+   use rbs_solve_task, only: task_type
    use rbs_column_column_record, only: column_record
    use samples, only: bilinear, bilinear_1, chain, column_1, elastic, made, random_type, takeda_1, &
                       k_c, d_y, f_y, k_u, s_k, s_d, height_1
@@ -87,23 +88,20 @@ contains
       integer, intent(in), optional :: every
       type(summary_type), intent(out), optional :: summary
       real(wp), intent(in), optional :: collapse_drift
-      type(array_recorder) :: recorder
+      type(array_recorder), target :: recorder
       type(column_type) :: column
-      real(wp) :: drift
-      type(summary_type) :: figures
+      type(task_type) :: task
       real(wp), allocatable, target :: kept(:, :)
-      integer :: n_th
 
-      n_th = unset_integer
-      if (present(every)) n_th = every
+      if (present(every)) task%every = every
       column = made(spec)
       allocate (kept(row_size(column%unknowns), max(size(values), 1)))
       recorder%rows => kept
-      drift = unset
-      if (present(collapse_drift)) drift = collapse_drift
-      call run_static(column, by_force, values, n_th, drift, recorder, figures, outcome)
+      task%recorder => recorder
+      if (present(collapse_drift)) task%collapse_drift = collapse_drift
+      call run_static(column, by_force, values, task, outcome)
       rows = kept(:, :recorder%count)
-      if (present(summary)) summary = figures
+      if (present(summary)) summary = task%summary
    end subroutine run
 
    subroutine series(error)
@@ -555,11 +553,11 @@ contains
    subroutine failing(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(failing_recorder) :: recorder
-      type(summary_type) :: summary
+      type(failing_recorder), target :: recorder
+      type(task_type) :: task
 
-      call run_static(made(column_1('small')), .false., [0.01_wp, 0.02_wp, 0.03_wp, 0.04_wp], 1, unset, &
-                      recorder, summary, outcome)
+      task%recorder => recorder
+      call run_static(made(column_1('small')), .false., [0.01_wp, 0.02_wp, 0.03_wp, 0.04_wp], task, outcome)
       call check_failed(error, outcome, analysis_failed, 'disk full at row 2')
       call check_equal(error, recorder%count, 3, 'rows offered')
    end subroutine failing

@@ -1,7 +1,7 @@
 !> The static path with exact rotations: against bracketing, statics by hand, the elastica, and other runs.
 module test_static_finite
    use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_true
-   use rbs_base_constants, only: pi, unset, unset_integer
+   use rbs_base_constants, only: pi
    use rbs_base_error, only: error_type, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -11,8 +11,8 @@ module test_static_finite
    use rbs_output_row, only: row_size, row_displacement, row_force, row_axial, row_residual, row_joints, &
                               row_spring, row_input, row_top
    use rbs_output_summary, only: summary_type
-   use rbs_solve_static_trace, only: trace
-   use rbs_solve_static_trace_finite, only: trace_finite
+   use rbs_solve_static_run_static, only: run_static
+   use rbs_solve_task, only: task_type
    use rbs_column_column_record, only: column_record
    use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: bilinear, bilinear_1, chain, column_1, compression, elastic, made, random_type, &
@@ -62,24 +62,18 @@ contains
       type(summary_type), intent(out), optional :: summary
       real(wp), intent(in), optional :: drift
       type(column_type) :: column
-      type(array_recorder) :: recorder
-      type(summary_type) :: figures
+      type(array_recorder), target :: recorder
+      type(task_type) :: task
       real(wp), allocatable, target :: kept(:, :)
-      real(wp) :: collapse_drift
 
       column = made(spec)
       allocate (kept(row_size(column%unknowns), max(size(values), 1)))
       recorder%rows => kept
-      collapse_drift = unset
-      if (present(drift)) collapse_drift = drift
-      if (spec%kinematics == 'finite') then
-         call trace_finite(column, by_force, values, unset_integer, collapse_drift, recorder, figures, &
-                           outcome)
-      else
-         call trace(column, by_force, values, unset_integer, collapse_drift, recorder, figures, outcome)
-      end if
+      task%recorder => recorder
+      if (present(drift)) task%collapse_drift = drift
+      call run_static(column, by_force, values, task, outcome)
       rows = kept(:, :recorder%count)
-      if (present(summary)) summary = figures
+      if (present(summary)) summary = task%summary
    end subroutine run
 
    subroutine random_targets(random, x, largest)

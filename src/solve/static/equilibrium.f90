@@ -237,7 +237,6 @@ contains
       !> Whether there is a unique solution
       logical, intent(out) :: regular
       real(wp) :: g(2), y(2)
-      real(wp) :: flexibility
 
       if (self%coupled .and. .not. self%banded) then
          call solve_full(self, k, r, gap, rate, force_rate, correction, force_correction, regular)

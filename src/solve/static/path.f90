@@ -10,12 +10,10 @@ module rbs_solve_static_path
    use rbs_column_top, only: largest_turn, top_displacement
    use rbs_hysteresis_layer_fall, only: layer_fall
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_output_observer, only: observer_type
-   use rbs_output_recorder, only: recorder_type
    use rbs_output_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
                               row_spring, row_damping, row_axial, row_residual, row_top, row_joints
-   use rbs_output_summary, only: summary_type
    use rbs_solve_static_row_check, only: row_check
+   use rbs_solve_task, only: task_type
    implicit none
    private
 
@@ -58,9 +56,8 @@ module rbs_solve_static_path
       !> What is driven where the way to the present target begins, and the number of the target, from 0
       real(wp) :: way_begin = 0.0_wp
       integer, private :: number = 0
-      !> What is told of a corner between two targets: figures, and its row if it is to be kept
-      type(summary_type), pointer, private :: summary => null()
-      class(recorder_type), pointer, private :: corners => null()
+      !> What is told of a corner between two targets: its summary, and its recorder if the row is to be kept
+      type(task_type), pointer, private :: task => null()
       real(wp), allocatable, private :: row_values(:)
    contains
       procedure :: prepare
@@ -230,33 +227,25 @@ contains
    end subroutine compress
 
    !> Follow the targets one after the other.
-   subroutine follow(self, target, every, collapse_drift, recorder, summary, error, progress)
+   subroutine follow(self, target, task, error)
       class(static_path), intent(inout) :: self
       !> Targets (m): lateral forces [N], or displacements of the top [m]
       real(wp), intent(in) :: target(:)
-      !> Every n-th point is kept, and the last; `unset_integer`: all
-      integer, intent(in) :: every
-      !> Displacement of the top over the height at which the path ends; `unset`: it does not
-      real(wp), intent(in) :: collapse_drift
-      class(recorder_type), intent(inout), target :: recorder
-      type(summary_type), intent(inout), target :: summary
+      type(task_type), intent(inout), target :: task
       !> On failure everything up to the last good state has been recorded
       type(error_type), allocatable, intent(out) :: error
-      !> Told now and then how far the path is
-      class(observer_type), intent(inout), optional :: progress
       type(error_type), allocatable :: failure
       type(layer_fall) :: fall
       type(row_check) :: check
       logical :: may_collapse
       integer :: i, n
 
-      n = every
-      if (every == unset_integer) n = 1
-      may_collapse = collapse_drift > unset
+      n = task%every
+      if (n == unset_integer) n = 1
+      may_collapse = task%collapse_drift > unset
       allocate (self%row_values(row_size(self%column%unknowns, &
-                                         layered=merge(self%column%n, 0, recorder%openings))))
-      self%summary => summary
-      if (recorder%corners) self%corners => recorder
+                                         layered=merge(self%column%n, 0, task%recorder%openings))))
+      self%task => task
       call check%begin(self%column, missing_work(self))
       ! A path that goes on has forces and works from before, and the round-off of theirs.
       call check_row(self, check, self%control, failure)
@@ -277,33 +266,33 @@ contains
                return
             end if
          end if
-         summary%lost_joint = max(self%springs%lost_joint() - self%column%n, 0)
-         if (summary%lost_joint > 0) then
-            call self%springs%fall_of(self%column%n + summary%lost_joint, fall)
-            call summary%see_fall(fall)
+         task%summary%lost_joint = max(self%springs%lost_joint() - self%column%n, 0)
+         if (task%summary%lost_joint > 0) then
+            call self%springs%fall_of(self%column%n + task%summary%lost_joint, fall)
+            call task%summary%see_fall(fall)
          end if
          ! Where a joint has lost its axial load, that is what ends the path.
-         if (summary%lost_joint > 0 .and. allocated(failure)) deallocate (failure)
+         if (task%summary%lost_joint > 0 .and. allocated(failure)) deallocate (failure)
          if (allocated(failure)) failure%message = 'row '//to_text(i)//': '//failure%message
          call see_peaks(self)
-         if (may_collapse) summary%collapsed = abs(self%displacement)/self%column%height >= collapse_drift
+         if (may_collapse) task%summary%collapsed = abs(self%displacement)/self%column%height >= task%collapse_drift
          call fill_row(self, self%row_values, real(i - 1, wp))
-         call summary%see_energies(self%row_values)
+         call task%summary%see_energies(self%row_values)
          if (mod(i - 1, n) == 0 .or. i == size(target) .or. allocated(failure) .or. &
-             summary%collapsed .or. summary%lost_joint > 0) then
-            summary%rows = summary%rows + 1
-            call recorder%record(self%row_values, error)
+             task%summary%collapsed .or. task%summary%lost_joint > 0) then
+            task%summary%rows = task%summary%rows + 1
+            call task%recorder%record(self%row_values, error)
             if (allocated(error)) return
          end if
-         summary%steps = i
-         if (mod(i, 8192) == 0 .and. present(progress)) call progress%update(real(i, wp)/size(target))
-         summary%events = self%springs%events
-         summary%cut_steps = self%cuts
+         task%summary%steps = i
+         if (mod(i, 8192) == 0 .and. associated(task%progress)) call task%progress%update(real(i, wp)/size(target))
+         task%summary%events = self%springs%events
+         task%summary%cut_steps = self%cuts
          if (allocated(failure)) then
             call move_alloc(failure, error)
             return
          end if
-         if (summary%collapsed .or. summary%lost_joint > 0) return
+         if (task%summary%collapsed .or. task%summary%lost_joint > 0) return
       end do
    end subroutine follow
 
@@ -315,9 +304,9 @@ contains
       type(error_type), allocatable :: error
 
       call see_peaks(self)
-      if (.not. associated(self%corners)) return
+      if (.not. self%task%recorder%corners) return
       call fill_row(self, self%row_values, self%number - 1 + share)
-      call self%corners%record(self%row_values, error)
+      call self%task%recorder%record(self%row_values, error)
    end subroutine see_corner
 
    !> Tell the summary of the present force, displacement and rotations.
@@ -325,9 +314,9 @@ contains
       class(static_path), intent(inout) :: self
 
       ! A force that pulls the column back, as where second-order moments drive it on, is no strength.
-      call self%summary%see_peak(self%displacement, merge(self%force, 0.0_wp, &
+      call self%task%summary%see_peak(self%displacement, merge(self%force, 0.0_wp, &
                                                           self%force*self%displacement >= 0.0_wp))
-      call self%summary%see_turn(largest_turn(self%column, self%springs%d))
+      call self%task%summary%see_turn(largest_turn(self%column, self%springs%d))
    end subroutine see_peaks
 
    !> Whether a spring has come to the open end that it goes to.

@@ -4,14 +4,11 @@ module rbs_solve_static_run_static
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, small, finite
-   use rbs_output_observer, only: observer_type
-   use rbs_output_recorder, only: recorder_type
-   use rbs_output_summary, only: summary_type
    use rbs_solve_check_values, only: check_values
-   use rbs_solve_end_state, only: end_state
    use rbs_solve_static_trace, only: trace
    use rbs_solve_static_trace_finite, only: trace_finite
    use rbs_solve_static_trace_interaction, only: trace_interaction
+   use rbs_solve_task, only: task_type
    implicit none
    private
 
@@ -23,25 +20,16 @@ module rbs_solve_static_run_static
 contains
 
    !> Static path through displacements of the top or lateral forces.
-   subroutine run_static(column, by_force, target, every, collapse_drift, recorder, summary, error, &
-                         progress, axial_load, before, after)
+   subroutine run_static(column, by_force, target, task, error, axial_load)
       type(column_type), intent(in) :: column
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
       !> Targets (m)
       real(wp), intent(in) :: target(:)
-      !> Every n-th point is kept, and the last; `unset_integer`: all
-      integer, intent(in) :: every
-      !> Displacement of the top over the height at which the path ends as collapsed; `unset`: none
-      real(wp), intent(in) :: collapse_drift
-      class(recorder_type), intent(inout) :: recorder
-      type(summary_type), intent(out) :: summary
+      type(task_type), intent(inout) :: task
       type(error_type), allocatable, intent(out) :: error
-      class(observer_type), intent(inout), optional :: progress
       !> Axial load at the top at each target (m), instead of the constant one; empty: constant [N]
       real(wp), intent(in), optional :: axial_load(:)
-      !> The state to begin in, and the one at the end; empty where there is none
-      type(end_state), intent(inout), optional :: before, after
       type(column_type) :: loaded
       real(wp) :: load(size(target))
       logical :: varies
@@ -55,8 +43,7 @@ contains
             if (allocated(error)) return
             load = axial_load
             ! From the state of another analysis the load goes to its first value.
-            if (present(before)) varies = varies .or. before%is_given()
-            varies = varies .or. any(abs(load - load(1)) > same_load*maxval(abs(load)))
+            varies = varies .or. task%resumes() .or. any(abs(load - load(1)) > same_load*maxval(abs(load)))
             call put_under(loaded, load(1))
          end if
       end if
@@ -71,18 +58,15 @@ contains
       end if
       if (allocated(error)) return
       if (varies) then
-         call trace_interaction(column, by_force, target, load, every, collapse_drift, recorder, summary, &
-                                error, progress, before, after)
+         call trace_interaction(column, by_force, target, load, task, error)
       else if (column%kinematics == finite) then
-         call trace_finite(loaded, by_force, target, every, collapse_drift, recorder, summary, error, &
-                           progress, before, after)
+         call trace_finite(loaded, by_force, target, task, error)
       else
-         call trace(loaded, by_force, target, every, collapse_drift, recorder, summary, error, progress, &
-                    before, after)
+         call trace(loaded, by_force, target, task, error)
       end if
       ! Without inertia the ground holds what drives the column.
-      summary%peak_base_shear = summary%peak_force
-      summary%method = 'static'
+      task%summary%peak_base_shear = task%summary%peak_force
+      task%summary%method = 'static'
    end subroutine run_static
 
    !> Put a column under another constant axial load at its top.

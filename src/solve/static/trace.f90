@@ -8,19 +8,16 @@ module rbs_solve_static_trace
    use rbs_base_text, only: to_text
    use rbs_column_axial, only: axial_energy
    use rbs_column_column, only: column_type
-   use rbs_output_observer, only: observer_type
-   use rbs_output_recorder, only: recorder_type
-   use rbs_output_summary, only: summary_type
-   use rbs_solve_end_state, only: end_state
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_equilibrium, only: equilibrium_type
-   use rbs_solve_static_path, only: static_path, describe_state, kept_rows, is_on_end, on_the_end, &
+   use rbs_solve_static_path, only: static_path, describe_state, is_on_end, on_the_end, &
                                     top_height, serialize_path
    use rbs_solve_static_resume, only: begin_path, end_path
+   use rbs_solve_task, only: task_type
    implicit none
    private
 
-   public :: trace, kept_rows
+   public :: trace
 
    !> Farther from its ends than this, relative to them, a spring need not be asked whether it is on one.
    real(wp), parameter :: nearly = 2.0_wp*on_the_end
@@ -51,36 +48,25 @@ module rbs_solve_static_trace
 contains
 
    !> Follow the targets one after the other.
-   subroutine trace(column, by_force, target, every, collapse_drift, recorder, summary, error, progress, &
-                    before, after)
+   subroutine trace(column, by_force, target, task, error)
       type(column_type), intent(in) :: column
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
       !> Targets (m)
       real(wp), intent(in) :: target(:)
-      !> Every n-th point is kept, and the last; `unset_integer`: all
-      integer, intent(in) :: every
-      !> Displacement of the top over the height at which the path ends; `unset`: it does not
-      real(wp), intent(in) :: collapse_drift
-      class(recorder_type), intent(inout) :: recorder
-      type(summary_type), intent(out) :: summary
-      !> On failure everything up to the last good state has been recorded
+      type(task_type), intent(inout), target :: task
       type(error_type), allocatable, intent(out) :: error
-      !> Told now and then how far the path is
-      class(observer_type), intent(inout), optional :: progress
-      !> The state to begin in, and the one at the end
-      type(end_state), intent(inout), optional :: before, after
       type(straight_path) :: path
       integer :: m
 
       m = 2*column%n
       call path%equilibrium%create(column)
       allocate (path%q(m), path%residual(m), path%correction(m), path%f(m), source=0.0_wp)
-      call begin_path(path, column, by_force, m, .false., error, before)
+      call begin_path(path, column, by_force, m, .false., error, task%before)
       if (allocated(error)) return
-      call path%follow(target, every, collapse_drift, recorder, summary, error, progress)
-      if (allocated(error) .or. .not. present(after)) return
-      if (summary%lost_joint == 0) call end_path(path, .false., after)
+      call path%follow(target, task, error)
+      if (allocated(error) .or. .not. task%keeps_end) return
+      if (task%summary%lost_joint == 0) call end_path(path, .false., task%after)
    end subroutine trace
 
    !> Go on to a target.

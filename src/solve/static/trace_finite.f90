@@ -12,15 +12,12 @@ module rbs_solve_static_trace_finite
    use rbs_column_column, only: column_type
    use rbs_column_finite, only: finite_potential, finite_top
    use rbs_column_top, only: largest_turn
-   use rbs_output_observer, only: observer_type
-   use rbs_output_recorder, only: recorder_type
-   use rbs_output_summary, only: summary_type
-   use rbs_solve_end_state, only: end_state
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_curve, only: clean, first_ahead, most_turn
    use rbs_solve_static_finite_search, only: turning_search
    use rbs_solve_static_path, only: describe_state, name_spring, is_on_end, on_the_end, serialize_path
    use rbs_solve_static_resume, only: begin_path, end_path
+   use rbs_solve_task, only: task_type
    implicit none
    private
 
@@ -57,25 +54,14 @@ module rbs_solve_static_trace_finite
 contains
 
    !> Follow the targets one after the other.
-   subroutine trace_finite(column, by_force, target, every, collapse_drift, recorder, summary, error, &
-                           progress, before, after)
+   subroutine trace_finite(column, by_force, target, task, error)
       type(column_type), intent(in) :: column
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
       !> Targets (m)
       real(wp), intent(in) :: target(:)
-      !> Every n-th point is kept, and the last; `unset_integer`: all
-      integer, intent(in) :: every
-      !> Displacement of the top over the height at which the path ends; `unset`: it does not
-      real(wp), intent(in) :: collapse_drift
-      class(recorder_type), intent(inout) :: recorder
-      type(summary_type), intent(out) :: summary
-      !> On failure everything up to the last good state has been recorded
+      type(task_type), intent(inout), target :: task
       type(error_type), allocatable, intent(out) :: error
-      !> Told now and then how far the path is
-      class(observer_type), intent(inout), optional :: progress
-      !> The state to begin in, and the one at the end
-      type(end_state), intent(inout), optional :: before, after
       type(turning_path) :: path
       integer :: m
 
@@ -89,12 +75,12 @@ contains
       call path%equilibrium%create(column, by_force)
       allocate (path%here%q(m), path%here%rate(m), path%there%q(m), path%there%rate(m), source=0.0_wp)
       path%here%q = 0.0_wp
-      call begin_path(path, column, by_force, m, .false., error, before)
+      call begin_path(path, column, by_force, m, .false., error, task%before)
       if (allocated(error)) return
       path%here%q = path%springs%d
-      call path%follow(target, every, collapse_drift, recorder, summary, error, progress)
-      if (allocated(error) .or. .not. present(after)) return
-      if (summary%lost_joint == 0) call end_path(path, .false., after)
+      call path%follow(target, task, error)
+      if (allocated(error) .or. .not. task%keeps_end) return
+      if (task%summary%lost_joint == 0) call end_path(path, .false., task%after)
    end subroutine trace_finite
 
    !> Go on to a target.

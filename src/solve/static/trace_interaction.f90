@@ -11,10 +11,6 @@ module rbs_solve_static_trace_interaction
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, finite
    use rbs_column_top, only: top_position, top_displacement, largest_turn
-   use rbs_output_observer, only: observer_type
-   use rbs_output_recorder, only: recorder_type
-   use rbs_output_summary, only: summary_type
-   use rbs_solve_end_state, only: end_state
    use rbs_solve_static_corner, only: report_no_line
    use rbs_solve_static_curve, only: most_turn, most_bend
    use rbs_solve_static_path, only: static_path, describe_state, name_spring, is_on_end, serialize_path
@@ -23,6 +19,7 @@ module rbs_solve_static_trace_interaction
    use rbs_solve_static_pressed_finite, only: pressed_finite
    use rbs_solve_static_pressed_search, only: find_end, find_point, find_turn, hides_event, no_way
    use rbs_solve_static_resume, only: begin_path, end_path
+   use rbs_solve_task, only: task_type
    implicit none
    private
 
@@ -62,23 +59,18 @@ module rbs_solve_static_trace_interaction
 contains
 
    !> Follow the targets one after the other from the virgin state under the first axial load.
-   subroutine trace_interaction(column, by_force, target, load, every, collapse_drift, recorder, summary, &
-                                error, progress, before, after)
+   subroutine trace_interaction(column, by_force, target, load, task, error)
       type(column_type), intent(in) :: column
+      !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
-      !> Targets, and axial loads at the top there (m) [N]
-      real(wp), intent(in) :: target(:), load(:)
-      integer, intent(in) :: every
-      real(wp), intent(in) :: collapse_drift
-      class(recorder_type), intent(inout) :: recorder
-      type(summary_type), intent(out) :: summary
+      !> Targets (m)
+      real(wp), intent(in) :: target(:)
+      !> Axial loads at the top there (m) [N]
+      real(wp), intent(in) :: load(:)
+      type(task_type), intent(inout), target :: task
       type(error_type), allocatable, intent(out) :: error
-      class(observer_type), intent(inout), optional :: progress
-      !> The state to begin in, under its axial load, and the one at the end
-      type(end_state), intent(inout), optional :: before, after
       type(pressed_path) :: path
       type(column_type) :: first
-      logical :: resumed
       integer :: m, n
 
       n = column%n
@@ -95,19 +87,17 @@ contains
       first%spring(n + 1:2*n)%axial_load = first%compression
       first%axial_load = load(1)
       allocate (path%at%q(m), path%at%rate(m), path%at%press(n), path%at%press_rate(n), source=0.0_wp)
-      resumed = .false.
-      if (present(before)) resumed = before%is_given()
       first%axial_joint = column%axial_joint + (load(1) - column%axial_load)*column%axial_lever
-      call begin_path(path, first, by_force, m, .true., error, before)
+      call begin_path(path, first, by_force, m, .true., error, task%before)
       if (allocated(error)) return
-      if (column%opens .and. .not. resumed) then
+      if (column%opens .and. .not. task%resumes()) then
          ! The load has done its work on the openings before the path begins.
          path%axial_work = sum(first%axial_joint*path%springs%d(2*n + 1:))
          path%at_begin = path%at_begin + path%axial_work
       end if
-      call path%follow(target, every, collapse_drift, recorder, summary, error, progress)
-      if (allocated(error) .or. .not. present(after)) return
-      if (summary%lost_joint == 0) call end_path(path, .true., after)
+      call path%follow(target, task, error)
+      if (allocated(error) .or. .not. task%keeps_end) return
+      if (task%summary%lost_joint == 0) call end_path(path, .true., task%after)
    end subroutine trace_interaction
 
    !> Go on to a target and to the axial load there.
