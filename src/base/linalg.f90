@@ -13,29 +13,10 @@ module rbs_base_linalg
    private
 
    public :: solve_eigen
-   public :: factor_band, solve_band, solve_tridiagonal, solve_general_band
+   public :: solve_tridiagonal, solve_general_band
    public :: singular_values, solve_upper, is_dominated
 
    interface
-      subroutine dpbtrf(uplo, n, kd, ab, ldab, info)
-         import :: wp
-         implicit none
-         character(len=1), intent(in) :: uplo
-         integer, intent(in) :: n, kd, ldab
-         real(wp), intent(inout) :: ab(ldab, *)
-         integer, intent(out) :: info
-      end subroutine dpbtrf
-
-      subroutine dpbtrs(uplo, n, kd, nrhs, ab, ldab, b, ldb, info)
-         import :: wp
-         implicit none
-         character(len=1), intent(in) :: uplo
-         integer, intent(in) :: n, kd, nrhs, ldab, ldb
-         real(wp), intent(in) :: ab(ldab, *)
-         real(wp), intent(inout) :: b(ldb, *)
-         integer, intent(out) :: info
-      end subroutine dpbtrs
-
       subroutine dptsv(n, nrhs, d, e, b, ldb, info)
          import :: wp
          implicit none
@@ -86,29 +67,6 @@ module rbs_base_linalg
    end interface
 
 contains
-
-   !> Cholesky factor of a symmetric band matrix, in place, in time and memory proportional to n.
-   subroutine factor_band(band, positive)
-      !> Lower band (width + 1, n): band(1 + i - j, j) = a(i, j) for j <= i <= j + width
-      real(wp), intent(inout), contiguous :: band(:, :)
-      !> Whether the matrix is positive definite; if not, `band` is useless on return
-      logical, intent(out) :: positive
-      integer :: info
-
-      call dpbtrf('L', size(band, 2), size(band, 1) - 1, band, size(band, 1), info)
-      positive = info == 0
-   end subroutine factor_band
-
-   !> Solve with the factor of `factor_band`.
-   subroutine solve_band(factor, b)
-      !> Factor (width + 1, n)
-      real(wp), intent(in), contiguous :: factor(:, :)
-      !> Right-hand side (n), replaced by the solution
-      real(wp), intent(inout), contiguous :: b(:)
-      integer :: info
-
-      call dpbtrs('L', size(b), size(factor, 1) - 1, 1, factor, size(factor, 1), b, size(b), info)
-   end subroutine solve_band
 
    !> Solve a symmetric positive definite tridiagonal system.
    subroutine solve_tridiagonal(diagonal, beside, b, positive)

@@ -7,7 +7,7 @@
 !>     u_i = x_i - lower_i th_i - x_{i-1} - upper_{i-1} th_{i-1},  phi_i = th_i - th_{i-1},
 !>     w_i = y_i - y_{i-1}                                         (body 0 is the ground, at rest)
 !>
-!> so that stiffness is a band of half-width 3 in (x, th), kept as `factor_band` wants it:
+!> so that stiffness is a band of half-width 3 in (x, th), kept as `band_matrix` wants it:
 !> band(1 + i - j, j) = a(i, j) for j <= i <= j + 3. The openings are a tridiagonal chain of their own.
 module rbs_column_band
    use rbs_base_kinds, only: wp
@@ -15,8 +15,7 @@ module rbs_column_band
    implicit none
    private
 
-   public :: add_spring_band, add_geometric_band, add_mass_band, hold_last, opening_stiffness
-   public :: to_joints, from_joints
+   public :: add_spring_band, add_geometric_band, opening_band, to_joints
 
 contains
 
@@ -76,51 +75,21 @@ contains
       end do
    end subroutine add_geometric_band
 
-   !> Add masses and rotary inertias, times a factor.
-   pure subroutine add_mass_band(column, factor, band)
-      type(column_type), intent(in) :: column
-      real(wp), intent(in) :: factor
-      !> Lower band
-      real(wp), intent(inout) :: band(4, 2*column%n)
-      integer :: i
-
-      do i = 1, column%n
-         band(1, 2*i - 1) = band(1, 2*i - 1) + factor*column%mass(i)
-         band(1, 2*i) = band(1, 2*i) + factor*column%inertia(i)
-      end do
-   end subroutine add_mass_band
-
-   !> Hold the last unknown of a band, the rotation of a held top: it couples with nothing.
-   pure subroutine hold_last(band, diagonal)
-      !> Lower band (half-width + 1 or more, unknowns)
-      real(wp), intent(inout) :: band(:, :)
-      !> What stands on the diagonal in its place
-      real(wp), intent(in) :: diagonal
-      integer :: i, last
-
-      last = size(band, 2)
-      do i = 2, min(size(band, 1), last)
-         band(i, last + 1 - i) = 0.0_wp
-      end do
-      band(1, last) = diagonal
-   end subroutine hold_last
-
    !> Stiffness of the axial springs, tridiagonal in y.
-   pure subroutine opening_stiffness(column, k, diagonal, beside)
+   pure subroutine opening_band(column, k, band)
       type(column_type), intent(in) :: column
       !> Stiffness of the axial springs [N/m]
       real(wp), intent(in) :: k(column%n)
-      !> Diagonal, and the numbers beside it
-      real(wp), intent(out) :: diagonal(column%n), beside(column%n - 1)
-      integer :: i, n
+      !> Lower band
+      real(wp), intent(out) :: band(4, column%n)
+      integer :: n
 
       n = column%n
-      do i = 1, n - 1
-         diagonal(i) = k(i) + k(i + 1)
-         beside(i) = -k(i + 1)
-      end do
-      diagonal(n) = k(n)
-   end subroutine opening_stiffness
+      band = 0.0_wp
+      band(1, :) = k
+      band(1, :n - 1) = k(:n - 1) + k(2:)
+      band(2, :n - 1) = -k(2:)
+   end subroutine opening_band
 
    !> Deformations of the joints, d = B x.
    pure subroutine to_joints(column, x, d)
@@ -148,28 +117,5 @@ contains
          d(2*n + i) = x(2*n + i) - x(2*n + i - 1)
       end do
    end subroutine to_joints
-
-   !> Forces on the bodies that do the same work as forces in the joints, r = B' f.
-   pure subroutine from_joints(column, f, r)
-      type(column_type), intent(in) :: column
-      !> Shear forces, moments [, axial forces] of the joints [N, N m, N]
-      real(wp), intent(in) :: f(column%unknowns)
-      !> Force and moment about the centroid of every body
-      real(wp), intent(out) :: r(column%unknowns)
-      integer :: i, n
-
-      n = column%n
-      do i = 1, n - 1
-         r(2*i - 1) = f(i) - f(i + 1)
-         r(2*i) = f(n + i) - f(n + i + 1) - column%lower(i)*f(i) - column%upper(i)*f(i + 1)
-      end do
-      r(2*n - 1) = f(n)
-      r(2*n) = f(2*n) - column%lower(n)*f(n)
-      if (.not. column%opens) return
-      do i = 1, n - 1
-         r(2*n + i) = f(2*n + i) - f(2*n + i + 1)
-      end do
-      r(3*n) = f(3*n)
-   end subroutine from_joints
 
 end module rbs_column_band

@@ -31,7 +31,7 @@ contains
       real(wp), intent(in) :: force
       !> Loads [N, N, N m] and arms [1, 1, m] (unknowns, joint by joint)
       real(wp), intent(out), contiguous :: load(:), arm(:)
-      !> Lower band (per_joint + 1, unknowns), as `factor_band` takes it
+      !> Lower band (per_joint + 1, unknowns), as `band_matrix` takes it
       real(wp), intent(out), contiguous :: band(:, :)
       !> Displacement of the top [m]
       real(wp), intent(out) :: top

@@ -4,7 +4,7 @@
 module rbs_column_frequency
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: is_dominated
-   use rbs_column_band, only: add_spring_band, add_geometric_band, hold_last, opening_stiffness
+   use rbs_column_band, only: add_spring_band, add_geometric_band, opening_band
    use rbs_column_column, only: column_type
    implicit none
    private
@@ -148,7 +148,12 @@ contains
       allocate (mass(2*n))
       call add_spring_band(column, column%initial_stiffness, band)
       if (axial) call add_geometric_band(column, column%axial_body, column%axial_slip, band)
-      if (column%held) call hold_last(band, 0.0_wp)
+      if (column%held) then
+         band(1, 2*n) = 0.0_wp
+         band(2, 2*n - 1) = 0.0_wp
+         if (n > 1) band(3, 2*n - 2) = 0.0_wp
+         if (n > 1) band(4, 2*n - 3) = 0.0_wp
+      end if
       below = 0.0_wp
       above = 0.0_wp
       do i = 1, n
@@ -174,7 +179,7 @@ contains
    subroutine opening_squares(column, lowest, highest)
       type(column_type), intent(in) :: column
       real(wp), intent(out) :: lowest, highest
-      real(wp) :: diagonal(column%n), beside(column%n - 1), softness(column%n)
+      real(wp) :: diagonal(column%n), band(4, column%n), softness(column%n)
       real(wp) :: above, below, between
       integer :: n
       logical :: more
@@ -193,7 +198,8 @@ contains
          end if
       end do
 
-      call opening_stiffness(column, column%initial_stiffness(2*n + 1:), diagonal, beside)
+      call opening_band(column, column%initial_stiffness(2*n + 1:), band)
+      diagonal = band(1, :)
       below = maxval(diagonal/column%mass)
       highest = sum(diagonal/column%mass)
       do

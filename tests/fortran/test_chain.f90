@@ -6,8 +6,8 @@ module test_chain
    use rbs_base_kinds, only: wp
    use rbs_base_small_systems, only: factor_positive, solve_positive
    use rbs_base_text, only: to_text
-   use rbs_column_band, only: from_joints, to_joints
-   use rbs_column_chain, only: body_velocities, kinetic_of
+   use rbs_column_band, only: to_joints
+   use rbs_column_chain, only: body_forces, body_velocities, kinetic_of
    use rbs_column_column, only: column_type
    use rbs_column_energy, only: kinetic_energy, potential_energy
    use rbs_column_mass, only: symmetric_mass
@@ -279,13 +279,14 @@ contains
       end do
    end subroutine bodies
 
-   !> to_joints and body_velocities are inverse to each other, from_joints is the transpose of to_joints;
-   !> the kinetic energy of the bodies is half of v M v of the joints.
+   !> to_joints and body_velocities are inverse to each other, body_forces is the transpose of to_joints; the
+   !> kinetic energy of the bodies is half of v M v of the joints.
    subroutine check_bodies(error, column, random)
       type(error_type), allocatable, intent(inout) :: error
       type(column_type), intent(in) :: column
       type(random_type), intent(inout) :: random
-      real(wp), dimension(column%unknowns) :: v, x, back, f, r
+      real(wp), dimension(column%unknowns) :: v, x, back, f
+      real(wp), dimension(column%n) :: force, torque
       real(wp) :: mass(column%unknowns, column%unknowns)
       integer :: n
 
@@ -295,8 +296,9 @@ contains
       call body_velocities(column, v, x)
       call to_joints(column, x, back)
       call check_close(error, back, v, 0.0_wp, 1.0e-14_wp, 'there and back')
-      call from_joints(column, f, r)
-      call check_close(error, dot_product(r, x), dot_product(f, v), 0.0_wp, 1.0e-13_wp, 'equal works')
+      call body_forces(n, column%lower, column%upper, f(:n), f(n + 1:2*n), 0.0_wp, force, torque)
+      call check_close(error, dot_product(force, x(1:2*n:2)) + dot_product(torque, x(2:2*n:2)), &
+                       -dot_product(f(:2*n), v(:2*n)), 0.0_wp, 1.0e-13_wp, 'equal works')
       call check_close(error, x(2*n - 1) + column%upper(n)*x(2*n), dot_product(column%arm, v), 0.0_wp, &
                        1.0e-14_wp, 'velocity of the top')
       call symmetric_mass(column, mass)

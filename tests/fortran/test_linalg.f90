@@ -3,8 +3,9 @@ module test_linalg
    use check, only: unit_test, check_close, check_failed, check_passed, check_true
    use rbs_base_error, only: error_type, analysis_failed
    use rbs_base_kinds, only: wp
-   use rbs_base_linalg, only: solve_eigen, factor_band, solve_band, solve_tridiagonal, solve_general_band, &
-                              singular_values, solve_upper, is_dominated
+   use rbs_base_band_matrix, only: band_matrix
+   use rbs_base_linalg, only: solve_eigen, solve_tridiagonal, solve_general_band, singular_values, solve_upper, &
+                              is_dominated
    use rbs_base_small_systems, only: factor_positive, solve_positive, solve_general, solve_rows, row_length
    implicit none
    private
@@ -28,7 +29,8 @@ contains
                unit_test('elimination refuses a singular matrix', singular), &
                unit_test('eigenvalues ascend, vectors have unit mass', eigen), &
                unit_test('eigenproblem names a mass matrix that is not positive', bad_mass), &
-               unit_test('band: Cholesky solves, and refuses an indefinite matrix', band), &
+               unit_test('band: L D L'' solves and counts negative eigenvalues, narrow and wide', band), &
+               unit_test('band with a border, also where the band has no inverse', bordered), &
                unit_test('band: shift*diag - A positive definite above the largest eigenvalue', dominated), &
                unit_test('tridiagonal system, and one that is not positive', tridiagonal), &
                unit_test('general band needs pivots, two right-hand sides', general_band), &
@@ -184,23 +186,53 @@ contains
    subroutine band(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 7
-      real(wp) :: a(4, n), b(n)
-      integer :: i
-      logical :: is_positive
+      type(band_matrix) :: a
+      real(wp) :: b(n), expected(n)
+      integer :: i, width
+      logical :: regular
 
-      a = bending(n)
-      b = 0.0_wp
-      ! T x = e_n has x_i = i/(n + 1), and T of that is e_n: so T T x = T e_n.
-      b(n - 1:) = [-1.0_wp, 2.0_wp]
-      call factor_band(a, is_positive)
-      call check_true(error, is_positive, 'positive definite')
-      call solve_band(a, b)
-      call check_close(error, b, [(real(i, wp)/(n + 1), i=1, n)], 1.0e-13_wp, 0.0_wp, 'solution')
-      a = bending(n)
-      a(1, 4) = 0.1_wp
-      call factor_band(a, is_positive)
-      call check_true(error, .not. is_positive, 'indefinite')
+      do width = 2, 5
+         call a%create(n, width)
+         a%band(:4, :) = bending(n)
+         ! T x = e_n has x_i = i/(n + 1), and T of that is e_n: so T T x = T e_n.
+         b = 0.0_wp
+         b(n - 1:) = [-1.0_wp, 2.0_wp]
+         expected = [(real(i, wp)/(n + 1), i=1, n)]
+         call a%factor()
+         call check_true(error, a%positive .and. a%negative == 0, 'positive definite')
+         call a%solve(b, regular)
+         call check_close(error, b, expected, 1.0e-13_wp, 0.0_wp, 'solution')
+         ! Between the second eigenvalue and the third
+         a%band(:4, :) = bending(n)
+         a%band(1, :) = a%band(1, :) - 1.0_wp
+         call a%factor()
+         call check_true(error, .not. a%positive .and. a%negative == 2, 'two eigenvalues below 1')
+         b = 0.0_wp
+         b(n - 1:) = [-1.0_wp, 2.0_wp]
+         b = b - expected
+         call a%solve(b, regular)
+         call check_true(error, regular, 'regular')
+         call check_close(error, b, expected, 1.0e-12_wp, 0.0_wp, 'indefinite')
+      end do
    end subroutine band
+
+   !> (1 0; 0 0) has no inverse, with the border (0 1) it has.
+   subroutine bordered(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(band_matrix) :: a
+      real(wp) :: x(2, 1), y(1)
+      logical :: regular
+
+      call a%create(2, 1, stiffness=[1.0_wp, 4.0_wp])
+      a%band(1, 1) = 1.0_wp
+      call a%factor()
+      call check_true(error, .not. a%positive, 'no inverse')
+      call a%set_border([0.0_wp, 1.0_wp], regular=regular)
+      call check_true(error, regular, 'border')
+      call a%solve_bordered(reshape([3.0_wp, -5.0_wp], [2, 1]), [7.0_wp], x, y, regular)
+      call check_true(error, regular, 'regular')
+      call check_close(error, [x(:, 1), y], [3.0_wp, 7.0_wp, 5.0_wp], 1.0e-12_wp, 0.0_wp, 'solution')
+   end subroutine bordered
 
    subroutine dominated(error)
       type(error_type), allocatable, intent(inout) :: error

@@ -136,8 +136,8 @@ contains
       real(wp), intent(out) :: ready
 
       call stepper%tangent%fit(stepper%step, state, h)
-      ready = merge(1.0_wp, 0.0_wp, stepper%tangent%positive)
-      b%tangent(i, :, :) = stepper%tangent%factor
+      ready = merge(1.0_wp, 0.0_wp, stepper%tangent%lateral%positive)
+      b%tangent(i, :, :) = stepper%tangent%lateral%triangle
       b%v0(i, :) = stepper%step%v0
       b%a0(i, :) = stepper%step%a0
       b%g0(i, :) = stepper%step%g0

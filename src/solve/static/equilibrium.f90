@@ -10,14 +10,13 @@
 !> rotations, the axial load only the slip of a joint and the rotation below it. A held top is solved there
 !> too: its rotation is the last unknown, and is left out.
 module rbs_solve_static_equilibrium
+   use rbs_base_band_matrix, only: band_matrix
    use rbs_base_constants, only: no_stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_small_systems, only: factor_positive, solve_positive, solve_general
    use rbs_column_axial, only: geometric_stiffness, geometric_forces
-   use rbs_column_band, only: hold_last
    use rbs_column_column, only: column_type
    use rbs_column_dead_loads, only: to_joints
-   use rbs_solve_static_bordered, only: bordered_band
    use rbs_solve_static_diagonal, only: follow_diagonal
    use rbs_solve_static_few_bodies, only: few_bodies
    implicit none
@@ -47,7 +46,7 @@ module rbs_solve_static_equilibrium
       type(few_bodies) :: few
       !> Many bodies: the tangent, and the arms joint by joint (2 n)
       logical, private :: banded = .false.
-      type(bordered_band), private :: tangent
+      type(band_matrix), private :: tangent
       real(wp), allocatable, private :: lever(:)
       !> Work arrays, one column for the rate and one for the correction (2 n, 2)
       real(wp), allocatable, private :: wanted(:, :), found(:, :), missing(:, :), along(:, :), more(:, :)
@@ -119,7 +118,7 @@ contains
          stiffness(2*i) = column%initial_stiffness(n + i)
          if (i < n) stiffness(2*i) = stiffness(2*i) + column%initial_stiffness(n + i + 1)
       end do
-      call self%tangent%create(2, stiffness)
+      call self%tangent%create(self%unknowns, 2, stiffness)
    end subroutine create_band
 
    !> Residual of the equilibrium: a F - f - K_G q.
@@ -359,8 +358,8 @@ contains
             band(2, 2*i) = -column%axial_slip(i + 1)
             band(3, 2*i) = -k(n + i + 1)
          end do
-         if (column%held) call hold_last(band, self%tangent%stiffness(2*n))
       end associate
+      if (self%column%held) call self%tangent%hold_last(self%tangent%stiffness(2*n))
    end subroutine fill_tangent
 
    !> Forces on (slip, absolute rotation), joint by joint, from those of the joints.

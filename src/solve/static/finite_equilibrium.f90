@@ -6,12 +6,11 @@
 !> The last one puts a spring exactly on the end of its line. The tangent K = -dg/dz is a symmetric band in
 !> absolute rotations (see `rbs_column_dead_loads`).
 module rbs_solve_static_finite_equilibrium
+   use rbs_base_band_matrix, only: band_matrix
    use rbs_base_kinds, only: wp
-   use rbs_column_band, only: hold_last
    use rbs_column_column, only: column_type
    use rbs_column_dead_loads, only: per_joint, dead_loads, add_springs, to_joints
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_solve_static_bordered, only: bordered_band
    implicit none
    private
 
@@ -43,7 +42,7 @@ module rbs_solve_static_finite_equilibrium
       logical :: by_force = .false.
       !> Largest slip, relative rotation and opening so far
       real(wp) :: scale(3) = 0.0_wp
-      type(bordered_band), private :: tangent
+      type(band_matrix), private :: tangent
       !> Right-hand side, arms and border, change of the unknowns, all joint by joint; change of the joints
       real(wp), allocatable, private :: load(:, :), arm(:), border(:), change(:, :), joints(:), f(:)
    contains
@@ -75,7 +74,7 @@ contains
       allocate (band(per_joint(column) + 1, m), source=0.0_wp)
       call add_springs(column, none, column%initial_stiffness, self%f, band)
       stiffness = band(1, :)
-      call self%tangent%create(per_joint(column), stiffness)
+      call self%tangent%create(column%unknowns, per_joint(column), stiffness)
    end subroutine create
 
    !> Newton's method from a guess.
@@ -180,7 +179,7 @@ contains
       call add_springs(self%column, self%f, springs%k, self%load(:, 1), self%tangent%band)
       if (.not. self%column%held) return
       self%load(self%column%unknowns, 1) = 0.0_wp
-      call hold_last(self%tangent%band, self%tangent%stiffness(self%column%unknowns))
+      call self%tangent%hold_last(self%tangent%stiffness(self%column%unknowns))
    end subroutine see
 
    !> One iteration: what takes the residuals away.

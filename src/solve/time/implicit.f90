@@ -299,7 +299,7 @@ contains
       has_converged = size_now <= self%acceptable .and. size_now > 0.5_wp*size_before
       ! As long as the residual decreases quickly, it is not yet round-off.
       if (has_converged .or. size_now < 0.1_wp*size_before) return
-      has_converged = self%step%is_round_off(h, self%tangent%stiffness, self%tangent%diagonal)
+      has_converged = self%step%is_round_off(h, self%tangent%stiffness)
    end function has_converged
 
    !> The share of a correction up to the first end of a line that a spring reaches.

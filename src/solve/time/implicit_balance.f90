@@ -185,18 +185,17 @@ contains
    end function size_of
 
    !> Whether the residual is what round-off leaves of the terms of the step.
-   pure logical function is_round_off(self, h, stiffness, opening_stiffness)
+   pure logical function is_round_off(self, h, stiffness)
       class(step_balance), intent(in) :: self
       real(wp), intent(in) :: h
-      !> Diagonals of the tangent: of the bodies (2 n), and of their lifts (n), which is read only where the
-      !> joints open
-      real(wp), intent(in) :: stiffness(:), opening_stiffness(:)
+      !> Diagonal of the tangent (unknowns)
+      real(wp), intent(in) :: stiffness(:)
       integer :: n
 
-      n = size(stiffness)/2
+      n = size(self%now%force)
       is_round_off = bodies_are_round_off(n, h, stiffness, self%r, self%moved, self%v0, self%a0)
       if (size(self%r) > 2*n .and. is_round_off) then
-         is_round_off = lifts_are_round_off(n, h, opening_stiffness, self%r(2*n + 1:), &
+         is_round_off = lifts_are_round_off(n, h, stiffness(2*n + 1:), self%r(2*n + 1:), &
                                             self%moved(2*n + 1:), self%v0(2*n + 1:), self%a0(2*n + 1:))
       end if
    end function is_round_off

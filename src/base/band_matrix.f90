@@ -1,0 +1,443 @@
+!> Symmetric band matrices: the factor L D L' without pivots, in time and memory proportional to the number of
+!> unknowns, the number of negative pivots (by Sylvester that of negative eigenvalues), and systems with a
+!> border: the tangent of a structure, and what drives it.
+!>
+!>     A x - a y = f,   c x = g
+!>
+!> A need not be positive definite, and may have no inverse where the force has its peak, while the whole
+!> has one. There a plain block elimination fails; the mixed one used here does not (W. Govaerts, Stable
+!> solvers and block elimination for bordered systems, SIAM J. Matrix Anal. Appl. 12 (1991) 469-483).
+!>
+!> A matrix that is not positive definite is solved by LAPACK's elimination with pivots. The others are
+!> factored here: for a half-width up to 3 the columns that an elimination changes stay in registers. LAPACK's
+!> band routines take several times as long, because they call other routines for vectors of three numbers.
+module rbs_base_band_matrix
+   use rbs_base_constants, only: no_stiffness
+   use rbs_base_kinds, only: wp
+   use rbs_base_linalg, only: solve_general_band
+   implicit none
+   private
+
+   public :: band_matrix
+
+   !> Added in proportion to the initial stiffness where elimination meets a zero: no more than round-off.
+   real(wp), parameter :: round_off = 8.0_wp*epsilon(1.0_wp)
+
+   !> If one step of refinement changes the solution by more than this share, the system counts as singular.
+   real(wp), parameter :: no_answer = 1.0e-3_wp
+
+   !> Half-width of the elimination in registers.
+   integer, parameter :: narrow = 3
+
+   type :: band_matrix
+      !> Number of unknowns, and of diagonals below the main one
+      integer :: size = 0, width = 0
+      !> The matrix, to be filled before `factor` (4 or width + 1, size): band(1 + i - j, j) = a(i, j) for
+      !> i >= j, zero elsewhere. A matrix with a scale is scaled by `factor`
+      real(wp), allocatable :: band(:, :)
+      !> Initial stiffness of the unknowns (size), where all is scaled by it
+      real(wp), allocatable :: stiffness(:)
+      !> After `factor`: whether the matrix is positive definite, and its number of negative pivots
+      logical :: positive = .false.
+      integer :: negative = 0
+      !> Its factor: 1/D and L
+      real(wp), allocatable :: triangle(:, :)
+      !> One over root of the stiffness, and zeros (size + half-width); the matrix as elimination with pivots
+      !> takes it
+      real(wp), allocatable, private :: scale(:), general(:, :)
+      integer, allocatable, private :: pivot(:)
+      !> Columns a and c of the border, and A^-1 times them (size, 2), scaled
+      real(wp), allocatable, private :: border(:, :), flexible(:, :)
+      !> Products of the two: once from the left, once from the right
+      real(wp), private :: from_left = 0.0_wp, from_right = 0.0_wp
+      !> Work arrays (size, number of right-hand sides)
+      real(wp), allocatable, private :: right(:, :), more(:, :)
+   contains
+      procedure :: create
+      procedure :: hold_last
+      procedure :: factor
+      generic :: solve => solve_one, solve_many
+      procedure, private :: solve_one, solve_many
+      procedure :: set_border
+      procedure :: solve_bordered
+   end type band_matrix
+
+contains
+
+   subroutine create(self, unknowns, width, stiffness)
+      class(band_matrix), intent(out) :: self
+      integer, intent(in) :: unknowns, width
+      !> Initial stiffness of the unknowns, all positive; without it nothing is scaled
+      real(wp), intent(in), optional :: stiffness(:)
+      integer :: i, rows
+
+      self%size = unknowns
+      self%width = width
+      rows = max(width, narrow) + 1
+      allocate (self%band(rows, unknowns), self%triangle(rows, unknowns), source=0.0_wp)
+      if (.not. present(stiffness)) return
+      self%stiffness = stiffness
+      self%scale = [1.0_wp/sqrt(stiffness), (0.0_wp, i=2, rows)]
+   end subroutine create
+
+   !> Hold the last unknown, the rotation of a held top: it couples with nothing.
+   pure subroutine hold_last(self, diagonal)
+      class(band_matrix), intent(inout) :: self
+      !> What stands on the diagonal in its place
+      real(wp), intent(in) :: diagonal
+      integer :: i
+
+      do i = 2, min(self%width + 1, self%size)
+         self%band(i, self%size + 1 - i) = 0.0_wp
+      end do
+      self%band(1, self%size) = diagonal
+   end subroutine hold_last
+
+   !> Scale the matrix and factor it.
+   subroutine factor(self)
+      class(band_matrix), intent(inout) :: self
+
+      if (allocated(self%scale)) call scale_band(self%size, size(self%band, 1), self%scale, self%band)
+      self%triangle(:, :) = self%band
+      if (self%width <= narrow) then
+         call factor_narrow(self%size, self%triangle, self%negative)
+      else
+         call factor_wide(self%size, self%width, self%triangle, self%negative)
+      end if
+      self%positive = self%negative == 0
+      ! The factor holds one over the pivots.
+      if (self%positive .and. allocated(self%scale)) then
+         self%positive = maxval(self%triangle(1, :)) < 1.0_wp/no_stiffness
+      end if
+   end subroutine factor
+
+   pure subroutine scale_band(n, rows, scale, band)
+      integer, intent(in) :: n, rows
+      real(wp), intent(in) :: scale(n + rows - 1)
+      real(wp), intent(inout) :: band(rows, n)
+      integer :: j
+
+      do j = 1, n
+         band(:, j) = band(:, j)*(scale(j)*scale(j:j + rows - 1))
+      end do
+   end subroutine scale_band
+
+   !> Factor L D L', in place, for a half-width up to 3.
+   pure subroutine factor_narrow(n, band, negative)
+      integer, intent(in) :: n
+      !> Lower band; on return 1/D and L
+      real(wp), intent(inout) :: band(4, n)
+      !> Number of pivots that are not positive
+      integer, intent(out) :: negative
+      real(wp) :: pivot, share, l1, l2, l3, below1, below2, below3
+      real(wp) :: r11, r21, r31, r22, r32, r33
+      integer :: j
+
+      negative = 0
+      r11 = 0.0_wp
+      r21 = 0.0_wp
+      r31 = 0.0_wp
+      r22 = 0.0_wp
+      r32 = 0.0_wp
+      r33 = 0.0_wp
+      do j = 1, n
+         pivot = band(1, j) - r11
+         if (.not. pivot > 0.0_wp) call count_negative(pivot, negative)
+         share = 1.0_wp/pivot
+         below1 = band(2, j) - r21
+         below2 = band(3, j) - r31
+         below3 = band(4, j)
+         l1 = below1*share
+         l2 = below2*share
+         l3 = below3*share
+         band(1, j) = share
+         band(2, j) = l1
+         band(3, j) = l2
+         band(4, j) = l3
+         r11 = r22 + l1*below1
+         r21 = r32 + l1*below2
+         r31 = l1*below3
+         r22 = r33 + l2*below2
+         r32 = l2*below3
+         r33 = l3*below3
+      end do
+   end subroutine factor_narrow
+
+   !> The same for any half-width.
+   pure subroutine factor_wide(n, width, band, negative)
+      integer, intent(in) :: n, width
+      real(wp), intent(inout) :: band(width + 1, n)
+      integer, intent(out) :: negative
+      real(wp) :: pivot, l
+      integer :: i, j, last
+
+      negative = 0
+      do j = 1, n
+         pivot = band(1, j)
+         if (.not. pivot > 0.0_wp) call count_negative(pivot, negative)
+         band(1, j) = 1.0_wp/pivot
+         last = min(width, n - j)
+         do i = 1, last
+            l = band(1 + i, j)*band(1, j)
+            band(:1 + last - i, j + i) = band(:1 + last - i, j + i) - l*band(1 + i:1 + last, j)
+         end do
+         band(2:1 + last, j) = band(2:1 + last, j)*band(1, j)
+      end do
+   end subroutine factor_wide
+
+   !> A small pivot in place of zero changes nothing but round-off.
+   pure subroutine count_negative(pivot, negative)
+      real(wp), intent(inout) :: pivot
+      integer, intent(inout) :: negative
+
+      negative = negative + 1
+      if (.not. abs(pivot) > 0.0_wp) pivot = -sqrt(tiny(1.0_wp))
+   end subroutine count_negative
+
+   !> Solve with the factor of `factor_narrow`.
+   pure subroutine solve_narrow(n, factor, b)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: factor(4, n)
+      !> Right-hand side, replaced by the solution
+      real(wp), intent(inout) :: b(n)
+      real(wp) :: r1, r2, r3, x, x1, x2, x3
+      integer :: j
+
+      r1 = 0.0_wp
+      r2 = 0.0_wp
+      r3 = 0.0_wp
+      do j = 1, n
+         x = b(j) - r1
+         r1 = r2 + factor(2, j)*x
+         r2 = r3 + factor(3, j)*x
+         r3 = factor(4, j)*x
+         b(j) = x*factor(1, j)
+      end do
+      x1 = 0.0_wp
+      x2 = 0.0_wp
+      x3 = 0.0_wp
+      do j = n, 1, -1
+         x = (b(j) - (factor(3, j)*x2 + factor(4, j)*x3)) - factor(2, j)*x1
+         x3 = x2
+         x2 = x1
+         x1 = x
+         b(j) = x
+      end do
+   end subroutine solve_narrow
+
+   !> Solve with the factor of `factor_wide`.
+   pure subroutine solve_wide(n, width, factor, b)
+      integer, intent(in) :: n, width
+      real(wp), intent(in) :: factor(width + 1, n)
+      real(wp), intent(inout) :: b(n)
+      integer :: j, last
+
+      do j = 1, n
+         last = min(width, n - j)
+         b(j + 1:j + last) = b(j + 1:j + last) - factor(2:1 + last, j)*b(j)
+      end do
+      b = b*factor(1, :)
+      do j = n, 1, -1
+         last = min(width, n - j)
+         b(j) = b(j) - dot_product(factor(2:1 + last, j), b(j + 1:j + last))
+      end do
+   end subroutine solve_wide
+
+   !> Without border: A x = b, with one right-hand side.
+   subroutine solve_one(self, b, regular)
+      class(band_matrix), intent(inout) :: self
+      !> Right-hand side (size), replaced by the solution
+      real(wp), intent(inout), contiguous :: b(:)
+      logical, intent(out) :: regular
+
+      call scale_rows(self, 1, b)
+      call solve_scaled(self, 1, b, regular)
+      call scale_rows(self, 1, b)
+   end subroutine solve_one
+
+   !> The same with several.
+   subroutine solve_many(self, b, regular)
+      class(band_matrix), intent(inout) :: self
+      !> (size, m)
+      real(wp), intent(inout), contiguous :: b(:, :)
+      logical, intent(out) :: regular
+
+      call scale_rows(self, size(b, 2), b)
+      call solve_scaled(self, size(b, 2), b, regular)
+      call scale_rows(self, size(b, 2), b)
+   end subroutine solve_many
+
+   !> Give the border of the matrix that has been factored.
+   subroutine set_border(self, column, row, regular)
+      class(band_matrix), intent(inout) :: self
+      !> a and c (size); without c it is a
+      real(wp), intent(in), contiguous :: column(:)
+      real(wp), intent(in), contiguous, optional :: row(:)
+      !> Whether the system can have a unique solution
+      logical, intent(out) :: regular
+      integer :: m
+
+      if (.not. allocated(self%border)) allocate (self%border(self%size, 2), self%flexible(self%size, 2))
+      m = merge(2, 1, present(row))
+      self%border(:, 1) = column
+      if (present(row)) self%border(:, 2) = row
+      call scale_rows(self, m, self%border)
+      self%flexible(:, :m) = self%border(:, :m)
+      call solve_scaled(self, m, self%flexible, regular)
+      if (.not. present(row)) then
+         self%border(:, 2) = self%border(:, 1)
+         self%flexible(:, 2) = self%flexible(:, 1)
+      end if
+      self%from_left = dot_product(self%flexible(:, 2), self%border(:, 1))
+      self%from_right = dot_product(self%border(:, 2), self%flexible(:, 1))
+      regular = regular .and. abs(self%from_left) > 0.0_wp .and. abs(self%from_right) > 0.0_wp
+   end subroutine set_border
+
+   !> With border.
+   subroutine solve_bordered(self, f, g, x, y, regular)
+      class(band_matrix), intent(inout) :: self
+      !> Right-hand sides (size, m), (m)
+      real(wp), intent(in), contiguous :: f(:, :)
+      real(wp), intent(in) :: g(:)
+      !> Solutions (size, m), (m)
+      real(wp), intent(out), contiguous :: x(:, :)
+      real(wp), intent(out) :: y(:)
+      !> Whether the system has a unique solution
+      logical, intent(out) :: regular
+      real(wp) :: change(size(g)), missing(size(g))
+      integer :: j
+
+      if (.not. allocated(self%right)) allocate (self%right, self%more, mold=f)
+      self%right = f
+      call scale_rows(self, size(g), self%right)
+      call eliminate(self, self%right, g, x, y, regular)
+      if (.not. regular) return
+      if (.not. self%positive) then
+         ! One step of refinement. Its size also shows whether the system has a solution.
+         do j = 1, size(g)
+            self%right(:, j) = self%right(:, j) - times(self, x(:, j)) + self%border(:, 1)*y(j)
+            missing(j) = g(j) - dot_product(self%border(:, 2), x(:, j))
+         end do
+         call eliminate(self, self%right, missing, self%more, change, regular)
+         do j = 1, size(g)
+            regular = regular .and. maxval(abs(self%more(:, j))) <= no_answer*maxval(abs(x(:, j)))
+         end do
+         if (.not. regular) return
+         x = x + self%more
+         y = y + change
+      end if
+      call scale_rows(self, size(g), x)
+   end subroutine solve_bordered
+
+   !> Mixed block elimination: once from the left, which gives most of y, and once from the right for
+   !> what is missing.
+   subroutine eliminate(self, f, g, x, y, regular)
+      type(band_matrix), intent(inout) :: self
+      real(wp), intent(in) :: f(:, :), g(:)
+      real(wp), intent(out), contiguous :: x(:, :)
+      real(wp), intent(out) :: y(:)
+      logical, intent(out) :: regular
+      real(wp) :: more
+      integer :: j
+
+      do j = 1, size(g)
+         y(j) = (g(j) - dot_product(self%flexible(:, 2), f(:, j)))/self%from_left
+         x(:, j) = f(:, j) + self%border(:, 1)*y(j)
+      end do
+      call solve_scaled(self, size(g), x, regular)
+      if (.not. regular) return
+      do j = 1, size(g)
+         more = (g(j) - dot_product(self%border(:, 2), x(:, j)))/self%from_right
+         x(:, j) = x(:, j) + self%flexible(:, 1)*more
+         y(j) = y(j) + more
+      end do
+   end subroutine eliminate
+
+   !> Solve with the scaled matrix.
+   subroutine solve_scaled(self, m, b, regular)
+      type(band_matrix), intent(inout) :: self
+      integer, intent(in) :: m
+      real(wp), intent(inout) :: b(self%size, m)
+      logical, intent(out) :: regular
+      integer :: j
+
+      regular = .true.
+      if (.not. self%positive) then
+         call solve_with_pivots(self, m, b, regular)
+         return
+      end if
+      do j = 1, m
+         if (self%width <= narrow) then
+            call solve_narrow(self%size, self%triangle, b(:, j))
+         else
+            call solve_wide(self%size, self%width, self%triangle, b(:, j))
+         end if
+      end do
+   end subroutine solve_scaled
+
+   subroutine solve_with_pivots(self, m, b, regular)
+      type(band_matrix), intent(inout) :: self
+      integer, intent(in) :: m
+      real(wp), intent(inout) :: b(self%size, m)
+      logical, intent(out) :: regular
+      real(wp) :: right(self%size, m)
+
+      right = b
+      call mirror(self, 0.0_wp)
+      call solve_general_band(self%general, self%width, self%width, b, regular, self%pivot)
+      if (regular) return
+      b = right
+      call mirror(self, round_off)
+      call solve_general_band(self%general, self%width, self%width, b, regular, self%pivot)
+   end subroutine solve_with_pivots
+
+   !> The band as elimination with pivots takes it, both triangles.
+   subroutine mirror(self, extra)
+      type(band_matrix), intent(inout) :: self
+      !> Added to the diagonal, where it is of the order of one
+      real(wp), intent(in) :: extra
+      integer :: i, j, main
+
+      main = 2*self%width + 1
+      if (.not. allocated(self%general)) then
+         allocate (self%general(main + self%width, self%size), self%pivot(self%size))
+      end if
+      self%general = 0.0_wp
+      do j = 1, self%size
+         self%general(main, j) = self%band(1, j) + extra
+         do i = j + 1, min(j + self%width, self%size)
+            self%general(main + i - j, j) = self%band(1 + i - j, j)
+            self%general(main + j - i, i) = self%band(1 + i - j, j)
+         end do
+      end do
+   end subroutine mirror
+
+   !> The scaled matrix times a column.
+   pure function times(self, x) result(product)
+      type(band_matrix), intent(in) :: self
+      real(wp), intent(in) :: x(:)
+      real(wp) :: product(self%size)
+      integer :: i, j
+
+      product = self%band(1, :)*x
+      do j = 1, self%size
+         do i = j + 1, min(j + self%width, self%size)
+            product(i) = product(i) + self%band(1 + i - j, j)*x(j)
+            product(j) = product(j) + self%band(1 + i - j, j)*x(i)
+         end do
+      end do
+   end function times
+
+   pure subroutine scale_rows(self, m, b)
+      type(band_matrix), intent(in) :: self
+      integer, intent(in) :: m
+      real(wp), intent(inout) :: b(self%size, m)
+      integer :: j
+
+      if (.not. allocated(self%scale)) return
+      do j = 1, m
+         b(:, j) = b(:, j)*self%scale(:self%size)
+      end do
+   end subroutine scale_rows
+
+end module rbs_base_band_matrix
