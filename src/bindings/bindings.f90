@@ -274,7 +274,7 @@ subroutine rbs_time_history(statement, nn, number, m, time, drives, nd, load, mi
    use rbs_case_case_record, only: case_record
    use rbs_column_column, only: column_type
    use rbs_output_summary, only: summary_type
-   use rbs_solve_time_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type
    implicit none
    character(len=*), intent(in) :: statement, drives
    integer(c_int), intent(in) :: nn, m, nd, mi, opening_given, mb, nw, told, width, height, ms, nf

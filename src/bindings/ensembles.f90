@@ -12,7 +12,7 @@ module rbs_bindings_ensembles
    use rbs_solve_ensemble_block, only: plan_column, run_block
    use rbs_solve_ensemble_outcome, only: outcome_type, measure_count
    use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, run_type
-   use rbs_solve_time_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type
    implicit none
    private
 

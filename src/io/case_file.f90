@@ -10,7 +10,7 @@ module rbs_io_case_file
    use rbs_loading_protocol, only: protocol_values
    use rbs_loading_signal, only: signal_type
    use rbs_solve_check_values, only: check_values
-   use rbs_solve_time_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type
    use rbs_case_analysis_record, only: analysis_record
    use rbs_case_case_record, only: case_record
    use rbs_base_check, only: is_given

@@ -23,7 +23,7 @@ program time_solver
    use rbs_solve_make_column, only: make_column
    use rbs_solve_static_run_static, only: run_static
    use rbs_solve_task, only: task_type
-   use rbs_solve_time_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: plan_dynamic, run_dynamic

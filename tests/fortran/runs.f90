@@ -12,7 +12,7 @@ module runs
    use rbs_output_recorder, only: array_recorder
    use rbs_output_row, only: row_size, row_joints
    use rbs_output_summary, only: summary_type
-   use rbs_solve_time_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type
    use rbs_solve_time_located, only: located_stepper
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_pair45, only: pair45_scheme

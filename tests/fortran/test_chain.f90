@@ -14,7 +14,7 @@ module test_chain
    use rbs_column_top, only: top_position
    use rbs_loading_signal, only: signal_type
    use rbs_solve_modal_modes, only: modes_type, find_modes
-   use rbs_solve_time_loads, only: loads_type, lateral, horizontal, vertical, axial
+   use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, axial
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_rk4, only: rk4_scheme
    use rbs_solve_time_state, only: state_type

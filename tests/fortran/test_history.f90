@@ -17,7 +17,7 @@ module test_history
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_solve_static_run_static, only: run_static
    use rbs_solve_task, only: task_type
-   use rbs_solve_time_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type
    use rbs_solve_time_march, only: initial_state, march
    use rbs_solve_time_motion, only: motion_type, motion_result
    use rbs_solve_time_plan, only: time_plan

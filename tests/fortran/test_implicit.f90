@@ -9,7 +9,7 @@ module test_implicit
    use rbs_column_column, only: column_type
    use rbs_solve_modal_modes, only: modes_type, find_modes, frequency_bounds
    use rbs_solve_time_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha
-   use rbs_solve_time_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type
    use rbs_solve_time_state, only: state_type
    use rbs_column_column_record, only: column_record
    use runs, only: scene_type, scenes, new_scene, new_mass, play, play_located, find_reference, new_state, &

@@ -11,7 +11,7 @@ module test_implicit_finite
    use rbs_solve_time_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha, &
                                       with_finite_rotations
    use rbs_solve_time_implicit_finite, only: finite_stepper
-   use rbs_solve_time_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type
    use rbs_solve_time_state, only: state_type
    use rbs_column_column_record, only: column_record
    use runs, only: scene_type, new_scene, play, find_reference, new_state, signal_of, check_order, &

@@ -4,7 +4,7 @@ module test_signal
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_loading_signal, only: signal_type
-   use rbs_solve_time_loads, only: loads_type, lateral, horizontal, vertical, axial
+   use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, axial
    use samples, only: random_type
    implicit none
    private

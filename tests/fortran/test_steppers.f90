@@ -8,7 +8,7 @@ module test_steppers
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
    use rbs_solve_modal_modes, only: modes_type, find_modes
-   use rbs_solve_time_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type
    use rbs_solve_time_located, only: located_stepper
    use rbs_solve_time_pair45, only: pair45_scheme
    use rbs_solve_time_rk4, only: rk4_stepper

@@ -11,7 +11,7 @@ module rbs_solve_ensemble_block
    use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, run_type, lane_task
    use rbs_solve_ensemble_tally, only: tally_recorder, settle
    use rbs_solve_time_effort, only: expected_seconds
-   use rbs_solve_time_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: run_dynamic, plan_dynamic

@@ -14,7 +14,7 @@ module rbs_solve_ensemble_chain_team
    use rbs_solve_ensemble_tally, only: tally_recorder, settle_tally => settle
    use rbs_solve_ensemble_team, only: team_type, begin_run, show_motion, show_seen, take_seen
    use rbs_solve_time_implicit, only: implicit_stepper
-   use rbs_solve_time_loads, only: horizontal
+   use rbs_loading_loads, only: horizontal
    use rbs_solve_time_march, only: report_state, balance
    implicit none
    private

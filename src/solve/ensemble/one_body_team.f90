@@ -17,7 +17,7 @@ module rbs_solve_ensemble_one_body_team
    use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, lane_task
    use rbs_solve_ensemble_team, only: team_type, lane_type, begin_run, show_motion, show_seen, take_seen
    use rbs_solve_time_implicit, only: implicit_stepper
-   use rbs_solve_time_loads, only: horizontal
+   use rbs_loading_loads, only: horizontal
    use rbs_solve_time_march, only: report_state
    use rbs_solve_time_rk4_one_body, only: inverse_of_mass, resistance_per_velocity
    use rbs_solve_time_state, only: state_type

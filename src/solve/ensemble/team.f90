@@ -13,7 +13,7 @@ module rbs_solve_ensemble_team
    use rbs_solve_ensemble_outcome, only: outcome_type
    use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, lane_task
    use rbs_solve_time_implicit, only: implicit_stepper
-   use rbs_solve_time_loads, only: loads_type, horizontal
+   use rbs_loading_loads, only: loads_type, horizontal
    use rbs_solve_time_march, only: initial_state, start_state
    use rbs_solve_time_run_dynamic, only: new_stepper
    use rbs_solve_time_sight, only: sight_type

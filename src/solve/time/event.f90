@@ -4,7 +4,7 @@ module rbs_solve_time_event
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_layer_events, only: first_layer_exit, layer_end, layer_motion
    use rbs_hysteresis_line_exit, only: line_exit, find_exit
-   use rbs_solve_time_loads, only: lateral, horizontal, vertical, axial
+   use rbs_loading_loads, only: lateral, horizontal, vertical, axial
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type

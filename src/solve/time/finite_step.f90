@@ -18,7 +18,7 @@ module rbs_solve_time_finite_step
    use rbs_column_finite, only: finite_work, finite_acceleration
    use rbs_solve_time_finite_chain, only: finite_chain
    use rbs_solve_time_finite_joint, only: joint_forces, joint_tangent, local
-   use rbs_solve_time_loads, only: lateral, horizontal, vertical, axial
+   use rbs_loading_loads, only: lateral, horizontal, vertical, axial
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_state, only: state_type
    implicit none

@@ -14,7 +14,7 @@ module rbs_solve_time_implicit
    use rbs_solve_time_implicit_balance, only: step_balance
    use rbs_solve_time_implicit_one_body, only: one_body_step
    use rbs_solve_time_implicit_tangent, only: step_tangent
-   use rbs_solve_time_loads, only: lateral, horizontal, vertical, axial
+   use rbs_loading_loads, only: lateral, horizontal, vertical, axial
    use rbs_solve_time_state, only: state_type, in_bounds, out_of_bounds
    implicit none
    private

@@ -10,7 +10,7 @@ module rbs_solve_time_implicit_balance
    use rbs_base_stream, only: stream_type
    use rbs_column_band, only: to_joints
    use rbs_column_chain, only: body_velocities
-   use rbs_solve_time_loads, only: lateral, horizontal, vertical
+   use rbs_loading_loads, only: lateral, horizontal, vertical
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_state, only: state_type
    implicit none

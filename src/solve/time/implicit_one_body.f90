@@ -7,7 +7,7 @@ module rbs_solve_time_implicit_one_body
    use rbs_hysteresis_journal, only: rule_slot
    use rbs_solve_time_bent_step, only: bent_step
    use rbs_solve_time_implicit_balance, only: step_balance
-   use rbs_solve_time_loads, only: lateral, horizontal
+   use rbs_loading_loads, only: lateral, horizontal
    use rbs_solve_time_state, only: state_type, out_of_bounds
    implicit none
    private

@@ -6,7 +6,7 @@ module rbs_solve_time_implicit_tangent
    use rbs_column_band, only: add_spring_band, add_geometric_band, opening_band
    use rbs_column_column, only: column_type
    use rbs_solve_time_implicit_balance, only: step_balance
-   use rbs_solve_time_loads, only: vertical, axial
+   use rbs_loading_loads, only: vertical, axial
    use rbs_solve_time_state, only: state_type
    implicit none
    private

@@ -14,7 +14,7 @@ module rbs_solve_time_march
                               row_spring, row_damping, row_axial, row_residual, row_top, row_joints
    use rbs_output_summary, only: summary_type
    use rbs_solve_end_state, only: end_state, standing_type
-   use rbs_solve_time_loads, only: loads_type, lateral, horizontal
+   use rbs_loading_loads, only: loads_type, lateral, horizontal
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_plan, only: time_plan, same_step
    use rbs_solve_time_sight, only: sight_type

@@ -18,7 +18,7 @@ module rbs_solve_time_motion
    use rbs_column_momentum, only: momentum_at_foot
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_modal_damping, only: modal_damping
-   use rbs_solve_time_loads, only: lateral, horizontal, vertical, axial
+   use rbs_loading_loads, only: lateral, horizontal, vertical, axial
    implicit none
    private
 
@@ -50,7 +50,7 @@ module rbs_solve_time_motion
 
    type :: motion_type
       type(column_type) :: column
-      !> Which of the four loads act (see `rbs_solve_time_loads`)
+      !> Which of the four loads act (see `rbs_loading_loads`)
       logical :: acts(4) = .false.
       !> Damping of the joints, beta k0 (unknowns) [N s/m, N m s]
       real(wp), allocatable :: joint_damping(:)

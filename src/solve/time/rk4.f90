@@ -3,7 +3,7 @@ module rbs_solve_time_rk4
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
-   use rbs_solve_time_loads, only: lateral, horizontal
+   use rbs_loading_loads, only: lateral, horizontal
    use rbs_solve_time_rk4_one_body, only: advance_one_body, step_of_one_body
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type, stepper_type, in_bounds

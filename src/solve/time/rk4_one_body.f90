@@ -4,7 +4,7 @@
 !> are those of the chain.
 module rbs_solve_time_rk4_one_body
    use rbs_base_kinds, only: wp
-   use rbs_solve_time_loads, only: lateral, horizontal
+   use rbs_loading_loads, only: lateral, horizontal
    use rbs_solve_time_motion, only: motion_type
    use rbs_solve_time_state, only: state_type, out_of_bounds
    implicit none

@@ -8,7 +8,7 @@ module rbs_solve_time_sight
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_summary, only: peaks_type
    use rbs_solve_time_cubic, only: cubic_type, cubic_through
-   use rbs_solve_time_loads, only: lateral, horizontal
+   use rbs_loading_loads, only: lateral, horizontal
    use rbs_solve_time_motion, only: motion_type, motion_result
    implicit none
    private

@@ -9,7 +9,7 @@ module rbs_solve_time_start
    use rbs_column_top, only: top_displacement
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_solve_end_state, only: end_state, standing_type, moving_state
-   use rbs_solve_time_loads, only: loads_type, lateral, vertical, axial
+   use rbs_loading_loads, only: loads_type, lateral, vertical, axial
    use rbs_solve_time_plan, only: time_plan, same_step
    use rbs_solve_time_state, only: state_type, stepper_type
    implicit none

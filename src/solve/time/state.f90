@@ -4,7 +4,7 @@ module rbs_solve_time_state
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_solve_time_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type
    use rbs_solve_time_motion, only: motion_type
    use rbs_solve_time_sight, only: sight_type
    implicit none

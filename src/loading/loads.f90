@@ -1,5 +1,5 @@
 !> The loads on a column in time.
-module rbs_solve_time_loads
+module rbs_loading_loads
    use rbs_base_kinds, only: wp
    use rbs_loading_signal, only: signal_type
    implicit none
@@ -102,4 +102,4 @@ contains
       if (self%acts(axial)) largest(axial) = maxval(abs(self%axial%value))
    end subroutine find_largest
 
-end module rbs_solve_time_loads
+end module rbs_loading_loads
