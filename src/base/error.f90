@@ -33,6 +33,7 @@ module rbs_base_error
       character(len=:), allocatable :: text
    contains
       procedure :: add
+      procedure :: add_at
       procedure :: join
       procedure :: raise
    end type message_list
@@ -62,6 +63,14 @@ contains
          self%text = self%text//new_line('a')//message
       end if
    end subroutine add
+
+   !> Append a message on what stands at a place, such as 'case.nml line 4:'; blank if there is none.
+   subroutine add_at(self, place, message)
+      class(message_list), intent(inout) :: self
+      character(len=*), intent(in) :: place, message
+
+      call self%add(trim(adjustl(trim(place)//' '//message)))
+   end subroutine add_at
 
    !> Append all messages of another list.
    subroutine join(self, other)

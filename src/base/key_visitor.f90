@@ -1,5 +1,5 @@
-!> How a record presents its keys: one procedure of the record names each component once, with unit,
-!> bounds and meaning, to a visitor. The visitor does one of four things:
+!> How a record presents its keys: its procedure `visit` names each component once, with unit, bounds and
+!> meaning, to a visitor. The visitor does one of four things:
 !>
 !>     collect   makes the list of keys with their defaults, for documentation, hints and the reader
 !>     put       sets one component by name
@@ -10,15 +10,23 @@ module rbs_base_key_visitor
    use rbs_base_constants, only: unset, unset_integer
    use rbs_base_error, only: message_list
    use rbs_base_keys, only: key_type, bound_type, check_number, find_key, choice_place, choice_name, &
-                            real_kind, integer_kind, logical_kind, word_kind, text_kind, key_length
+                            choice_list, real_kind, integer_kind, logical_kind, word_kind, text_kind, &
+                            key_length
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text, nearest_name
    implicit none
    private
 
-   public :: key_visitor, entry_type
+   public :: key_visitor, entry_type, visited_record
 
    integer, parameter :: collecting = 1, putting = 2, checking = 3, listing = 4
+
+   !> A record whose components are the values of keys.
+   type, abstract :: visited_record
+   contains
+      procedure(visit_record), deferred :: visit
+      procedure :: check => check_record
+   end type visited_record
 
    !> One key with its value.
    type :: entry_type
@@ -26,6 +34,7 @@ module rbs_base_key_visitor
       character(len=1) :: kind = real_kind
       !> Its values: real numbers, whole numbers, or 0 and 1 for logicals
       real(wp), allocatable :: number(:)
+      !> In place of numbers
       character(len=:), allocatable :: text
    end type entry_type
 
@@ -54,6 +63,8 @@ module rbs_base_key_visitor
       procedure :: list
       procedure, private :: real_key, integer_key, logical_key, text_key, long_text_key
       procedure, private :: real_list_key, integer_list_key
+      !> `call visitor%parameters(keys, value)`, the parameters of a rule
+      procedure :: parameters
       !> `call visitor%key(name, component, unit, bound, meaning)`
       generic :: key => real_key, integer_key, logical_key, real_list_key, integer_list_key
       !> `call visitor%word(name, component, meaning, choices)`
@@ -62,7 +73,32 @@ module rbs_base_key_visitor
       generic :: long_text => long_text_key
    end type key_visitor
 
+   abstract interface
+      subroutine visit_record(self, v)
+         import :: key_visitor, visited_record
+         implicit none
+         class(visited_record), intent(inout) :: self
+         type(key_visitor), intent(inout) :: v
+      end subroutine visit_record
+   end interface
+
 contains
+
+   !> Add a message for each value of a record that is missing or out of bounds.
+   subroutine check_record(self, group, messages, sound)
+      class(visited_record), intent(inout) :: self
+      !> Name of the record in messages
+      character(len=*), intent(in) :: group
+      type(message_list), intent(inout) :: messages
+      !> Whether all values passed
+      logical, intent(out), optional :: sound
+      type(key_visitor) :: v
+
+      call v%start_check(group)
+      call self%visit(v)
+      call v%end_check(messages)
+      if (present(sound)) sound = v%sound
+   end subroutine check_record
 
    !> The next visit collects keys; the record must be a new one, as its values are the defaults.
    subroutine collect(self, group)
@@ -99,12 +135,13 @@ contains
       self%messages = message_list()
    end subroutine start_check
 
-   !> Hand over the messages of the check.
+   !> Hand over the messages.
    subroutine end_check(self, messages)
-      class(key_visitor), intent(in) :: self
+      class(key_visitor), intent(inout) :: self
       type(message_list), intent(inout) :: messages
 
       call messages%join(self%messages)
+      self%messages = message_list()
    end subroutine end_check
 
    !> The next visit lists the values that differ from the defaults of the list of keys, which has been
@@ -134,7 +171,7 @@ contains
          if (is_given(x)) call add_entry(self, name, [x])
       case default
          call meet(self, key_type(name=name, unit=unit, bound=bound, default=x, meaning=meaning, &
-                                  optional=is_optional(optional)), x)
+                                  optional=is_true(optional)), x)
       end select
    end subroutine real_key
 
@@ -156,7 +193,7 @@ contains
          if (is_given(x)) call add_entry(self, name, [x])
       case default
          call meet(self, key_type(name=name, kind=integer_kind, unit=unit, bound=bound, default=x, &
-                                  meaning=meaning, optional=is_optional(optional)), x)
+                                  meaning=meaning, optional=is_true(optional)), x)
       end select
    end subroutine integer_key
 
@@ -179,12 +216,13 @@ contains
    end subroutine logical_key
 
    !> A word or a text of limited length. Without choices it is free; an empty text means: not given.
-   subroutine text_key(self, name, text, meaning, choices)
+   subroutine text_key(self, name, text, meaning, choices, required)
       class(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name
       character(len=*), intent(inout) :: text
       character(len=*), intent(in) :: meaning
       character(len=*), intent(in), optional :: choices
+      logical, intent(in), optional :: required
 
       select case (self%mode)
       case (putting)
@@ -199,7 +237,7 @@ contains
       case (listing)
          call add_text(self, name, trim(text))
       case default
-         call meet_text(self, name, text, meaning, choices)
+         call meet_text(self, name, text, meaning, choices, required)
       end select
    end subroutine text_key
 
@@ -221,7 +259,7 @@ contains
    end subroutine long_text_key
 
    !> A list of numbers; not allocated: not given.
-   subroutine real_list_key(self, name, x, unit, bound, meaning, most)
+   subroutine real_list_key(self, name, x, unit, bound, meaning, most, required)
       class(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name
       real(wp), allocatable, intent(inout) :: x(:)
@@ -229,6 +267,7 @@ contains
       type(bound_type), intent(in) :: bound
       !> Largest number of values
       integer, intent(in) :: most
+      logical, intent(in), optional :: required
       type(key_type) :: key
       integer :: i
 
@@ -238,7 +277,8 @@ contains
       case (listing)
          if (allocated(x)) call add_entry(self, name, x)
       case default
-         key = key_type(name=name, unit=unit, bound=bound, optional=.true., most=most, meaning=meaning)
+         key = key_type(name=name, unit=unit, bound=bound, optional=.not. is_true(required), most=most, &
+                        meaning=meaning)
          if (self%mode == collecting) call append(self, key)
          if (self%mode == collecting .or. .not. allocated(x)) return
          do i = 1, size(x)
@@ -249,13 +289,14 @@ contains
       end select
    end subroutine real_list_key
 
-   subroutine integer_list_key(self, name, i, unit, bound, meaning, most)
+   subroutine integer_list_key(self, name, i, unit, bound, meaning, most, required)
       class(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name
       integer, allocatable, intent(inout) :: i(:)
       character(len=*), intent(in) :: unit, meaning
       type(bound_type), intent(in) :: bound
       integer, intent(in) :: most
+      logical, intent(in), optional :: required
       type(key_type) :: key
       integer :: worst
 
@@ -265,8 +306,8 @@ contains
       case (listing)
          if (allocated(i)) call add_entry(self, name, real(i, wp))
       case default
-         key = key_type(name=name, kind=integer_kind, unit=unit, bound=bound, optional=.true., most=most, &
-                        meaning=meaning)
+         key = key_type(name=name, kind=integer_kind, unit=unit, bound=bound, &
+                        optional=.not. is_true(required), most=most, meaning=meaning)
          if (self%mode == collecting) call append(self, key)
          if (self%mode == collecting .or. .not. allocated(i)) return
          worst = minval(i)
@@ -274,6 +315,25 @@ contains
          call check_number(real(worst, wp), trim(self%group), key, self%messages, self%sound)
       end select
    end subroutine integer_list_key
+
+   !> The parameters of a rule, a value for each of its keys; a word is its place among the choices.
+   subroutine parameters(self, keys, value)
+      class(key_visitor), intent(inout) :: self
+      type(key_type), intent(in) :: keys(:)
+      real(wp), intent(inout) :: value(:)
+      integer :: i
+
+      do i = 1, size(keys)
+         select case (self%mode)
+         case (collecting)
+            call append(self, keys(i))
+         case (putting)
+            if (keys(i)%name == self%wanted) value(i) = self%number(1)
+         case (listing)
+            if (is_given(value(i))) call add_entry(self, keys(i)%name, value(i:i))
+         end select
+      end do
+   end subroutine parameters
 
    !> Collect a key, or check its value.
    subroutine meet(self, key, x)
@@ -288,13 +348,15 @@ contains
       end if
    end subroutine meet
 
-   subroutine meet_text(self, name, text, meaning, choices)
+   subroutine meet_text(self, name, text, meaning, choices, required)
       class(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name, text, meaning
       character(len=*), intent(in), optional :: choices
+      logical, intent(in), optional :: required
       type(key_type) :: key
 
-      key = key_type(name=name, kind=text_kind, default_text=text, optional=.true., meaning=meaning)
+      key = key_type(name=name, kind=text_kind, default_text=text, optional=.not. is_true(required), &
+                     meaning=meaning)
       if (present(choices)) then
          key%kind = word_kind
          key%choices = choices
@@ -311,31 +373,23 @@ contains
       class(key_visitor), intent(inout) :: self
       type(key_type), intent(in) :: key
       character(len=*), intent(in) :: word
-      character(len=:), allocatable :: names
       character(len=len(key%choices)) :: name(16)
-      integer :: i, count
+      integer :: i
 
       if (choice_place(key, word) > 0) return
       self%sound = .false.
-      names = ''
-      do i = 1, size(name)
-         name(i) = choice_name(key, i)
-         if (name(i) == '') exit
-         if (i > 1) names = names//', '
-         names = names//trim(name(i))
-      end do
-      count = i - 1
+      name = [(choice_name(key, i), i=1, size(name))]
       call self%messages%add(trim(self%group)//': '//trim(key%name)//" = '"//trim(word)// &
-                             "' is not known; it is one of "//names//" (did you mean '"// &
-                             nearest_name(word, name(:count))//"'?)")
+                             "' is not known; it is one of "//trim(choice_list(key))//" (did you mean '"// &
+                             nearest_name(word, name(:count(name /= '')))//"'?)")
    end subroutine check_word
 
-   pure logical function is_optional(optional)
-      logical, intent(in), optional :: optional
+   pure logical function is_true(choice)
+      logical, intent(in), optional :: choice
 
-      is_optional = .false.
-      if (present(optional)) is_optional = optional
-   end function is_optional
+      is_true = .false.
+      if (present(choice)) is_true = choice
+   end function is_true
 
    subroutine append(self, key)
       class(key_visitor), intent(inout) :: self
@@ -367,7 +421,11 @@ contains
       self%listed = self%listed + 1
       self%entry(self%listed)%name = name
       self%entry(self%listed)%kind = self%keys(place)%kind
-      self%entry(self%listed)%number = number
+      if (self%keys(place)%kind == word_kind) then
+         self%entry(self%listed)%text = trim(choice_name(self%keys(place), nint(number(1))))
+      else
+         self%entry(self%listed)%number = number
+      end if
    end subroutine add_entry
 
    subroutine add_text(self, name, text)

@@ -13,7 +13,8 @@ module rbs_base_keys
    implicit none
    private
 
-   public :: key_type, bound_type, check_number, bound_text, find_key, choice_place, choice_name
+   public :: key_type, bound_type, check_number, bound_text, find_key, choice_place, choice_name, &
+             choice_list
 
    !> Kinds of values: real number, whole number, logical, word out of a list of choices, free text.
    character(len=1), parameter, public :: real_kind = 'r', integer_kind = 'i', logical_kind = 'l'
@@ -223,5 +224,18 @@ contains
          first = first + last
       end do
    end function choice_name
+
+   !> The choices of a key, separated by commas.
+   pure function choice_list(key) result(text)
+      type(key_type), intent(in) :: key
+      character(len=2*len(key%choices)) :: text
+      integer :: i
+
+      text = choice_name(key, 1)
+      do i = 2, len(key%choices)
+         if (choice_name(key, i) == '') return
+         text = trim(text)//', '//choice_name(key, i)
+      end do
+   end function choice_list
 
 end module rbs_base_keys

@@ -475,7 +475,7 @@ subroutine rbs_check_section(statement, nn, number, nf, figures, status, message
    use rbs_bindings_section_statements, only: section_from_statements
    use rbs_section_cross_section, only: section_type
    use rbs_section_section_figures, only: figures_of_section
-   use rbs_section_section_setter, only: section_setter
+   use rbs_case_group_reader, only: group_reader
    implicit none
    character(len=*), intent(in) :: statement
    integer(c_int), intent(in) :: nn, nf
@@ -484,7 +484,7 @@ subroutine rbs_check_section(statement, nn, number, nf, figures, status, message
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
-   type(section_setter) :: setter
+   type(group_reader) :: setter
    type(section_type) :: section
    type(error_type), allocatable :: error
 
@@ -504,7 +504,7 @@ subroutine rbs_axial_capacity(statement, nn, number, load, moment, status, messa
    use rbs_section_balance, only: axial_capacity
    use rbs_section_cross_section, only: section_type
    use rbs_section_resultants, only: resultants_type, section_laws
-   use rbs_section_section_setter, only: section_setter
+   use rbs_case_group_reader, only: group_reader
    implicit none
    character(len=*), intent(in) :: statement
    integer(c_int), intent(in) :: nn
@@ -513,7 +513,7 @@ subroutine rbs_axial_capacity(statement, nn, number, load, moment, status, messa
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
-   type(section_setter) :: setter
+   type(group_reader) :: setter
    type(section_type) :: section
    type(resultants_type) :: least, most
    type(error_type), allocatable :: error
@@ -541,7 +541,7 @@ subroutine rbs_moment_curvature(statement, nn, number, m, curvature, moment, str
    use rbs_section_balance, only: follow
    use rbs_section_cross_section, only: section_type
    use rbs_section_resultants, only: section_laws
-   use rbs_section_section_setter, only: section_setter
+   use rbs_case_group_reader, only: group_reader
    implicit none
    character(len=*), intent(in) :: statement
    integer(c_int), intent(in) :: nn, m
@@ -550,7 +550,7 @@ subroutine rbs_moment_curvature(statement, nn, number, m, curvature, moment, str
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
-   type(section_setter) :: setter
+   type(group_reader) :: setter
    type(section_type) :: section
    type(error_type), allocatable :: error
 
@@ -576,7 +576,7 @@ subroutine rbs_section_events(statement, nn, number, points, lost, status, messa
    use rbs_section_events, only: events_type, find_events
    use rbs_section_resultants, only: section_laws
    use rbs_section_section_figures, only: values_of_point
-   use rbs_section_section_setter, only: section_setter
+   use rbs_case_group_reader, only: group_reader
    implicit none
    character(len=*), intent(in) :: statement
    integer(c_int), intent(in) :: nn
@@ -585,7 +585,7 @@ subroutine rbs_section_events(statement, nn, number, points, lost, status, messa
    integer(c_int), intent(out) :: lost, status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
-   type(section_setter) :: setter
+   type(group_reader) :: setter
    type(section_type) :: section
    type(events_type) :: events
    type(error_type), allocatable :: error
@@ -620,7 +620,7 @@ subroutine rbs_section_flexure(statement, nn, number, nf, points, figures, statu
    use rbs_section_cross_section, only: section_type
    use rbs_section_flexural_spring, only: fit_flexural_spring, flexural_spring_type, hinge_type
    use rbs_section_section_figures, only: values_of_point
-   use rbs_section_section_setter, only: section_setter
+   use rbs_case_group_reader, only: group_reader
    implicit none
    character(len=*), intent(in) :: statement
    integer(c_int), intent(in) :: nn, nf
@@ -629,7 +629,7 @@ subroutine rbs_section_flexure(statement, nn, number, nf, points, figures, statu
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
-   type(section_setter) :: setter
+   type(group_reader) :: setter
    type(section_type) :: section
    type(hinge_type) :: hinge
    type(flexural_spring_type) :: spring
@@ -659,7 +659,7 @@ subroutine rbs_section_shear(statement, nn, number, layers, m, curvature, points
    use rbs_bindings_runs, only: tell
    use rbs_bindings_section_statements, only: section_from_statements, shear_into_arrays
    use rbs_section_cross_section, only: section_type
-   use rbs_section_section_setter, only: section_setter
+   use rbs_case_group_reader, only: group_reader
    implicit none
    character(len=*), intent(in) :: statement
    integer(c_int), intent(in) :: nn, layers, m
@@ -668,7 +668,7 @@ subroutine rbs_section_shear(statement, nn, number, layers, m, curvature, points
    integer(c_int), intent(out) :: kept, events(3), status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
-   type(section_setter) :: setter
+   type(group_reader) :: setter
    type(section_type) :: section
    type(error_type), allocatable :: error
 
@@ -690,7 +690,7 @@ subroutine rbs_layer_response(statement, nn, number, m, path, states, carried, s
    use rbs_base_error, only: error_type
    use rbs_bindings_runs, only: tell
    use rbs_bindings_section_statements, only: layer_into_arrays, record_from_statements
-   use rbs_section_section_setter, only: section_setter
+   use rbs_case_group_reader, only: group_reader
    implicit none
    character(len=*), intent(in) :: statement
    integer(c_int), intent(in) :: nn, m
@@ -699,7 +699,7 @@ subroutine rbs_layer_response(statement, nn, number, m, path, states, carried, s
    integer(c_int), intent(out) :: carried(m), status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
-   type(section_setter) :: setter
+   type(group_reader) :: setter
    type(error_type), allocatable :: error
 
    states = 0.0_c_double
@@ -716,7 +716,7 @@ subroutine rbs_section_strips(statement, nn, number, round_core, m, core, cover,
    use rbs_bindings_runs, only: tell
    use rbs_bindings_section_statements, only: record_from_statements
    use rbs_section_section_build, only: outline_core
-   use rbs_section_section_setter, only: section_setter
+   use rbs_case_group_reader, only: group_reader
    use rbs_section_shape, only: shape_type
    use rbs_section_strips, only: cut_strips, strip_centroids, strips_type
    implicit none
@@ -727,7 +727,7 @@ subroutine rbs_section_strips(statement, nn, number, round_core, m, core, cover,
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
-   type(section_setter) :: setter
+   type(group_reader) :: setter
    class(shape_type), allocatable :: inside
    type(strips_type) :: strips
    type(error_type), allocatable :: error
@@ -737,9 +737,9 @@ subroutine rbs_section_strips(statement, nn, number, round_core, m, core, cover,
    call record_from_statements(statement, number, '', setter, error)
    call tell(error, status, message)
    if (status /= 0) return
-   call outline_core(setter%section, round_core /= 0, inside)
-   call cut_strips(setter%section%shape, inside, int(m), strips)
-   call strip_centroids(setter%section%shape, inside, strips, core(1, :), cover(1, :))
+   call outline_core(setter%case%drawing%section, round_core /= 0, inside)
+   call cut_strips(setter%case%drawing%section%shape, inside, int(m), strips)
+   call strip_centroids(setter%case%drawing%section%shape, inside, strips, core(1, :), cover(1, :))
    core(2, :) = strips%core_area
    cover(2, :) = strips%area - strips%core_area
 end subroutine rbs_section_strips
@@ -751,7 +751,7 @@ subroutine rbs_concrete_response(statement, nn, number, m, strain, stress, statu
    use rbs_bindings_runs, only: tell
    use rbs_bindings_section_statements, only: record_from_statements, tension_place
    use rbs_section_concrete_law, only: concrete_stress, concrete_type
-   use rbs_section_section_setter, only: section_setter
+   use rbs_case_group_reader, only: group_reader
    implicit none
    character(len=*), intent(in) :: statement
    integer(c_int), intent(in) :: nn, m
@@ -760,7 +760,7 @@ subroutine rbs_concrete_response(statement, nn, number, m, strain, stress, statu
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
-   type(section_setter) :: setter
+   type(group_reader) :: setter
    type(concrete_type) :: law
    type(message_list) :: messages
    type(error_type), allocatable :: error
@@ -768,12 +768,12 @@ subroutine rbs_concrete_response(statement, nn, number, m, strain, stress, statu
    stress = 0.0_c_double
    call record_from_statements(statement, number, 'diagram', setter, error)
    if (.not. allocated(error)) then
-      call setter%section%concrete%validate(messages)
+      call setter%case%drawing%section%concrete%validate(messages)
       call messages%raise(error)
    end if
    call tell(error, status, message)
    if (status /= 0) return
-   law = setter%section%concrete%law()
+   law = setter%case%drawing%section%concrete%law()
    law%tension = tension_place(setter%diagram%tension)
    stress = concrete_stress(law, strain)
 end subroutine rbs_concrete_response
@@ -784,7 +784,7 @@ subroutine rbs_steel_response(statement, nn, number, m, strain, stress, status, 
    use rbs_base_error, only: error_type, message_list
    use rbs_bindings_runs, only: tell
    use rbs_bindings_section_statements, only: record_from_statements
-   use rbs_section_section_setter, only: section_setter
+   use rbs_case_group_reader, only: group_reader
    use rbs_section_steel_law, only: steel_stress
    implicit none
    character(len=*), intent(in) :: statement
@@ -794,18 +794,18 @@ subroutine rbs_steel_response(statement, nn, number, m, strain, stress, status, 
    integer(c_int), intent(out) :: status
    character(len=8192), intent(out) :: message
    !f2py threadsafe
-   type(section_setter) :: setter
+   type(group_reader) :: setter
    type(message_list) :: messages
    type(error_type), allocatable :: error
 
    stress = 0.0_c_double
    call record_from_statements(statement, number, '', setter, error)
    if (.not. allocated(error)) then
-      call setter%section%steels(1)%validate(messages)
+      call setter%case%drawing%section%steels(1)%validate(messages)
       call messages%raise(error)
    end if
    call tell(error, status, message)
-   if (status == 0) stress = steel_stress(setter%section%steels(1)%law(), strain)
+   if (status == 0) stress = steel_stress(setter%case%drawing%section%steels(1)%law(), strain)
 end subroutine rbs_steel_response
 
 subroutine rbs_measures(names)

@@ -108,7 +108,7 @@ contains
       type(message_list) :: messages
 
       call case%analysis%validate(messages)
-      call case%output%validate(messages)
+      call case%output%check('output', messages)
       call messages%raise(error)
    end subroutine check_settings
 

@@ -3,13 +3,13 @@ module rbs_bindings_section_statements
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list
    use rbs_bindings_statements, only: put_statements
+   use rbs_case_group_reader, only: group_reader
    use rbs_section_concrete_law, only: tension_names
    use rbs_section_cross_section, only: section_type
    use rbs_section_events, only: check_rules, rule_type
    use rbs_section_mcft_layer, only: layer_state, layer_type, solve_layer, stress_of_state
    use rbs_section_section_build, only: make_section
    use rbs_section_section_figures, only: values_of_layer, values_of_shear_point
-   use rbs_section_section_setter, only: section_setter
    use rbs_section_settings_record, only: place_of
    use rbs_section_shear_diagram, only: check_curvatures, follow_shear, shear_diagram_type
    implicit none
@@ -26,10 +26,11 @@ contains
       real(c_double), intent(in) :: number(:)
       !> Group of settings that is checked; blank for none
       character(len=*), intent(in) :: group
-      type(section_setter), intent(inout) :: setter
+      type(group_reader), intent(inout) :: setter
       type(error_type), allocatable, intent(out) :: error
       type(message_list) :: messages
 
+      setter%of_section = .true.
       call put_statements(statement, number, setter, messages)
       if (group /= '') call setter%check(group, messages)
       call messages%raise(error)
@@ -40,12 +41,12 @@ contains
       character(len=*), intent(in) :: statement
       real(c_double), intent(in) :: number(:)
       character(len=*), intent(in) :: group
-      type(section_setter), intent(inout) :: setter
+      type(group_reader), intent(inout) :: setter
       type(section_type), intent(out) :: section
       type(error_type), allocatable, intent(out) :: error
 
       call record_from_statements(statement, number, group, setter, error)
-      if (.not. allocated(error)) call make_section(setter%section, section, error)
+      if (.not. allocated(error)) call make_section(setter%case%drawing%section, section, error)
    end subroutine section_from_statements
 
    !> Place of a tension law that has been checked.
@@ -70,7 +71,7 @@ contains
    !> Follow the shear diagram; points that were not reached are zero.
    subroutine shear_into_arrays(section, setter, curvature, points, profile, kept, events, ends, error)
       type(section_type), intent(in) :: section
-      type(section_setter), intent(in) :: setter
+      type(group_reader), intent(in) :: setter
       !> [1/m]
       real(c_double), intent(in) :: curvature(:)
       !> A column each, as `shear_values`
@@ -108,7 +109,7 @@ contains
 
    !> One layer along a path of longitudinal strain and shear stress, from its virgin state.
    subroutine layer_into_arrays(setter, path, states, carried)
-      type(section_setter), intent(in) :: setter
+      type(group_reader), intent(in) :: setter
       !> A column each: eps_x (tension positive), tau [Pa]
       real(c_double), intent(in) :: path(:, :)
       !> A column each, as `layer_values`
@@ -120,10 +121,10 @@ contains
       logical :: found
       integer :: i
 
-      layer%concrete = setter%section%concrete%law()
+      layer%concrete = setter%case%drawing%section%concrete%law()
       layer%concrete%tension = tension_place(setter%layer%tension)
       layer%rho_z = setter%layer%rho_z
-      layer%stirrup = setter%section%steels(1)%law()
+      layer%stirrup = setter%case%drawing%section%steels(1)%law()
       do i = 1, size(path, 2)
          call solve_layer(layer, path(1, i), path(2, i), state, found)
          states(:, i) = values_of_layer(state, stress_of_state(layer, state))

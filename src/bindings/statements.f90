@@ -6,9 +6,8 @@
 module rbs_bindings_statements
    use, intrinsic :: iso_c_binding, only: c_double
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
-   use rbs_base_key_setter, only: key_setter
    use rbs_case_case_record, only: case_record
-   use rbs_case_setter, only: setter_type
+   use rbs_case_group_reader, only: group_reader
    use rbs_column_column, only: column_type
    use rbs_hysteresis_spring_record, only: spring_record, carries_axial_load, told_capacity
    use rbs_solve_make_column, only: make_column
@@ -25,7 +24,7 @@ contains
    subroutine put_statements(text, number, setter, messages)
       character(len=*), intent(in) :: text
       real(c_double), intent(in) :: number(:)
-      class(key_setter), intent(inout) :: setter
+      type(group_reader), intent(inout) :: setter
       type(message_list), intent(inout) :: messages
       integer :: first, last, at
 
@@ -47,7 +46,7 @@ contains
       real(c_double), intent(in) :: number(:)
       !> Index of the last number that was taken
       integer, intent(inout) :: at
-      class(key_setter), intent(inout) :: setter
+      type(group_reader), intent(inout) :: setter
       type(message_list), intent(inout) :: messages
       integer :: first, last
       logical :: ok
@@ -69,7 +68,7 @@ contains
       character(len=*), intent(in) :: item
       real(c_double), intent(in) :: number(:)
       integer, intent(inout) :: at
-      class(key_setter), intent(inout) :: setter
+      type(group_reader), intent(inout) :: setter
       type(message_list), intent(inout) :: messages
       integer :: mark, place, count
 
@@ -96,7 +95,7 @@ contains
       real(c_double), intent(in) :: number(:)
       type(case_record), intent(out) :: case
       type(error_type), allocatable, intent(out) :: error
-      type(setter_type) :: setter
+      type(group_reader) :: setter
       type(message_list) :: messages
 
       call put_statements(text, number, setter, messages)

@@ -7,7 +7,7 @@ module rbs_case_analysis_record
    use rbs_base_check, only: is_given
    use rbs_case_methods, only: method_type, methods, method_named, method_choices, methods_taking, &
                                quoted_names
-   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_key_visitor, only: key_visitor, visited_record
    use rbs_base_keys, only: bound_type, above_zero, one_or_more
    implicit none
    private
@@ -20,7 +20,7 @@ module rbs_case_analysis_record
    type(bound_type), parameter :: radius = bound_type(0.0_wp, 1.0_wp)
 
    !> How the case is solved.
-   type :: analysis_record
+   type, extends(visited_record) :: analysis_record
       !> One of `methods`, see `rbs_case_methods`; empty: not chosen yet
       character(len=20) :: method = ''
       !> Whether the user has named the method
@@ -46,7 +46,7 @@ module rbs_case_analysis_record
    end type analysis_record
 
    !> The output of a run.
-   type :: output_record
+   type, extends(visited_record) :: output_record
       !> Path of the csv; not allocated: the case file's name with .csv
       character(len=:), allocatable :: file
       integer :: every = unset_integer
@@ -58,7 +58,6 @@ module rbs_case_analysis_record
       character(len=:), allocatable :: state
    contains
       procedure :: visit => visit_output
-      procedure :: validate => validate_output
    end type output_record
 
 contains
@@ -136,14 +135,12 @@ contains
    subroutine validate_analysis(self, messages)
       class(analysis_record), intent(inout) :: self
       type(message_list), intent(inout) :: messages
-      type(key_visitor) :: v
       type(method_type) :: method
+      logical :: sound
 
-      call v%start_check('analysis')
-      call self%visit(v)
-      call v%end_check(messages)
+      call self%check('analysis', messages, sound)
       method = method_named(self%method)
-      if (is_given(self%rho_infinity) .and. v%sound) then
+      if (is_given(self%rho_infinity) .and. sound) then
          if (self%rho_infinity < method%least_rho_infinity) then
             call messages%add('analysis: rho_infinity = '//to_text(self%rho_infinity)//" of method = '"// &
                               trim(method%name)//"' must be from "//to_text(method%least_rho_infinity)// &
@@ -186,15 +183,5 @@ contains
       end subroutine refuse
 
    end subroutine refuse_unused
-
-   subroutine validate_output(self, messages)
-      class(output_record), intent(inout) :: self
-      type(message_list), intent(inout) :: messages
-      type(key_visitor) :: v
-
-      call v%start_check('output')
-      call self%visit(v)
-      call v%end_check(messages)
-   end subroutine validate_output
 
 end module rbs_case_analysis_record

@@ -1,10 +1,10 @@
 !> A whole case: the contents of a namelist file.
 module rbs_case_case_record
    use rbs_base_error, only: message_list
-   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_key_visitor, only: key_visitor, visited_record
    use rbs_base_units, only: unit_system, unit_type, length_units, force_units, mass_units
    use rbs_case_analysis_record, only: analysis_record, output_record
-   use rbs_case_drawing_record, only: drawing_record
+   use rbs_case_drawing_record, only: drawing_groups, drawing_record
    use rbs_column_column_record, only: column_record
    use rbs_loading_loading_record, only: loading_record
    implicit none
@@ -16,7 +16,7 @@ module rbs_case_case_record
    integer, parameter :: most_loadings = 4
 
    !> Names of the units of a case.
-   type :: units_record
+   type, extends(visited_record) :: units_record
       character(len=8) :: force = 'N', length = 'm', mass = 'kg'
    contains
       procedure :: visit => visit_units
@@ -24,7 +24,7 @@ module rbs_case_case_record
    end type units_record
 
    !> The input of a run.
-   type :: case_record
+   type, extends(visited_record) :: case_record
       !> One line for the header of the output
       character(len=:), allocatable :: title
       type(units_record) :: units
@@ -37,12 +37,56 @@ module rbs_case_case_record
       type(analysis_record) :: analysis
       type(output_record) :: output
    contains
+      procedure :: open_group
       procedure :: visit
+      procedure :: visit_group
       procedure :: settle
       procedure :: validate
    end type case_record
 
 contains
+
+   !> Make room for what a group gives.
+   subroutine open_group(self, group)
+      class(case_record), intent(inout) :: self
+      character(len=*), intent(in) :: group
+
+      if (group == 'loading') self%loadings = self%loadings + 1
+      if (all(drawing_groups /= group)) return
+      if (.not. allocated(self%drawing)) allocate (self%drawing)
+      call self%drawing%open_group(group)
+   end subroutine open_group
+
+   !> Present the keys of a group.
+   subroutine visit_group(self, group, v, number)
+      class(case_record), intent(inout) :: self
+      character(len=*), intent(in) :: group
+      type(key_visitor), intent(inout) :: v
+      !> Which of several; without it the last
+      integer, intent(in), optional :: number
+      integer :: i
+
+      select case (group)
+      case ('case')
+         call self%visit(v)
+      case ('units')
+         call self%units%visit(v)
+      case ('column')
+         call self%column%visit(v)
+      case ('damping')
+         call self%column%damping%visit(v)
+      case ('loading')
+         i = self%loadings
+         if (present(number)) i = number
+         call self%loading(i)%visit(v)
+      case ('analysis')
+         call self%analysis%visit(v)
+      case ('output')
+         call self%output%visit(v)
+      case default
+         call self%drawing%visit_group(group, v, number)
+      end select
+   end subroutine visit_group
 
    !> The keys of the case itself.
    subroutine visit(self, v)
@@ -116,13 +160,10 @@ contains
    subroutine validate(self, messages)
       class(case_record), intent(inout) :: self
       type(message_list), intent(inout) :: messages
-      type(key_visitor) :: v
       integer :: i, known
 
       known = messages%count
-      call v%start_check('units')
-      call self%units%visit(v)
-      call v%end_check(messages)
+      call self%units%check('units', messages)
       ! Numbers cannot be judged if their units are unknown.
       if (messages%count > known) return
       call self%settle()
@@ -141,7 +182,7 @@ contains
       call check_together(self, messages)
       call self%analysis%validate(messages)
       call check_static(self, messages)
-      call self%output%validate(messages)
+      call self%output%check('output', messages)
       if (self%output%motion .and. self%analysis%known() .and. .not. self%analysis%dynamic()) then
          call messages%add('output: motion = .true. has no meaning in a static path, where nothing '// &
                            'moves; '// &

@@ -3,7 +3,7 @@
 module rbs_case_drawing_record
    use rbs_base_constants, only: unset, unset_integer
    use rbs_base_error, only: message_list
-   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_key_visitor, only: key_visitor, visited_record
    use rbs_base_keys, only: above_zero, any_number, bound_type, one_or_more
    use rbs_base_kinds, only: wp
    use rbs_column_column_record, only: most_bodies
@@ -13,7 +13,7 @@ module rbs_case_drawing_record
    implicit none
    private
 
-   public :: drawing_record, is_drawing_group, may_repeat
+   public :: drawing_record
 
    !> The groups of a drawing.
    character(len=12), parameter, public :: drawing_groups(10) = [character(len=12) :: &
@@ -21,7 +21,7 @@ module rbs_case_drawing_record
       'parameter']
 
    !> Bars by number and diameter, on the faces of a rectangle or around a circle.
-   type :: layout_record
+   type, extends(visited_record) :: layout_record
       integer :: number = unset_integer
       real(wp) :: diameter = unset
       !> Number of their steel
@@ -36,14 +36,14 @@ module rbs_case_drawing_record
    end type layout_record
 
    !> A parameter of the model that is not that of its version.
-   type :: parameter_record
+   type, extends(visited_record) :: parameter_record
       character(len=32) :: name = ''
       real(wp) :: value = unset
    contains
       procedure :: visit => visit_parameter
    end type parameter_record
 
-   type :: drawing_record
+   type, extends(visited_record) :: drawing_record
       type(section_record) :: section
       !> In place of bars one by one: along the hoops, and along those around a void
       type(layout_record), allocatable :: layout, inner_layout
@@ -61,24 +61,12 @@ module rbs_case_drawing_record
       integer :: hoops = 0
    contains
       procedure :: open_group
-      procedure :: visit
+      procedure :: visit => visit_drawing
+      procedure :: visit_group
       procedure :: validate
    end type drawing_record
 
 contains
-
-   pure logical function is_drawing_group(group)
-      character(len=*), intent(in) :: group
-
-      is_drawing_group = any(drawing_groups == group)
-   end function is_drawing_group
-
-   !> Whether a group may appear several times.
-   pure logical function may_repeat(group)
-      character(len=*), intent(in) :: group
-
-      may_repeat = group == 'steel' .or. group == 'parameter'
-   end function may_repeat
 
    !> Make room for what a group gives.
    subroutine open_group(self, group)
@@ -107,19 +95,26 @@ contains
       end select
    end subroutine open_group
 
-   !> Present the keys of a group; of steels and parameters those of the last one.
-   subroutine visit(self, group, v)
+   !> Present the keys of a group.
+   subroutine visit_group(self, group, v, number)
       class(drawing_record), intent(inout) :: self
       character(len=*), intent(in) :: group
       type(key_visitor), intent(inout) :: v
+      !> Which of several; without it the last
+      integer, intent(in), optional :: number
+      integer :: i
 
+      i = 0
+      if (group == 'steel') i = size(self%section%steels)
+      if (group == 'parameter') i = size(self%parameters)
+      if (present(number)) i = number
       select case (group)
       case ('section')
          call self%section%visit(v)
       case ('concrete')
          call self%section%concrete%visit(v)
       case ('steel')
-         call self%section%steels(size(self%section%steels))%visit(v)
+         call self%section%steels(i)%visit(v)
       case ('bars')
          call self%section%bars%visit(v)
       case ('layout')
@@ -129,11 +124,11 @@ contains
       case ('ties', 'spiral')
          call self%section%hoops%visit(v)
       case ('parameter')
-         call self%parameters(size(self%parameters))%visit(v)
+         call self%parameters(i)%visit(v)
       case default
-         call visit_drawing(self, v)
+         call self%visit(v)
       end select
-   end subroutine visit
+   end subroutine visit_group
 
    subroutine visit_drawing(self, v)
       class(drawing_record), intent(inout) :: self
@@ -177,16 +172,13 @@ contains
    subroutine validate(self, messages)
       class(drawing_record), intent(inout) :: self
       type(message_list), intent(inout) :: messages
-      type(key_visitor) :: v
       integer :: i
 
       if (.not. self%stated) then
          call messages%add('drawing: a section is there without the group &drawing, which says what was '// &
                            'made of it; give it, or remove the groups of the section')
       else
-         call v%start_check('drawing')
-         call visit_drawing(self, v)
-         call v%end_check(messages)
+         call self%check('drawing', messages)
          if (self%version == '') call messages%add("drawing: version is missing; give it, as '2026.5'")
       end if
       call self%section%validate(messages)
@@ -197,9 +189,7 @@ contains
       end if
       if (self%hoops > 1) call messages%add('ties: there is a spiral too; give one of them')
       do i = 1, size(self%parameters)
-         call v%start_check('parameter')
-         call self%parameters(i)%visit(v)
-         call v%end_check(messages)
+         call self%parameters(i)%check('parameter', messages)
          if (self%parameters(i)%name == '') call messages%add('parameter: name is missing; give it')
       end do
    end subroutine validate
@@ -210,13 +200,11 @@ contains
       character(len=*), intent(in) :: name
       type(layout_record), allocatable, intent(inout) :: layout
       type(message_list), intent(inout) :: messages
-      type(key_visitor) :: v
+      logical :: sound
 
       if (.not. allocated(layout)) return
-      call v%start_check(name)
-      call layout%visit(v)
-      call v%end_check(messages)
-      if (.not. v%sound) return
+      call layout%check(name, messages, sound)
+      if (.not. sound) return
       if (find_steel(section, layout%steel) == 0) then
          call messages%add(name//': steel is not one of the steels of the section')
       end if

@@ -1,48 +1,60 @@
 !> The list of all keys, as JSON for other programs and as a table for readers.
 module rbs_case_key_list
    use rbs_base_check, only: is_given
+   use rbs_base_constants, only: unset
    use rbs_base_error, only: bad_input, error_type, fatal_error, message_list
+   use rbs_base_key_visitor, only: key_visitor
    use rbs_base_keys, only: key_type, bound_text, choice_name, choice_length, real_kind, integer_kind, &
                             logical_kind, word_kind
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: exact_text, nearest_name, to_text
-   use rbs_case_setter, only: group_names, setter_type
+   use rbs_case_group_reader, only: group_names, group_reader, section_groups
    use rbs_case_text_buffer, only: text_buffer
    use rbs_hysteresis_registry, only: rule_names, keys_of, places_of
-   use rbs_section_section_setter, only: section_group_keys, section_groups
-   use rbs_section_shapes, only: shape_names
+   use rbs_section_shape, only: shape_type
+   use rbs_section_shapes, only: new_shape, shape_names
    implicit none
    private
 
    public :: keys_as_json, keys_as_table
 
-   !> Groups of a section, and the shapes with their sizes.
-   character(len=16), parameter :: section_parts(*) = [character(len=16) :: section_groups, shape_names]
-
 contains
 
-   !> The keys of a group without the parameters of a rule.
-   subroutine group_keys(group, keys)
+   !> The keys of a group without the parameters of a rule, or the sizes of a shape.
+   subroutine group_keys(group, of_section, keys)
       character(len=*), intent(in) :: group
+      !> Whether it is a group of a section, see `group_reader`
+      logical, intent(in) :: of_section
       type(key_type), allocatable, intent(out) :: keys(:)
-      type(setter_type) :: setter
+      type(group_reader) :: reader
       type(message_list) :: messages
+      class(shape_type), allocatable :: shape
+      type(key_visitor) :: v
       logical :: ok
 
-      call setter%open(group, '', messages, ok)
-      keys = setter%keys
+      call new_shape(group, unset, unset, shape)
+      if (allocated(shape)) then
+         call v%collect(group)
+         call shape%visit(v)
+         keys = v%keys(:v%count)
+      else
+         reader%of_section = of_section
+         call reader%open(group, '', messages, ok)
+         keys = reader%keys
+      end if
    end subroutine group_keys
 
    !> {"groups": {name: [key, ...]}, "rules": {name: {"places": [...], "keys": [key, ...]}},
    !>  "section": {name: [key, ...]}}; the last are what Python asks of a section, and the sizes of shapes.
    subroutine keys_as_json(buffer)
       type(text_buffer), intent(inout) :: buffer
+      character(len=16), parameter :: section_parts(*) = [character(len=16) :: section_groups, shape_names]
       type(key_type), allocatable :: keys(:)
       integer :: i
 
       call buffer%append('{"groups": {')
       do i = 1, size(group_names)
-         call group_keys(group_names(i), keys)
+         call group_keys(group_names(i), .false., keys)
          if (i > 1) call buffer%append(',')
          call buffer%append(new_line('a')//'  "'//trim(group_names(i))//'": [')
          call append_keys(buffer, keys)
@@ -59,7 +71,7 @@ contains
       end do
       call buffer%append(new_line('a')//'}, "section": {')
       do i = 1, size(section_parts)
-         call section_group_keys(section_parts(i), keys)
+         call group_keys(section_parts(i), .true., keys)
          if (i > 1) call buffer%append(',')
          call buffer%append(new_line('a')//'  "'//trim(section_parts(i))//'": [')
          call append_keys(buffer, keys)
@@ -170,7 +182,7 @@ contains
       end if
       do i = 1, size(group_names)
          if (name /= '' .and. name /= group_names(i)) cycle
-         call group_keys(group_names(i), keys)
+         call group_keys(group_names(i), .false., keys)
          call buffer%append('&'//trim(group_names(i))//new_line('a'))
          call append_rows(buffer, keys)
       end do

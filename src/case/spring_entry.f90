@@ -1,9 +1,10 @@
 !> Springs as given in the input: each once, with the joints that have it or the layers that refer to it.
 module rbs_case_spring_entry
    use rbs_base_check, only: check_name
+   use rbs_base_constants, only: unset_integer
    use rbs_base_error, only: message_list
-   use rbs_base_keys, only: key_type, integer_kind, word_kind, above_zero, any_number, not_negative, &
-                            one_or_more
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: key_type, above_zero, any_number, not_negative, one_or_more
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column_record, only: column_record, most_bodies
@@ -13,25 +14,14 @@ module rbs_case_spring_entry
    implicit none
    private
 
-   public :: spring_entry, entry_list, keys_of_group, is_spring_group, place_springs
+   public :: spring_entry, entry_list, place_springs
 
    !> Most layers of a joint.
    integer, parameter :: most_layers = 10000
 
-   type(key_type), parameter :: joint_key = &
-      key_type('joint', kind=integer_kind, bound=not_negative, optional=.true., most=most_bodies, &
-               meaning='joints that have this spring, from 1 up, 0 beneath a footing, n + 1 at a fixed '// &
-                        'top; without it all from 1 that are not named')
-   type(key_type), parameter :: rule_key = key_type('rule', kind=word_kind, meaning='name of the rule')
-   type(key_type), parameter :: id_key = &
-      key_type('id', kind=integer_kind, bound=above_zero, &
-               meaning='number by which layers refer to the spring')
-   type(key_type), parameter :: layers_keys(3) = [ &
-      joint_key, &
-      key_type('y', unit='m', bound=any_number, most=most_layers, &
-               meaning='distances from the middle of the section, positive where positive rotation opens'), &
-      key_type('spring', kind=integer_kind, bound=one_or_more, most=most_layers, &
-               meaning='id of the spring of each layer')]
+   !> The groups that give springs.
+   character(len=16), parameter, public :: spring_groups(5) = [character(len=16) :: &
+      'shear', 'flexure', 'axial_spring', 'layer_spring', 'layers']
 
    !> One group of the input that gives a spring, or the layers of joints.
    type :: spring_entry
@@ -42,11 +32,14 @@ module rbs_case_spring_entry
       !> Joints that have the spring; not allocated: all joints that no other group names
       integer, allocatable :: joint(:)
       !> Number by which layers refer to the spring
-      integer :: id = 0
+      integer :: id = unset_integer
       type(spring_record) :: spring
       !> Distances of layers [m], and their springs
       real(wp), allocatable :: y(:)
       integer, allocatable :: layer(:)
+   contains
+      procedure :: visit
+      procedure :: set_rule
    end type spring_entry
 
    type :: entry_list
@@ -90,31 +83,39 @@ contains
       if (stat /= 0) line = 0
    end function line_of
 
-   pure logical function is_spring_group(group)
-      character(len=*), intent(in) :: group
+   !> The keys of a spring, or of the layers of joints.
+   subroutine visit(self, v, rule_keys)
+      class(spring_entry), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+      !> Keys of the rule
+      type(key_type), intent(in) :: rule_keys(:)
 
-      select case (group)
-      case ('shear', 'flexure', 'axial_spring', 'layer_spring', 'layers')
-         is_spring_group = .true.
-      case default
-         is_spring_group = .false.
-      end select
-   end function is_spring_group
+      if (self%group == 'layer_spring') then
+         call v%key('id', self%id, '', above_zero, 'number by which layers refer to the spring')
+      else
+         call v%key('joint', self%joint, '', not_negative, &
+                    'joints that have this spring, from 1 up, 0 beneath a footing, n + 1 at a fixed '// &
+                    'top; without it all from 1 that are not named', most_bodies)
+      end if
+      if (self%group == 'layers') then
+         call v%key('y', self%y, 'm', any_number, 'distances from the middle of the section, '// &
+                    'positive where positive rotation opens', most_layers, required=.true.)
+         call v%key('spring', self%layer, '', one_or_more, 'id of the spring of each layer', most_layers, &
+                    required=.true.)
+      else
+         call v%word('rule', self%spring%rule, 'name of the rule', '', required=.true.)
+         call v%parameters(rule_keys, self%spring%value)
+      end if
+   end subroutine visit
 
-   !> The keys of a group without the parameters of its rule.
-   pure function keys_of_group(group) result(keys)
-      character(len=*), intent(in) :: group
-      type(key_type), allocatable :: keys(:)
+   !> Set the rule; a name that is too long keeps a mark of that, so that it is not taken for a shorter one.
+   subroutine set_rule(self, name)
+      class(spring_entry), intent(inout) :: self
+      character(len=*), intent(in) :: name
 
-      select case (group)
-      case ('layers')
-         keys = layers_keys
-      case ('layer_spring')
-         keys = [id_key, rule_key]
-      case default
-         keys = [joint_key, rule_key]
-      end select
-   end function keys_of_group
+      self%spring%rule = name
+      if (len_trim(name) > len(self%spring%rule)) self%spring%rule(len(self%spring%rule):) = '~'
+   end subroutine set_rule
 
    !> Give the springs to the joints of a column.
    subroutine place_springs(list, column, messages)
@@ -173,15 +174,14 @@ contains
             call check_name(list%entry(i)%spring%rule, pack(rule_names, suits(rule_names, in_layer)), &
                             name//' rule', messages, place)
          end if
-         if (list%entry(i)%id == 0) then
+         if (list%entry(i)%id == unset_integer) then
             call messages%add(name//' id is missing; give each spring of layers a number of its own')
             cycle
          end if
          do j = 1, i - 1
             if (list%entry(j)%group /= 'layer_spring' .or. list%entry(j)%id /= list%entry(i)%id) cycle
-            call messages%add(adjustl(trim(list%entry(i)%where)//' &layer_spring with id = '// &
-                                      to_text(list%entry(i)%id)// &
-                                              ' appears twice; give each a number of its own'))
+            call messages%add_at(list%entry(i)%where, '&layer_spring with id = '// &
+                                 to_text(list%entry(i)%id)//' appears twice; give each a number of its own')
             exit
          end do
       end do
@@ -213,8 +213,8 @@ contains
             end if
             do j = 1, size(entry%joint)
                if (entry%joint(j) < first .or. entry%joint(j) > last) then
-                  call messages%add(trim(entry%where)//' &'//group//' has joint = '// &
-                                    to_text(entry%joint(j))//'; joints are '//trim(range))
+                  call messages%add_at(entry%where, '&'//group//' has joint = '// &
+                                       to_text(entry%joint(j))//'; joints are '//trim(range))
                else if (of_joint(entry%joint(j)) > 0) then
                   call twice(entry, list%entry(of_joint(entry%joint(j))), group, messages, entry%joint(j))
                else
@@ -253,7 +253,7 @@ contains
       integer, intent(in), optional :: joint
       character(len=:), allocatable :: text
 
-      text = trim(entry%where)//' &'//group
+      text = '&'//group
       if (present(joint)) then
          text = text//' for joint = '//to_text(joint)
       else
@@ -261,7 +261,7 @@ contains
       end if
       text = text//' appears twice'
       if (first%where /= '') text = text//', first at '//first%where(:len_trim(first%where) - 1)
-      call messages%add(adjustl(text//'; remove one'))
+      call messages%add_at(entry%where, text//'; remove one')
    end subroutine twice
 
    !> Give the layers to the layered springs of flexure.
@@ -287,9 +287,8 @@ contains
             call share_joints(list%entry(j), list%entry(i), n, named, made)
          end do
          if (made%count == 0) then
-            call messages%add(adjustl(trim(list%entry(i)%where)// &
-                              ' &layers belong to no flexural spring with '// &
-                                      "rule = 'layered'; remove them, or choose that rule for the spring"))
+            call messages%add_at(list%entry(i)%where, '&layers belong to no flexural spring with '// &
+                                 "rule = 'layered'; remove them, or choose that rule for the spring")
             cycle
          end if
          do j = 1, made%count
@@ -353,14 +352,11 @@ contains
       integer :: i, j
 
       if (.not. allocated(layers%y) .or. .not. allocated(layers%layer)) then
-         call messages%add(adjustl(trim(layers%where)// &
-                           ' &layers needs y and spring, one value of each for '// &
-                                   'each layer'))
+         call messages%add_at(layers%where, '&layers needs y and spring, one value of each for each layer')
          return
       else if (size(layers%y) /= size(layers%layer)) then
-         call messages%add(adjustl(trim(layers%where)//' &layers has '//to_text(size(layers%y))// &
-                                   ' values of y and '//to_text(size(layers%layer))// &
-                                   ' of spring; give one of each for each layer'))
+         call messages%add_at(layers%where, '&layers has '//to_text(size(layers%y))//' values of y and '// &
+                              to_text(size(layers%layer))//' of spring; give one of each for each layer')
          return
       end if
       allocate (springs(size(layers%y)))
@@ -369,8 +365,8 @@ contains
             if (list%entry(j)%group == 'layer_spring' .and. list%entry(j)%id == layers%layer(i)) exit
          end do
          if (j > list%count) then
-            call messages%add(adjustl(trim(layers%where)//' &layers: there is no &layer_spring with id = '// &
-                                      to_text(layers%layer(i))))
+            call messages%add_at(layers%where, '&layers: there is no &layer_spring with id = '// &
+                                 to_text(layers%layer(i)))
             return
          end if
          springs(i) = list%entry(j)%spring

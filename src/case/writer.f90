@@ -1,33 +1,26 @@
 !> Writes a case as groups of keys and values: as the text of a case file, or as names and numbers for
 !> Python. Values that equal the defaults are left out.
 module rbs_case_writer
-   use rbs_base_check, only: is_given
    use rbs_base_constants, only: unset
    use rbs_base_key_visitor, only: key_visitor, entry_type
-   use rbs_base_keys, only: key_type, integer_kind, logical_kind, word_kind, text_kind, real_kind, choice_name
+   use rbs_base_keys, only: key_type, integer_kind, logical_kind
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text, exact_text
    use rbs_case_case_record, only: case_record
-   use rbs_case_drawing_record, only: drawing_record
+   use rbs_case_spring_entry, only: entry_list, spring_entry
    use rbs_case_text_buffer, only: text_buffer
    use rbs_column_column_record, only: column_record
    use rbs_hysteresis_registry, only: keys_of
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_section_cross_section, only: no_ties
-   use rbs_section_shapes, only: new_shape, shape_names
+   use rbs_section_shapes, only: new_shape
    implicit none
    private
 
-   public :: sink_type, namelist_sink, statement_sink, write_case, write_column
+   public :: sink_type, namelist_sink, statement_sink, write_case
 
    !> Longest line of a namelist text.
    integer, parameter :: line_length = 100
-
-   !> A list of springs.
-   type :: spring_list
-      integer :: count = 0
-      type(spring_record), allocatable :: spring(:)
-   end type spring_list
 
    !> A destination for groups.
    type, abstract :: sink_type
@@ -67,262 +60,158 @@ contains
    subroutine write_case(case, sink)
       type(case_record), intent(inout) :: case
       class(sink_type), intent(inout) :: sink
-      type(case_record) :: new
-      type(key_visitor) :: v
       integer :: i
 
-      call v%collect('case')
-      call new%visit(v)
-      call v%list()
-      call case%visit(v)
-      if (v%listed > 0) call sink%group('case', v%entry(:v%listed))
-      call write_column(case%column, sink)
-      if (allocated(case%drawing)) call write_drawing(case%drawing, sink)
+      call write_record(case, 'case', sink)
+      call write_record(case, 'column', sink)
+      call write_record(case, 'damping', sink)
+      call write_all_springs(case%column, sink)
+      if (allocated(case%drawing)) call write_drawing(case, sink)
       do i = 1, case%loadings
-         call v%collect('loading')
-         call new%loading(1)%visit(v)
-         call v%list()
-         call case%loading(i)%visit(v)
-         call sink%group('loading', v%entry(:v%listed))
+         call write_record(case, 'loading', sink, i)
       end do
-      call v%collect('analysis')
-      call new%analysis%visit(v)
-      call v%list()
-      call case%analysis%visit(v)
-      if (v%listed > 0) call sink%group('analysis', v%entry(:v%listed))
-      call v%collect('output')
-      call new%output%visit(v)
-      call v%list()
-      call case%output%visit(v)
-      if (v%listed > 0) call sink%group('output', v%entry(:v%listed))
+      call write_record(case, 'analysis', sink)
+      call write_record(case, 'output', sink)
    end subroutine write_case
 
+   !> Write the values of a group that differ from those of a new record.
+   subroutine write_record(case, group, sink, number)
+      type(case_record), intent(inout) :: case
+      character(len=*), intent(in) :: group
+      class(sink_type), intent(inout) :: sink
+      !> Which of several
+      integer, intent(in), optional :: number
+      type(case_record) :: new
+      type(key_visitor) :: v
+
+      call new%open_group(group)
+      if (group == 'section') then
+         call new_shape(case%drawing%section%shape_name, unset, unset, new%drawing%section%shape)
+      end if
+      call v%collect(group)
+      call new%visit_group(group, v)
+      call v%list()
+      call case%visit_group(group, v, number)
+      if (v%listed > 0 .or. group == 'column' .or. group == 'loading') then
+         call sink%group(group, v%entry(:v%listed))
+      end if
+   end subroutine write_record
+
    !> Write what a column was drawn from.
-   subroutine write_drawing(drawing, sink)
-      type(drawing_record), intent(inout) :: drawing
+   subroutine write_drawing(case, sink)
+      type(case_record), intent(inout) :: case
       class(sink_type), intent(inout) :: sink
       integer :: i
 
-      call write_group('drawing')
-      call write_group('section')
-      call write_group('concrete')
-      do i = 1, size(drawing%section%steels)
-         call write_group('steel', i)
-      end do
-      call write_group('bars')
-      if (allocated(drawing%layout)) call write_group('layout')
-      if (allocated(drawing%inner_layout)) call write_group('inner_layout')
-      if (drawing%section%hoops%kind /= no_ties) call write_group(trim(drawing%section%hoops%name()))
-      do i = 1, size(drawing%parameters)
-         call write_group('parameter', i)
-      end do
+      call write_record(case, 'drawing', sink)
+      call write_record(case, 'section', sink)
+      call write_record(case, 'concrete', sink)
+      associate (drawing => case%drawing)
+         do i = 1, size(drawing%section%steels)
+            call write_record(case, 'steel', sink, i)
+         end do
+         call write_record(case, 'bars', sink)
+         if (allocated(drawing%layout)) call write_record(case, 'layout', sink)
+         if (allocated(drawing%inner_layout)) call write_record(case, 'inner_layout', sink)
+         if (drawing%section%hoops%kind /= no_ties) then
+            call write_record(case, trim(drawing%section%hoops%name()), sink)
+         end if
+         do i = 1, size(drawing%parameters)
+            call write_record(case, 'parameter', sink, i)
+         end do
+      end associate
+   end subroutine write_drawing
+
+   !> Write the springs of a column; equal springs are written once.
+   subroutine write_all_springs(column, sink)
+      type(column_record), intent(in) :: column
+      class(sink_type), intent(inout) :: sink
+      type(entry_list) :: layer_springs
+
+      call write_springs('shear', column%shear)
+      call write_springs('flexure', column%flexure)
+      call write_springs('axial_spring', column%axial_spring)
 
    contains
 
-      subroutine write_group(name, number)
-         character(len=*), intent(in) :: name
-         !> Which of several
-         integer, intent(in), optional :: number
-         type(drawing_record) :: new, one
-         type(key_visitor) :: v
+      !> Write the springs of one kind.
+      subroutine write_springs(group, spring)
+         character(len=*), intent(in) :: group
+         type(spring_record), intent(in), allocatable :: spring(:)
+         type(spring_entry) :: entry
+         integer, allocatable :: first(:)
+         integer :: i, j, beneath
 
-         call new%open_group(name)
-         if (name == 'section' .and. allocated(drawing%section%shape)) then
-            call new_shape(findloc(shape_names == drawing%section%shape_name, .true., dim=1), unset, unset, &
-                           new%section%shape)
-         end if
-         call v%collect(name)
-         call new%visit(name, v)
-         call v%list()
-         if (present(number)) then
-            call one%open_group(name)
-            if (name == 'steel') one%section%steels(1) = drawing%section%steels(number)
-            if (name == 'parameter') one%parameters(1) = drawing%parameters(number)
-            call one%visit(name, v)
-         else
-            call drawing%visit(name, v)
-         end if
-         if (v%listed > 0) call sink%group(name, v%entry(:v%listed))
-      end subroutine write_group
-   end subroutine write_drawing
-
-   !> Write a column with its damping and its springs; equal springs are written once.
-   subroutine write_column(column, sink)
-      type(column_record), intent(inout) :: column
-      class(sink_type), intent(inout) :: sink
-      type(column_record) :: new
-      type(key_visitor) :: v
-      type(spring_list) :: layer_springs
-      integer :: beneath
-
-      call v%collect('column')
-      call new%visit(v)
-      call v%list()
-      call column%visit(v)
-      call sink%group('column', v%entry(:v%listed))
-      call v%collect('damping')
-      call new%damping%visit(v)
-      call v%list()
-      call column%damping%visit(v)
-      if (v%listed > 0) call sink%group('damping', v%entry(:v%listed))
-      beneath = merge(1, 0, column%footing)
-      if (allocated(column%shear)) call write_springs('shear', column%shear, beneath, layer_springs, sink)
-      if (allocated(column%flexure)) then
-         call write_springs('flexure', column%flexure, beneath, layer_springs, sink)
-      end if
-      if (allocated(column%axial_spring)) then
-         call write_springs('axial_spring', column%axial_spring, beneath, layer_springs, sink)
-      end if
-   end subroutine write_column
-
-   !> Write the springs of one kind.
-   subroutine write_springs(group, spring, beneath, layer_springs, sink)
-      character(len=*), intent(in) :: group
-      type(spring_record), intent(in) :: spring(:)
-      !> Number of joints beneath joint 1
-      integer, intent(in) :: beneath
-      !> Springs of layers that have been written before
-      type(spring_list), intent(inout) :: layer_springs
-      class(sink_type), intent(inout) :: sink
-      type(entry_type), allocatable :: entry(:)
-      integer :: first(size(spring)), i, j
-      logical :: one_for_all
-
-      do i = 1, size(spring)
-         first(i) = i
-         do j = 1, i - 1
-            if (first(j) /= j) cycle
-            if (.not. spring(j)%same_as(spring(i))) cycle
-            first(i) = j
-            exit
+         if (.not. allocated(spring)) return
+         ! For each joint the first that has the same spring; the lowest joint of a footing has number 0.
+         allocate (first(size(spring)))
+         beneath = merge(1, 0, column%footing)
+         do i = 1, size(spring)
+            first(i) = i
+            do j = 1, i - 1
+               if (first(j) /= j) cycle
+               if (.not. spring(j)%same_as(spring(i))) cycle
+               first(i) = j
+               exit
+            end do
          end do
-      end do
-      one_for_all = all(first == 1) .and. beneath == 0
-      do i = 1, size(spring)
-         if (first(i) /= i) cycle
-         if (one_for_all) then
-            call spring_entries(spring(i), 0, entry)
-         else
-            call spring_entries(spring(i), 1, entry)
-            call set_joints(entry(1), first, i, beneath)
-         end if
-         call sink%group(group, entry)
-         if (.not. allocated(spring(i)%y)) cycle
-         call write_layers(spring(i), merge(0, i, one_for_all), first, beneath, layer_springs, sink)
-      end do
-   end subroutine write_springs
+         do i = 1, size(spring)
+            if (first(i) /= i) cycle
+            entry = spring_entry(group=group, spring=spring(i))
+            if (any(first /= 1) .or. beneath > 0) then
+               entry%joint = pack([(j - beneath, j=1, size(first))], first == i)
+            end if
+            call write_spring(entry, sink)
+            if (allocated(spring(i)%y)) call write_layers(entry, layer_springs, sink)
+         end do
+      end subroutine write_springs
+   end subroutine write_all_springs
 
-   !> The joints that have the same spring as joint i.
-   subroutine set_joints(entry, first, i, beneath)
-      type(entry_type), intent(inout) :: entry
-      integer, intent(in) :: first(:), i
-      !> Number of joints beneath joint 1
-      integer, intent(in) :: beneath
-      integer :: j
-
-      entry%name = 'joint'
-      entry%kind = integer_kind
-      entry%number = real(pack([(j - beneath, j=1, size(first))], first == i), wp)
-   end subroutine set_joints
-
-   !> The entries of rule and parameters of a spring.
-   subroutine spring_entries(spring, before, entry)
-      type(spring_record), intent(in) :: spring
-      !> Number of entries to leave free for the caller
-      integer, intent(in) :: before
-      type(entry_type), allocatable, intent(out) :: entry(:)
+   !> Write a spring, or the layers of joints.
+   subroutine write_spring(entry, sink)
+      type(spring_entry), intent(inout) :: entry
+      class(sink_type), intent(inout) :: sink
+      type(spring_entry) :: new
       type(key_type), allocatable :: keys(:)
-      integer :: i, count
+      type(key_visitor) :: v
 
-      call keys_of(spring%rule, keys)
-      count = before + 1
-      allocate (entry(count + count_given(spring, keys)))
-      entry(count)%name = 'rule'
-      entry(count)%kind = text_kind
-      entry(count)%text = trim(spring%rule)
-      do i = 1, size(keys)
-         if (.not. is_written(spring, keys(i), i)) cycle
-         count = count + 1
-         entry(count)%name = keys(i)%name
-         if (keys(i)%kind == word_kind) then
-            entry(count)%kind = text_kind
-            entry(count)%text = trim(choice_name(keys(i), nint(spring%value(i))))
-         else
-            entry(count)%number = [spring%value(i)]
-         end if
-      end do
-   end subroutine spring_entries
-
-   pure integer function count_given(spring, keys)
-      type(spring_record), intent(in) :: spring
-      type(key_type), intent(in) :: keys(:)
-      integer :: i
-
-      count_given = count([(is_written(spring, keys(i), i), i=1, size(keys))])
-   end function count_given
-
-   !> Whether a parameter is given and differs from its default.
-   pure logical function is_written(spring, key, i)
-      type(spring_record), intent(in) :: spring
-      type(key_type), intent(in) :: key
-      integer, intent(in) :: i
-
-      is_written = is_given(spring%value(i))
-      if (is_written .and. is_given(key%default)) is_written = abs(spring%value(i) - key%default) > 0.0_wp
-   end function is_written
+      call keys_of(entry%spring%rule, keys)
+      new%group = entry%group
+      call v%collect(entry%group)
+      call new%visit(v, keys)
+      call v%list()
+      call entry%visit(v, keys)
+      call sink%group(trim(entry%group), v%entry(:v%listed))
+   end subroutine write_spring
 
    !> Write the springs of layers that have not been written before, then the layers.
-   subroutine write_layers(spring, joint, first, beneath, layer_springs, sink)
-      type(spring_record), intent(in) :: spring
-      !> First of the joints that have the spring, 0: all
-      integer, intent(in) :: joint, first(:)
-      !> Number of joints beneath joint 1
-      integer, intent(in) :: beneath
-      type(spring_list), intent(inout) :: layer_springs
+   subroutine write_layers(joint, layer_springs, sink)
+      !> The joints and their layered spring
+      type(spring_entry), intent(in) :: joint
+      !> Springs of layers that have been written before
+      type(entry_list), intent(inout) :: layer_springs
       class(sink_type), intent(inout) :: sink
-      type(entry_type), allocatable :: entry(:)
+      type(spring_entry) :: layers
       type(spring_record) :: layer
-      integer :: id(size(spring%y)), i, j
+      integer :: i, j
 
-      do i = 1, size(spring%y)
-         layer = spring%layer(i)
+      layers = spring_entry(group='layers', y=joint%spring%y)
+      if (allocated(joint%joint)) layers%joint = joint%joint
+      allocate (layers%layer(size(layers%y)))
+      do i = 1, size(layers%y)
+         layer = joint%spring%layer(i)
          do j = 1, layer_springs%count
-            if (layer_springs%spring(j)%same_as(layer)) exit
+            if (layer_springs%entry(j)%spring%same_as(layer)) exit
          end do
-         id(i) = j
+         layers%layer(i) = j
          if (j <= layer_springs%count) cycle
-         call remember(layer_springs, layer)
-         call spring_entries(layer, 1, entry)
-         entry(1)%name = 'id'
-         entry(1)%kind = integer_kind
-         entry(1)%number = [real(j, wp)]
-         call sink%group('layer_spring', entry)
+         call layer_springs%add('layer_spring', '')
+         layer_springs%entry(j)%id = j
+         layer_springs%entry(j)%spring = layer
+         call write_spring(layer_springs%entry(j), sink)
       end do
-      if (allocated(entry)) deallocate (entry)
-      allocate (entry(3))
-      if (joint > 0) call set_joints(entry(1), first, joint, beneath)
-      entry(2)%name = 'y'
-      entry(2)%number = spring%y
-      entry(3)%name = 'spring'
-      entry(3)%kind = integer_kind
-      entry(3)%number = real(id, wp)
-      call sink%group('layers', entry(merge(1, 2, joint > 0):))
+      call write_spring(layers, sink)
    end subroutine write_layers
-
-   subroutine remember(list, spring)
-      type(spring_list), intent(inout) :: list
-      type(spring_record), intent(in) :: spring
-      type(spring_record), allocatable :: longer(:)
-
-      if (.not. allocated(list%spring)) allocate (list%spring(16))
-      if (list%count == size(list%spring)) then
-         allocate (longer(2*list%count))
-         longer(:list%count) = list%spring
-         call move_alloc(longer, list%spring)
-      end if
-      list%count = list%count + 1
-      list%spring(list%count) = spring
-   end subroutine remember
 
    !> Write `&name key = value, ... /` in lines of limited length.
    subroutine namelist_group(self, name, entry)

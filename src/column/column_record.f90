@@ -3,7 +3,7 @@ module rbs_column_column_record
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use rbs_base_constants, only: unset, standard_gravity
    use rbs_base_error, only: message_list
-   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_key_visitor, only: key_visitor, visited_record
    use rbs_base_keys, only: bound_type, any_number, above_zero, not_negative
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text, list_of
@@ -33,7 +33,7 @@ module rbs_column_column_record
       bound_type(0.0_wp, 1.0_wp, most_open=.true., reason='(critical); it is a ratio, not per cent')
 
    !> Viscous damping.
-   type :: damping_record
+   type, extends(visited_record) :: damping_record
       !> In proportion to the mass [1/s], and to the stiffness of each joint [s]
       real(wp) :: mass = 0.0_wp, stiffness = 0.0_wp
       !> Whether that is the stiffness of the present line, else the initial one
@@ -47,7 +47,7 @@ module rbs_column_column_record
    !> A column of `n` rigid bodies; joint i is at the bottom of body i, counted from the ground. Where the
    !> top is fixed against rotation, joint n + 1 is between body n and what holds it; joint 0 is that
    !> beneath a footing, on which joint 1 then stands.
-   type :: column_record
+   type, extends(visited_record) :: column_record
       integer :: n = 1
       real(wp) :: height = unset
       real(wp) :: mass = unset
@@ -173,11 +173,8 @@ contains
    subroutine validate(self, messages)
       class(column_record), intent(inout) :: self
       type(message_list), intent(inout) :: messages
-      type(key_visitor) :: v
 
-      call v%start_check('column')
-      call self%visit(v)
-      call v%end_check(messages)
+      call self%check('column', messages)
       if (allocated(self%lengths)) call check_count('lengths', size(self%lengths), self%n, messages)
       if (allocated(self%masses)) call check_count('masses', size(self%masses), self%n, messages)
       if (allocated(self%lengths)) call check_sum(self, messages)
@@ -189,9 +186,7 @@ contains
       call check_inertia(self, messages)
       call check_top(self, messages)
       call check_footing(self, messages)
-      call v%start_check('damping')
-      call self%damping%visit(v)
-      call v%end_check(messages)
+      call self%damping%check('damping', messages)
       call check_damping(self, messages)
       call check_springs(self, self%shear, 'shear', in_shear, messages)
       call check_springs(self, self%flexure, 'flexure', in_flexure, messages)

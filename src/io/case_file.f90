@@ -131,8 +131,9 @@ contains
          return
       end if
       allocate (joined(size(all_times) + size(more)))
-      same = 1.0e-9_wp*min(minval(all_times(2:) - all_times(:size(all_times) - 1)), &
-                           minval(more(2:) - more(:size(more) - 1)))
+      ! Times that do not ascend are refused elsewhere.
+      same = 1.0e-9_wp*max(0.0_wp, min(minval(all_times(2:) - all_times(:size(all_times) - 1)), &
+                                       minval(more(2:) - more(:size(more) - 1))))
       i = 1
       j = 1
       n = 0

@@ -6,7 +6,7 @@ module rbs_io_namelist
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_case_case_record, only: case_record
-   use rbs_case_setter, only: setter_type, ignored
+   use rbs_case_group_reader, only: group_reader, ignored
    use rbs_io_namelist_entry, only: location, check_twice, check_values, entry_numbers, entry_text
    use rbs_io_namelist_pieces, only: nml_group, nml_scan
    use rbs_io_namelist_scan, only: scan_namelist, most_messages
@@ -31,7 +31,7 @@ contains
       type(error_type), allocatable :: error
       type(text_file) :: file
       type(nml_scan) :: scanned
-      type(setter_type) :: setter
+      type(group_reader) :: setter
       character(len=:), allocatable :: name
       integer :: known
 
@@ -58,7 +58,7 @@ contains
    subroutine put_groups(scanned, path, setter, messages)
       type(nml_scan), intent(in) :: scanned
       character(len=*), intent(in) :: path
-      type(setter_type), intent(inout) :: setter
+      type(group_reader), intent(inout) :: setter
       type(message_list), intent(inout) :: messages
       character(len=8), parameter :: required(3) = ['column  ', 'shear   ', 'flexure ']
       integer :: i, pass
@@ -82,7 +82,7 @@ contains
       type(nml_scan), intent(in) :: scanned
       type(nml_group), intent(in) :: group
       character(len=*), intent(in) :: path
-      type(setter_type), intent(inout) :: setter
+      type(group_reader), intent(inout) :: setter
       type(message_list), intent(inout) :: messages
       integer :: i, pass
       logical :: ok
@@ -106,7 +106,7 @@ contains
       !> Number of the entry
       integer, intent(in) :: i
       character(len=*), intent(in) :: path
-      type(setter_type), intent(inout) :: setter
+      type(group_reader), intent(inout) :: setter
       type(message_list), intent(inout) :: messages
       character(len=:), allocatable :: text
       real(wp), allocatable :: number(:)

@@ -5,7 +5,7 @@ module rbs_loading_loading_record
    use rbs_base_error, only: message_list
    use rbs_base_text, only: to_text
    use rbs_base_check, only: is_given, check_name
-   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_key_visitor, only: key_visitor, visited_record
    use rbs_base_keys, only: any_number, any_value, above_zero, not_negative, one_or_more
    use rbs_base_units, only: unit_type, length_units, force_units, acceleration_units
    use rbs_loading_named_protocols, only: protocol_names, counted_in_drift
@@ -22,7 +22,7 @@ module rbs_loading_loading_record
    integer, parameter :: most_amplitudes = 1000, most_values = 1000000
 
    !> One loading of a case.
-   type :: loading_record
+   type, extends(visited_record) :: loading_record
       !> The prescribed quantity, one of `drive_names`: displacement of the top [m], lateral force at the top
       !> [N], acceleration of the ground, horizontal or vertical (upward positive) [m/s2], or axial load at
       !> the top in place of the constant one, compression positive [N]
@@ -133,12 +133,9 @@ contains
       !> Whether the analysis runs in time
       logical, intent(in) :: dynamic
       type(message_list), intent(inout) :: messages
-      type(key_visitor) :: v
       integer :: drive, source
 
-      call v%start_check('loading')
-      call self%visit(v)
-      call v%end_check(messages)
+      call self%check('loading', messages)
       if (self%drive == '') call check_name(self%drive, drive_names, 'loading: drive', messages, drive)
       if (self%source == '') call check_name(self%source, source_names, 'loading: source', messages, source)
       drive = findloc(drive_names == self%drive, .true., dim=1)

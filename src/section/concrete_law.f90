@@ -7,7 +7,7 @@
 module rbs_section_concrete_law
    use rbs_base_constants, only: unset, unbounded
    use rbs_base_error, only: message_list
-   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_key_visitor, only: key_visitor, visited_record
    use rbs_base_keys, only: above_zero, bound_type, not_negative
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -33,7 +33,7 @@ module rbs_section_concrete_law
       bound_type(0.0_wp, 0.02_wp, least_open=.true., reason='(2 per mille is eps0 = 0.002)')
 
    !> What is given of a concrete.
-   type :: concrete_record
+   type, extends(visited_record) :: concrete_record
       !> Cylinder strength, tensile strength, modulus of elasticity [Pa]
       real(wp) :: fc = unset, ft = unset, ec = unset
       !> Strain at the peak; strain at which a cover has spalled
@@ -210,13 +210,11 @@ contains
    subroutine validate(self, messages)
       class(concrete_record), intent(inout) :: self
       type(message_list), intent(inout) :: messages
-      type(key_visitor) :: v
       type(concrete_type) :: law
+      logical :: sound
 
-      call v%start_check('concrete')
-      call self%visit(v)
-      call v%end_check(messages)
-      if (.not. v%sound) return
+      call self%check('concrete', messages, sound)
+      if (.not. sound) return
       if (is_given(self%ft) .and. .not. self%ft < self%fc) then
          call messages%add('concrete: ft = '//to_text(self%ft)//' Pa must be below fc = '// &
                            to_text(self%fc)//' Pa')

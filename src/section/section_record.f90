@@ -2,14 +2,14 @@
 module rbs_section_section_record
    use rbs_base_constants, only: unset, unset_integer
    use rbs_base_error, only: message_list
-   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_key_visitor, only: key_visitor, visited_record
    use rbs_base_keys, only: above_zero, any_number, bound_type, not_negative
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_section_concrete_law, only: concrete_record
    use rbs_section_cross_section, only: no_ties, ties, spiral, circular_hoops
    use rbs_section_shape, only: column_size, shape_type
-   use rbs_section_shapes, only: shape_choices
+   use rbs_section_shapes, only: new_shape, shape_choices
    use rbs_section_steel_law, only: steel_record
    implicit none
    private
@@ -23,7 +23,7 @@ module rbs_section_section_record
       bound_type(0.0_wp, 50.0_wp, least_open=.true., reason='(100 mm is 0.1)')
 
    !> Longitudinal bars, an entry for each bar or row of bars.
-   type :: bars_record
+   type, extends(visited_record) :: bars_record
       !> Distance from mid-depth [m], positive to the tension face, and area [m2]
       real(wp), allocatable :: y(:), area(:)
       !> Numbers of their steels
@@ -33,7 +33,7 @@ module rbs_section_section_record
    end type bars_record
 
    !> Ties, a spiral, or round hoops.
-   type :: hoops_record
+   type, extends(visited_record) :: hoops_record
       !> One of the kinds of `rbs_section_cross_section`
       integer :: kind = no_ties
       !> Diameter of the bar, distance between hoops or pitch along the column [m]
@@ -49,7 +49,7 @@ module rbs_section_section_record
       procedure :: name => name_of_hoops
    end type hoops_record
 
-   type :: section_record
+   type, extends(visited_record) :: section_record
       !> Name of the shape
       character(len=16) :: shape_name = ''
       !> Outline of the concrete with its sizes, made when the name is put
@@ -76,6 +76,7 @@ contains
       type(key_visitor), intent(inout) :: v
 
       call v%word('shape', self%shape_name, 'outline of the concrete', shape_choices)
+      if (.not. allocated(self%shape)) call new_shape(self%shape_name, unset, unset, self%shape)
       if (allocated(self%shape)) call self%shape%visit(v)
       call v%key('cover', self%cover, 'm', not_negative, 'clear cover to the outer edge of the hoops')
       call v%key('side_cover', self%side_cover, 'm', not_negative, &
@@ -126,25 +127,17 @@ contains
    subroutine validate_section(self, messages)
       class(section_record), intent(inout) :: self
       type(message_list), intent(inout) :: messages
-      type(key_visitor) :: v
       integer :: i
 
-      call v%start_check('section')
-      call self%visit(v)
-      call v%end_check(messages)
+      call self%check('section', messages)
       if (.not. allocated(self%shape)) call messages%add('section: shape is missing; give it a value')
       call self%concrete%validate(messages)
       do i = 1, size(self%steels)
          call self%steels(i)%validate(messages)
       end do
-      call v%start_check('bars')
-      call self%bars%visit(v)
-      call v%end_check(messages)
+      call self%bars%check('bars', messages)
       call check_references(self, messages)
-      if (self%hoops%kind == no_ties) return
-      call v%start_check(self%hoops%name())
-      call self%hoops%visit(v)
-      call v%end_check(messages)
+      if (self%hoops%kind /= no_ties) call self%hoops%check(self%hoops%name(), messages)
    end subroutine validate_section
 
    !> The lists of the bars have one length, and every steel is there.

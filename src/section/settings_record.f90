@@ -1,7 +1,7 @@
 !> What is asked of a section, under the names of keys: a diagram, springs, a shear diagram, a layer.
 module rbs_section_settings_record
    use rbs_base_constants, only: unset
-   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_key_visitor, only: key_visitor, visited_record
    use rbs_base_keys, only: above_zero, any_number, bound_type, not_negative
    use rbs_base_kinds, only: wp
    use rbs_section_events, only: rule_type, ultimate_names, yield_first, yield_names, yield_tension
@@ -19,7 +19,7 @@ module rbs_section_settings_record
       bound_type(0.0_wp, 1.0_wp, least_open=.true., most_open=.true., reason='(uncracked it is 1)')
 
    !> A moment-curvature diagram.
-   type :: diagram_record
+   type, extends(visited_record) :: diagram_record
       !> Compression positive [N]
       real(wp) :: axial_load = 0.0_wp
       !> One of `tension_names`
@@ -35,7 +35,7 @@ module rbs_section_settings_record
    end type diagram_record
 
    !> The flexural spring of a column.
-   type :: springs_record
+   type, extends(visited_record) :: springs_record
       !> From the base to the point of contraflexure [m], axial load [N], length of the hinge [m]
       real(wp) :: length = unset, axial_load = unset, hinge_length = unset
       !> A, B or first
@@ -50,7 +50,7 @@ module rbs_section_settings_record
    end type springs_record
 
    !> A shear diagram.
-   type :: shear_record
+   type, extends(visited_record) :: shear_record
       !> Shear span M/V [m], axial load [N]
       real(wp) :: length = unset, axial_load = unset
       character(len=8) :: tension = 'ts'
@@ -65,7 +65,7 @@ module rbs_section_settings_record
    end type shear_record
 
    !> One layer of the modified compression field theory.
-   type :: layer_record
+   type, extends(visited_record) :: layer_record
       !> Smeared stirrups
       real(wp) :: rho_z = 0.0_wp
       character(len=8) :: tension = 'ts'

@@ -14,32 +14,34 @@ module rbs_section_shapes
       'rectangle', 'circle', 'hollow_rectangle', 'hollow_circle']
    !> The names as choices of a key
    character(len=*), parameter, public :: shape_choices = 'rectangle circle hollow_rectangle hollow_circle'
-   integer, parameter, public :: shape_rectangle = 1, shape_circle = 2, shape_box = 3, shape_ring = 4
 
 contains
 
-   !> Make the shape at a place among `shape_names`.
-   subroutine new_shape(place, width, depth, shape)
-      integer, intent(in) :: place
+   !> Make a shape by its name; of another name none is made.
+   subroutine new_shape(name, width, depth, shape)
+      !> One of `shape_names`
+      character(len=*), intent(in) :: name
       !> Sizes across and along the direction of loading [m]; `unset` where keys will put them
       real(wp), intent(in) :: width, depth
       class(shape_type), allocatable, intent(inout) :: shape
 
       if (allocated(shape)) deallocate (shape)
-      select case (place)
-      case (shape_circle)
+      select case (name)
+      case ('rectangle')
+         allocate (rectangle_type :: shape)
+      case ('circle')
          allocate (circle_type :: shape)
-      case (shape_box)
+      case ('hollow_rectangle')
          allocate (box_type :: shape)
-      case (shape_ring)
+      case ('hollow_circle')
          allocate (ring_type :: shape)
       case default
-         allocate (rectangle_type :: shape)
+         return
       end select
       shape%width = width
       shape%depth = depth
-      shape%hollow = any(place == [shape_box, shape_ring])
-      shape%round = any(place == [shape_circle, shape_ring])
+      shape%hollow = index(name, 'hollow') > 0
+      shape%round = index(name, 'circle') > 0
    end subroutine new_shape
 
    !> Make the shape that the hoops of an outline enclose: a round hoop encloses a circle, ties enclose a
@@ -54,7 +56,7 @@ contains
 
       if (allocated(core)) deallocate (core)
       if (round .and. .not. outline%round) then
-         call new_shape(shape_circle, outline%depth, outline%depth, core)
+         call new_shape('circle', outline%depth, outline%depth, core)
       else
          allocate (core, source=outline)
       end if

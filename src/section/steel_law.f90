@@ -7,7 +7,7 @@ module rbs_section_steel_law
    use rbs_base_check, only: is_given
    use rbs_base_constants, only: unset, unset_integer
    use rbs_base_error, only: message_list
-   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_key_visitor, only: key_visitor, visited_record
    use rbs_base_keys, only: above_zero, any_number, bound_type
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -31,7 +31,7 @@ module rbs_section_steel_law
       bound_type(0.0_wp, 0.6_wp, least_open=.true., reason='(10 per cent is eps_u = 0.1)')
 
    !> What is given of a steel.
-   type :: steel_record
+   type, extends(visited_record) :: steel_record
       !> Number by which bars and hoops refer to it
       integer :: id = unset_integer
       !> As in `steel_type`
@@ -110,13 +110,11 @@ contains
    subroutine validate(self, messages)
       class(steel_record), intent(inout) :: self
       type(message_list), intent(inout) :: messages
-      type(key_visitor) :: v
       type(steel_type) :: law
+      logical :: sound
 
-      call v%start_check('steel')
-      call self%visit(v)
-      call v%end_check(messages)
-      if (.not. v%sound) return
+      call self%check('steel', messages, sound)
+      if (.not. sound) return
       law = self%law()
       if (law%fu < law%fy) then
          call messages%add('steel: fu = '//to_text(law%fu)//' Pa must not be below fy = '// &

@@ -16,7 +16,7 @@ module test_case
    use rbs_loading_loading_record, only: loading_record, units_of
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_base_keys, only: deformation, force, stiffness
-   use rbs_case_setter, only: unit_in_group
+   use rbs_case_group_reader, only: unit_in_group
    use rbs_base_units, only: unit_system, unit_type, to_si, length_units, force_units, acceleration_units
    use samples, only: elastic, bilinear, takeda, bilinear_1, takeda_1, column_1, chain, k_c, d_c, k_y, &
                       d_y, k_u, s_k

@@ -16,7 +16,7 @@ module test_section
    use rbs_section_section_build, only: build_section
    use rbs_section_shape, only: shape_type
    use rbs_section_shape_hollow, only: hollow_type
-   use rbs_section_shapes, only: new_core, new_shape, shape_circle, shape_names, shape_rectangle
+   use rbs_section_shapes, only: new_core, new_shape, shape_names
    use rbs_section_steel_law, only: steel_stress, steel_tangent, steel_type
    use rbs_section_strips, only: cut_strips, strip_centroids, strips_type
    implicit none
@@ -54,7 +54,7 @@ contains
       integer :: bars
 
       bars = merge(2, 0, with_bars)
-      call new_shape(shape_rectangle, 0.4_wp, 0.5_wp, section%shape)
+      call new_shape('rectangle', 0.4_wp, 0.5_wp, section%shape)
       section%cover = 0.03_wp
       section%side_cover = 0.03_wp
       section%bar_diameter = 0.02_wp
@@ -187,7 +187,7 @@ contains
       call check_close(error, sum(section%strips%area), 0.2_wp, 1.0e-13_wp, 0.0_wp, 'rectangle')
       call check_close(error, sum(section%strips%area*section%strips%y**2), 0.4_wp*0.5_wp**3/12.0_wp, &
                        1.0e-5_wp, 0.0_wp, 'its I')
-      call new_shape(shape_circle, 0.5_wp, 0.5_wp, section%shape)
+      call new_shape('circle', 0.5_wp, 0.5_wp, section%shape)
       section%transverse%kind = spiral
       section%transverse%diameter = 0.01_wp
       section%transverse%spacing = 0.1_wp
@@ -210,7 +210,7 @@ contains
       integer :: place, i
 
       do place = 1, size(shape_names)
-         call new_shape(place, 0.6_wp, 0.6_wp, shape)
+         call new_shape(shape_names(place), 0.6_wp, 0.6_wp, shape)
          select type (shape)
          class is (hollow_type)
             shape%wall = 0.12_wp
@@ -237,7 +237,7 @@ contains
          call check_close(error, shape%leg_share(0.0_wp), 1.0_wp, 1.0e-14_wp, 0.0_wp, &
                           trim(shape_names(place))//': legs at mid-depth')
       end do
-      call new_shape(shape_circle, 0.6_wp, 0.6_wp, shape)
+      call new_shape('circle', 0.6_wp, 0.6_wp, shape)
       call check_close(error, shape%shear_area(), 0.9_wp*0.25_wp*pi*0.36_wp, 1.0e-14_wp, 0.0_wp, &
                        'circle: shear area')
       call check_close(error, shape%leg_share([0.18_wp, -0.24_wp, 0.4_wp]), [0.8_wp, 0.6_wp, 0.0_wp], &
@@ -252,7 +252,7 @@ contains
       type(strips_type) :: strips
       real(wp) :: core_y(2), cover_y(2)
 
-      call new_shape(shape_rectangle, 0.5_wp, 0.5_wp, outline)
+      call new_shape('rectangle', 0.5_wp, 0.5_wp, outline)
       call new_core(outline, .true., 0.07_wp, 0.07_wp, core)
       call check_close(error, core%area(), 0.25_wp*pi*0.43_wp**2, 1.0e-14_wp, 0.0_wp, 'core')
       call cut_strips(outline, core, 2, strips)
@@ -289,7 +289,7 @@ contains
       call check_close(error, section%core%eps_cu, 0.004_wp + 1.4_wp*rho*400.0e6_wp*0.1_wp/section%core%fc, &
                        1.0e-12_wp, 0.0_wp, 'eps_cu')
 
-      call new_shape(shape_circle, 0.5_wp, 0.5_wp, section%shape)
+      call new_shape('circle', 0.5_wp, 0.5_wp, section%shape)
       section%transverse%kind = spiral
       section%transverse%legs_across = 2.0_wp
       call build_section(section, 0.006_wp, 400)

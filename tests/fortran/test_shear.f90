@@ -9,12 +9,12 @@ module test_shear
    use rbs_section_concrete_law, only: concrete_stress, plain_concrete, tension_ts
    use rbs_section_mcft_layer, only: crack_softening, layer_state, layer_stress, layer_type, solve_layer, &
                                      stress_of_state
+   use rbs_case_group_reader, only: group_reader
    use rbs_section_resultants, only: section_laws
    use rbs_section_cross_section, only: section_type, slice, spiral, ties
    use rbs_section_section_build, only: build_section
-   use rbs_section_section_setter, only: section_setter
    use rbs_section_shape_hollow, only: hollow_type
-   use rbs_section_shapes, only: new_shape, shape_circle, shape_names, shape_rectangle
+   use rbs_section_shapes, only: new_shape, shape_names
    use rbs_section_shear_diagram, only: check_curvatures, follow_shear, shear_diagram_type
    use rbs_section_shear_coupling, only: couple
    use rbs_section_shear_flow, only: begin_flow, flow_type, shear_stresses, transverse_ratio
@@ -71,7 +71,7 @@ contains
       real(wp), parameter :: edge = 0.275_wp - 0.04_wp - 0.012_wp - 0.01_wp
 
       allocate (section%bar_y(4), section%bar_area(4), section%bar_steel(4), section%steels(1))
-      call new_shape(shape_rectangle, 0.55_wp, 0.55_wp, section%shape)
+      call new_shape('rectangle', 0.55_wp, 0.55_wp, section%shape)
       section%cover = 0.04_wp
       section%side_cover = 0.04_wp
       section%bar_diameter = 0.02_wp
@@ -383,7 +383,7 @@ contains
       integer :: i
 
       section = sample_section()
-      call new_shape(shape_circle, 0.55_wp, 0.55_wp, section%shape)
+      call new_shape('circle', 0.55_wp, 0.55_wp, section%shape)
       section%transverse%kind = spiral
       section%transverse%legs = 2.0_wp
       call build_section(section, 0.006_wp, 400)
@@ -406,7 +406,7 @@ contains
 
       do shape = 1, size(shape_names)
          section = sample_section()
-         call new_shape(shape, 0.55_wp, 0.55_wp, section%shape)
+         call new_shape(shape_names(shape), 0.55_wp, 0.55_wp, section%shape)
          select type (outline => section%shape)
          class is (hollow_type)
             outline%wall = 0.15_wp
@@ -604,12 +604,13 @@ contains
    subroutine refused(error)
       type(error_type), allocatable, intent(inout) :: error
       type(message_list) :: messages
-      type(section_setter) :: setter
+      type(group_reader) :: setter
       character(len=10), parameter :: names(4) = ['axial_load', 'length    ', 'layers    ', 'knee      ']
       real(wp), parameter :: values(4) = [0.0_wp, -1.0_wp, 2.0_wp, 1.5_wp]
       integer :: i, place
       logical :: ok
 
+      setter%of_section = .true.
       call setter%open('shear', '', messages, ok)
       do i = 1, size(names)
          call setter%find(trim(names(i)), '', place, messages)

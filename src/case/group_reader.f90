@@ -1,0 +1,278 @@
+!> The only way to set records: a group is opened, then its keys are set by name. The reader of case files
+!> and the bindings for Python both use it, so that a value has one name, one check and one message.
+module rbs_case_group_reader
+   use rbs_base_error, only: message_list
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: key_type, find_key, choice_list, choice_place, word_kind, force, deformation, &
+                            stiffness
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text, nearest_name, list_of
+   use rbs_base_units, only: unit_system
+   use rbs_case_case_record, only: case_record, most_loadings
+   use rbs_case_drawing_record, only: drawing_groups
+   use rbs_case_spring_entry, only: entry_list, spring_groups, place_springs
+   use rbs_hysteresis_registry, only: rule_names, keys_of
+   use rbs_section_settings_record, only: diagram_record, layer_record, shear_record, springs_record
+   use rbs_section_shapes, only: shape_names
+   implicit none
+   private
+
+   public :: group_reader, unit_in_group
+
+   !> The groups of a case.
+   character(len=16), parameter, public :: group_names(*) = [character(len=16) :: &
+      'case', 'units', 'column', 'damping', spring_groups, drawing_groups, 'loading', 'analysis', 'output']
+
+   !> The groups that Python gives of a section: the drawing, and what is asked of it.
+   character(len=16), parameter, public :: section_groups(10) = [character(len=16) :: &
+      'section', 'concrete', 'steel', 'bars', 'ties', 'spiral', 'diagram', 'springs', 'shear', 'layer']
+
+   !> Groups that may appear several times.
+   character(len=16), parameter :: repeated(*) = [character(len=16) :: &
+      spring_groups, 'steel', 'parameter', 'loading']
+
+   !> The result of `find` for a key that is ignored because the rule of its spring is unknown.
+   integer, parameter, public :: ignored = -1
+
+   type :: group_reader
+      type(case_record) :: case
+      !> Whether `section_groups` are given, not those of a case
+      logical :: of_section = .false.
+      !> What is asked of a section
+      type(diagram_record) :: diagram
+      type(springs_record) :: springs
+      type(shear_record) :: shear
+      type(layer_record) :: layer
+      !> Units of the numbers that are set
+      type(unit_system) :: units
+      !> Keys of the open group
+      type(key_type), allocatable :: keys(:)
+      character(len=16) :: group = ''
+      !> Location of the group, for messages: 'case.nml line 4:' or blank
+      character(len=80) :: where = ''
+      type(entry_list), private :: entries
+      !> Keys of the rule of the open spring
+      type(key_type), allocatable, private :: rule_keys(:)
+      type(key_visitor), private :: visitor
+      !> Whether each group has been opened before
+      logical, private :: seen(size(group_names)) = .false.
+   contains
+      procedure :: open
+      procedure :: find
+      procedure :: put_numbers
+      procedure :: put_text
+      procedure :: check
+      procedure :: finish
+      procedure, private :: is_spring
+      procedure, private :: collect_keys
+      procedure, private :: visit_open
+   end type group_reader
+
+contains
+
+   !> Open a group, after a check of its name and of how often it appears.
+   subroutine open(self, group, where, messages, ok)
+      class(group_reader), intent(inout) :: self
+      character(len=*), intent(in) :: group
+      !> For messages, may be blank
+      character(len=*), intent(in) :: where
+      type(message_list), intent(inout) :: messages
+      logical, intent(out) :: ok
+      integer :: place, known
+
+      known = messages%count
+      self%group = group
+      self%where = where
+      if (self%of_section) then
+         place = findloc(section_groups == group, .true., dim=1)
+      else
+         place = findloc(group_names == group, .true., dim=1)
+      end if
+      if (place == 0) then
+         call messages%add_at(where, 'the group &'//trim(group)//" is not known; did you mean '&"// &
+                              nearest_name(group, group_names)//"'? Groups are "//list_of(group_names))
+      else if (group == 'loading' .and. self%case%loadings == most_loadings) then
+         call messages%add_at(where, '&loading appears more than '//to_text(most_loadings)//' times')
+      else if (self%seen(place) .and. all(repeated /= group)) then
+         call messages%add_at(where, '&'//trim(group)//' appears twice; it may appear once')
+      else
+         self%seen(place) = .true.
+      end if
+      ok = messages%count == known
+      if (.not. ok) return
+      if (self%is_spring()) then
+         call self%entries%add(group, where)
+         self%rule_keys = [key_type ::]
+      else
+         call self%case%open_group(group)
+      end if
+      call self%collect_keys()
+   end subroutine open
+
+   !> Whether the open group is a spring or the layers of joints.
+   pure logical function is_spring(self)
+      class(group_reader), intent(in) :: self
+
+      is_spring = .not. self%of_section .and. any(spring_groups == self%group)
+   end function is_spring
+
+   !> The list of keys of the open group.
+   subroutine collect_keys(self)
+      class(group_reader), intent(inout) :: self
+
+      call self%visitor%collect(self%group)
+      call self%visit_open()
+      self%keys = self%visitor%keys(:self%visitor%count)
+   end subroutine collect_keys
+
+   !> Present the record of the open group to the visitor.
+   subroutine visit_open(self)
+      class(group_reader), intent(inout) :: self
+
+      if (self%is_spring()) then
+         call self%entries%entry(self%entries%count)%visit(self%visitor, self%rule_keys)
+         return
+      end if
+      select case (merge(self%group, repeat(' ', len(self%group)), self%of_section))
+      case ('diagram')
+         call self%diagram%visit(self%visitor)
+      case ('springs')
+         call self%springs%visit(self%visitor)
+      case ('shear')
+         call self%shear%visit(self%visitor)
+      case ('layer')
+         call self%layer%visit(self%visitor)
+      case default
+         call self%case%visit_group(self%group, self%visitor)
+      end select
+   end subroutine visit_open
+
+   !> Place of a key of the open group; 0 with a message if the group does not have it. The rule of a
+   !> spring and the shape of a section must be set before the keys that they bring.
+   subroutine find(self, name, where, place, messages)
+      class(group_reader), intent(in) :: self
+      character(len=*), intent(in) :: name
+      !> For messages, may be blank
+      character(len=*), intent(in) :: where
+      integer, intent(out) :: place
+      type(message_list), intent(inout) :: messages
+      type(key_type), allocatable :: others(:)
+      character(len=len(self%keys%name)) :: names(size(self%keys))
+      integer :: i
+
+      place = find_key(self%keys, name)
+      if (place > 0) return
+      do i = 1, merge(size(rule_names), 0, self%is_spring() .and. self%group /= 'layers')
+         call keys_of(rule_names(i), others)
+         if (find_key(others, name) == 0) cycle
+         associate (rule => self%entries%entry(self%entries%count)%spring%rule)
+            place = ignored
+            if (all(rule_names /= rule)) return
+            place = 0
+            call messages%add_at(where, '&'//trim(self%group)//': '//trim(name)// &
+                                 ' is not used by the rule '//trim(rule)//'; remove it or choose another rule')
+            return
+         end associate
+      end do
+      names = self%keys%name
+      call messages%add_at(where, '&'//trim(self%group)//" has no '"//trim(name)//"'; did you mean '"// &
+                           nearest_name(name, names)//"'?")
+   end subroutine find
+
+   !> Set the key at a place to numbers, whole numbers, or 0 and 1.
+   subroutine put_numbers(self, place, number)
+      class(group_reader), intent(inout) :: self
+      !> From `find`
+      integer, intent(in) :: place
+      real(wp), intent(in) :: number(:)
+      real(wp) :: si(size(number))
+
+      if (place == ignored) return
+      si = number
+      if (.not. self%units%is_si()) then
+         si = self%units%into_si(number, unit_in_group(self%keys(place)%unit, self%group))
+      end if
+      call self%visitor%put(self%keys(place)%name, number=si)
+      call self%visit_open()
+   end subroutine put_numbers
+
+   !> Set the key at a place to a word or a text.
+   subroutine put_text(self, place, text, messages)
+      class(group_reader), intent(inout) :: self
+      integer, intent(in) :: place
+      character(len=*), intent(in) :: text
+      type(message_list), intent(inout) :: messages
+      type(key_type) :: key
+
+      if (place == ignored) return
+      key = self%keys(place)
+      if (self%is_spring()) then
+         if (key%name == 'rule') then
+            call self%entries%entry(self%entries%count)%set_rule(text)
+            call keys_of(text, self%rule_keys)
+            call self%collect_keys()
+         else if (choice_place(key, text) > 0) then
+            call self%put_numbers(place, [real(choice_place(key, text), wp)])
+         else
+            call messages%add_at(self%where, trim(self%group)//' spring: '//trim(key%name)//" = '"// &
+                                 trim(text)//"' is not known; it is one of "//trim(choice_list(key)))
+         end if
+         return
+      end if
+      if (key%kind == word_kind .and. text == '') then
+         call messages%add_at(self%where, trim(self%group)//': '//trim(key%name)// &
+                              " = '' is not known; it is one of "//key%choices)
+         return
+      end if
+      call self%visitor%put(key%name, text=text)
+      call self%visit_open()
+      call self%visitor%end_check(messages)
+      if (self%group == 'units') self%units = self%case%units%system()
+      if (key%name /= 'shape') return
+      if (any(shape_names == text)) then
+         call self%collect_keys()
+      else
+         call messages%add_at(self%where, "section: shape = '"//text//"' is not known; it is one of "// &
+                              list_of(shape_names))
+      end if
+   end subroutine put_text
+
+   !> Check the values of what is asked of a section.
+   subroutine check(self, group, messages)
+      class(group_reader), intent(inout) :: self
+      character(len=*), intent(in) :: group
+      type(message_list), intent(inout) :: messages
+
+      self%group = group
+      call self%visitor%start_check(group)
+      call self%visit_open()
+      call self%visitor%end_check(messages)
+   end subroutine check
+
+   !> Give the springs to the joints after all groups have been set.
+   subroutine finish(self, messages)
+      class(group_reader), intent(inout) :: self
+      type(message_list), intent(inout) :: messages
+
+      call place_springs(self%entries, self%case%column, messages)
+   end subroutine finish
+
+   !> The SI unit of a parameter of a spring, which depends on the kind of the spring; other units are
+   !> returned unchanged.
+   elemental function unit_in_group(unit, group) result(si)
+      character(len=*), intent(in) :: unit, group
+      character(len=16) :: si
+
+      si = unit
+      select case (unit)
+      case (stiffness)
+         si = merge('N m/rad', 'N/m    ', group == 'flexure')
+      case (force)
+         si = merge('N m', 'N  ', group == 'flexure')
+      case (deformation)
+         si = merge('rad', 'm  ', group == 'flexure')
+      case default                                  ! not a dimension of springs
+      end select
+   end function unit_in_group
+
+end module rbs_case_group_reader
