@@ -5,7 +5,7 @@ SI units throughout: N, m, kg, s, rad. Axial load is positive in compression.
 
 from typing import TYPE_CHECKING
 
-from rbsdem import _moved, codes, comparison, motions, peer, plot
+from rbsdem import codes, comparison, motions, peer, plot
 from rbsdem._core import version as _version
 from rbsdem.accuracy import Trade, trade
 from rbsdem.analysis import Modes, cyclic, mass_matrix, modes, time_history
@@ -60,7 +60,6 @@ from rbsdem.springs import (
 from rbsdem.strains import Gauge, Strains
 
 __version__ = _version()
-_moved.install()
 
 __all__ = [
     "AccuracyWarning",
@@ -133,8 +132,3 @@ __all__ = [
     "time_history",
     "trade",
 ]
-
-if not TYPE_CHECKING:  # A type checker would take any name for one that exists.
-
-    def __getattr__(name: str) -> None:
-        raise _moved.moved_attribute(__name__, name)

@@ -12,7 +12,6 @@ from typing import Any, Literal
 from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._renamed import renamed
 from rbsdem.damping import Damping
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.footing import Footing
@@ -59,11 +58,6 @@ def without_notes() -> Iterator[None]:
         _TELLING.reset(token)
 
 
-@renamed(
-    axial="axial_spring",
-    mass_damping="damping=Damping(mass=...)",
-    stiffness_damping="damping=Damping(stiffness=...)",
-)
 @dataclass(frozen=True, repr=False)
 class Column:
     """A column of `n` rigid bodies on `n` joints; joint i is at the bottom of body i.

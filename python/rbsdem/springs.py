@@ -16,7 +16,6 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
 from rbsdem._core import Array
-from rbsdem._renamed import renamed
 from rbsdem.errors import InputError
 
 if TYPE_CHECKING:
@@ -505,7 +504,6 @@ class Compression(Spring):
         return []
 
 
-@renamed(k_fall="k_soft")
 @dataclass(frozen=True)
 class ConcreteSpring(Spring):
     """Concrete across a joint: crushes in compression, opens without tension, closes gradually.
@@ -563,12 +561,6 @@ class ConcreteSpring(Spring):
         return [Landmark("cap", -1, self.d_peak, "d_peak")]
 
 
-@renamed(
-    r1="cr1",
-    r2="cr2",
-    growth="isotropic_hardening",
-    half_strength_work="endurance, a plastic deformation over d_y",
-)
 @dataclass(frozen=True)
 class SteelSpring(Spring):
     """Steel that yields round: elements side by side, each of which slips at a limit of its own.
@@ -631,7 +623,6 @@ class SteelSpring(Spring):
         return _both_sides("yield", self.f_y / self.k, "f_y/k")
 
 
-@renamed(axial_load="the axial load of the column: Column(axial_load=...)")
 @dataclass(frozen=True, repr=False)
 class Layered(Spring):
     """A joint made of layers: normal springs across it that share the axial load of the column.

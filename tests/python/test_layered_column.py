@@ -116,7 +116,6 @@ def test_strength_of_the_hinge_is_that_of_the_section():
         ("layered", {"n": 1}, "n = 1: the layered model needs a joint above the hinge; give 2"),
         ("paper", {"n": 0}, "n = 0 must be from 1"),
         ("layered", {"n": 2.5}, "n = 2.5 must be a whole number"),
-        ("best", {}, "model = 'best' is now 'layered'"),
         ("bets", {}, "'bets' is not known; it is one of layered, paper"),
     ],
 )
@@ -355,7 +354,6 @@ def test_directions_are_factors_to_exponents():
 @pytest.mark.parametrize(
     ("values", "text"),
     [
-        ({"growth": 1.0}, "parameters: growth is now isotropic_hardening"),
         ({"steel_strenght": 1.0}, "did you mean 'steel_strength'"),
         ({"wear": math.nan}, "hinge: wear = nan must be a finite number"),
     ],
@@ -377,17 +375,6 @@ def test_the_spring_that_refuses_a_parameter_says_so(values, text):
     # The springs of a model are checked with their column, all at once.
     with pytest.raises(InputError, match=text):
         SECTION.column(1.6, axial_load=1.2e6).with_parameters(**values)
-
-
-@pytest.mark.parametrize("name", ["Hinge", "LayeredColumn", "MODELS", "ShearNumbers"])
-def test_old_names_say_the_new_one(name):
-    with pytest.raises(AttributeError, match=rf"rbsdem.peer.{name} is now rbsdem.section"):
-        getattr(peer, name)
-
-
-def test_old_options_say_the_new_one():
-    with pytest.raises(InputError, match="hinge= is now model_parameters="):
-        peer.column(SPECIMEN, hinge=None)
 
 
 # ---- what a change of parameters keeps -----------------------------------------------------------

@@ -64,8 +64,6 @@ def test_unknown_option_ends_a_batch_before_its_work():
         specimen = peer.Specimen("x", "rectangular", 1.6, 0.4, 0.4, 46.5e6, 744e3, 12)
         with pytest.raises(InputError, match=r"option verson is not known.*mean version"):
             use(specimen, verson="2026.1")
-        with pytest.raises(InputError, match="hinge= is now model_parameters"):
-            use(specimen, hinge=1)
 
 
 @pytest.mark.parametrize(

@@ -419,19 +419,6 @@ def test_arrays_of_any_layout_and_kind_are_taken():
     assert TAKEDA.response([]).shape == (0,)
 
 
-def test_a_module_that_has_moved_names_its_new_place():
-    with pytest.raises(ImportError, match=r"rbsdem\.trade is now rbsdem\.accuracy"):
-        importlib.import_module("rbsdem.trade.rows")
-    assert rbsdem.trade is importlib.import_module("rbsdem.accuracy").trade
-    for old in ("loops", "cycles"):
-        with pytest.raises(ImportError, match=rf"rbsdem\.{old} is now rbsdem\.comparison"):
-            importlib.import_module(f"rbsdem.{old}")
-        with pytest.raises(AttributeError, match=rf"rbsdem\.{old} is now rbsdem\.comparison"):
-            getattr(rbsdem, old)
-    with pytest.raises(AttributeError, match="has no attribute 'nothing'"):
-        _ = rbsdem.nothing
-
-
 @pytest.mark.parametrize(
     ("package", "extra", "what"),
     [

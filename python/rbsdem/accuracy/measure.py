@@ -10,7 +10,6 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
-from rbsdem._renamed import renamed_keywords
 from rbsdem.accuracy.answer import Run
 from rbsdem.accuracy.ladder import Budget, checked_methods, climb, ladders, own_setting, probe
 from rbsdem.accuracy.outcome import Trade
@@ -31,7 +30,6 @@ __all__ = ["trade"]
 SETTINGS_SHARE, REFERENCE_SHARE = 0.4, 0.75
 
 
-@renamed_keywords(axial="axial_spring")
 def trade(
     column: Column,
     time: ArrayLike | None = None,

@@ -42,8 +42,6 @@ _SAME = 1e-6
 # Ratios of less than this share of the path are not given.
 _ENOUGH = 0.5
 
-_RENAMED = {"done": "path_fraction", "nrmse_done": "nrmse_reached"}
-
 
 class _Ratios:
     """The ratios of two curves, model over test."""
@@ -212,13 +210,6 @@ class Comparison(_Ratios):
         drifts = (self.test_drift_at_loss, self.model_drift_at_loss)
         lost = ", ".join("none" if math.isnan(drift) else f"{drift:.4f}" for drift in drifts)
         return f"{self.name}: {', '.join(parts)}; drift at 20 % loss (test, model): {lost}"
-
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> None:
-            if name in _RENAMED:
-                raise AttributeError(f"Comparison.{name} is now {_RENAMED[name]}")
-            raise AttributeError(f"Comparison has no attribute {name!r}")
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,6 @@ points come with rbsdem.
 
 from typing import TYPE_CHECKING
 
-from rbsdem import _moved
 from rbsdem.peer import band_views as band_views
 from rbsdem.peer import contact_sheet as contact_sheet
 from rbsdem.peer import gallery as gallery
@@ -72,8 +71,3 @@ __all__ = [
     "read_test",
     "shipped_reversals",
 ]
-
-if not TYPE_CHECKING:  # A type checker would take any name for one that exists.
-
-    def __getattr__(name: str) -> None:
-        raise _moved.moved_attribute(__name__, name)

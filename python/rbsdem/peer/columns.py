@@ -14,12 +14,6 @@ from rbsdem.section.model import DEFAULT, LayeredColumn, Model, check_model
 
 __all__ = ["column"]
 
-#: Options by their names before 2026.
-_OLD = {
-    "hinge": "model_parameters=rbsdem.section.parameters().with_values(...)",
-    "shear_numbers": "model_parameters=rbsdem.section.parameters().with_values(shear_...=...)",
-}
-
 _OPTIONS = ("n", "version", "model_parameters", "restrained", "round_core", "ends", "footing")
 
 #: The equivalent cantilever of the table, or the form of the test.
@@ -119,8 +113,6 @@ def checked_specimen(specimen: object) -> Specimen:
 def check_options(options: Mapping[str, object]) -> None:
     """Raise `InputError` for options that `rbsdem.section.Section.column` does not have."""
     for name in options:
-        if name in _OLD:
-            raise InputError(f"{name}= is now {_OLD[name]}")
         if name not in _OPTIONS:
             near = get_close_matches(name, _OPTIONS, 1)
             hint = f"; did you mean {near[0]}?" if near else ""

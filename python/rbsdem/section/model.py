@@ -65,8 +65,6 @@ CONCRETE_DENSITY = 2400.0
 
 def check_model(model: str) -> None:
     """Raise `InputError` if there is no model of this name."""
-    if _arguments.is_one_of(model, ("best",)):
-        raise InputError("model = 'best' is now 'layered'")
     _arguments.choice(model, "model", MODELS)
 
 

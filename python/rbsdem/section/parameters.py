@@ -228,18 +228,6 @@ FACTORS: dict[str, tuple[tuple[str, ...], str]] = {
 }
 """Names that stand for a factor on several parameters: which, and what they are."""
 
-#: Names before 2026.
-_OLD = {
-    "roundness": "r0",
-    "roundness_axial": "r0_axial",
-    "roundness_loss": "cr1",
-    "roundness_reach": "cr2",
-    "growth": "isotropic_hardening",
-    "core_fall": "core_softening",
-    "cover_fall": "cover_softening",
-    "shear_fall": "shear_softening",
-}
-
 
 @dataclass(frozen=True)
 class ModelParameters:
@@ -333,8 +321,6 @@ def _take(given: HingeParameters | ShearParameters, what: str) -> None:
 
 
 def _unknown(name: str, known: list[str]) -> InputError:
-    if name in _OLD:
-        return InputError(f"parameters: {name} is now {_OLD[name]}")
     (near,) = get_close_matches(name, known, n=1, cutoff=0.0)
     return InputError(f"parameters: {name!r} is not known; did you mean {near!r}?")
 
