@@ -3,8 +3,6 @@
 SI units throughout: N, m, kg, s, rad. Axial load is positive in compression.
 """
 
-from typing import TYPE_CHECKING
-
 from rbsdem import codes, comparison, motions, peer, plot
 from rbsdem._core import version as _version
 from rbsdem.accuracy import Trade, trade

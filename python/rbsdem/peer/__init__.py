@@ -5,8 +5,6 @@ The histories belong to the database and are no part of rbsdem; a user gets them
 points come with rbsdem.
 """
 
-from typing import TYPE_CHECKING
-
 from rbsdem.peer import band_views as band_views
 from rbsdem.peer import contact_sheet as contact_sheet
 from rbsdem.peer import gallery as gallery
