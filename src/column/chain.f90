@@ -1,163 +1,198 @@
-!> The chain with small rotations in centroid coordinates: every sum runs over neighbours only, so that
-!> forces, accelerations and energies cost O(n) and no matrix is factored.
+!> The chain with small rotations in the coordinates of its bodies: every sum runs over neighbours only, so
+!> that forces, accelerations and energies cost O(n) and no matrix is factored.
+!>
+!> Unknowns x = (x_1, th_1, x_2, th_2, ..., x_n, th_n [, y_1, ..., y_n]): displacement of the centroid [m]
+!> and absolute rotation [rad] of every body, and, where joints open, its displacement along the column
+!> [m]. The mass is diagonal in them. Deformations of the joints (slip 1..n, relative rotation 1..n [,
+!> opening 1..n]) are d = B x with
+!>
+!>     u_i = x_i - lower_i th_i - x_{i-1} - upper_{i-1} th_{i-1},  phi_i = th_i - th_{i-1},
+!>     w_i = y_i - y_{i-1}                                         (body 0 is the ground, at rest)
 !>
 !> Joint i acts on body i with -V_i, -M_i, -N_i at its bottom, and on body i - 1 the other way round at its
-!> top. The mass is diagonal in (x, theta, y) of the centroids; joint accelerations are differences of
-!> those of neighbouring bodies. It is M^-1 r of eqs 1-3 without M.
+!> top: B' f. It is M^-1 r of eqs 1-3 without M. Stiffness is a band of half-width 3, band(1 + i - j, j) =
+!> a(i, j) for j <= i <= j + 3; the y are a chain of their own behind the rest.
 module rbs_column_chain
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type
    implicit none
    private
 
-   public :: body_forces, lift_forces, second_order_forces, joint_accelerations, joint_lifts
-   public :: body_velocities, kinetic_of
+   public :: deformations, displacements, body_forces, add_axial_shear, add_axial_torque
+   public :: add_joint_stiffness, add_axial_stiffness
 
 contains
 
-   !> Horizontal forces and moments about the centroids from the forces of the joints.
-   pure subroutine body_forces(n, lower, upper, shear, moment, lateral, force, torque)
+   !> Deformations of the joints from displacements of the bodies, d = B x.
+   pure subroutine deformations(n, opens, lower, upper, x, d)
       integer, intent(in) :: n
+      logical, intent(in) :: opens
       !> Distances from the centroid to bottom and top (n) [m]
       real(wp), intent(in) :: lower(n), upper(n)
-      !> Forces [N] and moments [N m] of the joints (n)
-      real(wp), intent(in) :: shear(n), moment(n)
-      !> Force at the top [N]
-      real(wp), intent(in) :: lateral
-      !> On the bodies (n) [N], [N m]
-      real(wp), intent(out) :: force(n), torque(n)
+      !> (2 n or 3 n)
+      real(wp), intent(in) :: x(*)
+      real(wp), intent(inout) :: d(*)
+      integer :: i
+
+      d(1) = x(1) - lower(1)*x(2)
+      d(n + 1) = x(2)
+      do i = 2, n
+         d(i) = (x(2*i - 1) - x(2*i - 3)) - (lower(i)*x(2*i) + upper(i - 1)*x(2*i - 2))
+         d(n + i) = x(2*i) - x(2*i - 2)
+      end do
+      if (.not. opens) return
+      d(2*n + 1) = x(2*n + 1)
+      do i = 2*n + 2, 3*n
+         d(i) = x(i) - x(i - 1)
+      end do
+   end subroutine deformations
+
+   !> Displacements of the bodies from deformations of the joints, from the ground up.
+   pure subroutine displacements(n, opens, lower, upper, d, x)
+      integer, intent(in) :: n
+      logical, intent(in) :: opens
+      real(wp), intent(in) :: lower(n), upper(n), d(*)
+      real(wp), intent(inout) :: x(*)
+      real(wp) :: top, rotation, height
+      integer :: i
+
+      top = 0.0_wp
+      rotation = 0.0_wp
+      do i = 1, n
+         rotation = rotation + d(n + i)
+         x(2*i) = rotation
+         x(2*i - 1) = top + d(i) + lower(i)*rotation
+         top = x(2*i - 1) + upper(i)*rotation
+      end do
+      if (.not. opens) return
+      height = 0.0_wp
+      do i = 2*n + 1, 3*n
+         height = height + d(i)
+         x(i) = height
+      end do
+   end subroutine displacements
+
+   !> Forces and moments about the centroids from the forces of the joints and those at the top, -B' f + p.
+   pure subroutine body_forces(n, opens, lower, upper, f, lateral, axial_load, weight, g)
+      integer, intent(in) :: n
+      logical, intent(in) :: opens
+      real(wp), intent(in) :: lower(n), upper(n)
+      !> Shear forces [N], moments [N m] and axial forces, tension positive [N], of the joints
+      real(wp), intent(in) :: f(*)
+      !> Loads at the top, compression positive, and weight of the bodies [N]
+      real(wp), intent(in) :: lateral, axial_load, weight(n)
+      !> (2 n or 3 n)
+      real(wp), intent(inout) :: g(*)
       integer :: i
 
       do i = 1, n - 1
-         force(i) = shear(i + 1) - shear(i)
-         torque(i) = (moment(i + 1) - moment(i)) + (lower(i)*shear(i) + upper(i)*shear(i + 1))
+         g(2*i - 1) = f(i + 1) - f(i)
+         g(2*i) = (f(n + i + 1) - f(n + i)) + (lower(i)*f(i) + upper(i)*f(i + 1))
       end do
-      force(n) = lateral - shear(n)
-      torque(n) = (lower(n)*shear(n) + upper(n)*lateral) - moment(n)
+      g(2*n - 1) = lateral - f(n)
+      g(2*n) = (lower(n)*f(n) + upper(n)*lateral) - f(2*n)
+      if (.not. opens) return
+      do i = 1, n - 1
+         g(2*n + i) = (f(2*n + i + 1) - f(2*n + i)) - weight(i)
+      end do
+      g(3*n) = -axial_load - f(3*n) - weight(n)
    end subroutine body_forces
 
-   !> Vertical forces from the axial forces of the joints (tension positive), weight and axial load.
-   pure subroutine lift_forces(n, weight, tension, axial_load, force)
+   !> Add to the shear forces of the joints the part in u of the second-order forces of axial forces, those of
+   !> the potential -sum a_k l_k th_k^2/2 - sum b_k u_k th_{k-1}.
+   pure subroutine add_axial_shear(n, axial, d, shear)
       integer, intent(in) :: n
-      real(wp), intent(in) :: weight(n), tension(n)
-      !> At the top, compression positive [N]
-      real(wp), intent(in) :: axial_load
-      !> On the bodies, upward (n) [N]
-      real(wp), intent(out) :: force(n)
-      integer :: i
-
-      do i = 1, n - 1
-         force(i) = (tension(i + 1) - tension(i)) - weight(i)
-      end do
-      force(n) = -axial_load - tension(n) - weight(n)
-   end subroutine lift_forces
-
-   !> Add the second-order forces of the axial load: of the potential
-   !> -sum a_k l_k th_k^2/2 - sum b_k u_k th_{k-1}, on the joint its part in u, on the bodies that in th.
-   pure subroutine second_order_forces(n, length, axial_body, axial_joint, slip, rotation, shear, torque)
-      integer, intent(in) :: n
-      real(wp), intent(in) :: length(n), axial_body(n), axial_joint(n)
-      !> Slips [m] and relative rotations [rad] of the joints (n)
-      real(wp), intent(in) :: slip(n), rotation(n)
-      !> Forces of the joints (n) [N]
+      !> a, then b, compression positive (2 n) [N]
+      real(wp), intent(in) :: axial(2*n)
+      !> Slips [m] and relative rotations [rad] of the joints (2 n)
+      real(wp), intent(in) :: d(2*n)
+      !> (n) [N]
       real(wp), intent(inout) :: shear(n)
-      !> What is to be added to the torques on the bodies (n) [N m]
-      real(wp), intent(out) :: torque(n)
-      real(wp) :: absolute
+      real(wp) :: rotation
       integer :: i
 
-      absolute = 0.0_wp
+      rotation = 0.0_wp
       do i = 1, n
-         shear(i) = shear(i) - axial_joint(i)*absolute
-         absolute = absolute + rotation(i)
-         torque(i) = axial_body(i)*length(i)*absolute
+         shear(i) = shear(i) - axial(n + i)*rotation
+         rotation = rotation + d(n + i)
       end do
+   end subroutine add_axial_shear
+
+   !> Add to the forces on the bodies their part in th.
+   pure subroutine add_axial_torque(n, length, axial, d, g)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: length(n), axial(2*n), d(2*n)
+      !> (2 n)
+      real(wp), intent(inout) :: g(2*n)
+      real(wp) :: rotation
+      integer :: i
+
+      rotation = 0.0_wp
       do i = 1, n - 1
-         torque(i) = torque(i) + axial_joint(i + 1)*slip(i + 1)
+         rotation = rotation + d(n + i)
+         g(2*i) = g(2*i) + (axial(i)*length(i)*rotation + axial(n + i + 1)*d(i + 1))
       end do
-   end subroutine second_order_forces
+      g(2*n) = g(2*n) + axial(n)*length(n)*(rotation + d(2*n))
+   end subroutine add_axial_torque
 
-   !> Accelerations of slips and relative rotations from those of the centroids.
-   pure subroutine joint_accelerations(n, lower, upper, along, turning, slip, rotation)
+   !> Add B' diag(k) B of the springs.
+   pure subroutine add_joint_stiffness(n, opens, lower, upper, k, band)
       integer, intent(in) :: n
+      logical, intent(in) :: opens
       real(wp), intent(in) :: lower(n), upper(n)
-      !> Of the centroids [m/s2] and of the rotations [rad/s2] (n)
-      real(wp), intent(in) :: along(n), turning(n)
-      !> Of the joints (n)
-      real(wp), intent(out) :: slip(n), rotation(n)
-      integer :: i
+      !> Stiffness of the joints [N/m, N m, N/m]
+      real(wp), intent(in) :: k(*)
+      !> Lower band
+      real(wp), intent(inout) :: band(4, *)
+      real(wp) :: shear, flexure, low, up
+      integer :: i, t
 
-      slip(1) = along(1) - lower(1)*turning(1)
-      rotation(1) = turning(1)
-      do i = 2, n
-         slip(i) = (along(i) - along(i - 1)) - (lower(i)*turning(i) + upper(i - 1)*turning(i - 1))
-         rotation(i) = turning(i) - turning(i - 1)
+      do i = 1, n
+         shear = k(i)
+         flexure = k(n + i)
+         low = lower(i)
+         ! Place of the rotation; its displacement stands before it.
+         t = 2*i
+         band(1, t - 1) = band(1, t - 1) + shear
+         band(2, t - 1) = band(2, t - 1) - shear*low
+         band(1, t) = band(1, t) + shear*low**2 + flexure
+         if (i == 1) cycle
+         up = upper(max(i - 1, 1))
+         band(1, t - 3) = band(1, t - 3) + shear
+         band(2, t - 3) = band(2, t - 3) + shear*up
+         band(3, t - 3) = band(3, t - 3) - shear
+         band(4, t - 3) = band(4, t - 3) + shear*low
+         band(1, t - 2) = band(1, t - 2) + shear*up**2 + flexure
+         band(2, t - 2) = band(2, t - 2) - shear*up
+         band(3, t - 2) = band(3, t - 2) + shear*up*low - flexure
       end do
-   end subroutine joint_accelerations
+      if (.not. opens) return
+      do i = 2*n + 1, 3*n
+         band(1, i) = band(1, i) + k(i)
+         if (i == 2*n + 1) cycle
+         band(1, i - 1) = band(1, i - 1) + k(i)
+         band(2, i - 1) = band(2, i - 1) - k(i)
+      end do
+   end subroutine add_joint_stiffness
 
-   !> Accelerations of the openings from the vertical ones of the centroids.
-   pure subroutine joint_lifts(n, upward, opening)
+   !> Add the second derivatives of the potential of the axial forces, see `add_axial_shear`.
+   pure subroutine add_axial_stiffness(n, length, lower, upper, axial, band)
       integer, intent(in) :: n
-      real(wp), intent(in) :: upward(n)
-      real(wp), intent(out) :: opening(n)
-      integer :: i
+      real(wp), intent(in) :: length(n), lower(n), upper(n), axial(2*n)
+      !> Lower band
+      real(wp), intent(inout) :: band(4, *)
+      real(wp) :: force
+      integer :: i, t
 
-      opening(1) = upward(1)
-      do i = 2, n
-         opening(i) = upward(i) - upward(i - 1)
-      end do
-   end subroutine joint_lifts
-
-   !> Velocities of the centroids (x_1, th_1, ..., x_n, th_n [, y_1..y_n]) from those of the joints.
-   pure subroutine body_velocities(column, v, x)
-      type(column_type), intent(in) :: column
-      !> Of the joints (unknowns) [m/s, rad/s]
-      real(wp), intent(in) :: v(:)
-      !> Of the bodies (unknowns)
-      real(wp), intent(out) :: x(:)
-      real(wp) :: top, turning, height
-      integer :: i, n
-
-      n = column%n
-      top = 0.0_wp
-      turning = 0.0_wp
       do i = 1, n
-         turning = turning + v(n + i)
-         x(2*i) = turning
-         x(2*i - 1) = top + v(i) + column%lower(i)*turning
-         top = x(2*i - 1) + column%upper(i)*turning
+         t = 2*i
+         band(1, t) = band(1, t) - axial(i)*length(i)
+         if (i == 1) cycle
+         force = axial(n + i)
+         band(2, t - 3) = band(2, t - 3) + force
+         band(1, t - 2) = band(1, t - 2) + 2.0_wp*force*upper(max(i - 1, 1))
+         band(2, t - 2) = band(2, t - 2) - force
+         band(3, t - 2) = band(3, t - 2) + force*lower(i)
       end do
-      if (.not. column%opens) return
-      height = 0.0_wp
-      do i = 1, n
-         height = height + v(2*n + i)
-         x(2*n + i) = height
-      end do
-   end subroutine body_velocities
-
-   !> Kinetic energy of velocities of the joints, relative to the ground [J].
-   pure real(wp) function kinetic_of(column, v) result(energy)
-      type(column_type), intent(in) :: column
-      real(wp), intent(in) :: v(:)
-      real(wp) :: top, turning, centroid, height
-      integer :: i, n
-
-      n = column%n
-      top = 0.0_wp
-      turning = 0.0_wp
-      energy = 0.0_wp
-      do i = 1, n
-         turning = turning + v(n + i)
-         centroid = top + v(i) + column%lower(i)*turning
-         top = centroid + column%upper(i)*turning
-         energy = energy + 0.5_wp*(column%mass(i)*centroid**2 + column%inertia(i)*turning**2)
-      end do
-      if (.not. column%opens) return
-      height = 0.0_wp
-      do i = 1, n
-         height = height + v(2*n + i)
-         energy = energy + 0.5_wp*column%mass(i)*height**2
-      end do
-   end function kinetic_of
+   end subroutine add_axial_stiffness
 
 end module rbs_column_chain

@@ -13,13 +13,16 @@
 module rbs_column_column
    use rbs_base_constants, only: unset
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: to_text
+   use rbs_column_chain, only: deformations, displacements, body_forces, add_axial_shear, &
+                               add_axial_torque, add_joint_stiffness, add_axial_stiffness
    use rbs_column_column_record, only: column_record
    use rbs_hysteresis_spring_record, only: spring_record
+   use rbs_structure_spring_place, only: spring_place, shear, flexure, axial
+   use rbs_structure_structure, only: structure_type, unknown_group, lateral, horizontal, vertical, top_axial
    implicit none
    private
 
-   public :: column_type, new_column, joint_name
+   public :: column_type, new_column
    public :: small, pdelta, finite
 
    !> Levels of kinematics.
@@ -28,9 +31,9 @@ module rbs_column_column
    !> Rotary inertia of a body that does not turn [kg m2]: any positive number.
    real(wp), parameter :: of_held_body = 1.0_wp
 
-   type :: column_type
-      !> Number of bodies, number of unknowns 2 n or, with axial springs, 3 n
-      integer :: n = 0, unknowns = 0
+   type, extends(structure_type) :: column_type
+      !> Number of bodies; the unknowns, as many as springs, are 2 n or, with axial springs, 3 n
+      integer :: n = 0
       !> `small`, `pdelta` or `finite`
       integer :: kinematics = small
       !> Whether joints have axial springs and open
@@ -86,9 +89,16 @@ module rbs_column_column
       !> Springs (unknowns), shear first, and their initial stiffness
       type(spring_record), allocatable :: spring(:)
       real(wp), allocatable :: initial_stiffness(:)
-      !> The spring whose work a spring may ask for: of a shear spring the flexural one of its joint, else 0
-      !> (unknowns)
-      integer, allocatable :: told(:)
+      !> Number of the spring of a kind in a joint, from the bottom up (3, n); 0: there is none
+      integer, allocatable :: at(:, :)
+   contains
+      procedure :: spring_rates
+      procedure :: unknown_rates
+      procedure :: forces
+      procedure :: axial_forces
+      procedure :: axial_force
+      procedure :: add_stiffness
+      procedure :: add_geometric
    end type column_type
 
 contains
@@ -148,6 +158,7 @@ contains
       call set_mass_sums(column)
       call set_lifted_masses(column)
       call set_springs(column, spec)
+      call set_unknowns(column)
    end subroutine new_column
 
    subroutine set_heights(column)
@@ -268,32 +279,145 @@ contains
    subroutine set_springs(column, spec)
       type(column_type), intent(inout) :: column
       type(column_record), intent(in) :: spec
-      integer :: i, n
+      integer :: i, joint, n
 
       n = column%n
-      allocate (column%spring(column%unknowns))
-      allocate (column%told(column%unknowns), source=0)
-      column%told(:n) = [(n + i, i=1, n)]
+      allocate (column%spring(column%unknowns), column%place(column%unknowns))
+      allocate (column%at(3, n), source=0)
       do i = 1, n
+         column%at(:2, i) = [i, n + i]
          column%spring(i) = spec%shear(min(i, size(spec%shear)))
          column%spring(n + i) = spec%flexure(min(i, size(spec%flexure)))
-         if (column%opens) column%spring(2*n + i) = spec%axial_spring(min(i, size(spec%axial_spring)))
+         ! A shear spring may ask for the work of the flexural one of its joint.
+         joint = merge(i - 1, i, column%footing)
+         column%place(i) = spring_place(shear, 1, joint, n + i)
+         column%place(n + i) = spring_place(flexure, 1, joint)
+         if (.not. column%opens) cycle
+         column%at(axial, i) = 2*n + i
+         column%spring(2*n + i) = spec%axial_spring(min(i, size(spec%axial_spring)))
+         column%place(2*n + i) = spring_place(axial, 1, joint)
       end do
       ! Layered joints share the axial load of load and weight above them.
       column%spring(n + 1:2*n)%axial_load = column%compression
       column%initial_stiffness = column%spring%initial_stiffness()
    end subroutine set_springs
 
-   !> Which spring an unknown is, for messages: 'the shear spring of joint 3'.
-   function joint_name(column, i) result(name)
-      type(column_type), intent(in) :: column
-      !> Number of the unknown
-      integer, intent(in) :: i
-      character(len=40) :: name
-      character(len=9), parameter :: kinds(3) = ['shear    ', 'flexural ', 'axial    ']
+   !> The coordinates of the bodies, in which the mass is diagonal; see `rbs_column_chain`.
+   subroutine set_unknowns(column)
+      type(column_type), intent(inout) :: column
+      integer :: i, n, m
 
-      name = 'the '//trim(kinds((i - 1)/column%n + 1))//' spring of joint '// &
-             to_text(mod(i - 1, column%n) + merge(0, 1, column%footing))
-   end function joint_name
+      n = column%n
+      m = column%unknowns
+      column%half_width = 3
+      allocate (column%inertias(m), column%is_held(m), column%part(m))
+      column%is_held = .false.
+      column%is_held(2*n) = column%held
+      column%has_held = column%held
+      do i = 1, n
+         column%inertias(2*i - 1:2*i) = [column%mass(i), column%inertia(i)]
+         column%part(2*i - 1:2*i) = i
+         if (.not. column%opens) cycle
+         column%inertias(2*n + i) = column%mass(i)
+         column%part(2*n + i) = n + i
+      end do
+      allocate (column%group(merge(3, 2, column%opens)))
+      column%group(1) = unknown_group(1, 2*n, 2, 1, n, 1.0_wp)
+      column%group(2) = unknown_group(2, 2*n, 2, n + 1, 2*n, column%upper(n))
+      if (column%opens) column%group(3) = unknown_group(2*n + 1, 3*n, 1, 2*n + 1, 3*n)
+      do i = 1, size(column%pattern)
+         allocate (column%pattern(i)%force(m), source=0.0_wp)
+      end do
+      associate (push => column%pattern(lateral), ground => column%pattern(horizontal))
+         push%force(2*n - 1:2*n) = [1.0_wp, column%upper(n)]
+         if (column%held) push%force(2*n) = 0.0_wp
+         ground%force(1:2*n:2) = -column%mass
+      end associate
+      if (column%opens) then
+         column%pattern(vertical)%force(2*n + 1:) = -column%mass
+         column%pattern(top_axial)%force(3*n) = -1.0_wp
+      end if
+      do i = 1, size(column%pattern)
+         associate (pattern => column%pattern(i))
+            pattern%first = findloc(abs(pattern%force) > 0.0_wp, .true., dim=1)
+            pattern%last = findloc(abs(pattern%force) > 0.0_wp, .true., dim=1, back=.true.)
+            if (pattern%first == 0) pattern%first = 1
+         end associate
+      end do
+   end subroutine set_unknowns
+
+   !> Changes of the deformations of the joints from those of the bodies.
+   subroutine spring_rates(self, dx, dd)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: dx(:)
+      real(wp), intent(out), contiguous :: dd(:)
+
+      call deformations(self%n, self%opens, self%lower, self%upper, dx, dd)
+   end subroutine spring_rates
+
+   !> Changes of the displacements of the bodies from those of the joints.
+   subroutine unknown_rates(self, dd, dx)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: dd(:)
+      real(wp), intent(out), contiguous :: dx(:)
+
+      call displacements(self%n, self%opens, self%lower, self%upper, dd, dx)
+      if (self%held) dx(2*self%n) = 0.0_wp
+   end subroutine unknown_rates
+
+   !> Forces on the bodies, without the inertia of the moving ground.
+   subroutine forces(self, d, load, axial, f, g)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), load(:), axial(:)
+      real(wp), intent(inout), contiguous :: f(:)
+      real(wp), intent(out), contiguous :: g(:)
+
+      if (size(axial) > 0) call add_axial_shear(self%n, axial, d, f)
+      call body_forces(self%n, self%opens, self%lower, self%upper, f, load(lateral), &
+                       self%axial_load + load(top_axial), self%weight, g)
+      if (size(axial) > 0) call add_axial_torque(self%n, self%length, axial, d, g)
+   end subroutine forces
+
+   !> Axial forces for the rotations of the bodies, then across the slips of the joints (2 n).
+   subroutine axial_forces(self, load, axial)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: load(:)
+      real(wp), intent(out), contiguous :: axial(:)
+      integer :: n
+
+      n = self%n
+      axial(:n) = self%axial_body + load(top_axial)*self%axial_lever + load(vertical)*self%lifted_body
+      axial(n + 1:) = self%axial_slip + load(top_axial)*self%axial_lever + load(vertical)*self%lifted_joint
+      if (self%held) axial(2*n) = 0.0_wp
+   end subroutine axial_forces
+
+   !> Axial force at a spring from axial load, weight and vertical motion, compression positive [N].
+   pure real(wp) function axial_force(self, spring, load)
+      class(column_type), intent(in) :: self
+      integer, intent(in) :: spring
+      real(wp), intent(in) :: load(:)
+      integer :: i
+
+      i = mod(spring - 1, self%n) + 1
+      axial_force = self%compression(i) + load(top_axial) + load(vertical)*self%lifted_joint(i)
+   end function axial_force
+
+   !> Add B' diag(k) B.
+   subroutine add_stiffness(self, k, band)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: k(:)
+      real(wp), intent(inout), contiguous :: band(:, :)
+
+      call add_joint_stiffness(self%n, self%opens, self%lower, self%upper, k, band)
+   end subroutine add_stiffness
+
+   !> Add the geometric stiffness.
+   subroutine add_geometric(self, k, band)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: k(:)
+      real(wp), intent(inout), contiguous :: band(:, :)
+
+      call add_axial_stiffness(self%n, self%length, self%lower, self%upper, k, band)
+   end subroutine add_geometric
 
 end module rbs_column_column

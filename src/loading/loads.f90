@@ -2,14 +2,12 @@
 module rbs_loading_loads
    use rbs_base_kinds, only: wp
    use rbs_loading_signal, only: signal_type
+   use rbs_structure_structure, only: lateral, horizontal, vertical, axial => top_axial
    implicit none
    private
 
    public :: loads_type
    public :: lateral, horizontal, vertical, axial
-
-   !> Positions in an array of the loads at one time.
-   integer, parameter :: lateral = 1, horizontal = 2, vertical = 3, axial = 4
 
    !> Signals without points are zero.
    type :: loads_type

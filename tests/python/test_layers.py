@@ -20,6 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FLOORS = (
     ("base",),
     ("hysteresis",),
+    ("structure",),
     ("column", "section"),
     ("loading",),
     ("case",),

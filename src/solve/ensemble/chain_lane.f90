@@ -50,8 +50,8 @@ contains
          do j = 1, n
             b%lower(i, j) = column%lower(j)
             b%upper(i, j) = column%upper(j)
-            b%inverse_mass(i, j) = motion%inverse_mass(j)
-            b%inverse_inertia(i, j) = motion%inverse_inertia(j)
+            b%inverse_mass(i, j) = motion%inverse(2*j - 1)
+            b%inverse_inertia(i, j) = motion%inverse(2*j)
             b%mass(i, 2*j - 1) = column%mass(j)
             b%mass(i, 2*j) = column%inertia(j)
             b%along(i, j) = 0.0_wp
@@ -136,8 +136,8 @@ contains
       real(wp), intent(out) :: ready
 
       call stepper%tangent%fit(stepper%step, state, h)
-      ready = merge(1.0_wp, 0.0_wp, stepper%tangent%lateral%positive)
-      b%tangent(i, :, :) = stepper%tangent%lateral%triangle
+      ready = merge(1.0_wp, 0.0_wp, stepper%tangent%matrix%positive)
+      b%tangent(i, :, :) = stepper%tangent%matrix%triangle
       b%v0(i, :) = stepper%step%v0
       b%a0(i, :) = stepper%step%a0
       b%g0(i, :) = stepper%step%g0

@@ -6,7 +6,7 @@ module rbs_solve_static_path
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type, joint_name, small, finite
+   use rbs_column_column, only: column_type, small, finite
    use rbs_column_top, only: largest_turn, top_displacement
    use rbs_hysteresis_layer_fall, only: layer_fall
    use rbs_hysteresis_springs, only: spring_array
@@ -14,6 +14,7 @@ module rbs_solve_static_path
                               row_spring, row_damping, row_axial, row_residual, row_top, row_joints
    use rbs_solve_static_row_check, only: row_check
    use rbs_solve_task, only: task_type
+   use rbs_structure_spring_place, only: spring_name
    implicit none
    private
 
@@ -162,7 +163,7 @@ contains
       self%column = column
       self%by_force = by_force
       self%moving = moving
-      call self%springs%create(column%spring, column%told)
+      call self%springs%create(column%spring, column%place%heard)
       allocate (self%rate(column%unknowns), source=0.0_wp)
       allocate (self%changed(column%unknowns), source=0)
    end subroutine prepare
@@ -218,7 +219,7 @@ contains
          if (found .or. abs(tension - self%springs%force(i)) <= no_force*abs(tension)) cycle
          kind = 'tension'
          if (tension < 0.0_wp) kind = 'compression'
-         call fatal_error(error, analysis_failed, trim(joint_name(self%column, i))//" (rule '"// &
+         call fatal_error(error, analysis_failed, trim(spring_name(self%column%place(i)))//" (rule '"// &
                           trim(self%column%spring(i)%rule)//"') cannot carry the "//kind//' of '// &
                           to_text(abs(tension))//' N from axial load and weight: it has no stiffness '// &
                           'left. Change axial_load, or give the joint a spring that holds')
@@ -443,8 +444,8 @@ contains
       class(static_path), intent(in) :: path
       character(len=:), allocatable, intent(out) :: text
 
-      text = trim(joint_name(path%column, minloc(path%springs%k(:path%moving)/ &
-                                                 path%column%initial_stiffness(:path%moving), dim=1)))
+      text = trim(spring_name(path%column%place(minloc(path%springs%k(:path%moving)/ &
+                                                        path%column%initial_stiffness(:path%moving), dim=1))))
    end subroutine name_spring
 
 end module rbs_solve_static_path

@@ -3,10 +3,11 @@ module rbs_solve_static_resume
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type, joint_name
+   use rbs_column_column, only: column_type
    use rbs_column_top, only: top_displacement
    use rbs_solve_end_state, only: end_state, standing_type, static_state
    use rbs_solve_static_path, only: static_path, missing_work
+   use rbs_structure_spring_place, only: spring_name
    implicit none
    private
 
@@ -65,7 +66,7 @@ contains
       joint = path%springs%lost_joint() - path%column%n
       if (joint > 0) then
          call fatal_error(error, analysis_failed, 'initial: the layers of '// &
-                          trim(joint_name(path%column, path%column%n + joint))// &
+                          trim(spring_name(path%column%place(path%column%n + joint)))// &
                           ' cannot carry the axial load of '//to_text(press(joint))//' N in the '// &
                           'state that the first analysis ended in; give a smaller axial_load')
          return

@@ -8,6 +8,7 @@ module rbs_solve_time_event
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type
+   use rbs_structure_spring_place, only: flexure
    implicit none
    private
 
@@ -33,7 +34,7 @@ contains
       real(wp), intent(in) :: slope(4)
       type(event_type), intent(out) :: event
       type(line_exit) :: one
-      integer :: i, j, joint, layer
+      integer :: i, j, layer
 
       event%estimate = huge(1.0_wp)
       associate (springs => state%springs, motion => state%motion)
@@ -52,11 +53,10 @@ contains
          if (.not. springs%pressed) return
          do j = 1, size(springs%layered)
             i = springs%layered(j)
-            joint = i - motion%column%n
-            call first_layer_exit(springs, i, scheme%q(i), motion%axial_force(joint, scheme%load), &
-                                  [state%v(i), scheme%v(i)], motion%press_rate(joint, slope), h, layer, one)
+            call first_layer_exit(springs, i, scheme%q(i), motion%column%axial_force(i, scheme%load), &
+                                  [state%v(i), scheme%v(i)], motion%press_rate(i, slope), h, layer, one)
             if (layer == 0) cycle
-            if (one%turns .and. .not. abs(motion%press_rate(joint, slope)) > 0.0_wp) then
+            if (one%turns .and. .not. abs(motion%press_rate(i, slope)) > 0.0_wp) then
                if (keeps_still(state, scheme, i, h)) cycle
             end if
             if (one%estimate < event%estimate) then
@@ -84,17 +84,16 @@ contains
       integer, intent(in) :: i
       real(wp) :: along, about, reach
       logical :: upright
-      integer :: j, n
+      integer :: j
 
       associate (column => state%motion%column, springs => state%springs)
-         n = column%n
          along = abs(state%load(lateral))
          ! Vertical loads leave round-off only where joints balance them, not where they lean.
          upright = column%opens .or. size(springs%layered) > 0
          if (upright) along = max(along, abs(column%axial_load + state%load(axial)))
          about = 0.0_wp
          do j = 1, springs%count
-            if ((j - 1)/n == 1) then
+            if (column%place(j)%kind == flexure) then
                about = max(about, abs(springs%force(j)))
             else
                along = max(along, abs(springs%force(j)))
@@ -104,7 +103,7 @@ contains
          about = (about + along*reach)/minval(column%inertia)
          along = along/minval(column%mass) + abs(state%load(horizontal)) + about*reach
          if (upright) along = along + abs(state%load(vertical)) + column%gravity
-         least = least_share*merge(about, along, (i - 1)/n == 1)
+         least = least_share*merge(about, along, column%place(i)%kind == flexure)
       end associate
    end function round_off_of
 
@@ -135,7 +134,7 @@ contains
       type(motion_result), intent(inout) :: now
       real(wp), intent(out) :: wrong, growth, small
       real(wp) :: finish, d, v, a, at_start, press, force, unused
-      integer :: i, joint
+      integer :: i
 
       i = event%spring
       if (event%turns) then
@@ -154,9 +153,8 @@ contains
          end if
          return
       end if
-      joint = i - state%motion%column%n
-      press = state%motion%press_rate(joint, slope)
-      force = state%motion%axial_force(joint, scheme%load)
+      press = state%motion%press_rate(i, slope)
+      force = state%motion%column%axial_force(i, scheme%load)
       associate (springs => state%springs)
          call layer_motion(springs, i, event%layer, scheme%q(i), force, scheme%v(i), press, d, v)
          if (event%turns) then
@@ -185,7 +183,7 @@ contains
 
       associate (i => event%spring)
          call layer_motion(state%springs, i, event%layer, 0.0_wp, 0.0_wp, 0.0_wp, &
-                           state%motion%press_rate(i - state%motion%column%n, slope), unused, pressed)
+                           state%motion%press_rate(i, slope), unused, pressed)
          call layer_motion(state%springs, i, event%layer, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, unused, turned)
          turn = state%v(i)
          if (abs(pressed) < 1.0e100_wp*abs(turned)) turn = -pressed/turned

@@ -4,8 +4,8 @@ module rbs_solve_time_halving
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: joint_name
    use rbs_solve_time_state, only: state_type, stepper_type
+   use rbs_structure_spring_place, only: spring_name
    implicit none
    private
 
@@ -128,7 +128,7 @@ contains
          call fatal_error(error, analysis_failed, 'the step of '//to_text(h)//' s at time '// &
                           to_text(state%begin + state%time)//' s does not converge although it was cut '// &
                           to_text(most_cuts)//' times; '// &
-                          trim(joint_name(state%motion%column, max(busiest, 1)))// &
+                          trim(spring_name(state%motion%structure%place(max(busiest, 1))))// &
                           ' is the busiest. Rows up to there are kept, the last good state is that of '// &
                           "this time. Try a shorter dt or method = 'rk45', and look at the springs "// &
                           'that soften')

@@ -1,5 +1,5 @@
-!> Newmark's method and the generalised-alpha method (HHT is a case of it) in centroid coordinates, where
-!> mass and tangent are bands: O(n) a step, no limit of stability.
+!> Newmark's method and the generalised-alpha method (HHT is a case of it) in the unknowns of a structure, where
+!> the mass is diagonal and the tangent a band: O(n) a step, no limit of stability.
 !>
 !> The springs are straight lines, so the tangent step is exact up to the next end of a line. Where Newton's
 !> method goes back and forth between two branches, the solution goes from end to end instead. A step that
@@ -8,7 +8,6 @@ module rbs_solve_time_implicit
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
-   use rbs_column_band, only: to_joints
    use rbs_solve_time_halving, only: halving_stepper
    use rbs_solve_time_implicit_finite, only: finite_stepper
    use rbs_solve_time_implicit_balance, only: step_balance
@@ -16,6 +15,7 @@ module rbs_solve_time_implicit
    use rbs_solve_time_implicit_tangent, only: step_tangent
    use rbs_loading_loads, only: lateral, horizontal, vertical, axial
    use rbs_solve_time_state, only: state_type, in_bounds, out_of_bounds
+   use rbs_structure_structure, only: structure_type
    implicit none
    private
 
@@ -98,7 +98,7 @@ contains
       type(state_type), intent(in) :: state
 
       call self%step%start(state)
-      call self%tangent%create(state%motion%column)
+      call self%tangent%create(state%motion%structure)
       allocate (self%dx(size(state%q)), self%dq(size(state%q)), self%mean(size(state%q)), source=0.0_wp)
    end subroutine prepare
 
@@ -168,11 +168,11 @@ contains
       do iteration = 1, most
          size_before = size_now
          call self%tangent%find_correction(self%step, state, h, self%dx)
-         call to_joints(state%motion%column, self%dx, self%dq)
+         call state%motion%structure%spring_rates(self%dx, self%dq)
          slope_before = inner_product(size(self%step%r), self%step%r, self%dx)
          call try(self, state, h, load, 1.0_wp, marked, size_now)
          if (.not. size_now < out_of_bounds) return
-         converged = has_converged(self, h, size_now, size_before)
+         converged = has_converged(self, state%motion%structure, h, size_now, size_before)
          if (converged) return
          slope = inner_product(size(self%step%r), self%step%r, self%dx)
          ! An overshoot mostly does no harm. Where Newton's method goes back and forth, it is bounded.
@@ -267,7 +267,7 @@ contains
       call self%step%find_residual(state, h, load, size_now)
       do iteration = 1, most
          call self%tangent%find_correction(self%step, state, h, self%dx)
-         call to_joints(state%motion%column, self%dx, self%dq)
+         call state%motion%structure%spring_rates(self%dx, self%dq)
          call first_end(state, self%step%q1, self%dq, share, i, way)
          self%step%q1 = self%step%q1 + share*self%dq
          self%step%moved = self%step%moved + share*self%dx
@@ -281,15 +281,16 @@ contains
          end if
          call self%step%find_residual(state, h, load, size_now)
          if (i > 0) cycle
-         converged = has_converged(self, h, size_now, size_before)
+         converged = has_converged(self, state%motion%structure, h, size_now, size_before)
          if (converged .or. .not. size_now < size_before) return
          size_before = size_now
       end do
    end subroutine go_by_events
 
    !> Whether the residual has vanished, or is as small as round-off lets it be.
-   pure logical function has_converged(self, h, size_now, size_before)
+   pure logical function has_converged(self, structure, h, size_now, size_before)
       type(implicit_stepper), intent(in) :: self
+      class(structure_type), intent(in) :: structure
       real(wp), intent(in) :: h
       !> Relative size now and at the last trial
       real(wp), intent(in) :: size_now, size_before
@@ -299,7 +300,7 @@ contains
       has_converged = size_now <= self%acceptable .and. size_now > 0.5_wp*size_before
       ! As long as the residual decreases quickly, it is not yet round-off.
       if (has_converged .or. size_now < 0.1_wp*size_before) return
-      has_converged = self%step%is_round_off(h, self%tangent%stiffness)
+      has_converged = self%step%is_round_off(structure, h, self%tangent%stiffness)
    end function has_converged
 
    !> The share of a correction up to the first end of a line that a spring reaches.
@@ -342,21 +343,15 @@ contains
       type(state_type), intent(inout) :: state
       real(wp), intent(in) :: h, load(4)
       real(wp) :: before, after
-      integer :: n, i
+      integer :: i
 
-      n = state%motion%column%n
       associate (motion => state%motion, mean => 0.5_wp*(state%load + load))
-         if (motion%acts(lateral)) then
-            state%of_loads = state%of_loads + mean(lateral)*(self%step%moved(2*n - 1) &
-                                                             + motion%column%upper(n)*self%step%moved(2*n))
-         end if
-         if (motion%acts(horizontal)) then
-            do i = 1, n
-               state%of_loads = state%of_loads &
-                                - mean(horizontal)*motion%column%mass(i)*self%step%moved(2*i - 1)
-            end do
-         end if
-         call to_joints(motion%column, self%step%v1, self%step%w1)
+         do i = lateral, horizontal
+            if (motion%acts(i)) then
+               state%of_loads = state%of_loads + mean(i)*motion%structure%work_of(i, self%step%moved)
+            end if
+         end do
+         call motion%structure%spring_rates(self%step%v1, self%step%w1)
          if (motion%acts(vertical) .or. motion%acts(axial)) then
             before = motion%lifting_power(state%q, state%v, state%load)
             after = motion%lifting_power(self%step%q1, self%step%w1, load)

@@ -204,8 +204,8 @@ contains
       bent%alpha_f = step%alpha_f
       bent%beta = step%beta
       bent%gamma = step%gamma
-      bent%mass(1) = step%mass(1)
-      bent%mass(2) = step%mass(2)
+      bent%mass(1) = state%motion%column%inertias(1)
+      bent%mass(2) = state%motion%column%inertias(2)
       associate (column => state%motion%column)
          bent%lower = column%lower(1)
          bent%upper = column%upper(1)
@@ -229,7 +229,7 @@ contains
          end if
          if (motion%acts(horizontal)) then
             state%of_loads = state%of_loads - 0.5_wp*(state%load(horizontal) + load(horizontal)) &
-                             *step%mass(1)*moved(1)
+                             *state%motion%column%mass(1)*moved(1)
          end if
          state%v(1) = bent%v1(1) - motion%column%lower(1)*bent%v1(2)
       end associate

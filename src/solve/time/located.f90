@@ -7,14 +7,14 @@ module rbs_solve_time_located
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_column_chain, only: kinetic_of
-   use rbs_column_column, only: joint_name
+   use rbs_column_energy, only: kinetic_of
    use rbs_hysteresis_layer_events, only: turn_layer
    use rbs_solve_time_event, only: event_type, find_event, same_event, distance_to, standing_rotation, &
                                    round_off_of, felt
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type, stepper_type, in_bounds
+   use rbs_structure_spring_place, only: spring_name
    implicit none
    private
 
@@ -154,7 +154,7 @@ contains
       do j = 1, size(state%springs%layered)
          i = state%springs%layered(j)
          turn = state%v(i)
-         press = state%motion%press_rate(i - state%motion%column%n, self%slope)
+         press = state%motion%press_rate(i, self%slope)
          if (.not. abs(turn) + abs(press) > 0.0_wp) then
             if (.not. known) then
                call state%motion%acceleration(state%springs, state%q, state%v, state%load, self%now)
@@ -225,7 +225,7 @@ contains
          do j = 1, size(springs%layered)
             i = springs%layered(j)
             layer = merge(event%layer, 0, i == event%spring .and. .not. event%turns)
-            press = state%motion%press_rate(i - state%motion%column%n, self%slope)
+            press = state%motion%press_rate(i, self%slope)
             turned = state%q(i) - springs%d(i)
             before = springs%force(i)
             centre = springs%centre(i)
@@ -323,7 +323,7 @@ contains
       integer, intent(in) :: i
       type(error_type), allocatable, intent(inout) :: error
 
-      call fatal_error(error, analysis_failed, trim(joint_name(state%motion%column, i))// &
+      call fatal_error(error, analysis_failed, trim(spring_name(state%motion%column%place(i)))// &
                        ' changes its line again and again at time '//to_text(state%begin + state%time)// &
                        " s without moving. Rows up to there are kept; try method = 'newmark'")
    end subroutine report_standstill
@@ -398,7 +398,7 @@ contains
       call fatal_error(error, analysis_failed, 'the step of '//to_text(h)//' s at time '// &
                        to_text(state%begin + state%time)//' s does not reach the tolerance of '// &
                        to_text(self%tolerance)//'; the largest error is in '// &
-                       trim(joint_name(state%motion%column, i))//'. Rows up to there are kept. Give a '// &
+                       trim(spring_name(state%motion%column%place(i)))//'. Rows up to there are kept. Give a '// &
                        "larger tolerance, or method = 'generalised_alpha' for a stiff column")
    end subroutine report_no_step
 

@@ -20,6 +20,7 @@ module rbs_solve_time_march
    use rbs_solve_time_sight, only: sight_type
    use rbs_solve_time_start, only: initial_state, start_state, resume_state, resume_steps, keep_state
    use rbs_solve_time_state, only: state_type, stepper_type, out_of_bounds
+   use rbs_structure_spring_place, only: flexure
    implicit none
    private
 
@@ -107,10 +108,9 @@ contains
       type(layer_fall) :: fall
       type(motion_result) :: now
       real(wp) :: begin, finish, h
-      integer :: interval, part, parts, next_row, n
+      integer :: interval, part, parts, next_row, lost
       logical :: ends
 
-      n = state%motion%column%n
       if (recorder%motion) call now%create(state%motion%column)
       next_row = huge(1)
       if (every /= unset_integer) next_row = min(every, plan%steps)
@@ -136,7 +136,8 @@ contains
             end if
             state%clock = begin + part*h
             if (part == parts) state%clock = finish
-            summary%lost_joint = max(state%springs%lost_joint() - n, 0)
+            lost = state%springs%lost_joint()
+            summary%lost_joint = findloc(state%motion%column%at(flexure, :), lost, dim=1)
             ends = summary%lost_joint > 0 .or. state%sight%collapsed
             ! A joint may have lost its axial load, or the column may have collapsed, within the step.
             associate (at => state%begin + state%time)
@@ -146,7 +147,7 @@ contains
             call state%see(state%clock)
             ends = ends .or. state%sight%collapsed
             if (summary%lost_joint > 0) then
-               call state%springs%fall_of(n + summary%lost_joint, fall)
+               call state%springs%fall_of(lost, fall)
                call summary%see_fall(fall)
             end if
             if (ends .or. part == parts) call balance(state, row, summary)

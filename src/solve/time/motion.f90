@@ -11,14 +11,15 @@ module rbs_solve_time_motion
    use rbs_base_error, only: error_type
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
-   use rbs_column_chain, only: body_forces, lift_forces, second_order_forces, joint_accelerations, joint_lifts
    use rbs_column_column, only: column_type, small, finite
-   use rbs_column_energy, only: kinetic_energy
+   use rbs_column_energy, only: kinetic_energy, power_of_lifts
    use rbs_column_finite, only: finite_work, finite_acceleration, finite_power
    use rbs_column_momentum, only: momentum_at_foot
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_modal_damping, only: modal_damping
    use rbs_loading_loads, only: lateral, horizontal, vertical, axial
+   use rbs_structure_spring_place, only: shear, flexure
+   use rbs_structure_structure, only: structure_type
    implicit none
    private
 
@@ -31,25 +32,22 @@ module rbs_solve_time_motion
       !> Forces of the joints: springs, damping and, with small rotations, the second-order share of the axial
       !> forces (unknowns) [N, N m, N]
       real(wp), allocatable :: f(:)
-      !> Small rotations: forces, torques and lifts on the bodies, without the inertia of the moving ground
-      !> and without mass damping (n) [N, N m, N]
-      real(wp), allocatable :: force(:), torque(:), lift(:)
-      !> Small rotations: accelerations of the bodies relative to the ground, along x, in rotation and
-      !> upward (n)
-      real(wp), allocatable :: along(:), turning(:), upward(:)
-      !> Axial forces of the bodies and across the slips of the joints at the time (n) [N]
-      real(wp), allocatable :: axial_body(:), axial_joint(:)
+      !> Small rotations: forces on the unknowns of the structure, without the inertia of the moving ground and
+      !> without mass damping, and their accelerations relative to the ground (unknowns)
+      real(wp), allocatable :: force(:), x(:)
+      !> Axial forces that do second-order work at the time, in the order of the structure [N]
+      real(wp), allocatable :: axial(:)
       !> Cosine of the rotation, where the equation is the paper's eq 4
       real(wp) :: cosine = 1.0_wp
-      !> Work arrays
-      real(wp), allocatable, private :: second_order(:)
       type(finite_work), private :: work
    contains
       procedure :: create => create_result
    end type motion_result
 
    type :: motion_type
-      type(column_type) :: column
+      type(column_type), pointer :: column => null()
+      !> The same, as solvers see it
+      class(structure_type), pointer :: structure => null()
       !> Which of the four loads act (see `rbs_loading_loads`)
       logical :: acts(4) = .false.
       !> Damping of the joints, beta k0 (unknowns) [N s/m, N m s]
@@ -64,14 +62,13 @@ module rbs_solve_time_motion
       logical :: single = .false.
       !> Whether it is the column of the paper's eq 4: one body, finite rotation, dead loads
       logical :: equation_4 = .false.
-      !> One over mass and rotary inertia of the bodies (n)
-      real(wp), allocatable :: inverse_mass(:), inverse_inertia(:)
+      !> One over the mass or rotary inertia of each unknown, 0 for what is held (unknowns)
+      real(wp), allocatable :: inverse(:)
    contains
       procedure :: create
       procedure :: acceleration
       procedure :: forces_on_bodies
       procedure :: press
-      procedure :: axial_force
       procedure :: press_rate
       procedure :: load_power
       procedure :: lifting_power
@@ -88,22 +85,21 @@ contains
       class(motion_result), intent(out) :: self
       type(column_type), intent(in) :: column
 
-      allocate (self%a(column%unknowns), self%f(column%unknowns), source=0.0_wp)
-      allocate (self%force(column%n), self%torque(column%n), self%lift(column%n), self%along(column%n), &
-                self%turning(column%n), self%upward(column%n), self%second_order(column%n), source=0.0_wp)
-      self%axial_body = column%axial_body
-      self%axial_joint = column%axial_slip
+      allocate (self%a(column%unknowns), self%f(column%unknowns), self%force(column%unknowns), &
+                self%x(column%unknowns), source=0.0_wp)
+      self%axial = [column%axial_body, column%axial_slip]
       if (column%kinematics == finite) call self%work%create(column%n)
    end subroutine create_result
 
    subroutine create(self, column, acts, error)
       class(motion_type), intent(out) :: self
-      type(column_type), intent(in) :: column
+      type(column_type), intent(in), target :: column
       !> Which of the loads act
       logical, intent(in) :: acts(4)
       type(error_type), allocatable, intent(out) :: error
 
-      self%column = column
+      self%column => column
+      self%structure => column
       self%acts = acts
       self%joint_damping = column%stiffness_damping*column%initial_stiffness
       self%damped = column%damped
@@ -118,9 +114,7 @@ contains
       self%equation_4 = self%single .and. column%kinematics == finite .and. &
                         .not. (acts(vertical) .or. acts(axial) .or. column%axial_follows .or. &
                                column%force_follows)
-      self%inverse_mass = 1.0_wp/column%mass
-      self%inverse_inertia = 1.0_wp/column%inertia
-      if (column%held) self%inverse_inertia(column%n) = 0.0_wp
+      self%inverse = merge(0.0_wp, 1.0_wp/column%inertias, column%is_held)
    end subroutine create
 
    !> Accelerations of the joints at a state, and what they follow from.
@@ -132,9 +126,7 @@ contains
       !> Loads at the time
       real(wp), intent(in) :: load(4)
       type(motion_result), intent(inout) :: result
-      integer :: n
 
-      n = self%column%n
       if (self%column%kinematics == finite) then
          call joint_forces(self, springs, q, v, load, result%f)
          if (self%equation_4) then
@@ -145,24 +137,19 @@ contains
          return
       end if
       if (self%plain .and. .not. (self%second_order .or. self%column%opens)) then
-         call plain_accelerations(n, self%column%lower, self%column%upper, self%inverse_mass, &
-                                  self%inverse_inertia, springs%d0, springs%f0, springs%k, q, load(lateral), &
-                                  load(horizontal), result%f, result%along, result%turning, result%a)
+         call plain_accelerations(self%column%n, self%column%lower, self%column%upper, self%inverse, &
+                                  springs%d0, springs%f0, springs%k, q, load(lateral), load(horizontal), &
+                                  result%f, result%x, result%a)
          return
       end if
       call self%forces_on_bodies(springs, q, v, load, result)
-      call divide(n, self%inverse_mass, self%inverse_inertia, load(horizontal), result%force, result%torque, &
-                  result%along, result%turning)
-      call joint_accelerations(n, self%column%lower, self%column%upper, result%along, result%turning, &
-                               result%a(:n), result%a(n + 1:2*n))
-      if (self%column%opens) then
-         result%upward = result%lift*self%inverse_mass - load(vertical)
-         call joint_lifts(n, result%upward, result%a(2*n + 1:))
-      end if
+      call divide(size(q), 2*self%column%n, self%inverse, load(horizontal), load(vertical), result%force, &
+                  result%x)
+      call self%structure%spring_rates(result%x, result%a)
       if (self%column%mass_damping > 0.0_wp) result%a = result%a - self%column%mass_damping*v
    end subroutine acceleration
 
-   !> Forces of the joints and on the bodies with small rotations: all of the result but the accelerations.
+   !> Forces of the joints and on the unknowns with small rotations: all of the result but the accelerations.
    subroutine forces_on_bodies(self, springs, q, v, load, result)
       class(motion_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
@@ -170,30 +157,15 @@ contains
       !> Loads at the time
       real(wp), intent(in) :: load(4)
       type(motion_result), intent(inout) :: result
-      integer :: n
+      integer :: m
 
-      n = self%column%n
       call joint_forces(self, springs, q, v, load, result%f)
-      associate (column => self%column)
-         if (self%second_order) then
-            if (self%acts(vertical) .or. self%acts(axial)) then
-               result%axial_body = column%axial_body + load(axial)*column%axial_lever &
-                                   + load(vertical)*column%lifted_body
-               result%axial_joint = column%axial_slip + load(axial)*column%axial_lever &
-                                    + load(vertical)*column%lifted_joint
-               if (column%held) result%axial_joint(n) = 0.0_wp
-            end if
-            call second_order_forces(n, column%length, result%axial_body, result%axial_joint, q(:n), &
-                                     q(n + 1:2*n), result%f(:n), result%second_order)
-         end if
-         call body_forces(n, column%lower, column%upper, result%f(:n), result%f(n + 1:2*n), load(lateral), &
-                          result%force, result%torque)
-         if (self%second_order) result%torque = result%torque + result%second_order
-         if (column%opens) then
-            call lift_forces(n, column%weight, result%f(2*n + 1:), column%axial_load + load(axial), &
-                             result%lift)
-         end if
-      end associate
+      m = 0
+      if (self%second_order) then
+         m = size(result%axial)
+         if (self%acts(vertical) .or. self%acts(axial)) call self%structure%axial_forces(load, result%axial)
+      end if
+      call self%structure%forces(q, load, result%axial(:m), result%f, result%force)
    end subroutine forces_on_bodies
 
    !> Forces of the joints: springs on their present lines, and damping.
@@ -211,7 +183,7 @@ contains
       if (springs%pressed) then
          do j = 1, size(springs%layered)
             i = springs%layered(j)
-            f(i) = f(i) - springs%centre(i)*(self%axial_force(i - self%column%n, load) - springs%press_at(i))
+            f(i) = f(i) - springs%centre(i)*(self%column%axial_force(i, load) - springs%press_at(i))
          end do
       end if
       if (.not. self%damped) return
@@ -236,24 +208,14 @@ contains
       end do
    end function modal_forces
 
-   !> Axial force in a joint from axial load, weight and vertical motion, compression positive [N].
-   pure real(wp) function axial_force(self, joint, load)
+   !> Rate of the axial force at a spring [N/s].
+   pure real(wp) function press_rate(self, spring, slope)
       class(motion_type), intent(in) :: self
-      integer, intent(in) :: joint
-      real(wp), intent(in) :: load(4)
-
-      axial_force = self%column%compression(joint) + load(axial) &
-                    + load(vertical)*self%column%lifted_joint(joint)
-   end function axial_force
-
-   !> Rate of the axial force in a joint [N/s].
-   pure real(wp) function press_rate(self, joint, slope)
-      class(motion_type), intent(in) :: self
-      integer, intent(in) :: joint
+      integer, intent(in) :: spring
       !> Slopes of the loads [per s]
       real(wp), intent(in) :: slope(4)
 
-      press_rate = slope(axial) + slope(vertical)*self%column%lifted_joint(joint)
+      press_rate = slope(axial) + slope(vertical)*self%column%lifted_joint(mod(spring - 1, self%column%n) + 1)
    end function press_rate
 
    !> Tell layered joints the axial forces that their next move leads to.
@@ -267,7 +229,7 @@ contains
       if (.not. springs%pressed) return
       do j = 1, size(springs%layered)
          i = springs%layered(j)
-         springs%press_to(i) = self%axial_force(i - self%column%n, load)
+         springs%press_to(i) = self%column%axial_force(i, load)
       end do
    end subroutine press
 
@@ -281,42 +243,44 @@ contains
 
    !> The whole acceleration in three loops, for the chain with small rotations, without damping and axial
    !> forces.
-   pure subroutine plain_accelerations(n, lower, upper, inverse_mass, inverse_inertia, d0, f0, k, q, &
-                                       lateral_force, ground, f, along, turning, a)
+   pure subroutine plain_accelerations(n, lower, upper, inverse, d0, f0, k, q, lateral_force, ground, f, x, a)
       integer, intent(in) :: n
-      real(wp), intent(in) :: lower(n), upper(n), inverse_mass(n), inverse_inertia(n)
+      real(wp), intent(in) :: lower(n), upper(n), inverse(2*n)
       !> Lines of the springs, and deformations
       real(wp), intent(in) :: d0(2*n), f0(2*n), k(2*n), q(2*n)
       real(wp), intent(in) :: lateral_force, ground
       !> Forces of the joints, accelerations of the bodies and of the joints
-      real(wp), intent(out) :: f(2*n), along(n), turning(n), a(2*n)
+      real(wp), intent(out) :: f(2*n), x(2*n), a(2*n)
       integer :: i
 
       do i = 1, 2*n
          f(i) = f0(i) + k(i)*(q(i) - d0(i))
       end do
       do i = 1, n - 1
-         along(i) = (f(i + 1) - f(i))*inverse_mass(i) - ground
-         turning(i) = ((f(n + i + 1) - f(n + i)) + (lower(i)*f(i) + upper(i)*f(i + 1)))*inverse_inertia(i)
+         x(2*i - 1) = (f(i + 1) - f(i))*inverse(2*i - 1) - ground
+         x(2*i) = ((f(n + i + 1) - f(n + i)) + (lower(i)*f(i) + upper(i)*f(i + 1)))*inverse(2*i)
       end do
-      along(n) = (lateral_force - f(n))*inverse_mass(n) - ground
-      turning(n) = ((lower(n)*f(n) + upper(n)*lateral_force) - f(2*n))*inverse_inertia(n)
-      a(1) = along(1) - lower(1)*turning(1)
-      a(n + 1) = turning(1)
+      x(2*n - 1) = (lateral_force - f(n))*inverse(2*n - 1) - ground
+      x(2*n) = ((lower(n)*f(n) + upper(n)*lateral_force) - f(2*n))*inverse(2*n)
+      a(1) = x(1) - lower(1)*x(2)
+      a(n + 1) = x(2)
       do i = 2, n
-         a(i) = (along(i) - along(i - 1)) - (lower(i)*turning(i) + upper(i - 1)*turning(i - 1))
-         a(n + i) = turning(i) - turning(i - 1)
+         a(i) = (x(2*i - 1) - x(2*i - 3)) - (lower(i)*x(2*i) + upper(i - 1)*x(2*i - 2))
+         a(n + i) = x(2*i) - x(2*i - 2)
       end do
    end subroutine plain_accelerations
 
    !> Accelerations of the bodies from their forces.
-   pure subroutine divide(n, inverse_mass, inverse_inertia, ground, force, torque, along, turning)
-      integer, intent(in) :: n
-      real(wp), intent(in) :: inverse_mass(n), inverse_inertia(n), ground, force(n), torque(n)
-      real(wp), intent(out) :: along(n), turning(n)
+   pure subroutine divide(m, last, inverse, ground, upward, force, x)
+      !> Number of unknowns, and the last that is a displacement along x or a rotation
+      integer, intent(in) :: m, last
+      !> Accelerations of the ground
+      real(wp), intent(in) :: inverse(m), ground, upward, force(m)
+      real(wp), intent(out) :: x(m)
 
-      along = force*inverse_mass - ground
-      turning = torque*inverse_inertia
+      x = force*inverse
+      x(1:last:2) = x(1:last:2) - ground
+      x(last + 1:) = x(last + 1:) - upward
    end subroutine divide
 
    !> One body, finite rotation: the paper's eq 4, corrected, with axial load and weight; s is the distance of
@@ -395,29 +359,9 @@ contains
       class(motion_type), intent(in) :: self
       real(wp), intent(in), contiguous :: q(:), v(:)
       real(wp), intent(in) :: load(4)
-      real(wp) :: rotation, turning, rising, body, joint
-      integer :: i, n
 
       watt = 0.0_wp
-      if (.not. (self%acts(vertical) .or. self%acts(axial))) return
-      n = self%column%n
-      rotation = 0.0_wp
-      turning = 0.0_wp
-      rising = 0.0_wp
-      do i = 1, n
-         body = load(axial)*self%column%axial_lever + load(vertical)*self%column%lifted_body(i)
-         joint = load(axial)*self%column%axial_lever + load(vertical)*self%column%lifted_joint(i)
-         if (i == n .and. self%column%held) joint = 0.0_wp
-         if (self%second_order) watt = watt + joint*(v(i)*rotation + q(i)*turning)
-         rotation = rotation + q(n + i)
-         turning = turning + v(n + i)
-         if (self%second_order) watt = watt + body*self%column%length(i)*rotation*turning
-         if (self%column%opens) then
-            rising = rising + v(2*n + i)
-            watt = watt - self%column%mass(i)*load(vertical)*rising
-         end if
-      end do
-      if (self%column%opens) watt = watt - load(axial)*rising
+      if (self%acts(vertical) .or. self%acts(axial)) watt = power_of_lifts(self%column, q, v, load)
    end function lifting_power
 
    !> Velocity of the top along x, small rotations [m/s].
@@ -444,24 +388,25 @@ contains
       real(wp), intent(in), contiguous :: q(:), v(:)
       real(wp) :: base(2)
 
-      base = [force_at(self, springs, q, v, 1), force_at(self, springs, q, v, self%column%n + 1)]
+      base = [force_at(self, springs, q, v, self%column%at(shear, 1)), &
+              force_at(self, springs, q, v, self%column%at(flexure, 1))]
       if (self%column%mass_damping > 0.0_wp) then
          base = base + self%column%mass_damping*momentum_at_foot(self%column, q, v)
       end if
    end function base_reaction
 
    !> The shear force alone; asked for in every step.
-   function base_shear(self, springs, q, v) result(shear)
+   function base_shear(self, springs, q, v) result(force)
       class(motion_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in), contiguous :: q(:), v(:)
-      real(wp) :: shear, momentum(2)
+      real(wp) :: force, momentum(2)
 
-      shear = force_at(self, springs, q, v, 1)
+      force = force_at(self, springs, q, v, self%column%at(shear, 1))
       if (.not. self%damped) return
       if (self%column%mass_damping > 0.0_wp) then
          momentum = momentum_at_foot(self%column, q, v)
-         shear = shear + self%column%mass_damping*momentum(1)
+         force = force + self%column%mass_damping*momentum(1)
       end if
    end function base_shear
 

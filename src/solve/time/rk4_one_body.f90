@@ -160,9 +160,9 @@ contains
       type(motion_type), intent(in) :: motion
       real(wp), intent(out) :: flexible, coupling, turning, softening
 
-      flexible = motion%inverse_mass(1) + motion%column%lower(1)**2*motion%inverse_inertia(1)
-      coupling = -motion%column%lower(1)*motion%inverse_inertia(1)
-      turning = motion%inverse_inertia(1)
+      flexible = motion%inverse(1) + motion%column%lower(1)**2*motion%inverse(2)
+      coupling = -motion%column%lower(1)*motion%inverse(2)
+      turning = motion%inverse(2)
       softening = 0.0_wp
       if (motion%second_order) softening = motion%column%axial_body(1)*motion%column%length(1)
    end subroutine inverse_of_mass

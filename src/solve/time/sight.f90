@@ -3,13 +3,14 @@
 module rbs_solve_time_sight
    use rbs_base_check, only: is_given
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: finite
+   use rbs_column_column, only: column_type, finite
    use rbs_column_top, only: top_motion, top_displacement, largest_turn
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_summary, only: peaks_type
    use rbs_solve_time_cubic, only: cubic_type, cubic_through
    use rbs_loading_loads, only: lateral, horizontal
    use rbs_solve_time_motion, only: motion_type, motion_result
+   use rbs_structure_spring_place, only: shear, flexure
    implicit none
    private
 
@@ -43,8 +44,8 @@ module rbs_solve_time_sight
       real(wp), allocatable :: q(:), openings(:)
       !> Openings and rotations at rest now
       real(wp), allocatable, private :: openings_now(:)
-      !> Number of joints, and whether openings are still watched
-      integer, private :: n = 0
+      !> The column, and whether openings are still watched
+      type(column_type), pointer, private :: column => null()
       logical, private :: opens = .false.
       !> States within a step (unknowns, 4), and openings there
       real(wp), allocatable, private :: inner_q(:, :), inner_v(:, :), inner_openings(:, :)
@@ -90,9 +91,9 @@ contains
       if (is_given(collapse_drift)) self%furthest = collapse_drift*motion%column%height
       if (.not. allocated(self%watch)) call self%watch_for([watch_type ::], 0)
       m = motion%column%unknowns
-      self%n = motion%column%n
+      self%column => motion%column
       opening = 0
-      if (any(abs(self%watch%opening) > 0.0_wp)) opening = 2*self%n
+      if (any(abs(self%watch%opening) > 0.0_wp)) opening = 2*motion%column%n
       allocate (self%lowest(m), self%highest(m), self%inner_q(m, 4), self%inner_v(m, 4), &
                 self%openings(opening), self%inner_openings(opening, 4), source=0.0_wp)
       call set_bounds(self)
@@ -101,7 +102,7 @@ contains
       self%q = q
       self%clock = clock
       self%displacement = top_displacement(motion%column, q)
-      call springs%fill_openings(self%n, self%openings)
+      call springs%fill_openings(self%column%n, self%openings)
       self%openings_now = self%openings
       call self%see(motion, springs, q, v, load, clock)
    end subroutine begin
@@ -161,7 +162,7 @@ contains
       !> Of the top [m]
       real(wp), intent(in) :: displacement, clock
 
-      if (self%opens) call springs%fill_openings(self%n, self%openings_now)
+      if (self%opens) call springs%fill_openings(self%column%n, self%openings_now)
       if (self%opens .or. are_beyond(size(q), self%lowest, self%highest, q, q)) then
          call look_closely(self, q, displacement, clock)
       end if
@@ -223,14 +224,15 @@ contains
       self%clock = clock
       self%displacement = displacement(2)
       self%q(:) = q1
-      if (self%opens) then
-         call fill_inner_openings(self, springs)
-         self%openings(:) = self%inner_openings(:, 4)
-      else
+      if (.not. self%opens) then
          if (.not. are_beyond(m, self%lowest, self%highest, min(q0, q1) - reach*(abs(v0) + abs(v1)), &
                               max(q0, q1) + reach*(abs(v0) + abs(v1)))) return
       end if
       call fill_inner(m, q0, v0, q1, v1, h, self%inner_q, self%inner_v)
+      if (self%opens) then
+         call fill_inner_openings(self, springs)
+         self%openings(:) = self%inner_openings(:, 4)
+      end if
       call look_within(self, motion, h, clock)
    end subroutine see_within
 
@@ -247,9 +249,8 @@ contains
       !> How far a cubic goes beyond its ends, for the sum of both velocities there [s]
       real(wp), intent(in) :: reach
       real(wp) :: turn(2), turning(2)
-      integer :: i, n
+      integer :: i, at
 
-      n = motion%column%n
       grow = .true.
       if (motion%column%kinematics == finite .or. motion%damped) return
       if (goes_beyond(displacement(1), displacement(2), &
@@ -261,9 +262,10 @@ contains
       end associate
       turn = 0.0_wp
       turning = 0.0_wp
-      do i = n + 1, 2*n
-         turn = turn + [q0(i), q1(i)]
-         turning = turning + [v0(i), v1(i)]
+      do i = 1, motion%column%n
+         at = motion%column%at(flexure, i)
+         turn = turn + [q0(at), q1(at)]
+         turning = turning + [v0(at), v1(at)]
          if (goes_beyond(turn(1), turn(2), reach*(abs(turning(1)) + abs(turning(2))), &
                          self%peak_rotation)) return
       end do
@@ -300,9 +302,9 @@ contains
          call self%see_base(part%largest())
       end if
       rotation = 0.0_wp
-      do i = motion%column%n + 1, 2*motion%column%n
+      do i = 1, motion%column%n
          do j = 1, 4
-            rotation(j) = rotation(j) + self%inner_q(i, j)
+            rotation(j) = rotation(j) + self%inner_q(self%column%at(flexure, i), j)
          end do
          if (.not. may_exceed(rotation, self%peak_rotation)) cycle
          part = cubic_through(rotation)
@@ -351,14 +353,14 @@ contains
    subroutine fill_inner_openings(self, springs)
       type(sight_type), intent(inout) :: self
       type(spring_array), intent(in) :: springs
-      integer :: i, j
+      integer :: i, j, at
 
-      call springs%fill_openings(self%n, self%openings_now)
+      call springs%fill_openings(self%column%n, self%openings_now)
       do j = 1, 4
          self%inner_openings(:, j) = self%openings_now
-         do i = 1, self%n
-            self%inner_openings(i, j) = springs%opening(self%n + i, self%inner_q(self%n + i, j), &
-                                                        (j - 1)/3.0_wp)
+         do i = 1, self%column%n
+            at = self%column%at(flexure, i)
+            self%inner_openings(i, j) = springs%opening(at, self%inner_q(at, j), (j - 1)/3.0_wp)
          end do
       end do
    end subroutine fill_inner_openings
@@ -408,10 +410,13 @@ contains
       !> See `sight_type`
       real(wp), intent(in) :: q(:), openings(:)
 
-      value = watch%slip*q(watch%joint) + watch%rotation*q(self%n + watch%joint)
+      associate (at => self%column%at(:, watch%joint))
+         value = watch%slip*q(at(shear)) + watch%rotation*q(at(flexure))
+      end associate
       if (abs(watch%opening) > 0.0_wp) then
+         ! Openings, then rotations at rest
          value = value + watch%opening*openings(watch%joint) &
-                 + watch%rotation*openings(self%n + watch%joint)
+                 + watch%rotation*openings(size(openings)/2 + watch%joint)
       end if
    end function value_of
 
@@ -433,7 +438,7 @@ contains
    !> The bounds of what is still watched for.
    pure subroutine set_bounds(self)
       type(sight_type), intent(inout) :: self
-      integer :: i, at(2)
+      integer :: i
 
       self%lowest = -huge(1.0_wp)
       self%highest = huge(1.0_wp)
@@ -446,9 +451,11 @@ contains
             if (abs(watch%opening) > 0.0_wp) then
                self%opens = .true.
             else
-               at = [watch%joint, self%n + watch%joint]
-               call narrow(self%lowest(at(1)), self%highest(at(1)), watch%slip, watch%threshold)
-               call narrow(self%lowest(at(2)), self%highest(at(2)), watch%rotation, watch%threshold)
+               associate (at => self%column%at(:, watch%joint))
+                  call narrow(self%lowest(at(shear)), self%highest(at(shear)), watch%slip, watch%threshold)
+                  call narrow(self%lowest(at(flexure)), self%highest(at(flexure)), watch%rotation, &
+                              watch%threshold)
+               end associate
             end if
          end associate
       end do

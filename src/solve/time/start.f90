@@ -4,14 +4,15 @@ module rbs_solve_time_start
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type, joint_name
+   use rbs_column_column, only: column_type
    use rbs_column_energy, only: kinetic_energy, potential_energy
    use rbs_column_top, only: top_displacement
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_solve_end_state, only: end_state, standing_type, moving_state
-   use rbs_loading_loads, only: loads_type, lateral, vertical, axial
+   use rbs_loading_loads, only: loads_type, lateral, vertical, top_axial => axial
    use rbs_solve_time_plan, only: time_plan, same_step
    use rbs_solve_time_state, only: state_type, stepper_type
+   use rbs_structure_spring_place, only: spring_name, flexure, axial
    implicit none
    private
 
@@ -38,7 +39,7 @@ contains
       type(standing_type), intent(out) :: standing
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: press(column%n), missing, largest(4)
-      integer :: i, joint
+      integer :: i, lost
 
       call create_state(state, column, loads, plan%begin, error)
       if (allocated(error)) return
@@ -58,14 +59,14 @@ contains
       largest = same_step*max(largest, abs(standing%load))
       if (all(abs(state%load - standing%load) <= largest)) state%load = standing%load
       do i = 1, column%n
-         press(i) = state%motion%axial_force(i, state%load)
+         press(i) = column%axial_force(i, state%load)
       end do
       call state%springs%go_under(press, standing%pressed)
-      joint = state%springs%lost_joint() - column%n
-      if (joint > 0) then
+      lost = state%springs%lost_joint()
+      if (lost > 0) then
          call fatal_error(error, analysis_failed, 'initial: the layers of '// &
-                          trim(joint_name(column, column%n + joint))// &
-                          ' cannot carry the axial load of '//to_text(press(joint))//' N in the '// &
+                          trim(spring_name(column%place(lost)))// &
+                          ' cannot carry the axial load of '//to_text(column%axial_force(lost, state%load))//' N in the '// &
                           'state that the first analysis ended in; give a smaller axial_load')
          return
       end if
@@ -123,10 +124,10 @@ contains
          standing%pressed = state%springs%pressed
          standing%displacement = top_displacement(column, state%q)
          standing%force = state%load(lateral)
-         standing%axial_load = column%axial_load + state%load(axial)
+         standing%axial_load = column%axial_load + state%load(top_axial)
          allocate (standing%press(column%n))
          do i = 1, column%n
-            standing%press(i) = state%motion%axial_force(i, state%load)
+            standing%press(i) = column%axial_force(i, state%load)
          end do
          standing%v = state%v
          standing%input = state%of_loads
@@ -200,7 +201,7 @@ contains
       call state%loads%find_acting()
       call state%loads%set_begin(state%begin)
       ! The history is that of the whole axial load; the motion takes what it adds to the constant one.
-      if (state%loads%acts(axial)) state%loads%axial%value = state%loads%axial%value - column%axial_load
+      if (state%loads%acts(top_axial)) state%loads%axial%value = state%loads%axial%value - column%axial_load
       call state%loads%at_time(state%time, state%load)
    end subroutine prepare_loads
 
@@ -211,18 +212,15 @@ contains
       type(spring_record), allocatable :: spring(:)
       integer :: i
 
-      if (.not. any(state%loads%acts([vertical, axial]))) then
-         call state%springs%create(column%spring, column%told)
+      if (.not. any(state%loads%acts([vertical, top_axial]))) then
+         call state%springs%create(column%spring, column%place%heard)
          return
       end if
       spring = column%spring
       do i = 1, column%n
-         associate (joint => spring(column%n + i))
-            joint%axial_load = joint%axial_load + state%load(axial) &
-                               + state%load(vertical)*column%lifted_joint(i)
-         end associate
+         spring(column%at(flexure, i))%axial_load = column%axial_force(i, state%load)
       end do
-      call state%springs%create(spring, column%told)
+      call state%springs%create(spring, column%place%heard)
       call state%springs%vary_axial_loads()
       call state%motion%press(state%springs, state%load)
    end subroutine create_springs
@@ -232,21 +230,21 @@ contains
       type(state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: tension
-      integer :: i, n
+      integer :: i, joint
       logical :: found
 
-      n = state%motion%column%n
-      do i = 1, n
-         tension = -(state%motion%column%compression(i) + state%load(axial))
-         call state%springs%load_to(2*n + i, tension, found)
+      do joint = 1, state%motion%column%n
+         i = state%motion%column%at(axial, joint)
+         tension = -(state%motion%column%compression(joint) + state%load(top_axial))
+         call state%springs%load_to(i, tension, found)
          if (.not. found) then
-            call fatal_error(error, analysis_failed, trim(joint_name(state%motion%column, 2*n + i))// &
+            call fatal_error(error, analysis_failed, trim(spring_name(state%motion%column%place(i)))// &
                              ' cannot carry the axial force of '//to_text(-tension)//' N (compression '// &
                              'positive) at the start; change axial_load or the spring, or give the '// &
                              'openings at the start')
             return
          end if
-         state%q(2*n + i) = state%springs%d(2*n + i)
+         state%q(i) = state%springs%d(i)
       end do
    end subroutine close_joints
 

@@ -1,0 +1,34 @@
+!> Where a spring is in a structure. Nobody else finds a spring by index arithmetic.
+module rbs_structure_spring_place
+   implicit none
+   private
+
+   public :: spring_place, spring_name
+   public :: shear, flexure, axial
+
+   !> Kinds of springs, by the deformation that they resist: slip, relative rotation, opening.
+   integer, parameter :: shear = 1, flexure = 2, axial = 3
+
+   type :: spring_place
+      !> `shear`, `flexure` or `axial`
+      integer :: kind = 0
+      !> Member, 1 for a column, and joint of it from the bottom up; joint 0 is that of a footing
+      integer :: member = 1, joint = 0
+      !> The spring whose work this one may ask for; 0: none
+      integer :: heard = 0
+   end type spring_place
+
+contains
+
+   !> Which spring it is, for messages: 'the shear spring of joint 3'.
+   pure function spring_name(place) result(name)
+      type(spring_place), intent(in) :: place
+      character(len=40) :: name
+      character(len=9), parameter :: kinds(3) = ['shear    ', 'flexural ', 'axial    ']
+      character(len=12) :: joint
+
+      write (joint, '(i0)') place%joint
+      name = 'the '//trim(kinds(place%kind))//' spring of joint '//joint
+   end function spring_name
+
+end module rbs_structure_spring_place
