@@ -7,9 +7,10 @@ module test_column
    use rbs_base_text, only: to_text
    use rbs_column_axial, only: geometric_stiffness, geometric_forces, axial_energy, critical_factor, &
                                check_stable
-   use rbs_column_column, only: column_type, joint_name, small, pdelta, finite
+   use rbs_column_column, only: column_type, small, pdelta, finite
    use rbs_column_mass, only: symmetric_mass, paper_mass
    use rbs_column_column_record, only: column_record
+   use rbs_structure_spring_place, only: spring_name
    use samples, only: chain, column_1, elastic, made, random_type, k_c, s_k, mass_1, height_1
    implicit none
    private
@@ -548,11 +549,11 @@ contains
       allocate (spec%axial_spring(1))
       spec%axial_spring(1) = elastic(1.0e9_wp)
       column = made(spec)
-      call check_equal(error, trim(joint_name(column, 1)), 'the shear spring of joint 1', 'first')
-      call check_equal(error, trim(joint_name(column, n)), 'the shear spring of joint 5', 'last shear')
-      call check_equal(error, trim(joint_name(column, n + 1)), 'the flexural spring of joint 1', &
+      call check_equal(error, trim(spring_name(column%place(1))), 'the shear spring of joint 1', 'first')
+      call check_equal(error, trim(spring_name(column%place(n))), 'the shear spring of joint 5', 'last shear')
+      call check_equal(error, trim(spring_name(column%place(n + 1))), 'the flexural spring of joint 1', &
                        'first flexure')
-      call check_equal(error, trim(joint_name(column, 3*n)), 'the axial spring of joint 5', 'last')
+      call check_equal(error, trim(spring_name(column%place(3*n))), 'the axial spring of joint 5', 'last')
    end subroutine names
 
 end module test_column

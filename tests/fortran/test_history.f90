@@ -415,6 +415,7 @@ contains
       type(error_type), allocatable :: outcome
       type(random_type) :: random
       type(column_record) :: spec
+      type(column_type), target :: upright, turned
       type(motion_type) :: small, finite
       type(spring_array) :: springs
       type(motion_result) :: a, b
@@ -427,10 +428,12 @@ contains
       spec%self_weight = .true.
       spec%damping%mass = 2.0_wp
       spec%damping%stiffness = 1.0e-4_wp
-      call small%create(made(spec), spread(.true., 1, 4), outcome)
+      upright = made(spec)
+      call small%create(upright, spread(.true., 1, 4), outcome)
       call check_passed(error, outcome, 'small')
       spec%kinematics = 'finite'
-      call finite%create(made(spec), spread(.true., 1, 4), outcome)
+      turned = made(spec)
+      call finite%create(turned, spread(.true., 1, 4), outcome)
       call check_passed(error, outcome, 'finite')
       call springs%create(small%column%spring)
       call a%create(small%column)
