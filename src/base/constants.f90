@@ -15,6 +15,9 @@ module rbs_base_constants
    !> A deformation that is never reached: the end of a line that goes on for ever.
    real(wp), parameter, public :: unbounded = huge(1.0_wp)
 
+   !> In time deformations beyond this [m, rad] have no meaning, and their squares would overflow.
+   real(wp), parameter, public :: out_of_bounds = 1.0e100_wp
+
    !> Numbers larger than this, and positive numbers below its inverse, are refused in every unit: products
    !> of them would overflow or vanish.
    real(wp), parameter, public :: beyond_meaning = 1.0e50_wp

@@ -32,11 +32,19 @@ FLOORS = (
 )
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 
-#: Rooms inside solve, by floor: each kind of analysis stands alone, except that time asks modal.
-ANALYSES = {"modal": 0, "static": 1, "time": 1, "ensemble": 2}
+#: Rooms inside solve, by floor: each kind of analysis stands alone, except that time asks modal, and the
+#: steps of one body.
+ANALYSES = {"modal": 0, "one_body": 0, "static": 1, "time": 1, "ensemble": 2}
 
 #: What each room inside solve/ may use of the others; what they share lies beside them.
-INNER = {"": (), "modal": (), "static": (), "time": ("modal",), "ensemble": ("modal", "time")}
+INNER = {
+    "": (),
+    "modal": (),
+    "one_body": (),
+    "static": (),
+    "time": ("modal", "one_body"),
+    "ensemble": ("modal", "one_body", "time"),
+}
 
 #: Files without a module: what f2py reads, and the program.
 NO_MODULE = ("bindings/bindings.f90", "app/main.f90")

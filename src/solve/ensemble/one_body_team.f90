@@ -4,7 +4,6 @@ module rbs_solve_ensemble_one_body_team
    use, intrinsic :: iso_c_binding, only: c_f_pointer, c_intptr_t, c_loc
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_lone_spring, only: lone_spring
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_ensemble_lane_fields, only: one_body_lanes, lanes
@@ -16,10 +15,11 @@ module rbs_solve_ensemble_one_body_team
                                          at_end, at_time_step, at_steps, at_events, at_cut, at_lost_joint
    use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, lane_task
    use rbs_solve_ensemble_team, only: team_type, lane_type, begin_run, show_motion, show_seen, take_seen
-   use rbs_solve_time_implicit, only: implicit_stepper
+   use rbs_solve_time_implicit, only: implicit_stepper, fit_one_body
    use rbs_loading_loads, only: horizontal
    use rbs_solve_time_march, only: report_state
-   use rbs_solve_time_rk4_one_body, only: inverse_of_mass, resistance_per_velocity
+   use rbs_solve_one_body_implicit_one_body, only: body_spring, side_of, move_spring, advance_on_branch
+   use rbs_solve_one_body_rk4_one_body, only: rk4_body, resistance_per_velocity
    use rbs_solve_time_state, only: state_type
    implicit none
    private
@@ -64,12 +64,16 @@ contains
       integer, intent(in) :: first
       type(lane_task), intent(in) :: task
       type(error_type), allocatable, intent(out) :: error
+      type(rk4_body) :: body
 
       call begin_run(self, self%x, l, column, motion, first, task, error)
       if (allocated(error)) return
       associate (x => self%x, one => column%column)
-         call inverse_of_mass(self%lane(l)%state%motion, x%flexible(l), x%coupling(l), x%turning(l), &
-                              x%softening(l))
+         call body%create(one)
+         x%flexible(l) = body%flexible
+         x%coupling(l) = body%coupling
+         x%turning(l) = body%turning
+         x%softening(l) = body%softening
          x%mass(l, 1) = one%mass(1)
          x%mass(l, 2) = one%inertia(1)
          x%lower(l) = one%lower(1)
@@ -147,18 +151,18 @@ contains
       integer, intent(in) :: l
       type(spring_array), intent(inout) :: springs
       logical, intent(out) :: stuck
-      type(lone_spring) :: spring
+      type(body_spring) :: spring
       integer :: i, events
 
       stuck = .false.
       do i = 1, 2
          call take_spring(x, l, i, x%from(l, i), spring)
-         if (spring%side(x%q(l, i)) == 0) then
-            call spring%advance_on_branch(x%q(l, i))
+         if (side_of(spring, x%q(l, i)) == 0) then
+            call advance_on_branch(spring, x%q(l, i))
          else
             ! The first spring is told what the second has done up to the start of the step.
             if (springs%heard(i) > 0) call springs%slot(i)%rule%hear(x%work(l, 2))
-            call spring%move(springs%slot(i)%rule, x%q(l, i), events, stuck)
+            call move_spring(spring, springs%slot(i)%rule, x%q(l, i), events, stuck)
             if (stuck) return
             x%events(l) = x%events(l) + events
             call put_line(x, l, i, spring%line)
@@ -177,7 +181,7 @@ contains
       logical, intent(out) :: taken
       integer :: i
 
-      associate (bent => stepper%one_body%bent)
+      associate (bent => stepper%one_body)
          bent%ground = x%trial(l, 4)
          bent%work = x%trial(l, 3)
          do i = 1, 2
@@ -187,9 +191,9 @@ contains
             bent%a0(i) = x%a0(l, i)
             bent%g0(i) = x%g0(l, i)
             bent%largest(i) = x%largest(l, i)
-            call take_spring(x, l, i, x%q(l, i), bent%spring(i)%lone_spring)
+            call take_spring(x, l, i, x%q(l, i), bent%spring(i))
          end do
-         call bent%solve(lane%springs%slot, stepper%one_body%kept, taken)
+         call bent%solve(lane%springs%slot, taken)
          if (.not. taken) return
          x%steps(l) = x%steps(l) + 1.0_wp
          x%events(l) = x%events(l) + bent%events
@@ -204,7 +208,7 @@ contains
             x%g0(l, i) = bent%g(i)
             x%largest(l, i) = bent%scale(i)
             if (bent%spring(i)%way /= 0) call put_line(x, l, i, bent%spring(i)%line)
-            call give_spring(x, l, i, bent%spring(i)%lone_spring)
+            call give_spring(x, l, i, bent%spring(i))
          end do
          do i = 1, 4
             x%inverse(l, i) = bent%inverse(i)
@@ -217,7 +221,7 @@ contains
       type(one_body_lanes), intent(in) :: x
       integer, intent(in) :: l, i
       real(wp), intent(in) :: d
-      type(lone_spring), intent(inout) :: spring
+      type(body_spring), intent(inout) :: spring
 
       spring%line = line_of(x, l, i)
       spring%first = x%first(l, i)
@@ -230,7 +234,7 @@ contains
    pure subroutine give_spring(x, l, i, spring)
       type(one_body_lanes), intent(inout) :: x
       integer, intent(in) :: l, i
-      type(lone_spring), intent(in) :: spring
+      type(body_spring), intent(in) :: spring
 
       x%work(l, i) = spring%work
       x%first(l, i) = spring%first
@@ -382,7 +386,7 @@ contains
       type(implicit_stepper), intent(inout) :: stepper
       integer :: i
 
-      call stepper%one_body%fit(stepper%step, state, x%h(l))
+      call fit_one_body(stepper, state, x%h(l))
       do i = 1, 2
          x%v0(l, i) = stepper%step%v0(i)
          x%a0(l, i) = stepper%step%a0(i)
@@ -390,12 +394,12 @@ contains
          x%largest(l, i) = stepper%step%largest(i)
       end do
       do i = 1, 4
-         x%inverse(l, i) = stepper%one_body%bent%inverse(i)
+         x%inverse(l, i) = stepper%one_body%inverse(i)
       end do
-      x%per_h(l) = stepper%one_body%bent%per_h
-      stepper%one_body%bent%wanted = stepper%wanted
-      stepper%one_body%bent%push = 0.0_wp
-      stepper%one_body%bent%hears = state%springs%heard(1) > 0
+      x%per_h(l) = stepper%one_body%per_h
+      stepper%one_body%wanted = stepper%wanted
+      stepper%one_body%push = 0.0_wp
+      stepper%one_body%hears = state%springs%heard(1) > 0
    end subroutine from_balance
 
    subroutine settle(self, l, task, outcome)

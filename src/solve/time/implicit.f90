@@ -8,10 +8,11 @@ module rbs_solve_time_implicit
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
+   use rbs_solve_one_body_implicit_one_body, only: one_body_step
+   use rbs_solve_one_body_rk4_one_body, only: softening_of
    use rbs_solve_time_halving, only: halving_stepper
    use rbs_solve_time_implicit_finite, only: finite_stepper
    use rbs_solve_time_implicit_balance, only: step_balance
-   use rbs_solve_time_implicit_one_body, only: one_body_step
    use rbs_solve_time_implicit_tangent, only: step_tangent
    use rbs_loading_loads, only: lateral, horizontal, vertical, axial
    use rbs_solve_time_state, only: state_type, in_bounds, out_of_bounds
@@ -19,7 +20,7 @@ module rbs_solve_time_implicit
    implicit none
    private
 
-   public :: implicit_stepper, new_newmark, new_generalised_alpha, new_hht, with_finite_rotations
+   public :: implicit_stepper, fit_one_body, new_newmark, new_generalised_alpha, new_hht, with_finite_rotations
 
    !> Most iterations of Newton's method, which mostly needs two or three.
    integer, parameter :: most_iterations = 40
@@ -112,12 +113,74 @@ contains
 
       if (state%motion%plain .and. state%motion%single) then
          busiest = 0
-         call self%one_body%take_step(self%step, state, h, load, self%wanted, converged)
+         call take_step_of_one_body(self, state, h, load, converged)
          if (converged) return
       end if
       call solve_step(self, state, h, load, converged, busiest)
       if (converged) call commit(self, state, h, load)
    end subroutine take_step
+
+   !> Take a step of h of one body without damping. If it is not found so, nothing has happened.
+   subroutine take_step_of_one_body(self, state, h, load, taken)
+      type(implicit_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      real(wp), intent(in) :: h, load(4)
+      logical, intent(out) :: taken
+      real(wp) :: mean(2)
+
+      associate (step => self%step, body => self%one_body, motion => state%motion)
+         if (abs(h - body%h) > 0.0_wp) call fit_one_body(self, state, h)
+         call body%take_step(state%springs, state%q, step%v0, step%a0, step%g0, step%largest, &
+                             load(lateral), load(horizontal), taken)
+         if (.not. taken) return
+         mean = 0.5_wp*(state%load(:2) + load(:2))
+         if (motion%acts(lateral)) then
+            state%of_loads = state%of_loads &
+                             + mean(lateral)*(body%moved(1) + body%upper*body%moved(2))
+         end if
+         if (motion%acts(horizontal)) then
+            state%of_loads = state%of_loads - mean(horizontal)*body%mass(1)*body%moved(1)
+         end if
+         ! Both elements one by one: the compiler does not know that there are no more.
+         state%v(1) = body%v1(1) - body%lower*body%v1(2)
+         state%v(2) = body%v1(2)
+         state%q(1) = body%q(1)
+         state%q(2) = body%q(2)
+         state%time = state%time + h
+         state%load = load
+         step%largest(1) = body%scale(1)
+         step%largest(2) = body%scale(2)
+         step%v0(1) = body%v1(1)
+         step%v0(2) = body%v1(2)
+         step%a0(1) = body%a1(1)
+         step%a0(2) = body%a1(2)
+         step%g0(1) = body%g(1)
+         step%g0(2) = body%g(2)
+      end associate
+   end subroutine take_step_of_one_body
+
+   !> Column, method and length of the step, and the tangent on the present lines, of one body.
+   subroutine fit_one_body(self, state, h)
+      class(implicit_stepper), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      real(wp), intent(in) :: h
+
+      associate (step => self%step, body => self%one_body, column => state%motion%column)
+         if (abs(h - body%h) > 0.0_wp) then
+            body%alpha_m = step%alpha_m
+            body%alpha_f = step%alpha_f
+            body%beta = step%beta
+            body%gamma = step%gamma
+            body%wanted = self%wanted
+            body%mass = column%inertias(:2)
+            body%lower = column%lower(1)
+            body%upper = column%upper(1)
+            body%softening = softening_of(column)
+            call body%set_step(h)
+         end if
+         call body%fit_to(state%springs)
+      end associate
+   end subroutine fit_one_body
 
    !> Find the end of a step of h. If it is not found, the springs are as before.
    subroutine solve_step(self, state, h, load, converged, busiest)

@@ -4,9 +4,9 @@ module rbs_solve_time_rk4
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
    use rbs_loading_loads, only: lateral, horizontal
-   use rbs_solve_time_rk4_one_body, only: advance_one_body, step_of_one_body
+   use rbs_solve_one_body_rk4_one_body, only: rk4_body
    use rbs_solve_time_scheme, only: scheme_type
-   use rbs_solve_time_state, only: state_type, stepper_type, in_bounds
+   use rbs_solve_time_state, only: state_type, stepper_type, in_bounds, out_of_bounds
    implicit none
    private
 
@@ -20,6 +20,8 @@ module rbs_solve_time_rk4
    type, extends(scheme_type) :: rk4_scheme
       !> Stage (unknowns)
       real(wp), allocatable, private :: stage_q(:), stage_v(:)
+      !> The column, if it has one body
+      type(rk4_body) :: body
    contains
       procedure :: create
       procedure :: attempt
@@ -42,6 +44,7 @@ contains
       allocate (self%q(column%unknowns), self%v(column%unknowns), self%stage_q(column%unknowns), &
                 self%stage_v(column%unknowns))
       call self%now%create(column)
+      if (column%unknowns == 2) call self%body%create(column)
    end subroutine create
 
    !> A step of h from the state, which stays as it is. Works of loads and damping are integrated with the
@@ -63,8 +66,7 @@ contains
          ground = load(horizontal, :)
          self%q(:) = state%q
          self%v(:) = state%v
-         call step_of_one_body(state%motion, state%springs%d0, state%springs%f0, state%springs%k, h, &
-                               push, ground, self%q, self%v, self%of_loads)
+         call self%body%take_step(state%springs, h, push, ground, self%q, self%v, self%of_loads)
       else
          call step_of_chain(self, state, h, load)
       end if
@@ -157,6 +159,34 @@ contains
       v = v + share*a
    end subroutine end_step
 
+   !> The same for the paper's column, whose loops and calls would take nearly all of the time.
+   subroutine advance_one_body(body, state, h)
+      type(rk4_body), intent(inout) :: body
+      type(state_type), intent(inout) :: state
+      real(wp), intent(in) :: h
+      real(wp) :: force(3), ground(3), of_loads
+
+      force = 0.0_wp
+      ground = 0.0_wp
+      if (state%motion%acts(lateral)) then
+         force(1) = state%load(lateral)
+         force(2) = state%loads%force%at_time(state%time + 0.5_wp*h)
+         force(3) = state%loads%force%at_time(state%time + h)
+      end if
+      if (state%motion%acts(horizontal)) then
+         ground(1) = state%load(horizontal)
+         ground(2) = state%loads%ground%at_time(state%time + 0.5_wp*h)
+         ground(3) = state%loads%ground%at_time(state%time + h)
+      end if
+      call body%take_step(state%springs, h, force, ground, state%q, state%v, of_loads)
+      state%time = state%time + h
+      state%load(lateral) = force(3)
+      state%load(horizontal) = ground(3)
+      state%of_loads = state%of_loads + of_loads
+      state%lost = .not. (abs(state%q(1)) < out_of_bounds .and. abs(state%q(2)) < out_of_bounds)
+      if (.not. state%lost) call state%springs%move_all(state%q)
+   end subroutine advance_one_body
+
    !> One step; the springs follow at its end, along as many lines as they have passed.
    subroutine advance(self, state, h, error)
       class(rk4_stepper), intent(inout) :: self
@@ -167,7 +197,7 @@ contains
       if (allocated(error)) return
       self%steps = self%steps + 1
       if (state%motion%plain .and. state%motion%single) then
-         call advance_one_body(state, h)
+         call advance_one_body(self%scheme%body, state, h)
          return
       end if
       call self%scheme%attempt(state, h)

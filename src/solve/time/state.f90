@@ -1,5 +1,6 @@
 !> The state of a column in time, the works done on it so far, and the type of a method that advances it.
 module rbs_solve_time_state
+   use rbs_base_constants, only: out_of_bounds
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
@@ -11,9 +12,6 @@ module rbs_solve_time_state
    private
 
    public :: state_type, stepper_type, out_of_bounds, in_bounds
-
-   !> Deformations beyond this [m, rad] have no meaning, and their squares would overflow.
-   real(wp), parameter :: out_of_bounds = 1.0e100_wp
 
    type :: state_type
       type(motion_type) :: motion

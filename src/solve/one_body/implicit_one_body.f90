@@ -1,0 +1,482 @@
+!> Implicit steps of one body without damping, with small rotations: the equations of
+!> `rbs_solve_time_implicit_balance` with all numbers in one record of fixed size, for a run alone and for a
+!> lane of an ensemble. On the present lines the tangent of two by two is inverted once for all steps; a step
+!> on which springs leave their lines is found by Newton's method. Where a step is not found here, nothing has
+!> happened and it is taken there.
+!>
+!> As in `rbs_solve_time_implicit` every trial goes from the start of the step, each spring in one direction,
+!> and a correction that overshoots too far is cut.
+module rbs_solve_one_body_implicit_one_body
+   use rbs_base_constants, only: out_of_bounds
+   use rbs_base_kinds, only: wp
+   use rbs_hysteresis_journal, only: rule_slot, save_rule, return_rule
+   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_segment, only: segment
+   use rbs_hysteresis_spring_lines, only: first_on, last_on, most_lines
+   use rbs_hysteresis_springs, only: spring_array
+   implicit none
+   private
+
+   public :: one_body_step, body_spring, side_of, move_spring, advance_on_branch
+
+   !> Most trials of Newton's method, which mostly needs two; the same number for the cuts of a correction.
+   integer, parameter :: most_trials = 8
+
+   !> Most lines of a spring within one step of Newton's method.
+   integer, parameter :: most_changes = 100
+
+   !> Share of the work of the residual on a correction by which the correction may overshoot.
+   real(wp), parameter :: too_far = 0.9_wp
+
+   !> One spring beside its rule: its line, the first and the last deformation that belong to the line, present
+   !> deformation and work, and how it has come to its line in this step: +1 or -1 by the end of another, 0 it
+   !> was on it before. It moves as those of `rbs_hysteresis_spring_lines` do, with the same bits.
+   type :: body_spring
+      type(segment) :: line
+      real(wp) :: first = 0.0_wp, last = 0.0_wp, d = 0.0_wp, work = 0.0_wp
+      integer :: way = 0
+   end type body_spring
+
+   !> Second index, or place of two: slip and rotation, or the body's displacement and rotation.
+   type :: one_body_step
+      !> Parameters of the method, and the share of the forces that the residual may have
+      real(wp) :: alpha_m = 0.0_wp, alpha_f = 0.0_wp, beta = 0.25_wp, gamma = 0.5_wp, wanted = 0.0_wp
+      !> Step, 1/(beta h**2), lateral force and acceleration of the ground at its end
+      real(wp) :: h = -1.0_wp, per_h = 0.0_wp, push = 0.0_wp, ground = 0.0_wp
+      !> The column: mass and rotary inertia, distances of the centroid from bottom and top, and the moment of
+      !> the axial force per rotation
+      real(wp) :: mass(2) = 1.0_wp, lower = 0.0_wp, upper = 0.0_wp, softening = 0.0_wp
+      !> Deformations, velocities, accelerations and forces at the start; the largest forces so far
+      real(wp) :: q0(2) = 0.0_wp, v0(2) = 0.0_wp, a0(2) = 0.0_wp, g0(2) = 0.0_wp, largest(2) = 0.0_wp
+      !> The springs; whether the first is told the work of the second at its events; lines left
+      type(body_spring) :: spring(2)
+      logical :: hears = .false.
+      integer :: events = 0
+      !> What the body has moved, the last correction, and the work of the residual on it at its start. The
+      !> first is that on the lines of the start, which is given with its work
+      real(wp) :: moved(2) = 0.0_wp, dx(2) = 0.0_wp, work = 0.0_wp
+      !> At the end: deformations, residual, velocities, accelerations, forces, and what the residual is
+      !> measured by
+      real(wp) :: q(2) = 0.0_wp, r(2) = 0.0_wp, v1(2) = 0.0_wp, a1(2) = 0.0_wp, g(2) = 0.0_wp, &
+                  scale(2) = 0.0_wp
+      !> Inverse of the tangent (11, 12, 21, 22), the stiffnesses that it is for, whether it is for the present
+      !> step, and the lines that it belongs to
+      real(wp) :: inverse(4) = 0.0_wp
+      real(wp), private :: stiffness(2) = -1.0_wp
+      logical, private :: fits = .false.
+      integer, private :: version = -1
+      !> What velocity and acceleration at the start would move; share of the forces and accelerations at the
+      !> start in the balance
+      real(wp), private :: before(2) = 0.0_wp, carried(2) = 0.0_wp
+      !> Whether springs have left their lines, and whether the memories of their rules are saved
+      logical, private :: changed = .false., saved(2) = .false., stuck = .false.
+      !> Room for copies of the rules
+      type(rule_slot), private :: kept(2)
+   contains
+      procedure :: set_step
+      procedure :: take_step
+      procedure :: fit_to
+      procedure :: solve
+   end type one_body_step
+
+contains
+
+   !> Another length of the step.
+   pure subroutine set_step(self, h)
+      class(one_body_step), intent(inout) :: self
+      real(wp), intent(in) :: h
+
+      self%h = h
+      self%per_h = 1.0_wp/(self%beta*h**2)
+      self%fits = .false.
+      self%version = -1
+   end subroutine set_step
+
+   !> Take a step on the present lines of both springs, or along the lines that follow. If it is not found so,
+   !> nothing has happened; else the springs are at its end.
+   subroutine take_step(self, springs, q, v0, a0, g0, largest, push, ground, taken)
+      class(one_body_step), intent(inout) :: self
+      type(spring_array), intent(inout) :: springs
+      !> At the start: deformations; velocities, accelerations and forces of the body; largest forces so far
+      real(wp), intent(in) :: q(2), v0(2), a0(2), g0(2), largest(2)
+      !> Lateral force [N] and acceleration of the ground [m/s2] at the end
+      real(wp), intent(in) :: push, ground
+      logical, intent(out) :: taken
+      real(wp) :: h, alpha_m, alpha_f, beta, gamma, per_h, mass_1, mass_2, lower, upper, softening
+      real(wp) :: d0_1, f0_1, k_1, d0_2, f0_2, k_2, inverse_11, inverse_12, inverse_21, inverse_22
+      real(wp) :: q_1, q_2, v0_1, v0_2, a0_1, a0_2, g0_1, g0_2, largest_1, largest_2
+      real(wp) :: before_1, before_2, shear, moment, moved_1, moved_2, to_1, to_2
+      real(wp) :: v1_1, v1_2, a1_1, a1_2, g1_1, g1_2, start_1, start_2, rest_1, rest_2, scale_1, scale_2
+
+      taken = .false.
+      call self%fit_to(springs)
+      h = self%h
+      alpha_m = self%alpha_m
+      alpha_f = self%alpha_f
+      beta = self%beta
+      gamma = self%gamma
+      per_h = self%per_h
+      mass_1 = self%mass(1)
+      mass_2 = self%mass(2)
+      lower = self%lower
+      upper = self%upper
+      softening = self%softening
+      inverse_11 = self%inverse(1)
+      inverse_12 = self%inverse(2)
+      inverse_21 = self%inverse(3)
+      inverse_22 = self%inverse(4)
+      d0_1 = springs%d0(1)
+      f0_1 = springs%f0(1)
+      k_1 = springs%k(1)
+      d0_2 = springs%d0(2)
+      f0_2 = springs%f0(2)
+      k_2 = springs%k(2)
+      q_1 = q(1)
+      q_2 = q(2)
+      v0_1 = v0(1)
+      v0_2 = v0(2)
+      a0_1 = a0(1)
+      a0_2 = a0(2)
+      g0_1 = g0(1)
+      g0_2 = g0(2)
+      largest_1 = largest(1)
+      largest_2 = largest(2)
+      include 'implicit_step.inc'
+      ! Written so that a number that is not one leaves too.
+      if (.not. (abs(to_1) < out_of_bounds .and. abs(to_2) < out_of_bounds)) return
+      taken = to_1 <= springs%last(1) .and. to_1 >= springs%first(1) .and. &
+              to_2 <= springs%last(2) .and. to_2 >= springs%first(2) .and. &
+              abs(rest_1) <= self%wanted*scale_1 .and. abs(rest_2) <= self%wanted*scale_2
+      self%moved = [moved_1, moved_2]
+      if (taken) then
+         self%q = [to_1, to_2]
+         self%v1 = [v1_1, v1_2]
+         self%a1 = [a1_1, a1_2]
+         self%g = [g1_1, g1_2]
+         self%scale = [scale_1, scale_2]
+         call springs%carry_to(self%q)
+      else
+         self%work = start_1*moved_1 + start_2*moved_2
+         self%push = push
+         self%ground = ground
+         self%q0 = q
+         self%v0 = v0
+         self%a0 = a0
+         self%g0 = g0
+         self%largest = largest
+         call follow_lines(self, springs, taken)
+      end if
+   end subroutine take_step
+
+   !> Find the end of the step along the lines that follow, and put the springs there.
+   subroutine follow_lines(self, springs, taken)
+      type(one_body_step), intent(inout) :: self
+      type(spring_array), intent(inout) :: springs
+      logical, intent(out) :: taken
+      integer :: i
+
+      do i = 1, 2
+         self%spring(i) = body_spring(springs%line_of(i), springs%first(i), springs%last(i), springs%d(i), &
+                                      springs%work(i))
+      end do
+      self%hears = springs%heard(1) > 0
+      call self%solve(springs%slot, taken)
+      if (.not. taken) return
+      do i = 1, 2
+         call springs%put(i, self%spring(i)%line, self%spring(i)%d, self%spring(i)%work)
+      end do
+      springs%events = springs%events + self%events
+      self%version = springs%version
+   end subroutine follow_lines
+
+   !> Find the inverse of the tangent on the present lines, where that is not the one that is there.
+   pure subroutine fit_to(self, springs)
+      class(one_body_step), intent(inout) :: self
+      type(spring_array), intent(in) :: springs
+
+      if (self%version == springs%version) return
+      self%spring(1)%line%k = springs%k(1)
+      self%spring(2)%line%k = springs%k(2)
+      call fit(self)
+      self%version = springs%version
+   end subroutine fit_to
+
+   !> Find the end of the step. If it is not found, the rules are as before.
+   subroutine solve(self, slot, taken)
+      class(one_body_step), intent(inout) :: self
+      !> Rules of the springs
+      type(rule_slot), intent(inout) :: slot(2)
+      logical, intent(out) :: taken
+      type(body_spring) :: start(2)
+      real(wp) :: slope
+      integer :: trial, i
+
+      self%spring(1)%way = 0
+      self%spring(2)%way = 0
+      self%dx = self%moved
+      taken = .false.
+      self%changed = .false.
+      self%stuck = .false.
+      self%saved = .false.
+      self%events = 0
+      self%before(1) = self%h*self%v0(1) + (self%h**2*(0.5_wp - self%beta))*self%a0(1)
+      self%before(2) = self%h*self%v0(2) + (self%h**2*(0.5_wp - self%beta))*self%a0(2)
+      self%carried(1) = self%alpha_f*self%g0(1) - self%mass(1)*(self%alpha_m*self%a0(1))
+      self%carried(2) = self%alpha_f*self%g0(2) - self%mass(2)*(self%alpha_m*self%a0(2))
+      do trial = 1, most_trials
+         if (trial > 1) then
+            call fit(self)
+            self%dx(1) = self%inverse(1)*self%r(1) + self%inverse(2)*self%r(2)
+            self%dx(2) = self%inverse(3)*self%r(1) + self%inverse(4)*self%r(2)
+            self%work = self%r(1)*self%dx(1) + self%r(2)*self%dx(2)
+            self%moved(1) = self%moved(1) + self%dx(1)
+            self%moved(2) = self%moved(2) + self%dx(2)
+         end if
+         call look(self, start, slot, slope)
+         if (.not. slope < out_of_bounds) exit
+         taken = abs(self%r(1)) <= self%wanted*self%scale(1) .and. abs(self%r(2)) <= self%wanted*self%scale(2)
+         if (taken) exit
+         if (slope < -too_far*self%work) call cut_correction(self, start, slot, slope)
+         if (self%stuck) exit
+      end do
+      if (.not. taken) then
+         call put_back(self, start, slot)
+         return
+      end if
+      call fit(self)
+      do i = 1, 2
+         self%v1(i) = self%v0(i) + (self%h*(1.0_wp - self%gamma))*self%a0(i) + (self%h*self%gamma)*self%a1(i)
+         call advance_on_branch(self%spring(i), self%q(i))
+      end do
+   end subroutine solve
+
+   !> Find the inverse of the tangent on the present lines.
+   pure subroutine fit(self)
+      type(one_body_step), intent(inout) :: self
+      real(wp) :: of_mass, shear, along, across, about, share
+
+      if (self%fits .and. .not. (abs(self%spring(1)%line%k - self%stiffness(1)) > 0.0_wp .or. &
+                                 abs(self%spring(2)%line%k - self%stiffness(2)) > 0.0_wp)) return
+      self%stiffness(1) = self%spring(1)%line%k
+      self%stiffness(2) = self%spring(2)%line%k
+      of_mass = (1.0_wp - self%alpha_m)*self%per_h
+      shear = (1.0_wp - self%alpha_f)*self%stiffness(1)
+      along = shear + of_mass*self%mass(1)
+      across = -shear*self%lower
+      about = shear*self%lower**2 + (1.0_wp - self%alpha_f)*self%stiffness(2) + of_mass*self%mass(2) &
+              - (1.0_wp - self%alpha_f)*self%softening
+      ! Where the column softens more than its inertia holds, the pivot is negative. One that is nearly zero
+      ! gives a step that does not converge.
+      share = across/along
+      about = 1.0_wp/(about - share*across)
+      self%inverse(1) = 1.0_wp/along + share*about*share
+      self%inverse(2) = -share*about
+      self%inverse(3) = -share*about
+      self%inverse(4) = about
+      self%fits = .true.
+   end subroutine fit
+
+   !> The correction has gone too far: go back to where the residual does little work on it, by the method of
+   !> false position (Illinois).
+   subroutine cut_correction(self, start, slot, slope)
+      type(one_body_step), intent(inout) :: self
+      type(body_spring), intent(inout) :: start(2)
+      type(rule_slot), intent(inout) :: slot(2)
+      !> Work of the residual on the correction at its end
+      real(wp), intent(inout) :: slope
+      real(wp) :: low, high, at_low, at_high, share, now
+      integer :: trial
+
+      low = 0.0_wp
+      high = 1.0_wp
+      at_low = self%work
+      at_high = slope
+      now = 1.0_wp
+      do trial = 1, most_trials
+         share = low + (high - low)*at_low/(at_low - at_high)
+         self%moved = self%moved + (share - now)*self%dx
+         now = share
+         call look(self, start, slot, slope)
+         if (abs(slope) <= too_far/3.0_wp*self%work .or. self%stuck) return
+         if (slope > 0.0_wp) then
+            low = share
+            at_low = slope
+            at_high = 0.5_wp*at_high
+         else
+            high = share
+            at_high = slope
+            at_low = 0.5_wp*at_low
+         end if
+      end do
+   end subroutine cut_correction
+
+   !> Look where the body is when it has moved so far: put the springs on their lines there, find what is left
+   !> of the balance, and its work on the correction.
+   subroutine look(self, start, slot, slope)
+      type(one_body_step), intent(inout) :: self
+      type(body_spring), intent(inout) :: start(2)
+      type(rule_slot), intent(inout) :: slot(2)
+      !> `huge`: out of bounds, or the springs go round in lines
+      real(wp), intent(out) :: slope
+
+      slope = huge(1.0_wp)
+      self%q(1) = self%q0(1) + (self%moved(1) - self%lower*self%moved(2))
+      self%q(2) = self%q0(2) + self%moved(2)
+      if (.not. (abs(self%q(1)) < out_of_bounds .and. abs(self%q(2)) < out_of_bounds)) return
+      if (.not. (is_on_line(self%spring(1), self%q(1)) .and. is_on_line(self%spring(2), self%q(2)))) then
+         if (self%changed) call put_back(self, start, slot)
+         self%changed = .true.
+         call find_line(self, 1, start(1), slot(1))
+         call find_line(self, 2, start(2), slot(2))
+         if (self%stuck) return
+      end if
+      call find_residual(self)
+      slope = self%r(1)*self%dx(1) + self%r(2)*self%dx(2)
+   end subroutine look
+
+   !> Whether a spring that goes to q is on its line there: one that has come to it by the end of another is
+   !> beyond that end.
+   pure logical function is_on_line(spring, q)
+      type(body_spring), intent(in) :: spring
+      real(wp), intent(in) :: q
+
+      is_on_line = side_of(spring, q) == 0 .and. spring%way*(q - spring%d) >= 0.0_wp
+   end function is_on_line
+
+   !> Put a spring, which is at the start of the step, on the line that it is on at the end. It stays where
+   !> that line begins.
+   subroutine find_line(self, i, start, slot)
+      type(one_body_step), intent(inout) :: self
+      integer, intent(in) :: i
+      !> Where it was, once it has left its line
+      type(body_spring), intent(inout) :: start
+      type(rule_slot), intent(inout) :: slot
+      integer :: lines, way
+
+      associate (spring => self%spring(i))
+         do lines = 1, most_changes
+            way = side_of(spring, self%q(i))
+            if (way == 0) return
+            spring%way = way
+            if (.not. self%saved(i)) then
+               start = spring
+               call save_rule(slot, self%kept(i))
+               self%saved(i) = .true.
+            end if
+            if (i == 1 .and. self%hears) call slot%rule%hear(self%spring(2)%work)
+            call change_line(spring, slot%rule, way)
+            self%events = self%events + 1
+            ! A new one-way line starts at the present deformation, to the last bit.
+            if (spring%line%one_way > 0) spring%first = spring%d
+            if (spring%line%one_way < 0) spring%last = spring%d
+         end do
+      end associate
+      self%stuck = .true.
+   end subroutine find_line
+
+   !> Put the springs back to the start of the step.
+   subroutine put_back(self, start, slot)
+      type(one_body_step), intent(inout) :: self
+      type(body_spring), intent(in) :: start(2)
+      type(rule_slot), intent(inout) :: slot(2)
+      integer :: i
+
+      self%events = 0
+      do i = 1, 2
+         if (.not. self%saved(i)) cycle
+         self%spring(i) = start(i)
+         call return_rule(slot(i), self%kept(i))
+         self%saved(i) = .false.
+      end do
+   end subroutine put_back
+
+   !> What is left of the balance where the body has moved so far.
+   pure subroutine find_residual(self)
+      type(one_body_step), intent(inout) :: self
+      real(wp) :: shear, moment, inertia_1, inertia_2
+
+      self%a1(1) = (self%moved(1) - self%before(1))*self%per_h
+      self%a1(2) = (self%moved(2) - self%before(2))*self%per_h
+      inertia_1 = self%mass(1)*self%a1(1)
+      inertia_2 = self%mass(2)*self%a1(2)
+      associate (line_1 => self%spring(1)%line, line_2 => self%spring(2)%line)
+         shear = line_1%f0 + line_1%k*(self%q(1) - line_1%d0)
+         moment = line_2%f0 + line_2%k*(self%q(2) - line_2%d0)
+      end associate
+      self%g(1) = (self%push - shear) - self%mass(1)*self%ground
+      self%g(2) = ((self%lower*shear + self%upper*self%push) - moment) + self%softening*self%q(2)
+      self%r(1) = (1.0_wp - self%alpha_f)*self%g(1) + (self%carried(1) - (1.0_wp - self%alpha_m)*inertia_1)
+      self%r(2) = (1.0_wp - self%alpha_f)*self%g(2) + (self%carried(2) - (1.0_wp - self%alpha_m)*inertia_2)
+      self%scale(1) = max(self%largest(1), abs(shear), abs(self%push), abs(inertia_1))
+      self%scale(2) = max(self%largest(2), abs(moment), abs(self%push)*self%upper, abs(inertia_2))
+   end subroutine find_residual
+
+   !> By which end of the line a deformation lies: +1, -1, or 0 if it lies on the line.
+   pure integer function side_of(spring, d) result(side)
+      type(body_spring), intent(in) :: spring
+      real(wp), intent(in) :: d
+
+      side = 0
+      if (d > spring%last) then
+         side = 1
+      else if (d < spring%first) then
+         side = -1
+      end if
+   end function side_of
+
+   !> Move monotonically to d, over any number of lines.
+   subroutine move_spring(spring, rule, d, events, stuck)
+      type(body_spring), intent(inout) :: spring
+      class(rule_type), intent(inout) :: rule
+      !> New deformation [m or rad]
+      real(wp), intent(in) :: d
+      !> Number of lines left; whether the rule goes round in lines without length
+      integer, intent(out) :: events
+      logical, intent(out) :: stuck
+      integer :: way
+
+      stuck = .false.
+      do events = 0, most_lines - 1
+         way = side_of(spring, d)
+         if (way == 0) then
+            call advance_on_branch(spring, d)
+            return
+         end if
+         call change_line(spring, rule, way)
+      end do
+      stuck = .true.
+   end subroutine move_spring
+
+   !> Move along the line to d; the rear end of a one-way line follows.
+   pure subroutine advance_on_branch(spring, d)
+      type(body_spring), intent(inout) :: spring
+      !> New deformation on the present line [m or rad]
+      real(wp), intent(in) :: d
+
+      associate (line => spring%line)
+         spring%work = spring%work + (line%f0 + line%k*(0.5_wp*(d + spring%d) - line%d0))*(d - spring%d)
+         spring%d = d
+         if (line%one_way > 0) spring%first = d
+         if (line%one_way < 0) spring%last = d
+      end associate
+   end subroutine advance_on_branch
+
+   !> Move to the end of the line and get the line that follows from the rule. When the motion turns back, a
+   !> one-way line ends at the present deformation.
+   subroutine change_line(spring, rule, way)
+      type(body_spring), intent(inout) :: spring
+      class(rule_type), intent(inout) :: rule
+      !> +1: by the upper end, -1: by the lower end
+      integer, intent(in) :: way
+
+      associate (line => spring%line)
+         if (line%one_way > 0) line%lo = spring%d
+         if (line%one_way < 0) line%hi = spring%d
+         if (line%one_way /= -way) call advance_on_branch(spring, merge(line%hi, line%lo, way > 0))
+         call rule%next(line, way)
+         spring%first = first_on(line)
+         spring%last = last_on(line)
+      end associate
+   end subroutine change_line
+
+end module rbs_solve_one_body_implicit_one_body

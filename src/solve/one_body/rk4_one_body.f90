@@ -1,0 +1,135 @@
+!> The classical Runge-Kutta step for the paper's column: one body, small rotations, no damping, lateral force
+!> and horizontal ground motion. The two unknowns stay in registers, while the loops of a chain and their calls
+!> would take nearly all of the time. The equations are those of the chain.
+module rbs_solve_one_body_rk4_one_body
+   use rbs_base_kinds, only: wp
+   use rbs_column_column, only: column_type, small
+   use rbs_hysteresis_springs, only: spring_array
+   implicit none
+   private
+
+   public :: rk4_body, resistance_per_velocity, softening_of
+
+   type :: rk4_body
+      !> Inverse of the mass matrix in slip and rotation [1/kg, 1/(kg m), 1/(kg m2)], and the moment of the
+      !> axial force per rotation [N m]
+      real(wp) :: flexible = 0.0_wp, coupling = 0.0_wp, turning = 0.0_wp, softening = 0.0_wp
+      !> Distance of the centroid from the joint, length [m], and mass
+      real(wp), private :: lower = 0.0_wp, height = 0.0_wp, mass = 0.0_wp
+      !> Accelerations by a lateral force
+      real(wp), private :: push(2) = 0.0_wp
+      !> See `resistance_per_velocity`; the step and the lines that it belongs to
+      real(wp), private :: g(4) = 0.0_wp, h = -1.0_wp
+      integer, private :: version = -1
+   contains
+      procedure :: create
+      procedure :: take_step
+   end type rk4_body
+
+contains
+
+   !> The column with one body.
+   subroutine create(self, column)
+      class(rk4_body), intent(out) :: self
+      type(column_type), intent(in) :: column
+
+      self%lower = column%lower(1)
+      self%height = column%arm(2)
+      self%mass = column%ground_arm(1)
+      self%turning = 1.0_wp/column%inertia(1)
+      if (column%held) self%turning = 0.0_wp
+      self%flexible = 1.0_wp/column%mass(1) + self%lower**2*self%turning
+      self%coupling = -self%lower*self%turning
+      self%softening = softening_of(column)
+      ! The ground takes the body with it, so that it accelerates the slip alone.
+      self%push = [self%flexible + self%coupling*self%height, self%coupling + self%turning*self%height]
+   end subroutine create
+
+   !> The moment of the axial force per rotation [N m].
+   pure real(wp) function softening_of(column)
+      type(column_type), intent(in) :: column
+
+      softening_of = 0.0_wp
+      if (column%kinematics /= small .and. column%axially_loaded) then
+         softening_of = column%axial_body(1)*column%length(1)
+      end if
+   end function softening_of
+
+   !> The step on the present lines of both springs, and the work of the loads in it [J]. Acceleration needs
+   !> no velocity here, so stages 1 and 2, and 3 and 4, do not wait for each other.
+   subroutine take_step(self, springs, h, load_force, load_ground, q, v, of_loads)
+      class(rk4_body), intent(inout) :: self
+      type(spring_array), intent(in) :: springs
+      !> Step [s]; lateral force [N] and acceleration of the ground [m/s2] at its start, middle and end
+      real(wp), intent(in) :: h, load_force(3), load_ground(3)
+      !> Deformations and velocities
+      real(wp), intent(inout) :: q(2), v(2)
+      real(wp), intent(out) :: of_loads
+      real(wp) :: half, sixth, flexible, coupling, turning, softening, lower
+      real(wp) :: d0_1, f0_1, k_1, d0_2, f0_2, k_2, q_1, q_2, v_1, v_2, ground_1, ground_2, ground_3
+      real(wp) :: along_1, along_2, along_3, about_1, about_2, about_3, shear, flexure, back_1, back_2
+      real(wp) :: g11, g12, g21, g22, mid_1, mid_2, of_ground, of_force
+      real(wp) :: u1, u2, u3, u4, r1, r2, r3, r4, a1, a2, a3, a4, b1, b2, b3, b4
+
+      half = 0.5_wp*h
+      sixth = h*(1.0_wp/6.0_wp)
+      flexible = self%flexible
+      coupling = self%coupling
+      turning = self%turning
+      softening = self%softening
+      lower = self%lower
+      d0_1 = springs%d0(1)
+      f0_1 = springs%f0(1)
+      k_1 = springs%k(1)
+      d0_2 = springs%d0(2)
+      f0_2 = springs%f0(2)
+      k_2 = springs%k(2)
+      if (self%version /= springs%version .or. abs(h - self%h) > 0.0_wp) then
+         self%g = resistance_per_velocity(flexible, coupling, turning, softening, k_1, k_2, half)
+         self%version = springs%version
+         self%h = h
+      end if
+      g11 = self%g(1)
+      g12 = self%g(2)
+      g21 = self%g(3)
+      g22 = self%g(4)
+      q_1 = q(1)
+      q_2 = q(2)
+      v_1 = v(1)
+      v_2 = v(2)
+      ground_1 = load_ground(1)
+      ground_2 = load_ground(2)
+      ground_3 = load_ground(3)
+      along_1 = self%push(1)*load_force(1) - ground_1
+      along_2 = self%push(1)*load_force(2) - ground_2
+      along_3 = self%push(1)*load_force(3) - ground_3
+      about_1 = self%push(2)*load_force(1)
+      about_2 = self%push(2)*load_force(2)
+      about_3 = self%push(2)*load_force(3)
+      include 'rk4_step.inc'
+      q(1) = q_1
+      q(2) = q_2
+      v(1) = v_1
+      v(2) = v_2
+      of_force = sixth*(load_force(1)*(u1 + self%height*r1) &
+                        + 2.0_wp*(load_force(2)*((u2 + u3) + self%height*(r2 + r3))) &
+                        + load_force(3)*(u4 + self%height*r4))
+      of_loads = of_force - self%mass*of_ground
+   end subroutine take_step
+
+   !> Acceleration that half a step takes away for each velocity, by the springs on their lines and the axial
+   !> force [1/s]: of the slip by slip and by rotation, of the rotation by slip and by rotation.
+   pure function resistance_per_velocity(flexible, coupling, turning, softening, k_1, k_2, half) result(g)
+      !> See `rk4_body`
+      real(wp), intent(in) :: flexible, coupling, turning, softening
+      !> Slopes of the lines, half a step [s]
+      real(wp), intent(in) :: k_1, k_2, half
+      real(wp) :: g(4)
+      real(wp) :: shear, flexure
+
+      shear = half*k_1
+      flexure = half*(k_2 - softening)
+      g = [flexible*shear, coupling*flexure, coupling*shear, turning*flexure]
+   end function resistance_per_velocity
+
+end module rbs_solve_one_body_rk4_one_body
