@@ -39,25 +39,10 @@ UNSET = -float(np.finfo(np.float64).max)
 _EXACT = 1 << 53
 
 _ANALYSIS_FAILED = 1
-_LITTLE_ROOM = 3
-_LONG_RUN = 4
+_LONG_RUN = 3
 
 #: Summary values that are whole numbers.
 _COUNTS = ("steps", "rows", "events", "cut_steps")
-
-#: Length of the name of a method; the reason for the program's choice follows it.
-_METHOD_LENGTH = 20
-
-
-def version() -> str:
-    """Return the version of the compiled part."""
-    return _text(_rbsdem.rbs_version_text())
-
-
-def methods() -> list[dict[str, str]]:
-    """Return the facts of the methods of analysis, a mapping from names to texts for each."""
-    names, *rows = (line.split() for line in _text(_rbsdem.rbs_methods_text()).splitlines())
-    return [dict(zip(names, row, strict=True)) for row in rows]
 
 
 def word(value: Any) -> str:
@@ -131,9 +116,84 @@ def _one_line(text: str) -> str:
     return "".join(character if character.isprintable() else " " for character in text)
 
 
-def _crossing(statement: Statement) -> tuple[bytes, list[float]]:
-    """Return a statement for f2py, which takes bytes but no characters beyond ASCII."""
-    return statement.text.encode("utf-8", "replace"), statement.numbers
+class Answer(NamedTuple):
+    """What Fortran answers: text, values and rows, each of which may be empty, and how it went."""
+
+    text: str
+    values: Array
+    rows: Array
+    status: int
+
+
+class _Rows:
+    """Rows that Fortran keeps, as numpy takes them; the last array that shows them releases them."""
+
+    def __init__(self, answer: Array, address: Array, shape: tuple[int, int]) -> None:
+        self.answer = answer
+        self.__array_interface__ = {
+            "shape": shape,
+            "typestr": np.dtype(float).str,
+            "data": (int(address.view(np.intp)[0]), False),
+            "version": 3,
+        }
+
+    def __del__(self, release: Callable[[Array], None] = _rbsdem.rbs_release) -> None:
+        release(self.answer)
+
+
+_NO_ROWS = np.empty((0, 0))
+_NO_CONTROL = np.zeros(2, np.int32)
+
+
+def _ask(
+    what: str,
+    statement: Statement | str = "",
+    control: NDArray[np.int32] = _NO_CONTROL,
+    **arrays: Any,
+) -> Answer:
+    """Return an answer of the Fortran part, whose module `rbs_bindings_evaluate` lists what there is.
+
+    Numbers, switches and arrays go under their names; None and empty arrays are left out.
+    """
+    text, numbers = statement if isinstance(statement, Statement) else (statement, [])
+    given = [(k, np.ravel(v)) for k, v in arrays.items() if v is not None]
+    answer, address, (status, length, count, width, rows) = _rbsdem.rbs_evaluate(
+        what,
+        # As bytes: f2py takes no characters beyond ASCII.
+        text.encode("utf-8", "replace"),
+        numbers,
+        " ".join(f"{name}:{values.size}" for name, values in given),
+        np.concatenate([values for _, values in given]) if given else (),
+        control,
+    )
+    holder = _Rows(answer, address, (int(rows), int(width)))
+    raw, values = _rbsdem.rbs_read(answer, max(1, length), count)
+    return Answer(
+        raw[:length].decode("utf-8", errors="replace"),
+        values,
+        np.asarray(holder) if rows else _NO_ROWS,
+        int(status),
+    )
+
+
+def _evaluate(what: str, statement: Statement | str = "", **given: Any) -> Answer:
+    """Return an answer; raise the exception that its status stands for."""
+    answer = _ask(what, statement, **given)
+    if answer.status:
+        error = SolveError if answer.status == _ANALYSIS_FAILED else InputError
+        raise error(answer.text)
+    return answer
+
+
+def version() -> str:
+    """Return the version of the compiled part."""
+    return _evaluate("version").text
+
+
+def methods() -> list[dict[str, str]]:
+    """Return the facts of the methods of analysis, a mapping from names to texts for each."""
+    names, *rows = (line.split() for line in _evaluate("methods").text.splitlines())
+    return [dict(zip(names, row, strict=True)) for row in rows]
 
 
 def groups(statement: Statement) -> Iterator[tuple[str, dict[str, Any]]]:
@@ -188,13 +248,14 @@ def keys() -> dict[str, Any]:
     "meaning" and, where they apply, "unit", "least", "least_open", "most", "most_open", "choices",
     "default", "optional" and "values" (how many there may be at most).
     """
-    room = 1 << 16
-    while True:
-        text, length = _rbsdem.rbs_keys(room)
-        if length <= room:
-            found: dict[str, Any] = json.loads(text[:length])
-            return found
-        room = length
+    found: dict[str, Any] = json.loads(_evaluate("keys").text)
+    return found
+
+
+@cache
+def _names(**has: bool) -> list[str]:
+    """Return the names of what comes back, a text for each kind of it."""
+    return _evaluate("quantities", **has).text.splitlines()
 
 
 @cache
@@ -207,24 +268,23 @@ def quantities(
     `with_openings`: whether it has the openings of layered joints; `with_motion`: whether it has
     the motion of the top.
     """
-    rows, figures = _rbsdem.rbs_quantities(
-        int(opens), int(with_base), int(with_openings), int(with_motion)
+    names = _names(
+        opens=opens, with_base=with_base, with_openings=with_openings, with_motion=with_motion
     )
-    return tuple(_text(rows).split()), tuple(_text(figures).split())
+    return tuple(names[0].split()), tuple(names[1].split())
 
 
 def check_spring(statement: Statement, axial_load: float) -> None:
     """Raise `InputError` for parameters that the rule does not allow."""
-    _raise(*_rbsdem.rbs_check_spring(*_crossing(statement), axial_load))
+    _evaluate("check_spring", statement, axial_load=axial_load)
 
 
 def spring_response(statement: Statement, axial_load: float, deformation: Array) -> Array:
     """Return the forces of a virgin spring along a path."""
-    force, status, message = _rbsdem.rbs_spring_response(
-        *_crossing(statement), axial_load, deformation
+    answer = _evaluate(
+        "spring_response", statement, axial_load=axial_load, deformation=deformation
     )
-    _raise(status, message)
-    return force
+    return answer.values
 
 
 #: Rows, the state at the end (None after a failure), summary values, the error that ended a run
@@ -238,75 +298,50 @@ Shape = tuple[int, bool, bool, bool, bool]
 
 def check_column(column: Statement) -> list[str]:
     """Raise `InputError` for everything wrong with a column; return notes on what is allowed."""
-    status, message = _rbsdem.rbs_check_column(*_crossing(column))
-    _raise(status, message)
-    return [] if message.startswith(b" ") else _text(message).splitlines()
+    return _evaluate("check_column", column).text.splitlines()
 
 
 def to_namelist(statement: Statement) -> str:
     """Return the text of a case file."""
-    room = 200 + 2 * len(statement.text) + 30 * len(statement.numbers)
-    while True:
-        text, length, status, message = _rbsdem.rbs_to_namelist(*_crossing(statement), room)
-        _raise(status, message)
-        if length <= room:
-            return text[:length].decode("utf-8")
-        room = length
+    return _evaluate("to_namelist", statement).text
 
 
-def modes(column: Statement, unknowns: int, count: int) -> tuple[Array, Array, float, str]:
+def modes(column: Statement) -> tuple[Array, Array, float, str]:
     """Return circular frequencies, shapes (one in each column), the stable step of RK4, a note."""
-    omega, shapes, stable_step, status, message = _rbsdem.rbs_modes(
-        *_crossing(column), unknowns, count
-    )
-    _raise(status, message)
-    return omega, shapes, stable_step, _text(message)
+    note, values, shapes, _ = _evaluate("modes", column)
+    return values[1:], shapes.T, float(values[0]), note
 
 
-def mass_matrix(column: Statement, unknowns: int, paper: bool) -> Array:
+def mass_matrix(column: Statement, paper: bool) -> Array:
     """Return the mass matrix in the paper's or in the symmetric form."""
-    mass, status, message = _rbsdem.rbs_mass_matrix(*_crossing(column), unknowns, int(paper))
-    _raise(status, message)
-    return mass
+    return _evaluate("mass_matrix", column, paper=paper).rows.T
 
 
 def cyclic(
     column: Statement,
     shape: Shape,
     by_force: bool,
-    values: Array,
-    axial_load: Array,
-    before: Array,
-    room: int,
-    every: int | None,
-    corners: int = 0,
+    target: Array,
+    axial_load: Array | None,
+    before: Array | None,
+    corners: bool = False,
 ) -> Run:
-    """Follow a static path.
+    """Follow a static path through displacements or forces.
 
-    `column` holds the settings of the analysis too; an empty `axial_load` is a constant one,
-    an empty `before` a virgin column; `room` is the expected size of the state at the end;
-    `shape` is the number of bodies, whether joints open, and whether the rows have the forces at
-    the base and the openings of layered joints. With `corners`, their expected number, there are
-    rows between the values too, where a spring leaves its line.
+    `column` holds the settings of the analysis too; without `axial_load` it is constant, without
+    `before` the column is virgin. With `corners` there are rows between the targets too, where a
+    spring leaves its line.
     """
-    wanted = _rbsdem.rbs_kept_rows(values.size, UNSET_INTEGER if every is None else every) + corners
-    figures = len(quantities(False)[1])
-    while True:
-        rows, after = _empty_rows(shape, wanted), np.empty(room)
-        kept, ended, *rest = _rbsdem.rbs_cyclic(
-            *_crossing(column),
-            int(by_force),
-            values,
-            axial_load,
-            before,
-            int(corners > 0),
-            rows,
-            after,
-            figures,
-        )
-        if ended <= room and kept <= wanted:
-            return _finish(rows, kept, after[:ended], *rest)
-        room, wanted = max(room, ended), max(wanted, kept)
+    answer = _ask(
+        "cyclic",
+        column,
+        by_force=by_force,
+        target=target,
+        axial_load=axial_load,
+        before=before,
+        corners=corners,
+    )
+    return _finish(shape, answer, answer.values)
 
 
 def time_history(
@@ -314,62 +349,41 @@ def time_history(
     shape: Shape,
     time: Array,
     loads: Mapping[str, Array],
-    initial: Array,
+    initial: Array | None,
     opening_given: bool,
-    before: Array,
+    before: Array | None,
     watches: Array,
-    room: int,
-    every: int | None,
     tell: Callable[[str], None],
 ) -> tuple[Run, Array]:
     """March through time; return the run, and where each watch is reached, shape (watches, 2).
 
-    Only the Fortran part knows the number of rows, after it has planned the steps. Without `every`
-    there is one row for each of `time`, unless the step does not divide the intervals. Where there
-    is not enough room, the first call returns the number of rows and a second one computes them.
     `tell` is called with a note before a long run starts. `watches` are of shape (watches, 6), see
     `run_ensemble`; of each the time [s] and the displacement of the top [m] are returned, NaN where
     it is not reached.
     """
-    for name, values in loads.items():
-        if values.size != time.size:
-            raise InputError(
-                f"{name}: {values.size} values for {time.size} times; give one for each"
-            )
-    load = np.empty((time.size, len(loads)), order="F")
-    for place, values in enumerate(loads.values()):
-        load[:, place] = values
-    figures = len(quantities(False)[1])
-    wanted = time.size if every is None else 0
     told = False
     while True:
-        rows, after = _empty_rows(shape, wanted), np.empty(room)
-        wanted, ended, reached, *rest = _rbsdem.rbs_time_history(
-            *_crossing(column),
-            time,
-            " ".join(loads),
-            load,
-            initial,
-            int(opening_given),
-            before,
-            watches.T,
-            int(told),
-            rows,
-            after,
-            figures,
+        answer = _ask(
+            "time_history",
+            column,
+            time=time,
+            watches=watches,
+            initial=initial,
+            opening_given=opening_given,
+            before=before,
+            told=told,
+            **loads,
         )
-        status, message = rest[2:]
-        if status == _LONG_RUN:
-            tell(_text(message))
-            told, wanted = True, rows.shape[1]
-        elif ended > room:
-            room, wanted = ended, rows.shape[1]
-        elif status != _LITTLE_ROOM:
-            run = _finish(rows, wanted, after[:ended], *rest)
-            if "force" not in loads:
-                for name in ("peak_force", "displacement_at_peak_force"):
-                    del run[2][name]
-            return run, reached.T
+        if answer.status != _LONG_RUN:
+            break
+        tell(answer.text)
+        told = True
+    count = len(watches)
+    run = _finish(shape, answer, answer.values[2 * count :])
+    if "force" not in loads:
+        for name in ("peak_force", "displacement_at_peak_force"):
+            del run[2][name]
+    return run, answer.values[: 2 * count].reshape(2, count).T
 
 
 def settings(given: Mapping[str, Any]) -> Statement:
@@ -387,7 +401,7 @@ def settings(given: Mapping[str, Any]) -> Statement:
 @cache
 def measures() -> tuple[str, ...]:
     """Return the names of the measures of a run of an ensemble."""
-    return tuple(_text(_rbsdem.rbs_measures()).split())
+    return tuple(_names()[2].split())
 
 
 #: Motions of the ground: times [s] and accelerations [m/s2].
@@ -410,16 +424,9 @@ def plan_ensemble(
     joint, factors of slip, rotation and opening, threshold; at least one. `before` are the states
     that the runs of each column begin in; an empty one is at rest.
     """
-    room = 1 << 16
-    while True:
-        seconds, in_lanes, text, length = _rbsdem.rbs_plan_ensemble(
-            *_columns_crossing(columns, settings, watches, before),
-            *_motions_crossing(motions),
-            room,
-        )
-        if length <= room:
-            return seconds, in_lanes, list(_numbered(text[:length]))
-        room = length
+    answer = _ask("plan_ensemble", **_columns_and_motions(columns, settings, watches, before, motions))
+    seconds, in_lanes = np.split(answer.rows.T, 2)
+    return seconds, in_lanes.astype(np.int32), list(_numbered(answer.text))
 
 
 def run_ensemble(
@@ -440,55 +447,49 @@ def run_ensemble(
     fastest lanes that the processor has, 1 to 3 for those of no higher level, -1 for none.
     """
     column, motion, scale = runs
-    room = (1 << 16) + 300 * scale.size
-    fates, values, text, length = _rbsdem.rbs_run_ensemble(
-        *_columns_crossing(columns, settings, watches, before),
-        *_motions_crossing(motions),
-        column + np.int32(1),
-        motion + np.int32(1),
-        scale,
-        kernel,
-        control,
-        measures,
-        room,
+    answer = _ask(
+        "run_ensemble",
+        control=control,
+        columns=column + 1,
+        motions=motion + 1,
+        scales=scale,
+        level=kernel,
+        measures=measures,
+        **_columns_and_motions(columns, settings, watches, before, motions),
     )
-    return fates, values, dict(_numbered(text[: min(length, room)]))
+    values = answer.rows.T
+    return values[0].astype(np.int32), values[1:], dict(_numbered(answer.text))
 
 
-def _columns_crossing(
+def _columns_and_motions(
     columns: Sequence[Statement],
     settings: Statement,
     watches: Sequence[Array],
     before: Sequence[Array],
-) -> tuple[bytes, Array, NDArray[np.int32], Array, Array]:
-    """Return statements, numbers, how many of all each column has, the watches, the states."""
+    motions: Motions,
+) -> dict[str, Any]:
+    """Return what `_ask` takes: all statements in one, and how many of everything each has."""
     statements = [column + settings for column in columns]
-    return (
-        "".join(statement.text + _AFTER for statement in statements).encode("utf-8", "replace"),
-        np.array([number for statement in statements for number in statement.numbers]),
-        np.array(
-            [
-                (len(statement.numbers), len(watch), len(state))
-                for statement, watch, state in zip(statements, watches, before, strict=True)
-            ],
-            dtype=np.int32,
-        ).T,
-        np.concatenate(watches).T,
-        np.concatenate(before),
-    )
+    return {
+        "statement": Statement(
+            "".join(statement.text + _AFTER for statement in statements),
+            [number for statement in statements for number in statement.numbers],
+        ),
+        "counts": [
+            (len(statement.numbers), len(watch), len(state))
+            for statement, watch, state in zip(statements, watches, before, strict=True)
+        ],
+        "watches": np.concatenate(watches),
+        "before": np.concatenate(before),
+        "time": np.concatenate([time for time, _ in motions]),
+        "acceleration": np.concatenate([acceleration for _, acceleration in motions]),
+        "points": [time.size for time, _ in motions],
+    }
 
 
-def _motions_crossing(motions: Motions) -> tuple[Array, Array, NDArray[np.int32]]:
-    return (
-        np.concatenate([time for time, _ in motions]),
-        np.concatenate([acceleration for _, acceleration in motions]),
-        np.array([time.size for time, _ in motions], dtype=np.int32),
-    )
-
-
-def _numbered(text: bytes) -> Iterator[tuple[int, str]]:
+def _numbered(text: str) -> Iterator[tuple[int, str]]:
     """Yield number, from 0, and text of each message."""
-    for line in text.decode("utf-8", errors="replace").split(_AFTER)[:-1]:
+    for line in text.split(_AFTER)[:-1]:
         count, _, message = line.partition(_AFTER_NUMBER)
         yield int(count) - 1, message
 
@@ -496,30 +497,19 @@ def _numbered(text: bytes) -> Iterator[tuple[int, str]]:
 def read_case(path: str | os.PathLike[str]) -> tuple[Statement, Array, Array, NDArray[np.int32]]:
     """Return a case file as statement, times, values of the five drives, and which of them act."""
     path = _arguments.file(path)
-    raw = os.fsencode(path)
-    size = os.path.getsize(path) if os.path.isfile(path) else 0
-    # Enough room for most cases; if not, a second call has the room that the first one asked for.
-    sizes = (4 * size + 1024, size // 2 + 64, size // 4 + 4096)
-    while True:
-        text, numbers, time, values, acting, wanted, status, message = _rbsdem.rbs_read_case(
-            raw, *sizes
-        )
-        _raise(status, message)
-        length, count, rows = (int(number) for number in wanted)
-        if length <= sizes[0] and count <= sizes[1] and rows <= sizes[2]:
-            statement = Statement(text[:length].decode("utf-8"), numbers[:count].tolist())
-            return statement, time[:rows].copy(), values[:rows], acting
-        sizes = (length, count, rows)
+    text, numbers, rows, _ = _evaluate("read_case", os.fsdecode(path))
+    acting = rows[1:, 0].astype(np.int32)
+    return Statement(text, numbers.tolist()), rows[0, 1:].copy(), rows[1:, 1:].T, acting
 
 
 def named_protocol(
     name: str, reference: float | None, largest: float | None
 ) -> tuple[Array, NDArray[np.int32]]:
     """Return amplitudes and cycles of a protocol of the literature."""
-    numbers = (UNSET if value is None else value for value in (reference, largest))
-    steps, amplitudes, cycles, status, message = _rbsdem.rbs_named_protocol(name, *numbers)
-    _raise(status, message)
-    return amplitudes[:steps].copy(), cycles[:steps].copy()
+    limits = [UNSET if value is None else value for value in (reference, largest)]
+    found = _evaluate("named_protocol", name, reference_and_largest=limits).values
+    amplitudes, cycles = np.split(found, 2)
+    return amplitudes, cycles.astype(np.int32)
 
 
 def protocol(
@@ -530,11 +520,15 @@ def protocol(
     size = max(4 * points * steps * repeats + 1, 1)
     if size > np.iinfo(np.int32).max:
         raise InputError(f"protocol: {size} points are too many; reduce cycles, repeats or points")
-    values, status, message = _rbsdem.rbs_protocol(
-        amplitudes, negative, cycles, repeats, points, size
+    answer = _evaluate(
+        "protocol",
+        amplitudes=amplitudes,
+        negative=negative,
+        cycles=cycles,
+        repeats=repeats,
+        points=points,
     )
-    _raise(status, message)
-    return values
+    return answer.values
 
 
 def spectrum(acceleration: Array, dt: float, period: Array, damping: float) -> Array:
@@ -542,8 +536,8 @@ def spectrum(acceleration: Array, dt: float, period: Array, damping: float) -> A
 
     Values that are not finite must not come here.
     """
-    peaks: Array = _rbsdem.rbs_spectrum(acceleration, dt, period, damping)
-    return np.ascontiguousarray(peaks)
+    answer = _evaluate("spectrum", acceleration=acceleration, dt=dt, period=period, damping=damping)
+    return np.ascontiguousarray(answer.rows.T)
 
 
 def read_history(
@@ -560,19 +554,14 @@ def read_history(
     columns are taken by their numbers; else the file says what it has.
     """
     path = _arguments.file(path)
-    # No row is shorter than two digits, a separator and an end of line.
-    most = os.path.getsize(path) // 4 + 1 if os.path.isfile(path) else 1
-    if most > np.iinfo(np.int32).max:
-        raise InputError(f"{path}: the file is too large")
-    # As bytes: f2py takes no characters beyond ASCII.
-    separator, decimal, skip = layout or (",", ".", -1)
-    marks = ord(separator), ord(decimal), skip
-    answer = _rbsdem.rbs_read_history(
-        os.fsencode(path), word(length), word(force), *marks, columns, most
-    )
-    rows, name, displacement, force, status, message = answer
-    _raise(status, message)
-    return _text(name), displacement[:rows].copy(), force[:rows].copy()
+    given: dict[str, Any] = {}
+    if layout:
+        separator, decimal, skip = layout
+        given = {"layout": (ord(separator), ord(decimal), skip), "columns": columns}
+    text = f"{word(length)}\n{word(force)}\n{os.fsdecode(path)}"
+    name, _, rows, _ = _evaluate("read_history", text, **given)
+    displacement, force_values = rows.copy()
+    return name, displacement, force_values
 
 
 @cache
@@ -583,8 +572,7 @@ def section_quantities() -> dict[str, tuple[str, ...]]:
     moment-curvature and of a shear diagram; "profile" and "layer" those of layers.
     """
     kinds = ("section", "spring", "point", "shear", "profile", "layer")
-    texts = _rbsdem.rbs_section_quantities()
-    return {kind: tuple(_text(text).split(", ")) for kind, text in zip(kinds, texts, strict=True)}
+    return {kind: tuple(text.split(", ")) for kind, text in zip(kinds, _names()[3:], strict=True)}
 
 
 def _named(kind: str, values: Array) -> dict[str, float]:
@@ -597,10 +585,7 @@ def _named_rows(kind: str, rows: Array) -> dict[str, Array]:
 
 def check_section(section: Statement) -> dict[str, float]:
     """Return figures of a section, or raise `InputError` for everything wrong with it."""
-    names = section_quantities()["section"]
-    figures, status, message = _rbsdem.rbs_check_section(*section, len(names))
-    _raise(status, message)
-    return _named("section", figures)
+    return _named("section", _evaluate("check_section", section).values)
 
 
 def axial_capacity(
@@ -608,24 +593,19 @@ def axial_capacity(
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return least (tension) and largest axial load without curvature, and their moments."""
     statement = section + group("diagram", {"tension": tension, "confined": confined})
-    load, moment, status, message = _rbsdem.rbs_axial_capacity(*statement)
-    _raise(status, message)
-    return tuple(load.tolist()), tuple(moment.tolist())
+    least, most, at_least, at_most = _evaluate("axial_capacity", statement).values.tolist()
+    return (least, most), (at_least, at_most)
 
 
 def concrete_response(concrete: Statement, tension: str, strain: Array) -> Array:
     """Return the stresses of unconfined concrete, compression positive."""
     statement = concrete + group("diagram", {"tension": tension})
-    stress, status, message = _rbsdem.rbs_concrete_response(*statement, strain)
-    _raise(status, message)
-    return stress
+    return _evaluate("concrete_response", statement, strain=strain).values
 
 
 def steel_response(steel: Statement, strain: Array) -> Array:
     """Return the stresses of steel."""
-    stress, status, message = _rbsdem.rbs_steel_response(*steel, strain)
-    _raise(status, message)
-    return stress
+    return _evaluate("steel_response", steel, strain=strain).values
 
 
 def moment_curvature(
@@ -633,8 +613,7 @@ def moment_curvature(
 ) -> tuple[Array, Array]:
     """Return moments and strains for curvatures of one sign and increasing magnitude."""
     statement = section + group("diagram", settings)
-    moment, strain, status, message = _rbsdem.rbs_moment_curvature(*statement, curvature)
-    _raise(status, message)
+    moment, strain = _evaluate("moment_curvature", statement, curvature=curvature).rows
     return moment, strain
 
 
@@ -643,9 +622,8 @@ def section_events(
 ) -> tuple[list[dict[str, float]], bool]:
     """Return cracking, yield, peak, ultimate and the end, and whether the axial load was lost."""
     statement = section + group("diagram", settings)
-    points, lost, status, message = _rbsdem.rbs_section_events(*statement)
-    _raise(status, message)
-    return [_named("point", column) for column in points.T], bool(lost)
+    _, (lost,), points, _ = _evaluate("section_events", statement)
+    return [_named("point", point) for point in points], bool(lost)
 
 
 def section_flexure(
@@ -653,10 +631,8 @@ def section_flexure(
 ) -> tuple[list[dict[str, float]], dict[str, float]]:
     """Return cracking, yield, peak and ultimate, and the figures of the flexural spring."""
     statement = section + group("springs", settings)
-    names = section_quantities()["spring"]
-    points, figures, status, message = _rbsdem.rbs_section_flexure(*statement, len(names))
-    _raise(status, message)
-    return [_named("point", column) for column in points.T], _named("spring", figures)
+    _, figures, points, _ = _evaluate("section_flexure", statement)
+    return [_named("point", point) for point in points], _named("spring", figures)
 
 
 class ShearRun(NamedTuple):
@@ -673,16 +649,14 @@ class ShearRun(NamedTuple):
 def section_shear(section: Statement, settings: Mapping[str, Any], curvature: Array) -> ShearRun:
     """Follow a shear diagram; `settings` has the number of layers."""
     statement = section + group("shear", settings)
-    points, profile, kept, events, ends, status, message = _rbsdem.rbs_section_shear(
-        *statement, max(1, settings["layers"]), curvature
-    )
-    _raise(status, message)
-    found, sheared, lost = (bool(event) for event in events)
+    _, values, points, _ = _evaluate("section_shear", statement, curvature=curvature)
+    found, sheared, lost = (bool(event) for event in values[:3])
+    names = section_quantities()["profile"]
     return ShearRun(
-        _named_rows("shear", points[:, :kept]),
-        _named_rows("profile", profile),
-        _named("shear", ends[:, 0]) if found else None,
-        _named("shear", ends[:, 1]),
+        _named_rows("shear", points[:-2].T),
+        dict(zip(names, values[3:].reshape(len(names), -1), strict=True)),
+        _named("shear", points[-2]) if found else None,
+        _named("shear", points[-1]),
         sheared,
         lost,
     )
@@ -690,9 +664,8 @@ def section_shear(section: Statement, settings: Mapping[str, Any], curvature: Ar
 
 def section_strips(section: Statement, round_core: bool, number: int) -> tuple[Array, Array]:
     """Return centroids and areas of core and of cover in strips, a strip a column."""
-    core, cover, status, message = _rbsdem.rbs_section_strips(*section, int(round_core), number)
-    _raise(status, message)
-    return core, cover
+    rows = _evaluate("section_strips", section, round_core=round_core, number=number).rows.T
+    return rows[:2], rows[2:]
 
 
 def layer_response(
@@ -700,37 +673,23 @@ def layer_response(
 ) -> tuple[Array, Array]:
     """Return states of a layer along a path (a column each), and whether they carry the stress."""
     statement = concrete + steel + group("layer", settings)
-    states, carried, status, message = _rbsdem.rbs_layer_response(*statement, path)
-    _raise(status, message)
-    return states, carried
+    rows = _evaluate("layer_response", statement, path=path.T).rows.T
+    return rows[:-1], rows[-1]
 
 
-def _empty_rows(shape: Shape, rows: int) -> Array:
-    """Return the array that Fortran fills; each column is a row of the result."""
-    bodies, *has = shape
-    names = quantities(*has)[0]
-    joints = sum(name.endswith("*") for name in names)
-    return np.empty((len(names) + (bodies - 1) * joints, rows), order="F")
-
-
-def _finish(
-    rows: Array,
-    kept: int,
-    after: Array,
-    figures: Array,
-    method: bytes,
-    status: int,
-    message: bytes,
-) -> Run:
-    """Keep the rows that were filled; raise wrong input, return a failed analysis as an error."""
-    error, note = None, ""
-    if status == _ANALYSIS_FAILED:
-        error = SolveError(_text(message))
-    elif status:
-        _raise(status, message)
-    elif not message.startswith(b" "):
-        note = _text(message)
-    named: dict[str, Any] = dict(zip(quantities(False)[1], figures.tolist(), strict=True))
+def _finish(shape: Shape, answer: Answer, values: Array) -> Run:
+    """Name the figures of a run; raise wrong input, return a failed analysis as an error."""
+    if answer.status not in (0, _ANALYSIS_FAILED):
+        raise InputError(answer.text)
+    rows = answer.rows
+    if not rows.size:
+        bodies, *has = shape
+        names = quantities(*has)[0]
+        rows = np.empty((0, sum(bodies if name.endswith("*") else 1 for name in names)))
+    method, reason, note = answer.text.split("\n", 2)
+    error = SolveError(note) if answer.status else None
+    figures = quantities(False)[1]
+    named: dict[str, Any] = dict(zip(figures, values.tolist(), strict=False))
     for name in _COUNTS:
         named[name] = int(named[name])
     status = "collapsed" if named.pop("collapsed") else "completed"
@@ -743,20 +702,9 @@ def _finish(
             del named[name]
     if math.isnan(named["peak_floor_acceleration"]):
         del named["peak_floor_acceleration"]
-    named["method"] = _text(method[:_METHOD_LENGTH])
-    named["reason"] = _text(method[_METHOD_LENGTH:])
+    named["method"] = method
+    named["reason"] = reason
     named["status"] = "failed" if error else status
+    after = values[len(figures) :]
     state = None if error or not after.size else after.copy()
-    return rows[:, :kept].T, state, named, error, note
-
-
-def _raise(status: int, message: bytes) -> None:
-    """Raise the exception that a status stands for."""
-    if status == 0:
-        return
-    raise (SolveError if status == _ANALYSIS_FAILED else InputError)(_text(message))
-
-
-def _text(message: bytes) -> str:
-    """Return a message of Fortran without its padding."""
-    return message.decode("utf-8", errors="replace").rstrip()
+    return rows, state, named, error, "" if error else note

@@ -21,7 +21,6 @@ from rbsdem.methods import IN_TIME
 from rbsdem.motions.acting import acting
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.result import Result, result_from_rows
-from rbsdem.springs import Layered
 from rbsdem.state_file import named_state, state_of
 
 #: Names of the methods in time.
@@ -77,9 +76,7 @@ def modes(column: Column) -> Modes:
         If the axial load is so close to the critical one that low frequencies depend on its last
         digits.
     """
-    # The rotation of a fixed top is no unknown of its own.
-    count = _checked(column).unknowns - (column.top == "fixed")
-    omega, shapes, stable_step, note = _core.modes(column._statement, column.unknowns, count)
+    omega, shapes, stable_step, note = _core.modes(_checked(column)._statement)
     if note:
         warnings.warn(note, AccuracyWarning, stacklevel=2)
     return Modes(omega, omega / (2 * np.pi), shapes, stable_step)
@@ -97,7 +94,7 @@ def mass_matrix(column: Column, form: Literal["symmetric", "paper"] = "symmetric
         with its misprints corrected. M_symmetric = M_paper T with theta = cumulative sum of phi.
     """
     _arguments.choice(form, "form", ("symmetric", "paper"))
-    return _core.mass_matrix(_checked(column)._statement, column.unknowns, form == "paper")
+    return _core.mass_matrix(_checked(column)._statement, form == "paper")
 
 
 def cyclic(
@@ -183,10 +180,8 @@ def cyclic(
         (len(column.joint_numbers), column.opens, False, kept, False),
         by_force,
         values,
-        _NONE if load is None else load,
-        _NONE if initial is None else state_of(initial, "cyclic"),
-        expected_state(column),
-        every,
+        load,
+        None if initial is None else state_of(initial, "cyclic"),
     )
     call = {
         name: values,
@@ -341,10 +336,8 @@ def time_history(
         times,
         loads,
         *((_NONE, False) if from_end else _initial_state(initial, column)),
-        state_of(initial, "time_history") if from_end else _NONE,
+        state_of(initial, "time_history") if from_end else None,
         _views.view(column, "watches", kept),
-        expected_state(column),
-        every,
         lambda note: _tell(note, LongRunWarning, 5),
     )
     kept_initial = named_state(initial) if from_end else initial
@@ -368,14 +361,6 @@ def without_notes() -> Iterator[None]:
 def _tell(note: str, kind: type[Warning], stacklevel: int) -> None:
     if not getattr(_silent, "now", False):
         warnings.warn(note, kind, stacklevel=stacklevel)
-
-
-def expected_state(column: Column) -> int:
-    """Return how many numbers a state mostly has at most; a longer one is asked for again."""
-    layers = sum(
-        len(spring.layers) for spring in column.joints("flexure") if isinstance(spring, Layered)
-    )
-    return 1000 + 600 * column.unknowns + 40 * layers
 
 
 def _checked(column: Column) -> Column:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from rbsdem import _core
 from rbsdem._views import view_of
-from rbsdem.analysis import expected_state, settings_of
+from rbsdem.analysis import settings_of
 from rbsdem.result import Result, result_from_rows
 from rbsdem.state_file import state_of
 
@@ -23,12 +21,9 @@ def path_of(result: Result) -> Result:
         (len(column.joint_numbers), column.opens, False, openings, False),
         by_force,
         values,
-        call.get("axial_load", np.empty(0)),
-        state_of(call["initial"], "cyclic") if "initial" in call else np.empty(0),
-        expected_state(column),
-        None,
-        # With exact rotations there are strides between the events.
-        corners=result.summary["events"] + values.size + 1,
+        call.get("axial_load"),
+        state_of(call["initial"], "cyclic") if "initial" in call else None,
+        corners=True,
     )
     # Where the path broke off, the result has been told of it.
     path = result_from_rows(run[0], column, result.summary, call, result.state)

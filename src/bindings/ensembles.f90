@@ -1,10 +1,11 @@
-!> Ensembles from plain arrays into plain arrays, called by the procedures for f2py.
+!> Ensembles for Python.
 module rbs_bindings_ensembles
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
+   use rbs_bindings_exchange, only: request_type, answer_type
    use rbs_bindings_runs, only: choose_method, watches_of
    use rbs_bindings_statements, only: column_from_statements
    use rbs_case_case_record, only: case_record
@@ -23,118 +24,108 @@ module rbs_bindings_ensembles
 
 contains
 
-   !> Expected seconds of each motion for each column, and what is wrong with the columns.
-   subroutine plan_ensemble(statements, numbers, counts, watches, before, time, acceleration, points, &
-                            seconds, in_lanes, text)
-      !> Statements of the columns with their settings, each followed by `after`; all their numbers; how many
-      !> numbers and watches each has, and numbers of the state that its runs begin in, 0 for rest (3,
-      !> columns); the watches (6, all columns): state, joint, factors of slip, rotation and opening,
-      !> threshold; all states
-      character(len=*), intent(in) :: statements
-      real(c_double), intent(in) :: numbers(:), watches(:, :), before(:)
-      integer(c_int), intent(in) :: counts(:, :)
-      !> All motions one after the other [s, m/s2], and the number of points of each (motions)
-      real(c_double), intent(in) :: time(:), acceleration(:)
-      integer(c_int), intent(in) :: points(:)
-      !> (motions, columns) [s]
-      real(c_double), intent(out) :: seconds(:, :)
-      !> 1 where lanes take a run (motions, columns)
-      integer(c_int), intent(out) :: in_lanes(:, :)
-      !> Number of the column and message of each fault
-      type(text_buffer), intent(inout) :: text
+   !> What each motion takes for each column, and what is wrong with the columns. Rows: for each column expected
+   !> seconds of each motion, then 1 for each that lanes take. Text: number of the column and message of each
+   !> fault.
+   subroutine plan_ensemble(request, answer)
+      type(request_type), intent(in) :: request
+      type(answer_type), intent(inout) :: answer
       type(ensemble_column), allocatable :: column(:)
       type(ensemble_motion), allocatable :: motion(:)
       type(error_type), allocatable :: error
-      integer :: i, at(4)
-      logical :: lanes_take(size(points))
+      type(text_buffer) :: text
+      integer :: i, at(4), motions
+      logical, allocatable :: in_lanes(:)
 
-      seconds = 0.0_wp
-      in_lanes = 0
-      call take_motions(time, acceleration, points, motion)
-      allocate (column(1))
+      call take_motions(request, motion)
+      motions = size(motion)
+      answer%kept = size(request%array('counts'))/3
+      allocate (column(1), in_lanes(motions))
+      allocate (answer%rows(2*motions, answer%kept), source=0.0_wp)
       at = 1
-      do i = 1, size(counts, 2)
-         call next_column(statements, numbers, counts(:, i), watches, before, at, motion(1), column(1), error)
+      do i = 1, answer%kept
+         call next_column(request, i, at, motion(1), column(1), error)
          if (.not. allocated(error)) then
-            call plan_column(column(1), motion, seconds(:, i), lanes_take, error)
-            in_lanes(:, i) = merge(1, 0, lanes_take)
+            call plan_column(column(1), motion, answer%rows(:motions, i), in_lanes, error)
+            answer%rows(motions + 1:, i) = merge(1.0_wp, 0.0_wp, in_lanes)
          end if
          if (allocated(error)) call text%append(to_text(i)//after_number//error%message//after)
       end do
+      if (text%length > 0) answer%text = text%text(:text%length)
    end subroutine plan_ensemble
 
-   !> Runs, each of a column and a motion, into their fates and measures.
-   subroutine run_ensemble(statements, numbers, counts, watches, before, time, acceleration, points, &
-                           columns, motions, scales, level, control, fates, values, text)
-      !> As for `plan_ensemble`
-      character(len=*), intent(in) :: statements
-      real(c_double), intent(in) :: numbers(:), watches(:, :), before(:)
-      integer(c_int), intent(in) :: counts(:, :)
-      real(c_double), intent(in) :: time(:), acceleration(:)
-      integer(c_int), intent(in) :: points(:)
-      !> Column, motion and factor of the accelerations (runs)
-      integer(c_int), intent(in) :: columns(:), motions(:)
-      real(c_double), intent(in) :: scales(:)
-      !> See `run_block`
-      integer(c_int), intent(in) :: level
+   !> Runs, each of a column, a motion and a factor of the accelerations. Rows: for each run its fate, its
+   !> measures, and for each limit state but the first yield when it is reached. Text: number of the run and
+   !> message of each failure.
+   subroutine run_ensemble(request, control, answer)
+      type(request_type), intent(in) :: request
       !> See `run_block`
       integer(c_int), intent(inout), volatile :: control(2)
-      integer(c_int), intent(out) :: fates(:)
-      !> (measures and, behind them, limit states but the first yield, runs)
-      real(c_double), intent(out) :: values(:, :)
-      !> Number of the run and message of each failure
-      type(text_buffer), intent(inout) :: text
+      type(answer_type), intent(inout) :: answer
       type(ensemble_column), allocatable :: column(:)
       type(ensemble_motion), allocatable :: motion(:)
       type(run_type), allocatable :: run(:)
       type(outcome_type), allocatable :: outcome(:)
       type(error_type), allocatable :: error
-      integer :: i, at(4)
+      type(text_buffer) :: text
+      integer :: i, at(4), states
 
-      call take_motions(time, acceleration, points, motion)
-      allocate (column(size(counts, 2)), run(size(columns)), outcome(size(columns)))
+      call take_motions(request, motion)
+      states = 1 + request%whole('measures') - measure_count
+      allocate (column(size(request%array('counts'))/3))
       at = 1
       do i = 1, size(column)
-         call next_column(statements, numbers, counts(:, i), watches, before, at, motion(1), column(i), error)
-         column(i)%states = 1 + size(values, 1) - measure_count
+         call next_column(request, i, at, motion(1), column(i), error)
+         column(i)%states = states
          if (allocated(error)) call move_alloc(error, column(i)%error)
       end do
+      associate (columns => request%array('columns'), motions => request%array('motions'), &
+                 scales => request%array('scales'))
+         allocate (run(size(scales)), outcome(size(scales)))
+         do i = 1, size(run)
+            run(i) = run_type(nint(columns(i)), nint(motions(i)), scales(i))
+         end do
+      end associate
+      call run_block(column, motion, run, request%whole('level'), outcome, control)
+      answer%kept = size(run)
+      allocate (answer%rows(measure_count + states, size(run)), source=ieee_value(1.0_wp, ieee_quiet_nan))
       do i = 1, size(run)
-         run(i) = run_type(columns(i), motions(i), scales(i))
-      end do
-      call run_block(column, motion, run, level, outcome, control)
-      do i = 1, size(run)
-         fates(i) = outcome(i)%fate
-         values(:measure_count, i) = outcome(i)%value
-         values(measure_count + 1:, i) = ieee_value(1.0_wp, ieee_quiet_nan)
-         if (allocated(outcome(i)%reached)) values(measure_count + 1:, i) = outcome(i)%reached(2:)
+         answer%rows(1, i) = outcome(i)%fate
+         answer%rows(2:measure_count + 1, i) = outcome(i)%value
+         if (allocated(outcome(i)%reached)) answer%rows(measure_count + 2:, i) = outcome(i)%reached(2:)
          if (allocated(outcome(i)%message)) then
             call text%append(to_text(i)//after_number//outcome(i)%message//after)
          end if
       end do
+      if (text%length > 0) answer%text = text%text(:text%length)
    end subroutine run_ensemble
 
-   subroutine take_motions(time, acceleration, points, motion)
-      real(c_double), intent(in) :: time(:), acceleration(:)
-      integer(c_int), intent(in) :: points(:)
+   !> All motions stand one after the other, `points` has the number of points of each.
+   subroutine take_motions(request, motion)
+      type(request_type), intent(in) :: request
       type(ensemble_motion), allocatable, intent(out) :: motion(:)
-      integer :: j, first
+      real(c_double), pointer, contiguous :: points(:), time(:), acceleration(:)
+      integer :: j, first, last
 
+      points => request%array('points')
+      time => request%array('time')
+      acceleration => request%array('acceleration')
       allocate (motion(size(points)))
-      first = 1
+      last = 0
       do j = 1, size(points)
-         motion(j)%time = time(first:first + points(j) - 1)
-         motion(j)%acceleration = acceleration(first:first + points(j) - 1)
-         first = first + points(j)
+         first = last + 1
+         last = last + nint(points(j))
+         motion(j)%time = time(first:last)
+         motion(j)%acceleration = acceleration(first:last)
       end do
    end subroutine take_motions
 
-   !> The next column of the statements, with its settings.
-   subroutine next_column(statements, numbers, counts, watches, before, at, motion, column, error)
-      character(len=*), intent(in) :: statements
-      real(c_double), intent(in) :: numbers(:), watches(:, :), before(:)
-      !> Numbers and watches of the column, and numbers of its state
-      integer(c_int), intent(in) :: counts(3)
+   !> The next column of the request: the statement holds those of all columns with their settings, each
+   !> followed by `after`, the arrays `watches` and `before` what all are watched for and the states that their
+   !> runs begin in, and `counts` how many numbers, watches and numbers of its state each has.
+   subroutine next_column(request, place, at, motion, column, error)
+      type(request_type), intent(in) :: request
+      integer, intent(in) :: place
       !> Where its statement, its numbers, its watches and its state begin; on return those of the column
       !> after it
       integer, intent(inout) :: at(4)
@@ -144,15 +135,19 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(case_record) :: case
       type(loads_type) :: loads
-      integer :: last
+      integer :: next(4)
 
-      last = at(1) + index(statements(at(1):), after) - 2
-      call column_from_statements(statements(at(1):last), numbers(at(2):at(2) + counts(1) - 1), &
-                                  column%column, case, error)
-      column%watch = watches_of(watches(:, at(3):at(3) + counts(2) - 1))
-      if (allocated(column%before)) deallocate (column%before)
-      if (counts(3) > 0) column%before = before(at(4):at(4) + counts(3) - 1)
-      at = [last + 2, at(2) + counts(1), at(3) + counts(2), at(4) + counts(3)]
+      associate (counts => request%array('counts'), watches => request%array('watches'), &
+                 before => request%array('before'))
+         next(1) = at(1) + index(request%statement(at(1):), after)
+         next(2:) = at(2:) + nint(counts(3*place - 2:3*place)*[1, 6, 1])
+         call column_from_statements(request%statement(at(1):next(1) - 2), request%number(at(2):next(2) - 1), &
+                                     column%column, case, error)
+         column%watch = watches_of(watches(at(3):next(3) - 1))
+         if (allocated(column%before)) deallocate (column%before)
+         if (next(4) > at(4)) column%before = before(at(4):next(4) - 1)
+      end associate
+      at = next
       if (allocated(error)) return
       loads%ground%value = motion%acceleration(:1)
       call choose_method(case, loads, error)

@@ -1,20 +1,22 @@
-!> Analyses from plain arrays into plain arrays, called by the procedures for f2py.
+!> Analyses for Python.
 module rbs_bindings_runs
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-   use, intrinsic :: iso_c_binding, only: c_double, c_int
-   use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
+   use, intrinsic :: iso_c_binding, only: c_double
+   use rbs_base_error, only: error_type, message_list, fatal_error, analysis_failed, &
+                             bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
+   use rbs_bindings_exchange, only: request_type, answer_type
+   use rbs_bindings_statements, only: column_from_statements
    use rbs_case_case_record, only: case_record
    use rbs_column_column, only: column_type
-   use rbs_loading_loading_record, only: loading_record
-   use rbs_loading_protocol, only: protocol_values
    use rbs_loading_signal, only: signal_type
    use rbs_output_notes, only: rotation_note
    use rbs_output_recorder, only: array_recorder
    use rbs_output_summary, only: summary_type
    use rbs_solve_end_state, only: end_state
    use rbs_solve_static_run_static, only: run_static
+   use rbs_solve_static_path, only: kept_rows
    use rbs_solve_task, only: task_type
    use rbs_solve_time_effort, only: expected_seconds, long_run_note, patience
    use rbs_loading_loads, only: loads_type
@@ -25,63 +27,90 @@ module rbs_bindings_runs
    implicit none
    private
 
-   public :: into_rows_static, into_rows_dynamic, make_loads, choose_method, protocol_from_numbers, tell, &
-             tell_run, watches_of
+   public :: run_analysis, choose_method, watches_of
 
-   !> Status of a run that needs more rows than the array has; 0 to 2 are those of an error.
-   integer(c_int), parameter, public :: little_room = 3
+   !> Code of the "error" that a long run of which the user has not been `told` was not started.
+   integer, parameter :: long_run = 3
 
-   !> Status of a long run of which the user has not been told yet.
-   integer(c_int), parameter, public :: long_run = 4
+   type :: run_type
+      type(column_type) :: column
+      !> Settings of analysis and output
+      type(case_record) :: case
+      type(array_recorder) :: recorder
+      type(task_type) :: task
+      type(sight_type) :: sight
+   end type run_type
 
 contains
 
-   !> Write the rows of a static path into an array.
-   subroutine into_rows_static(column, case, by_force, target_values, axial_load, before, corners, rows, &
-                               count, after, ended, summary, error)
-      type(column_type), intent(in) :: column
-      !> Settings of analysis and output
-      type(case_record), intent(inout) :: case
-      logical, intent(in) :: by_force
-      real(c_double), intent(in) :: target_values(:)
-      !> Axial load at each of them; empty: constant
-      real(c_double), intent(in) :: axial_load(:)
-      !> The state to begin in; empty: virgin
-      real(c_double), intent(in) :: before(:)
-      !> Whether the corners between two targets have rows too
-      logical, intent(in) :: corners
-      real(c_double), intent(inout), target, contiguous :: rows(:, :)
-      !> Rows that there are; those for which there was room are filled
-      integer, intent(out) :: count
-      !> The state at the end, and how many numbers it has: 0 if there is none; if it has no room it is not
-      !> filled
-      real(c_double), intent(inout) :: after(:)
-      integer(c_int), intent(out) :: ended
-      type(summary_type), intent(out) :: summary
+   !> A static path or a response in time. Rows: those of the run. Values: when each of the `watches` is reached
+   !> first [s] and the displacement of the top then [m], not numbers where it is not; figures of the run; the
+   !> state at its end, if there is one. The text is the method, the reason for it and a note on a run that
+   !> succeeded, with line ends between.
+   subroutine run_analysis(request, answer)
+      type(request_type), intent(in) :: request
+      type(answer_type), intent(inout) :: answer
+      type(run_type), target :: run
+      real(c_double), pointer, contiguous :: watches(:)
+      character(len=:), allocatable :: note
+
+      watches => request%array('watches')
+      call run%sight%watch_for(watches_of(watches), size(watches)/6)
+      call column_from_statements(request%statement, request%number, run%column, run%case, answer%error)
+      if (.not. allocated(answer%error)) then
+         call take_from(request%array('before'), run%task%before)
+         if (request%what == 'cyclic') then
+            call run_cyclic(request, run, answer%error)
+         else
+            call run_time_history(request, run, answer%error)
+         end if
+      end if
+      note = ''
+      if (.not. allocated(answer%error)) then
+         call rotation_note(run%column, run%task%summary, note)
+      else if (answer%error%code /= analysis_failed) then
+         return
+      end if
+      call move_alloc(run%recorder%rows, answer%rows)
+      answer%kept = run%recorder%count
+      associate (sight => run%sight)
+         where (.not. sight%reached < huge(1.0_wp))
+            sight%reached = ieee_value(1.0_wp, ieee_quiet_nan)
+            sight%top = sight%reached
+         end where
+         answer%value = [sight%reached, sight%top, run%task%summary%as_array()]
+      end associate
+      if (run%task%after%is_given()) then
+         answer%value = [answer%value, run%task%after%stream%value(:run%task%after%stream%count)]
+      end if
+      answer%text = trim(run%task%summary%method)//new_line('a')//trim(run%task%summary%reason)//new_line('a')//note
+   end subroutine run_analysis
+
+   !> Static path through the `target`s.
+   subroutine run_cyclic(request, run, error)
+      type(request_type), intent(in) :: request
+      type(run_type), intent(inout), target :: run
       type(error_type), allocatable, intent(out) :: error
-      type(array_recorder), target :: recorder
-      type(task_type) :: task
+      real(c_double), pointer, contiguous :: target(:)
 
-      count = 0
-      ended = 0
-      case%analysis%method = 'static'
-      call check_settings(case, error)
+      run%case%analysis%method = 'static'
+      call check_settings(run%case, error)
       if (allocated(error)) return
-      recorder%rows => rows
-      recorder%openings = case%output%openings .and. .not. column%opens
-      recorder%corners = corners
-      task%recorder => recorder
-      task%every = case%output%every
-      task%collapse_drift = case%analysis%collapse_drift
-      task%keeps_end = .true.
-      call take_from(before, task%before)
-      call run_static(column, by_force, target_values, task, error, axial_load)
-      summary = task%summary
-      count = recorder%offered
-      call hand_over(task%after, after, ended)
-   end subroutine into_rows_static
+      target => request%array('target')
+      associate (every => run%case%output%every)
+         run%recorder%openings = run%case%output%openings .and. .not. run%column%opens
+         run%recorder%corners = request%wants('corners')
+         run%recorder%expected = kept_rows(size(target), every)
+         run%task%recorder => run%recorder
+         run%task%every = every
+         run%task%collapse_drift = run%case%analysis%collapse_drift
+         run%task%keeps_end = .true.
+         call run_static(run%column, request%wants('by_force'), target, run%task, error, &
+                         request%array('axial_load'))
+      end associate
+   end subroutine run_cyclic
 
-   !> A state from the numbers of the user.
+   !> A state from the numbers of the user; empty for none.
    subroutine take_from(numbers, state)
       real(c_double), intent(in) :: numbers(:)
       type(end_state), intent(inout) :: state
@@ -90,16 +119,6 @@ contains
       state%stream%value = numbers
       state%stream%count = size(numbers)
    end subroutine take_from
-
-   !> A state into an array of the user, if there is room.
-   subroutine hand_over(state, numbers, count)
-      type(end_state), intent(in) :: state
-      real(c_double), intent(inout) :: numbers(:)
-      integer(c_int), intent(out) :: count
-
-      count = state%stream%count
-      if (count > 0 .and. count <= size(numbers)) numbers(:count) = state%stream%value(:count)
-   end subroutine hand_over
 
    !> Validate the case without its column.
    subroutine check_settings(case, error)
@@ -132,195 +151,80 @@ contains
       end if
    end subroutine choose_method
 
-   !> Write the rows of a response in time into an array.
-   subroutine into_rows_dynamic(column, case, time, loads, initial_values, opening_given, before, watches, &
-                                rows, count, after, ended, reached, summary, enough, told, note, error)
-      type(column_type), intent(in) :: column
-      !> Settings of analysis and output
-      type(case_record), intent(in) :: case
-      real(c_double), intent(in) :: time(:)
-      type(loads_type), intent(in) :: loads
-      !> Deformations, then velocities (2 unknowns); empty: at rest
-      real(c_double), intent(in) :: initial_values(:)
-      logical, intent(in) :: opening_given
-      !> The state to begin in; empty: that of `initial_values`
-      real(c_double), intent(in) :: before(:)
-      !> See `watches_of` (6, watches)
-      real(c_double), intent(in) :: watches(:, :)
-      real(c_double), intent(inout), target, contiguous :: rows(:, :)
-      !> Rows kept; if the array is too small, nothing is solved and this is the number of rows needed
-      integer, intent(out) :: count
-      !> The state at the end, and how many numbers it has: 0 if there is none; if it has no room it is not
-      !> filled
-      real(c_double), intent(inout) :: after(:)
-      integer(c_int), intent(out) :: ended
-      !> When each state that is watched for is reached first [s] and the displacement of the top then [m],
-      !> not a number if it is not (2, watches)
-      real(c_double), intent(out) :: reached(:, :)
-      type(summary_type), intent(out) :: summary
-      logical, intent(out) :: enough
-      !> Whether the user has been told how long the run takes; if not, the note is allocated for a long
-      !> run, and nothing is solved
-      logical, intent(in) :: told
-      character(len=:), allocatable, intent(out) :: note
+   !> Response in time under the excitations that are given.
+   subroutine run_time_history(request, run, error)
+      type(request_type), intent(in) :: request
+      type(run_type), intent(inout), target :: run
       type(error_type), allocatable, intent(out) :: error
-      type(array_recorder) :: recorder
+      type(loads_type) :: loads
       type(initial_state) :: initial
       type(time_plan) :: plan
-      type(end_state) :: from, at_end
-      type(sight_type) :: sight
+      real(c_double), pointer, contiguous :: time(:), start(:)
+      character(len=:), allocatable :: note
 
-      count = 0
-      ended = 0
-      enough = .true.
-      reached = ieee_value(1.0_wp, ieee_quiet_nan)
-      call plan_dynamic(column, case%analysis, time, loads, plan, error)
+      time => request%array('time')
+      call take_signal(request, 'force', time, loads%force, error)
+      call take_signal(request, 'ground_acceleration', time, loads%ground, error)
+      call take_signal(request, 'vertical_acceleration', time, loads%vertical, error)
+      call take_signal(request, 'axial_load', time, loads%axial, error)
+      if (.not. allocated(error)) call choose_method(run%case, loads, error)
       if (allocated(error)) return
-      if (.not. told .and. expected_seconds(column, plan) >= patience) then
-         call long_run_note(column, plan, note)
-         return
-      end if
-      enough = size(rows, 2) >= plan%rows(case%output%every)
-      if (.not. enough) then
-         count = plan%rows(case%output%every)
-         return
-      end if
-      if (size(initial_values) > 0) then
-         initial%deformation = initial_values(:column%unknowns)
-         initial%velocity = initial_values(column%unknowns + 1:)
-         initial%opening_given = opening_given
-      end if
-      recorder%rows => rows
-      recorder%motion = case%output%motion
-      recorder%openings = case%output%openings .and. .not. column%opens
-      call take_from(before, from)
-      call sight%watch_for(watches_of(watches), size(watches, 2))
-      call run_dynamic(column, case%analysis, plan, time, loads, initial, case%output%every, recorder, &
-                       summary, error, before=from, after=at_end, sight=sight)
-      count = recorder%count
-      call hand_over(at_end, after, ended)
-      where (sight%reached < huge(1.0_wp))
-         reached(1, :) = sight%reached
-         reached(2, :) = sight%top
-      end where
-   end subroutine into_rows_dynamic
+      associate (column => run%column, analysis => run%case%analysis, output => run%case%output)
+         call plan_dynamic(column, analysis, time, loads, plan, error)
+         if (allocated(error)) return
+         if (.not. request%wants('told') .and. expected_seconds(column, plan) >= patience) then
+            call long_run_note(column, plan, note)
+            call fatal_error(error, long_run, note)
+            return
+         end if
+         ! Deformations, then velocities; none: at rest.
+         start => request%array('initial')
+         if (size(start) > 0) then
+            initial%deformation = start(:column%unknowns)
+            initial%velocity = start(column%unknowns + 1:)
+            initial%opening_given = request%wants('opening_given')
+         end if
+         run%recorder%motion = output%motion
+         run%recorder%openings = output%openings .and. .not. column%opens
+         run%recorder%expected = plan%rows(output%every)
+         call run_dynamic(column, analysis, plan, time, loads, initial, output%every, run%recorder, &
+                          run%task%summary, error, before=run%task%before, after=run%task%after, sight=run%sight)
+      end associate
+   end subroutine run_time_history
 
    !> What to watch for, from the numbers of the user: state, joint, factors of slip, rotation and opening,
-   !> threshold of each (6, watches).
+   !> threshold of each.
    pure function watches_of(numbers) result(watch)
-      real(c_double), intent(in) :: numbers(:, :)
-      type(watch_type) :: watch(size(numbers, 2))
+      real(c_double), intent(in) :: numbers(:)
+      type(watch_type) :: watch(size(numbers)/6)
       integer :: i
 
       do i = 1, size(watch)
-         associate (given => numbers(:, i))
+         associate (given => numbers(6*i - 5:6*i))
             watch(i) = watch_type(state=nint(given(1)), joint=nint(given(2)), slip=given(3), &
                                   rotation=given(4), opening=given(5), threshold=given(6))
          end associate
       end do
    end function watches_of
 
-   !> The excitation, from one column of values for each drive.
-   subroutine make_loads(loads, drives, time, load, error)
-      type(loads_type), intent(out) :: loads
-      !> Names of the drives, separated by blanks
-      character(len=*), intent(in) :: drives
-      real(c_double), intent(in) :: time(:)
-      !> Values (m, drives)
-      real(c_double), intent(in) :: load(:, :)
-      type(error_type), allocatable, intent(out) :: error
-      integer :: i, first, last
-
-      first = 1
-      do i = 1, size(load, 2)
-         last = index(drives(first:)//' ', ' ') + first - 2
-         associate (drive => drives(first:last))
-            if (drive == 'force') call make_signal(loads%force, drive, time, load(:, i), error)
-            if (drive == 'ground_acceleration') call make_signal(loads%ground, drive, time, load(:, i), error)
-            if (drive == 'vertical_acceleration') then
-               call make_signal(loads%vertical, drive, time, load(:, i), error)
-            end if
-            if (drive == 'axial_load') call make_signal(loads%axial, drive, time, load(:, i), error)
-         end associate
-         if (allocated(error)) return
-         first = last + 2
-      end do
-   end subroutine make_loads
-
-   subroutine make_signal(made, name, time, value, error)
-      type(signal_type), intent(out) :: made
+   !> One of the excitations, if it is given.
+   subroutine take_signal(request, name, time, signal, error)
+      type(request_type), intent(in) :: request
       character(len=*), intent(in) :: name
-      real(c_double), intent(in) :: time(:), value(:)
-      type(error_type), allocatable, intent(out) :: error
+      real(c_double), intent(in) :: time(:)
+      type(signal_type), intent(inout) :: signal
+      type(error_type), allocatable, intent(inout) :: error
+      real(c_double), pointer, contiguous :: value(:)
 
+      if (allocated(error) .or. index(' '//request%names, ' '//name//':') == 0) return
+      value => request%array(name)
       if (size(value) /= size(time)) then
          call fatal_error(error, bad_input, name//': '//to_text(size(value))//' values for '// &
                           to_text(size(time))//' times; give one for each')
          return
       end if
-      made%time = time
-      made%value = value
-   end subroutine make_signal
-
-   !> Points of a cyclic protocol, in the unit of the amplitudes.
-   subroutine protocol_from_numbers(amplitudes, negative, cycles, repeats, points, values, error)
-      real(c_double), intent(in) :: amplitudes(:)
-      !> Those of the other side; empty: the same
-      real(c_double), intent(in) :: negative(:)
-      integer(c_int), intent(in) :: cycles(:), repeats, points
-      !> Filled up to the number of points
-      real(c_double), intent(out) :: values(:)
-      type(error_type), allocatable, intent(out) :: error
-      type(loading_record) :: spec
-      type(message_list) :: messages
-      real(wp), allocatable :: time(:), made(:)
-
-      values = 0.0_wp
-      spec%drive = 'force'
-      spec%source = 'protocol'
-      spec%amplitudes = amplitudes
-      if (size(negative) > 0) spec%negative_amplitudes = negative
-      spec%cycles = cycles
-      spec%repeats = repeats
-      spec%points = points
-      call spec%validate(.false., messages)
-      call messages%raise(error)
-      if (allocated(error)) return
-      call protocol_values(spec, 1.0_wp, time, made, error)
-      if (.not. allocated(error)) values = made(:size(values))
-   end subroutine protocol_from_numbers
-
-   !> Status and text of an error; 0 and blank if there is no error.
-   subroutine tell(error, status, message)
-      type(error_type), allocatable, intent(in) :: error
-      integer(c_int), intent(out) :: status
-      character(len=*), intent(out) :: message
-
-      status = 0
-      message = ''
-      if (.not. allocated(error)) return
-      status = error%code
-      message = error%message
-   end subroutine tell
-
-   !> The same for a run; a successful run may have a note as its message.
-   subroutine tell_run(column, summary, error, figures, method, status, message)
-      type(column_type), intent(in) :: column
-      type(summary_type), intent(in) :: summary
-      type(error_type), allocatable, intent(in) :: error
-      real(c_double), intent(out) :: figures(:)
-      !> Method that was used, followed by the reason if the program chose it
-      character(len=*), intent(out) :: method
-      integer(c_int), intent(out) :: status
-      character(len=*), intent(out) :: message
-      character(len=:), allocatable :: note
-
-      figures = summary%as_array()
-      method = summary%method//summary%reason
-      call tell(error, status, message)
-      if (status /= 0) return
-      call rotation_note(column, summary, note)
-      message = note
-   end subroutine tell_run
+      signal%time = time
+      signal%value = value
+   end subroutine take_signal
 
 end module rbs_bindings_runs

@@ -1,6 +1,5 @@
 !> From a history file to the values of a loading, in SI.
 module rbs_io_loading_file
-   use, intrinsic :: iso_c_binding, only: c_int
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: lower, list_of, nearest_name, to_text
@@ -61,30 +60,25 @@ contains
    end subroutine loading_values
 
    !> Read the displacements [m] and forces [N] of a measured test.
-   subroutine read_test(path, units, name, rows, displacement, force, error, columns, layout)
+   subroutine read_test(path, units, name, values, error, columns, layout)
       character(len=*), intent(in) :: path
       !> Units of displacement and force; blank: units of the file, see `convert`
       character(len=*), intent(in) :: units(2)
       !> Name of the test
       character(len=:), allocatable, intent(out) :: name
-      !> Number of rows; the arrays must have room for all of them
-      integer(c_int), intent(out) :: rows
-      real(wp), intent(out) :: displacement(:), force(:)
+      !> Displacements and forces (rows, 2)
+      real(wp), allocatable, intent(out) :: values(:, :)
       type(error_type), allocatable, intent(out) :: error
       !> Numbers of the two columns; by default they are found by their names
       integer, intent(in), optional :: columns(2)
       !> Layout of the file; by default it is found in the file
       type(layout_type), intent(in), optional :: layout
       type(history_type) :: history
-      real(wp), allocatable :: value(:)
       character(len=12) :: wanted
       character(len=12), parameter :: drives(2) = ['displacement', 'force       ']
       integer :: column, i
 
-      rows = 0
       name = ''
-      displacement = 0.0_wp
-      force = 0.0_wp
       call read_history(path, 'auto', history, error, layout)
       if (allocated(error)) return
       name = history%name
@@ -92,21 +86,19 @@ contains
          call fatal_error(error, bad_input, path//': has one column; a test has displacements and forces')
          return
       end if
+      allocate (values(history%rows, 2))
       if (history%columns == 2 .and. is_time(history%labels(1))) history%labels(1) = 'a time'
       do i = 1, 2
          wanted = ''
          if (present(columns)) wanted = to_text(columns(i))
          call find_column(history, path, drives(i), wanted, 'column', column, error)
          if (allocated(error)) return
-         value = history%values(column, :)
-         call check_range(value, path, column, 1.0e300_wp, error)
+         values(:, i) = history%values(column, :history%rows)
+         call check_range(values(:, i), path, column, 1.0e300_wp, error)
          if (allocated(error)) return
-         call convert(history, path, column, drives(i), units(i), value, error)
+         call convert(history, path, column, drives(i), units(i), values(:, i), error)
          if (allocated(error)) return
-         if (i == 1) displacement(:history%rows) = value
-         if (i == 2) force(:history%rows) = value
       end do
-      rows = history%rows
    end subroutine read_test
 
    !> The column with the name or number that the user gives, or else with the name of the drive.

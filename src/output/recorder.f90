@@ -29,12 +29,12 @@ module rbs_output_recorder
       end subroutine record_interface
    end interface
 
-   !> Keeps rows in an array of the caller.
+   !> Keeps rows in an array.
    type, extends(recorder_type) :: array_recorder
-      !> Rows kept so far, and rows offered: more, if there was no room
-      integer :: count = 0, offered = 0
-      !> One row a column (values of a row, rows)
-      real(wp), pointer, contiguous :: rows(:, :) => null()
+      !> Rows kept so far, and how many there will be as far as known
+      integer :: count = 0, expected = 0
+      !> One row a column (values of a row, rows kept and room for others)
+      real(wp), allocatable :: rows(:, :)
    contains
       procedure :: record
    end type array_recorder
@@ -47,10 +47,20 @@ contains
       type(error_type), allocatable, intent(inout) :: error
 
       if (allocated(error)) return
-      self%offered = self%offered + 1
-      if (self%count == size(self%rows, 2)) return
+      if (.not. allocated(self%rows)) allocate (self%rows(size(row), max(1, self%expected)))
+      if (self%count == size(self%rows, 2)) call make_room(self)
       self%count = self%count + 1
       self%rows(:, self%count) = row
    end subroutine record
+
+   !> Room for twice as many rows: how many corners a path has is not known before.
+   subroutine make_room(self)
+      type(array_recorder), intent(inout) :: self
+      real(wp), allocatable :: larger(:, :)
+
+      allocate (larger(size(self%rows, 1), 2*self%count))
+      larger(:, :self%count) = self%rows
+      call move_alloc(larger, self%rows)
+   end subroutine make_room
 
 end module rbs_output_recorder

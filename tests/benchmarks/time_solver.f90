@@ -242,15 +242,13 @@ contains
       type(array_recorder), target :: recorder
       type(task_type) :: task
       type(error_type), allocatable :: error
-      real(wp), allocatable, target :: rows(:, :)
       real(wp), allocatable :: x(:)
       real(wp) :: begin
       integer, parameter :: m = 20000
 
       call make_paper_column(column, 'pdelta', 1)
       allocate (x(m), source=wave(m, 20, 0.05_wp))
-      allocate (rows(row_size(column%unknowns), m))
-      recorder%rows => rows
+      allocate (recorder%rows(row_size(column%unknowns), m))
       call cpu_time(begin)
       task%recorder => recorder
       call run_static(column, .false., x, task, error)
@@ -300,13 +298,11 @@ contains
       type(time_plan) :: plan
       type(initial_state) :: rest
       type(error_type), allocatable :: error
-      real(wp), allocatable, target :: rows(:, :)
       real(wp) :: begin, finish
 
       call plan_dynamic(column, analysis, loads%force%time, loads, plan, error)
       if (allocated(error)) call give_up(error)
-      allocate (rows(row_size(column%unknowns), plan%rows(1000)))
-      recorder%rows => rows
+      allocate (recorder%rows(row_size(column%unknowns), plan%rows(1000)))
       call cpu_time(begin)
       call run_dynamic(column, analysis, plan, loads%force%time, loads, rest, 1000, recorder, summary, error)
       call cpu_time(finish)
@@ -371,14 +367,12 @@ contains
       type(array_recorder), target :: recorder
       type(task_type) :: task
       type(error_type), allocatable :: error
-      real(wp), allocatable, target :: rows(:, :)
       real(wp), allocatable :: x(:)
       real(wp) :: begin, finish
 
       call make_bilinear_column(column, 1, 1.0_wp)
       allocate (x(points), source=wave(points, 20, 0.05_wp))
-      allocate (rows(row_size(column%unknowns), points/1000 + 2))
-      recorder%rows => rows
+      allocate (recorder%rows(row_size(column%unknowns), points/1000 + 2))
       call cpu_time(begin)
       task%recorder => recorder
       task%every = 1000

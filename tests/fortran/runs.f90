@@ -62,18 +62,16 @@ contains
       type(column_type), intent(in) :: column
       type(array_recorder) :: recorder
       type(loads_type) :: loads
-      real(wp), allocatable, target :: kept(:, :)
 
       if (allocated(data%rows)) deallocate (data%rows)
       if (allocated(data%outcome)) deallocate (data%outcome)
       loads = loads_of(data)
       call plan_dynamic(column, data%analysis, data%time, loads, data%plan, data%outcome)
       if (allocated(data%outcome)) return
-      allocate (kept(row_size(column%unknowns, column%damped), data%plan%rows(data%every)))
-      recorder%rows => kept
+      allocate (recorder%rows(row_size(column%unknowns, column%damped), data%plan%rows(data%every)))
       call run_dynamic(column, data%analysis, data%plan, data%time, loads, data%initial, data%every, &
                        recorder, data%summary, data%outcome)
-      data%rows = kept(:, :recorder%count)
+      data%rows = recorder%rows(:, :recorder%count)
    end subroutine run
 
    !> The loads of a run.

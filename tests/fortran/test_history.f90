@@ -301,7 +301,6 @@ contains
       type(rk4_stepper) :: stepper
       type(summary_type) :: summary
       type(array_recorder) :: recorder
-      real(wp), allocatable, target :: kept(:, :)
       real(wp) :: energy(2), share(2)
       integer, parameter :: steps = 3000
       integer :: kind, i
@@ -320,16 +319,14 @@ contains
             plan%intervals = steps
             plan%steps = steps
             plan%finish = steps*plan%dt
-            if (allocated(kept)) deallocate (kept)
-            allocate (kept(row_size(column%unknowns, column%damped), 2))
-            recorder%rows => kept
-            recorder%count = 0
+            recorder = array_recorder()
             stepper = rk4_stepper()
             call stepper%scheme%create(column)
             call march(column, plan, stepper, [0.0_wp, plan%finish], none, start, unset, steps, recorder, &
                        summary, outcome)
             call check_passed(error, outcome, 'march')
-            energy(i) = (kept(row_kinetic, 2) + kept(row_spring, 2))/kept(row_kinetic, 1)
+            energy(i) = (recorder%rows(row_kinetic, 2) + recorder%rows(row_spring, 2)) &
+                        /recorder%rows(row_kinetic, 1)
          end do
          call check_true(error, energy(1) < 1.0_wp, 'just below the limit, damping '//to_text(kind))
          call check_true(error, energy(2) > 10.0_wp, 'just above the limit, damping '//to_text(kind))
@@ -536,8 +533,8 @@ contains
       type(run_data) :: data
       type(array_recorder), target :: recorder
       type(task_type) :: task
-      real(wp), allocatable, target :: kept(:, :)
       real(wp) :: wrong(2)
+      real(wp), allocatable :: x(:)
       integer :: i
 
       spec = column_1('small')
@@ -547,18 +544,15 @@ contains
          call run(data, made(spec))
          call check_passed(error, data%outcome, 'run')
          if (allocated(error)) return
-         if (allocated(kept)) deallocate (kept)
-         allocate (kept(row_size(2), size(data%force)))
-         recorder%rows => kept
-         recorder%count = 0
+         recorder = array_recorder()
          task%recorder => recorder
          task%every = 1
          call run_static(made(spec), .true., data%force, task, outcome)
          call check_passed(error, outcome, 'static path')
-         wrong(i) = maxval(abs(data%rows(row_displacement, :) - kept(row_displacement, :))) &
-                    /maxval(abs(kept(row_displacement, :)))
+         x = recorder%rows(row_displacement, :recorder%count)
+         wrong(i) = maxval(abs(data%rows(row_displacement, :) - x))/maxval(abs(x))
       end do
-      call check_true(error, maxval(abs(kept(row_displacement, :))) > 3.0_wp*height_1*d_y, 'beyond yield')
+      call check_true(error, maxval(abs(x)) > 3.0_wp*height_1*d_y, 'beyond yield')
       call check_true(error, wrong(2) < 0.01_wp, 'slow: below 1 %, not '//to_text(wrong(2)))
       call check_true(error, wrong(2) < 0.2_wp*wrong(1), 'ten times slower is better')
    end subroutine slow_loading
@@ -695,14 +689,12 @@ contains
       type(time_plan) :: plan
       type(loads_type) :: none
       type(summary_type) :: summary
-      real(wp), target :: kept(14, 2)
 
       column = made(column_1('small'))
       data%time = [0.0_wp, 10.0_wp]
       data%analysis%dt = 1.0e-4_wp
       call plan_dynamic(column, data%analysis, data%time, none, plan, outcome)
       call check_passed(error, outcome, 'plan')
-      recorder%rows => kept
       call run_dynamic(column, data%analysis, plan, data%time, none, data%initial, unset_integer, recorder, &
                        summary, outcome, told)
       call check_passed(error, outcome, 'run')

@@ -90,26 +90,21 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(array_recorder) :: keeper
-      real(wp), target :: rows(3, 2)
 
-      rows = 0.0_wp
-      keeper%rows => rows
+      keeper%expected = 2
       call keeper%record([1.0_wp, 2.0_wp, 3.0_wp], outcome)
       call keeper%record([4.0_wp, 5.0_wp, 6.0_wp], outcome)
       call keeper%record([7.0_wp, 8.0_wp, 9.0_wp], outcome)
-      call check_true(error, .not. allocated(outcome), 'a full recorder is no error')
-      call check_equal(error, keeper%count, 2, 'rows kept')
-      call check_same(error, pack(rows, .true.), 1.0_wp*[1, 2, 3, 4, 5, 6], 'rows')
+      call check_true(error, .not. allocated(outcome), 'a full recorder takes more rows')
+      call check_equal(error, keeper%count, 3, 'rows kept')
+      call check_same(error, pack(keeper%rows(:, :3), .true.), 1.0_wp*[1, 2, 3, 4, 5, 6, 7, 8, 9], 'rows')
    end subroutine recorder
 
    subroutine recorder_after_error(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(array_recorder) :: keeper
-      real(wp), target :: rows(1, 1)
 
-      rows = 0.0_wp
-      keeper%rows => rows
       call fatal_error(outcome, 1, 'before')
       call keeper%record([1.0_wp], outcome)
       call check_equal(error, keeper%count, 0, 'rows kept')

@@ -675,23 +675,21 @@ contains
       type(time_plan) :: plan
       type(summary_type) :: summary
       type(array_recorder) :: recorder
-      real(wp), target :: kept(14, 11)
       integer :: every
 
       do every = 1, 3
          call new_plan(plan, [0.0_wp, 1.0_wp], 0.125_wp, 1.0_wp, 1.0_wp, outcome)
          call check_passed(error, outcome, 'plan')
          recorder = array_recorder()
-         recorder%rows => kept
          summary = summary_type()
          stepper = failing_stepper()
          call march(made(column_1('small')), plan, stepper, [0.0_wp, 1.0_wp], none, rest, unset, every, &
                     recorder, summary, outcome)
          call check_failed(error, outcome, analysis_failed, 'no way to go on at 0.9375 s')
          call check_equal(error, recorder%count, 1 + 7/every + 1, 'rows')
-         call check_same(error, kept([row_time, row_displacement], recorder%count), [0.9375_wp, 0.5_wp], &
-                         'the last row is the last good state')
-         call check_same(error, kept([row_time, row_displacement], 2), [0.125_wp, 0.01_wp]*every, &
+         call check_same(error, recorder%rows([row_time, row_displacement], recorder%count), &
+                         [0.9375_wp, 0.5_wp], 'the last row is the last good state')
+         call check_same(error, recorder%rows([row_time, row_displacement], 2), [0.125_wp, 0.01_wp]*every, &
                          'a row before')
          call check_equal(error, summary%rows, recorder%count, 'reported rows')
          call check_equal(error, summary%cut_steps, 8, 'reported cut steps')

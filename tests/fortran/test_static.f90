@@ -91,16 +91,14 @@ contains
       type(array_recorder), target :: recorder
       type(column_type) :: column
       type(task_type) :: task
-      real(wp), allocatable, target :: kept(:, :)
 
       if (present(every)) task%every = every
       column = made(spec)
-      allocate (kept(row_size(column%unknowns), max(size(values), 1)))
-      recorder%rows => kept
+      allocate (recorder%rows(row_size(column%unknowns), max(size(values), 1)))
       task%recorder => recorder
       if (present(collapse_drift)) task%collapse_drift = collapse_drift
       call run_static(column, by_force, values, task, outcome)
-      rows = kept(:, :recorder%count)
+      rows = recorder%rows(:, :recorder%count)
       if (present(summary)) summary = task%summary
    end subroutine run
 

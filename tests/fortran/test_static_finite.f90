@@ -64,15 +64,13 @@ contains
       type(column_type) :: column
       type(array_recorder), target :: recorder
       type(task_type) :: task
-      real(wp), allocatable, target :: kept(:, :)
 
       column = made(spec)
-      allocate (kept(row_size(column%unknowns), max(size(values), 1)))
-      recorder%rows => kept
+      allocate (recorder%rows(row_size(column%unknowns), max(size(values), 1)))
       task%recorder => recorder
       if (present(drift)) task%collapse_drift = drift
       call run_static(column, by_force, values, task, outcome)
-      rows = kept(:, :recorder%count)
+      rows = recorder%rows(:, :recorder%count)
       if (present(summary)) summary = task%summary
    end subroutine run
 

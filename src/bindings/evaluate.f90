@@ -1,0 +1,194 @@
+!> What Python can ask for: the one table of it.
+module rbs_bindings_evaluate
+   use, intrinsic :: iso_c_binding, only: c_double, c_int
+   use rbs_base_error, only: message_list
+   use rbs_base_text, only: list_of
+   use rbs_bindings_exchange, only: request_type, answer_type
+   use rbs_bindings_ensembles, only: plan_ensemble, run_ensemble
+   use rbs_bindings_files, only: case_from_file, case_to_text, test_from_file
+   use rbs_bindings_runs, only: run_analysis
+   use rbs_bindings_sections, only: evaluate_section
+   use rbs_bindings_statements, only: column_from_statements, spring_from_statements
+   use rbs_case_case_record, only: case_record
+   use rbs_case_key_list, only: keys_as_json
+   use rbs_case_methods, only: method_rows
+   use rbs_case_text_buffer, only: text_buffer
+   use rbs_column_column, only: column_type
+   use rbs_column_mass, only: paper_mass, symmetric_mass
+   use rbs_hysteresis_spring_record, only: spring_record
+   use rbs_hysteresis_springs, only: follow_path
+   use rbs_loading_loading_record, only: loading_record
+   use rbs_loading_named_protocols, only: named_protocol
+   use rbs_loading_protocol, only: protocol_values
+   use rbs_loading_spectrum, only: response_spectrum
+   use rbs_output_notes, only: column_notes
+   use rbs_output_row, only: row_quantities
+   use rbs_output_summary, only: figure_names
+   use rbs_section_flexural_spring, only: spring_figures
+   use rbs_section_section_figures, only: layer_values, point_values, profile_values, section_figures, &
+                                          shear_values
+   use rbs_solve_ensemble_outcome, only: measure_names
+   use rbs_solve_modal_modes, only: modes_type, find_modes
+   use rbs_version, only: version
+   implicit none
+   private
+
+   public :: evaluate
+
+contains
+
+   subroutine evaluate(request, control, answer)
+      type(request_type), intent(in) :: request
+      !> See `run_block`
+      integer(c_int), intent(inout), volatile :: control(2)
+      type(answer_type), intent(inout) :: answer
+      type(text_buffer) :: buffer
+
+      select case (request%what)
+      case ('version')
+         answer%text = version
+      case ('methods')
+         call method_rows(answer%text)
+      case ('keys')
+         call keys_as_json(buffer)
+         answer%text = buffer%text(:buffer%length)
+      case ('quantities')
+         call name_quantities(request, answer)
+      case ('check_spring', 'spring_response')
+         call evaluate_spring(request, answer)
+      case ('check_column', 'modes', 'mass_matrix')
+         call evaluate_column(request, answer)
+      case ('cyclic', 'time_history')
+         call run_analysis(request, answer)
+      case ('plan_ensemble')
+         call plan_ensemble(request, answer)
+      case ('run_ensemble')
+         call run_ensemble(request, control, answer)
+      case ('to_namelist')
+         call case_to_text(request, answer)
+      case ('read_case')
+         call case_from_file(request%statement, answer)
+      case ('read_history')
+         call test_from_file(request, answer)
+      case ('protocol')
+         call make_protocol(request, answer)
+      case ('named_protocol')
+         call find_protocol(request, answer)
+      case ('spectrum')
+         call find_spectrum(request%array('acceleration'), request%array('dt'), request%array('period'), &
+                            request%array('damping'), answer)
+      case default
+         call evaluate_section(request, answer)
+      end select
+   end subroutine evaluate
+
+   !> Names of the values that come back, a line each: values of a row, `slip*` for one a joint, figures of a
+   !> run, measures of a run of an ensemble; then what belongs to a section.
+   subroutine name_quantities(request, answer)
+      type(request_type), intent(in) :: request
+      type(answer_type), intent(inout) :: answer
+      character(len=1), parameter :: line = new_line('a')
+
+      answer%text = trim(row_quantities(request%wants('opens'), request%wants('with_base'), &
+                                        request%wants('with_openings'), request%wants('with_motion')))//line// &
+                    trim(figure_names())//line//trim(measure_names())//line//list_of(section_figures)//line// &
+                    list_of(spring_figures)//line//list_of(point_values)//line//list_of(shear_values)//line// &
+                    list_of(profile_values)//line//list_of(layer_values)
+   end subroutine name_quantities
+
+   !> Whether the rule allows a spring, or the forces of a virgin one along a path of deformations.
+   subroutine evaluate_spring(request, answer)
+      type(request_type), intent(in) :: request
+      type(answer_type), intent(inout) :: answer
+      type(spring_record) :: spring
+      real(c_double), pointer, contiguous :: load(:), path(:)
+
+      load => request%array('axial_load')
+      path => request%array('deformation')
+      call spring_from_statements(request%statement, request%number, load(1), spring, answer%error)
+      if (allocated(answer%error)) return
+      allocate (answer%value(size(path)))
+      call follow_path(spring, path, answer%value)
+   end subroutine evaluate_spring
+
+   !> Notes on a column that is allowed, a line each; its modes; or its mass matrix.
+   subroutine evaluate_column(request, answer)
+      type(request_type), intent(in) :: request
+      type(answer_type), intent(inout) :: answer
+      type(case_record) :: case
+      type(column_type) :: column
+      type(message_list) :: notes
+      type(modes_type) :: modes
+
+      call column_from_statements(request%statement, request%number, column, case, answer%error)
+      if (allocated(answer%error)) return
+      select case (request%what)
+      case ('check_column')
+         call column_notes(case%column, notes)
+         if (notes%count > 0) answer%text = notes%text
+      case ('modes')
+         call find_modes(column, modes, answer%error)
+         if (allocated(answer%error)) return
+         answer%text = trim(modes%warning)
+         answer%value = [modes%stable_step, modes%omega]
+         call answer%set_rows(modes%shapes)
+      case default
+         answer%kept = column%unknowns
+         allocate (answer%rows(column%unknowns, column%unknowns))
+         if (request%wants('paper')) then
+            call paper_mass(column, answer%rows)
+         else
+            call symmetric_mass(column, answer%rows)
+         end if
+      end select
+   end subroutine evaluate_column
+
+   !> Points of a cyclic protocol, in the unit of the amplitudes.
+   subroutine make_protocol(request, answer)
+      type(request_type), intent(in) :: request
+      type(answer_type), intent(inout) :: answer
+      type(loading_record) :: spec
+      type(message_list) :: messages
+      real(c_double), pointer, contiguous :: amplitude(:), negative(:)
+      real(c_double), allocatable :: time(:)
+
+      amplitude => request%array('amplitudes')
+      ! Those of the other side; empty: the same.
+      negative => request%array('negative')
+      spec%drive = 'force'
+      spec%source = 'protocol'
+      spec%amplitudes = amplitude
+      if (size(negative) > 0) spec%negative_amplitudes = negative
+      spec%cycles = nint(request%array('cycles'))
+      spec%repeats = request%whole('repeats')
+      spec%points = request%whole('points')
+      call spec%validate(.false., messages)
+      call messages%raise(answer%error)
+      if (allocated(answer%error)) return
+      call protocol_values(spec, 1.0_c_double, time, answer%value, answer%error)
+   end subroutine make_protocol
+
+   !> Amplitudes and cycles of a protocol of the literature.
+   subroutine find_protocol(request, answer)
+      type(request_type), intent(in) :: request
+      type(answer_type), intent(inout) :: answer
+      real(c_double), pointer, contiguous :: limit(:)
+      real(c_double), allocatable :: amplitude(:)
+      integer, allocatable :: cycles(:)
+
+      limit => request%array('reference_and_largest')
+      call named_protocol(request%statement, limit(1), limit(2), amplitude, cycles, answer%error)
+      if (.not. allocated(answer%error)) answer%value = [amplitude, real(cycles, c_double)]
+   end subroutine find_protocol
+
+   !> Peaks of relative displacement, relative velocity and absolute acceleration for each period.
+   subroutine find_spectrum(acceleration, dt, period, damping, answer)
+      real(c_double), intent(in) :: acceleration(:), dt(:), period(:), damping(:)
+      type(answer_type), intent(inout) :: answer
+
+      answer%kept = size(period)
+      allocate (answer%rows(3, answer%kept))
+      call response_spectrum(acceleration, dt(1), period, damping(1), answer%rows)
+   end subroutine find_spectrum
+
+end module rbs_bindings_evaluate

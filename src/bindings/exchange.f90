@@ -1,0 +1,87 @@
+!> What crosses between Python and Fortran: a request, which names what is wanted and brings a text and numbers,
+!> and its answer, a text and numbers of any length.
+module rbs_bindings_exchange
+   use, intrinsic :: iso_c_binding, only: c_double
+   use rbs_base_error, only: error_type
+   implicit none
+   private
+
+   public :: request_type, answer_type
+
+   type :: request_type
+      !> What is wanted
+      character(len=:), allocatable :: what
+      !> Groups of keys (see `rbs_bindings_statements`) or another text, and the numbers of the keys
+      character(len=:), allocatable :: statement
+      real(c_double), pointer, contiguous :: number(:) => null()
+      !> Arrays with names: name and size of each ('values:100'), separated by blanks, and all their numbers one
+      !> after the other
+      character(len=:), allocatable :: names
+      real(c_double), pointer, contiguous :: input(:) => null()
+   contains
+      procedure :: array
+      procedure :: whole
+      procedure :: wants
+   end type request_type
+
+   type :: answer_type
+      type(error_type), allocatable :: error
+      character(len=:), allocatable :: text
+      real(c_double), allocatable :: value(:)
+      !> A row of Python a column; those behind `kept` are room that is left
+      real(c_double), allocatable :: rows(:, :)
+      integer :: kept = 0
+   contains
+      procedure :: set_rows
+   end type answer_type
+
+contains
+
+   !> One of the arrays; empty if it is not given.
+   function array(self, name) result(values)
+      class(request_type), intent(in) :: self
+      character(len=*), intent(in) :: name
+      real(c_double), pointer, contiguous :: values(:)
+      integer :: first, last, mark, at, count
+
+      at = 0
+      first = 1
+      do while (first <= len(self%names))
+         last = first + index(self%names(first:)//' ', ' ') - 2
+         mark = first + index(self%names(first:last), ':') - 1
+         read (self%names(mark + 1:last), *) count
+         values => self%input(at + 1:at + count)
+         if (self%names(first:mark - 1) == name) return
+         at = at + count
+         first = last + 2
+      end do
+      values => self%input(1:0)
+   end function array
+
+   !> A whole number that is given.
+   integer function whole(self, name)
+      class(request_type), intent(in) :: self
+      character(len=*), intent(in) :: name
+      real(c_double), pointer, contiguous :: values(:)
+
+      values => self%array(name)
+      whole = nint(values(1))
+   end function whole
+
+   !> Whether a switch is given and on.
+   logical function wants(self, name)
+      class(request_type), intent(in) :: self
+      character(len=*), intent(in) :: name
+
+      wants = any(abs(self%array(name)) > 0.0_c_double)
+   end function wants
+
+   subroutine set_rows(self, rows)
+      class(answer_type), intent(inout) :: self
+      real(c_double), intent(in) :: rows(:, :)
+
+      self%rows = rows
+      self%kept = size(rows, 2)
+   end subroutine set_rows
+
+end module rbs_bindings_exchange

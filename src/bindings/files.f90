@@ -1,0 +1,125 @@
+!> Files for Python: a case as statements and arrays, a measured test, the text of a case file.
+module rbs_bindings_files
+   use, intrinsic :: iso_c_binding, only: c_double
+   use rbs_bindings_exchange, only: request_type, answer_type
+   use rbs_bindings_statements, only: case_from_statements
+   use rbs_case_case_record, only: case_record
+   use rbs_case_writer, only: namelist_sink, statement_sink, write_case
+   use rbs_column_column, only: column_type
+   use rbs_io_case_file, only: case_history, load_case
+   use rbs_io_history, only: layout_type
+   use rbs_io_loading_file, only: read_test
+   use rbs_loading_loading_record, only: drive_names
+   use rbs_loading_signal, only: signal_type
+   use rbs_solve_make_column, only: make_column
+   implicit none
+   private
+
+   public :: case_from_file, case_to_text, test_from_file
+
+   integer, parameter :: drives = size(drive_names)
+
+contains
+
+   !> Read a case, with all the checks of the executable. Text and values: title, column, analysis and output as
+   !> a statement. Rows: for each of the drives whether it acts, then its values; before them the times, which
+   !> always act.
+   subroutine case_from_file(path, answer)
+      character(len=*), intent(in) :: path
+      type(answer_type), intent(inout) :: answer
+      type(case_record) :: case
+      type(case_history) :: history
+      type(column_type) :: column
+      type(statement_sink) :: statements
+      integer :: place, m
+
+      call load_case(path, case, history, answer%error, unloaded=.true.)
+      if (.not. allocated(answer%error)) call make_column(case%column, column, answer%error)
+      if (allocated(answer%error)) return
+      m = size(history%time)
+      allocate (answer%rows(1 + m, 0:drives), source=0.0_c_double)
+      answer%kept = 1 + drives
+      associate (rows => answer%rows)
+         rows(2:, 0) = history%time
+         if (case%loadings == 0) then
+            ! What will shake it is not known yet: the method is left to that.
+            if (.not. case%analysis%named) case%analysis%method = 'auto'
+         else if (case%analysis%dynamic()) then
+            call sample(history%loads%force, history%time, rows(:, 2))
+            call sample(history%loads%ground, history%time, rows(:, 3))
+            call sample(history%loads%vertical, history%time, rows(:, 4))
+            call sample(history%loads%axial, history%time, rows(:, 5))
+         else
+            place = merge(2, 1, any(case%loading(:case%loadings)%drive == 'force'))
+            rows(:, place) = [1.0_c_double, history%target]
+            if (size(history%axial_load) > 0) rows(:, 5) = [1.0_c_double, history%axial_load]
+         end if
+      end associate
+      case%loadings = 0
+      call write_case(case, statements)
+      answer%text = statements%buffer%text(:statements%buffer%length)
+      answer%value = statements%number(:statements%count)
+   end subroutine case_from_file
+
+   !> Whether a signal acts, and its values at common times; at its own points they are exactly its values.
+   subroutine sample(signal, time, row)
+      type(signal_type), intent(inout) :: signal
+      real(c_double), intent(in) :: time(:)
+      real(c_double), intent(inout) :: row(:)
+      integer :: i, at
+
+      if (.not. signal%acts()) return
+      row(1) = 1.0_c_double
+      at = 1
+      do i = 1, size(time)
+         do while (at < size(signal%time) .and. signal%time(at) < time(i))
+            at = at + 1
+         end do
+         if (abs(signal%time(at) - time(i)) > 0.0_c_double) then
+            row(1 + i) = signal%at_time(time(i))
+         else
+            row(1 + i) = signal%value(at)
+         end if
+      end do
+   end subroutine sample
+
+   !> The case as the text of a file.
+   subroutine case_to_text(request, answer)
+      type(request_type), intent(in) :: request
+      type(answer_type), intent(inout) :: answer
+      type(case_record) :: case
+      type(namelist_sink) :: sink
+
+      call case_from_statements(request%statement, request%number, case, answer%error)
+      if (allocated(answer%error)) return
+      call write_case(case, sink)
+      answer%text = sink%buffer%text(:sink%buffer%length)
+   end subroutine case_to_text
+
+   !> Displacements [m] and forces [N] of a measured test, and its name. The text of the request: units of both,
+   !> empty for those of the file, and the path, with line ends between. Without a layout (separator, decimal
+   !> point, lines before the first row) the file says what it has; else columns are taken by their numbers.
+   subroutine test_from_file(request, answer)
+      type(request_type), intent(in) :: request
+      type(answer_type), intent(inout) :: answer
+      character(len=16) :: units(2)
+      integer :: first, second
+      real(c_double), pointer, contiguous :: layout(:)
+
+      layout => request%array('layout')
+      associate (text => request%statement)
+         first = index(text, new_line('a'))
+         second = first + index(text(first + 1:), new_line('a'))
+         units = [character(len=16) :: text(:first - 1), text(first + 1:second - 1)]
+         if (size(layout) == 0) then
+            call read_test(text(second + 1:), units, answer%text, answer%rows, answer%error)
+         else
+            call read_test(text(second + 1:), units, answer%text, answer%rows, answer%error, &
+                           nint(request%array('columns')), &
+                           layout_type(nint(layout(3)), achar(nint(layout(1))), achar(nint(layout(2)))))
+         end if
+      end associate
+      answer%kept = 2
+   end subroutine test_from_file
+
+end module rbs_bindings_files

@@ -1,0 +1,252 @@
+!> What is evaluated of a section, of its materials and of one layer.
+module rbs_bindings_sections
+   use, intrinsic :: iso_c_binding, only: c_double
+   use rbs_base_error, only: error_type, message_list
+   use rbs_base_kinds, only: wp
+   use rbs_bindings_exchange, only: request_type, answer_type
+   use rbs_bindings_statements, only: put_statements
+   use rbs_case_group_reader, only: group_reader
+   use rbs_section_balance, only: axial_capacity, follow
+   use rbs_section_concrete_law, only: concrete_stress, concrete_type, tension_names
+   use rbs_section_cross_section, only: section_type
+   use rbs_section_events, only: check_rules, events_type, find_events, rule_type
+   use rbs_section_flexural_spring, only: fit_flexural_spring, flexural_spring_type, hinge_type
+   use rbs_section_mcft_layer, only: layer_state, layer_type, solve_layer, stress_of_state
+   use rbs_section_resultants, only: laws_type, resultants_type, section_laws
+   use rbs_section_section_build, only: make_section, outline_core
+   use rbs_section_section_figures, only: figures_of_section, values_of_layer, values_of_point, &
+                                          values_of_shear_point
+   use rbs_section_settings_record, only: place_of
+   use rbs_section_shape, only: shape_type
+   use rbs_section_shear_diagram, only: check_curvatures, follow_shear, shear_diagram_type
+   use rbs_section_steel_law, only: steel_stress
+   use rbs_section_strips, only: cut_strips, strip_centroids, strips_type
+   implicit none
+   private
+
+   public :: evaluate_section
+
+contains
+
+   !> Strains, curvatures and loads come as arrays of the request; the settings are those of a group of its
+   !> statement.
+   subroutine evaluate_section(request, answer)
+      type(request_type), intent(in) :: request
+      type(answer_type), intent(inout) :: answer
+      type(group_reader) :: reader
+      type(section_type) :: section
+      type(message_list) :: messages
+
+      reader%of_section = .true.
+      call put_statements(request%statement, request%number, reader, messages)
+      select case (request%what)
+      case ('concrete_response', 'moment_curvature', 'section_events')
+         call reader%check('diagram', messages)
+      case ('section_flexure')
+         call reader%check('springs', messages)
+      case ('section_shear')
+         call reader%check('shear', messages)
+      case ('layer_response')
+         call reader%check('layer', messages)
+      end select
+      call messages%raise(answer%error)
+      if (allocated(answer%error)) return
+      select case (request%what)
+      case ('concrete_response')
+         call respond_concrete(reader, request%array('strain'), answer)
+         return
+      case ('steel_response')
+         call reader%case%drawing%section%steels(1)%validate(messages)
+         call messages%raise(answer%error)
+         if (.not. allocated(answer%error)) then
+            answer%value = steel_stress(reader%case%drawing%section%steels(1)%law(), request%array('strain'))
+         end if
+         return
+      case ('layer_response')
+         call respond_layer(reader, request%array('path'), answer)
+         return
+      case ('section_strips')
+         call cut_section(reader, request%wants('round_core'), request%whole('number'), answer)
+         return
+      end select
+      call make_section(reader%case%drawing%section, section, answer%error)
+      if (allocated(answer%error)) return
+      select case (request%what)
+      case ('check_section')
+         answer%value = figures_of_section(section)
+      case ('section_flexure')
+         call fit_spring(section, reader, answer)
+      case ('section_shear')
+         call follow_shear_diagram(section, reader, request%array('curvature'), answer)
+      case default
+         call bend_section(request, section, reader, answer)
+      end select
+   end subroutine evaluate_section
+
+   !> Moments and curvatures under an axial load; the settings are those of the group diagram.
+   subroutine bend_section(request, section, reader, answer)
+      type(request_type), intent(in) :: request
+      type(section_type), intent(in) :: section
+      type(group_reader), intent(in) :: reader
+      type(answer_type), intent(inout) :: answer
+      type(laws_type) :: laws
+      type(resultants_type) :: least, most
+      type(events_type) :: events
+      real(c_double), pointer, contiguous :: curvature(:)
+      real(c_double) :: strain(2)
+
+      associate (given => reader%diagram)
+         laws = section_laws(section, tension_place(given%tension), given%confined)
+         select case (request%what)
+         case ('axial_capacity')
+            ! Least and largest axial load without curvature, and the moments that go with them.
+            call axial_capacity(section, laws, least, most, strain)
+            answer%value = [least%n, most%n, least%m, most%m]
+         case ('moment_curvature')
+            ! Curvatures of one sign and increasing magnitude; moments, then strains.
+            curvature => request%array('curvature')
+            allocate (answer%rows(size(curvature), 2), source=0.0_c_double)
+            answer%kept = 2
+            call follow(section, laws, given%axial_load, curvature, answer%rows(:, 1), answer%rows(:, 2), &
+                        answer%error)
+         case default
+            ! Cracking, yield, peak, ultimate and the end; whether the axial load is lost there.
+            call check_rule(section, given%confined, given%rule(), answer%error)
+            if (allocated(answer%error)) return
+            call find_events(section, laws, given%axial_load, given%rule(), events, answer%error)
+            if (allocated(answer%error)) return
+            answer%value = [merge(1.0_wp, 0.0_wp, events%lost)]
+            call answer%set_rows(reshape([values_of_point(events%cracking), values_of_point(events%yield), &
+                                          values_of_point(events%peak), values_of_point(events%ultimate), &
+                                          values_of_point(events%last)], [4, 5]))
+         end select
+      end associate
+   end subroutine bend_section
+
+   !> Figures of the flexural spring, and cracking, yield, peak and ultimate.
+   subroutine fit_spring(section, reader, answer)
+      type(section_type), intent(in) :: section
+      type(group_reader), intent(in) :: reader
+      type(answer_type), intent(inout) :: answer
+      type(hinge_type) :: hinge
+      type(flexural_spring_type) :: spring
+
+      hinge = reader%springs%hinge()
+      call check_rule(section, hinge%confined, hinge%rule, answer%error)
+      if (.not. allocated(answer%error)) call fit_flexural_spring(section, hinge, spring, answer%error)
+      if (allocated(answer%error)) return
+      answer%value = spring%as_array()
+      call answer%set_rows(reshape([values_of_point(spring%cracking), values_of_point(spring%yield), &
+                                    values_of_point(spring%peak), values_of_point(spring%ultimate)], [4, 4]))
+   end subroutine fit_spring
+
+   !> Points of a shear diagram; then its knee and its last point. Values: whether the knee is found, a layer
+   !> sheared, and the axial load is lost, then the profile of the layers at the last point.
+   subroutine follow_shear_diagram(section, reader, curvature, answer)
+      type(section_type), intent(in) :: section
+      type(group_reader), intent(in) :: reader
+      !> [1/m]
+      real(c_double), intent(in) :: curvature(:)
+      type(answer_type), intent(inout) :: answer
+      type(shear_diagram_type) :: diagram
+      type(message_list) :: messages
+      integer :: i, count
+
+      call check_curvatures(curvature, messages)
+      call messages%raise(answer%error)
+      if (allocated(answer%error)) return
+      associate (given => reader%shear)
+         call follow_shear(section, tension_place(given%tension), given%confined, given%coupled, &
+                           given%axial_load, given%length, given%layers, given%knee, curvature, diagram, &
+                           answer%error)
+      end associate
+      if (allocated(answer%error)) return
+      count = size(diagram%points)
+      allocate (answer%rows(4, count + 2))
+      answer%kept = count + 2
+      do i = 1, count
+         answer%rows(:, i) = values_of_shear_point(diagram%points(i))
+      end do
+      answer%rows(:, count + 1) = values_of_shear_point(diagram%knee)
+      answer%rows(:, count + 2) = values_of_shear_point(diagram%last)
+      answer%value = [merge(1.0_wp, 0.0_wp, [diagram%knee_found, diagram%sheared, diagram%lost]), diagram%y, &
+                      diagram%eps_x, diagram%tau, diagram%gamma, diagram%eps_z]
+   end subroutine follow_shear_diagram
+
+   !> Stresses of unconfined concrete, compression positive; the tension law is that of the group diagram.
+   subroutine respond_concrete(reader, strain, answer)
+      type(group_reader), intent(inout) :: reader
+      real(c_double), intent(in) :: strain(:)
+      type(answer_type), intent(inout) :: answer
+      type(concrete_type) :: law
+      type(message_list) :: messages
+
+      call reader%case%drawing%section%concrete%validate(messages)
+      call messages%raise(answer%error)
+      if (allocated(answer%error)) return
+      law = reader%case%drawing%section%concrete%law()
+      law%tension = tension_place(reader%diagram%tension)
+      answer%value = concrete_stress(law, strain)
+   end subroutine respond_concrete
+
+   !> One layer along a path of longitudinal strain (tension positive) and shear stress [Pa], one after the
+   !> other, from its virgin state: its states, and whether it carries the stress.
+   subroutine respond_layer(reader, path, answer)
+      type(group_reader), intent(in) :: reader
+      real(c_double), intent(in) :: path(:)
+      type(answer_type), intent(inout) :: answer
+      type(layer_type) :: layer
+      type(layer_state) :: state
+      logical :: found
+      integer :: i
+
+      layer%concrete = reader%case%drawing%section%concrete%law()
+      layer%concrete%tension = tension_place(reader%layer%tension)
+      layer%rho_z = reader%layer%rho_z
+      layer%stirrup = reader%case%drawing%section%steels(1)%law()
+      answer%kept = size(path)/2
+      allocate (answer%rows(6, answer%kept))
+      do i = 1, answer%kept
+         call solve_layer(layer, path(2*i - 1), path(2*i), state, found)
+         answer%rows(:, i) = [values_of_layer(state, stress_of_state(layer, state)), merge(1.0_wp, 0.0_wp, found)]
+      end do
+   end subroutine respond_layer
+
+   !> Strips: y of the centroid and area of the core, then of the cover.
+   subroutine cut_section(reader, round_core, number, answer)
+      type(group_reader), intent(in) :: reader
+      logical, intent(in) :: round_core
+      integer, intent(in) :: number
+      type(answer_type), intent(inout) :: answer
+      class(shape_type), allocatable :: inside
+      type(strips_type) :: strips
+
+      call outline_core(reader%case%drawing%section, round_core, inside)
+      call cut_strips(reader%case%drawing%section%shape, inside, number, strips)
+      allocate (answer%rows(4, number))
+      answer%kept = number
+      call strip_centroids(reader%case%drawing%section%shape, inside, strips, answer%rows(1, :), answer%rows(3, :))
+      answer%rows(2, :) = strips%core_area
+      answer%rows(4, :) = strips%area - strips%core_area
+   end subroutine cut_section
+
+   !> Place of a tension law that has been checked.
+   pure integer function tension_place(word)
+      character(len=*), intent(in) :: word
+
+      tension_place = place_of(word, tension_names)
+   end function tension_place
+
+   !> The rules of the named points must apply to the section.
+   subroutine check_rule(section, confined, rule, error)
+      type(section_type), intent(in) :: section
+      logical, intent(in) :: confined
+      type(rule_type), intent(in) :: rule
+      type(error_type), allocatable, intent(out) :: error
+      type(message_list) :: messages
+
+      call check_rules(section, confined, rule, messages)
+      call messages%raise(error)
+   end subroutine check_rule
+
+end module rbs_bindings_sections
