@@ -42,6 +42,7 @@ contains
       class(request_type), intent(in) :: self
       character(len=*), intent(in) :: name
       real(c_double), pointer, contiguous :: values(:)
+      character(len=20) :: length
       integer :: first, last, mark, at, count
 
       at = 0
@@ -49,7 +50,8 @@ contains
       do while (first <= len(self%names))
          last = first + index(self%names(first:)//' ', ' ') - 2
          mark = first + index(self%names(first:last), ':') - 1
-         read (self%names(mark + 1:last), *) count
+         length = self%names(mark + 1:last)
+         read (length, *) count
          values => self%input(at + 1:at + count)
          if (self%names(first:mark - 1) == name) return
          at = at + count
