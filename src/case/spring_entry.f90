@@ -174,7 +174,7 @@ contains
             call check_name(list%entry(i)%spring%rule, pack(rule_names, suits(rule_names, in_layer)), &
                             name//' rule', messages, place)
          end if
-         if (list%entry(i)%id == unset_integer) then
+         if (list%entry(i)%id < 1) then
             call messages%add(name//' id is missing; give each spring of layers a number of its own')
             cycle
          end if

@@ -1,16 +1,15 @@
 !> Reads a case from a namelist file: the scanner cuts the text into groups and entries; each entry is
-!> checked against the key that it names and passed to the setter.
+!> checked against the key that it names and passed to the reader of groups.
 module rbs_io_namelist
+   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_negative_inf, ieee_positive_inf
    use rbs_base_error, only: error_type, message_list
-   use rbs_base_keys, only: text_kind, word_kind
+   use rbs_base_keys, only: key_type, real_kind, integer_kind, word_kind, text_kind
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: to_text
+   use rbs_base_text, only: lower, to_text
    use rbs_case_case_record, only: case_record
    use rbs_case_group_reader, only: group_reader, ignored
-   use rbs_io_namelist_entry, only: location, check_twice, check_values, entry_numbers, entry_text
-   use rbs_io_namelist_pieces, only: nml_group, nml_scan
-   use rbs_io_namelist_scan, only: scan_namelist, most_messages
-   use rbs_io_text_file, only: text_file, load_text
+   use rbs_io_namelist_scan, only: nml_entry, nml_group, nml_scan, scan_namelist, most_messages
+   use rbs_io_text_file, only: text_file, load_text, read_real, number_wrong, number_not_finite
    implicit none
    private
 
@@ -18,6 +17,11 @@ module rbs_io_namelist
 
    !> Largest case file that is read [bytes].
    integer, parameter :: most_bytes = 100000000
+
+   !> Longer texts are refused.
+   integer, parameter :: text_length = 512
+
+   character(len=*), parameter :: digits = '0123456789'
 
 contains
 
@@ -31,8 +35,7 @@ contains
       type(error_type), allocatable :: error
       type(text_file) :: file
       type(nml_scan) :: scanned
-      type(group_reader) :: setter
-      character(len=:), allocatable :: name
+      type(group_reader) :: reader
       integer :: known
 
       understood = .false.
@@ -42,23 +45,21 @@ contains
          call messages%add(error%message)
          return
       end if
-      name = path(index(path, '/', back=.true.) + 1:)
-      call scan_namelist(file, name, scanned, messages)
+      call scan_namelist(file, path(index(path, '/', back=.true.) + 1:), scanned, messages)
       if (messages%count > known) return
-      call put_groups(scanned, name, setter, messages)
+      call put_groups(scanned, reader, messages)
       ! Values that were not understood would also be reported as missing, which would mislead.
       understood = messages%count == known
-      if (understood) call setter%finish(messages)
+      if (understood) call reader%finish(messages)
       understood = messages%count == known
-      case = setter%case
+      case = reader%case
       if (understood) call case%validate(messages)
    end subroutine read_case
 
    !> Read all groups; &units first, as the numbers of the others depend on it.
-   subroutine put_groups(scanned, path, setter, messages)
-      type(nml_scan), intent(in) :: scanned
-      character(len=*), intent(in) :: path
-      type(group_reader), intent(inout) :: setter
+   subroutine put_groups(scanned, reader, messages)
+      type(nml_scan), intent(inout) :: scanned
+      type(group_reader), intent(inout) :: reader
       type(message_list), intent(inout) :: messages
       character(len=8), parameter :: required(3) = ['column  ', 'shear   ', 'flexure ']
       integer :: i, pass
@@ -67,46 +68,44 @@ contains
          do i = 1, scanned%groups
             if (messages%count > most_messages) return
             if ((scanned%group(i)%name == 'units') .eqv. (pass == 1)) then
-               call put_group(scanned, scanned%group(i), path, setter, messages)
+               call put_group(scanned, scanned%group(i), reader, messages)
             end if
          end do
       end do
       do i = 1, size(required)
          if (any(scanned%group(:scanned%groups)%name == required(i))) cycle
-         call messages%add(path//': the group &'//trim(required(i))//' is missing')
+         call messages%add(scanned%path//': the group &'//trim(required(i))//' is missing')
       end do
    end subroutine put_groups
 
    !> Read one group; first the rule of a spring and the shape of a section, which bring keys.
-   subroutine put_group(scanned, group, path, setter, messages)
-      type(nml_scan), intent(in) :: scanned
+   subroutine put_group(scanned, group, reader, messages)
+      type(nml_scan), intent(inout) :: scanned
       type(nml_group), intent(in) :: group
-      character(len=*), intent(in) :: path
-      type(group_reader), intent(inout) :: setter
+      type(group_reader), intent(inout) :: reader
       type(message_list), intent(inout) :: messages
       integer :: i, pass
       logical :: ok
 
-      call setter%open(group%name, location(path, group%line)//':', messages, ok)
+      call reader%open(group%name, scanned%location(group%line), messages, ok)
       if (.not. ok) return
       do pass = 1, 2
          do i = group%first, group%last
             if (messages%count > most_messages) return
             if (any(scanned%entry(i)%name == [character(len=5) :: 'rule', 'shape']) .eqv. (pass == 1)) then
-               call put_entry(scanned, group, i, path, setter, messages)
+               call put_entry(scanned, group, i, reader, messages)
             end if
          end do
       end do
    end subroutine put_group
 
    !> Read one entry, `name = values` or `name(i) = value`.
-   subroutine put_entry(scanned, group, i, path, setter, messages)
-      type(nml_scan), intent(in) :: scanned
+   subroutine put_entry(scanned, group, i, reader, messages)
+      type(nml_scan), intent(inout) :: scanned
       type(nml_group), intent(in) :: group
       !> Number of the entry
       integer, intent(in) :: i
-      character(len=*), intent(in) :: path
-      type(group_reader), intent(inout) :: setter
+      type(group_reader), intent(inout) :: reader
       type(message_list), intent(inout) :: messages
       character(len=:), allocatable :: text
       real(wp), allocatable :: number(:)
@@ -114,22 +113,207 @@ contains
 
       known = messages%count
       associate (entry => scanned%entry(i))
-         call setter%find(entry%name, location(path, entry%line)//':', place, messages)
+         call reader%find(entry%name, scanned%location(entry%line), place, messages)
          if (messages%count > known .or. place == ignored) return
-         associate (key => setter%keys(place))
-            call check_twice(path, scanned, group, i, messages)
-            call check_values(path, entry, key, messages)
-            if (messages%count > known) return
-            if (key%kind == text_kind .or. key%kind == word_kind) then
-               call entry_text(entry, text)
-               call setter%put_text(place, text, messages)
-               return
-            end if
-            ! All subscripted values of a name are put together when the first of them is read.
-            call entry_numbers(path, scanned, group, i, key, number, messages)
-            if (allocated(number)) call setter%put_numbers(place, number)
-         end associate
+         call check_twice(scanned, group, i, messages)
+         call read_values(scanned, entry, reader%keys(place), number, text, messages)
+         if (messages%count > known) return
+         if (reader%keys(place)%kind == text_kind .or. reader%keys(place)%kind == word_kind) then
+            call reader%put_text(place, text, messages)
+            return
+         end if
+         ! All subscripted values of a name are put together when the first of them is read.
+         if (entry%subscript > 0) call gather(scanned, group, i, reader%keys(place), number, messages)
+         if (allocated(number)) call reader%put_numbers(place, number)
       end associate
    end subroutine put_entry
+
+   !> A name (with its subscript) must not appear twice in a group.
+   subroutine check_twice(scanned, group, i, messages)
+      type(nml_scan), intent(in) :: scanned
+      type(nml_group), intent(in) :: group
+      integer, intent(in) :: i
+      type(message_list), intent(inout) :: messages
+      integer :: j
+
+      associate (entry => scanned%entry)
+         do j = group%first, i - 1
+            if (entry(j)%name /= entry(i)%name) cycle
+            if (entry(j)%subscript /= entry(i)%subscript .and. &
+                min(entry(j)%subscript, entry(i)%subscript) > 0) cycle
+            call messages%add(scanned%location(entry(i)%line)//" '"//trim(entry(i)%name)// &
+                              "' appears twice in &"//trim(group%name)//', first on line '// &
+                              to_text(entry(j)%line)//'; remove one')
+            return
+         end do
+      end associate
+   end subroutine check_twice
+
+   !> Read the values of an entry, which must be of the kind of the key and not too many.
+   subroutine read_values(scanned, entry, key, number, text, messages)
+      type(nml_scan), intent(inout) :: scanned
+      type(nml_entry), intent(in) :: entry
+      type(key_type), intent(in) :: key
+      !> The values; for a word or a text the first one without its quotes
+      real(wp), allocatable, intent(out) :: number(:)
+      character(len=:), allocatable, intent(out) :: text
+      type(message_list), intent(inout) :: messages
+      character(len=:), allocatable :: place, what
+      real(wp) :: value
+      integer :: i, first, last, times, known, total
+
+      place = scanned%location(entry%line)//' '
+      known = messages%count
+      allocate (number(min(entry%total, key%most)))
+      scanned%at = entry%first
+      total = 0
+      do i = 1, entry%values
+         call scanned%skip(' ,')
+         call scanned%take_value(entry%name, times, first, last, messages)
+         associate (word => scanned%text(first:last))
+            call read_value(word, key%kind, value, what)
+            if (allocated(what)) then
+               call messages%add(place//trim(entry%name)//' = '//word(:min(len(word), 40))//' '//what)
+               return
+            end if
+            if (i == 1 .and. (key%kind == text_kind .or. key%kind == word_kind)) call unquote(word, text)
+         end associate
+         times = min(times, size(number) - total)
+         number(total + 1:total + times) = value
+         total = total + times
+      end do
+      total = min(entry%total, huge(1) - entry%subscript) + max(entry%subscript - 1, 0)
+      if (entry%subscript > 0 .and. key%most == 1) then
+         call messages%add(place//"'"//trim(entry%name)//"' takes no subscript")
+      else if (entry%subscript > 0 .and. total > entry%subscript) then
+         call messages%add(place//"'"//trim(entry%name)//'('//to_text(entry%subscript)// &
+                           ")' takes one value, not "//to_text(entry%total)// &
+                           '; give a list without subscript')
+      else if (total > key%most) then
+         call messages%add(place//"'"//trim(entry%name)//"' has "//to_text(total)// &
+                           ' values; it takes '//to_text(key%most)//' at the most')
+      end if
+   end subroutine read_values
+
+   !> The value of a word, or the reason why it is refused.
+   subroutine read_value(word, kind, value, what)
+      character(len=*), intent(in) :: word
+      character(len=1), intent(in) :: kind
+      !> A logical as 0 or 1; 0 for a text
+      real(wp), intent(out) :: value
+      !> Not allocated if the value is valid
+      character(len=:), allocatable, intent(out) :: what
+      integer :: status, first
+      logical :: quoted
+
+      value = 0.0_wp
+      quoted = word(1:1) == '''' .or. word(1:1) == '"'
+      select case (kind)
+      case (text_kind, word_kind)
+         if (.not. quoted) then
+            what = "must be a text in quotes: '"//word(:min(len(word), 40))//"'"
+         else if (len(word) > text_length) then
+            what = 'is longer than '//to_text(text_length - 2)//' characters'
+         end if
+      case (real_kind)
+         call read_real(word, value, status)
+         if (quoted) then
+            what = 'must be a number without quotes'
+         else if (status == number_wrong) then
+            what = 'is not a number; write it like 1.6 or 7.04e8, without a unit'
+         else if (status == number_not_finite .and. scan(word, digits) > 0) then
+            what = 'is too large to be a finite number; check its exponent'
+         else if (status == number_not_finite) then
+            value = not_finite(word)
+         end if
+      case (integer_kind)
+         first = merge(2, 1, scan(word(1:1), '+-') == 1)
+         if (len(word) < first .or. len(word) > 9 .or. verify(word(first:), digits) /= 0) then
+            what = 'must be a whole number'
+         else
+            call read_real(word, value, status)
+         end if
+      case default
+         select case (lower(word))
+         case ('.true.', 't', 'true')
+            value = 1.0_wp
+         case ('.false.', 'f', 'false')
+            value = 0.0_wp
+         case default
+            what = 'must be .true. or .false.'
+         end select
+      end select
+   end subroutine read_value
+
+   !> NaN or infinity, which the check of the values then reports.
+   real(wp) function not_finite(word)
+      character(len=*), intent(in) :: word
+
+      if (scan(word, 'aA') > 0) then
+         not_finite = ieee_value(not_finite, ieee_quiet_nan)
+      else if (word(1:1) == '-') then
+         not_finite = ieee_value(not_finite, ieee_negative_inf)
+      else
+         not_finite = ieee_value(not_finite, ieee_positive_inf)
+      end if
+   end function not_finite
+
+   !> A text without its quotes; doubled quotes within become single.
+   subroutine unquote(quoted, text)
+      character(len=*), intent(in) :: quoted
+      character(len=:), allocatable, intent(out) :: text
+      integer :: i, length
+
+      allocate (character(len=len(quoted)) :: text)
+      length = 0
+      i = 2
+      do while (i < len(quoted))
+         length = length + 1
+         text(length:length) = quoted(i:i)
+         if (quoted(i:i) == quoted(1:1)) i = i + 1
+         i = i + 1
+      end do
+      text = text(:length)
+   end subroutine unquote
+
+   !> The values of all subscripted entries with one name, for the first of them; not allocated for the
+   !> other entries, or if values are missing.
+   subroutine gather(scanned, group, i, key, number, messages)
+      type(nml_scan), intent(inout) :: scanned
+      type(nml_group), intent(in) :: group
+      !> Number of the entry
+      integer, intent(in) :: i
+      type(key_type), intent(in) :: key
+      real(wp), allocatable, intent(out) :: number(:)
+      type(message_list), intent(inout) :: messages
+      character(len=:), allocatable :: what
+      logical, allocatable :: there(:)
+      integer :: j, last, from, to, times
+
+      associate (entry => scanned%entry)
+         last = 0
+         do j = group%first, group%last
+            if (entry(j)%name /= entry(i)%name) cycle
+            if (j < i) return
+            last = max(last, entry(j)%subscript)
+         end do
+         if (last > key%most) return                ! is reported with its entry
+         allocate (number(last), there(last))
+         there = .false.
+         do j = i, group%last
+            if (entry(j)%name /= entry(i)%name .or. entry(j)%subscript == 0) cycle
+            scanned%at = entry(j)%first
+            call scanned%skip(' ')
+            call scanned%take_value(entry(j)%name, times, from, to, messages)
+            call read_value(scanned%text(from:to), key%kind, number(entry(j)%subscript), what)
+            there(entry(j)%subscript) = .true.
+         end do
+      end associate
+      j = findloc(there, .false., dim=1)
+      if (j == 0) return
+      call messages%add(scanned%path//': '//trim(group%name)//': '//trim(key%name)//'('//to_text(j)// &
+                        ') is missing before '//trim(key%name)//'('//to_text(last)//'); give them all')
+      deallocate (number)
+   end subroutine gather
 
 end module rbs_io_namelist

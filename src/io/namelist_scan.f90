@@ -1,20 +1,19 @@
-!> The first pass over a namelist file: groups, names and values, each with its line.
+!> The first pass over a namelist file: groups and entries, each with its line.
 !>
 !> A Fortran namelist read does not report which name is unknown, does not distinguish a missing group, too
-!> many values and the end of the file, and accepts too few values. Here the text is cut into pieces
-!> with valid syntax, and each piece is read on its own.
+!> many values and the end of the file, and accepts too few values. Here the syntax is checked, and each value
+!> is then read on its own.
 module rbs_io_namelist_scan
    use rbs_base_error, only: message_list
-   use rbs_base_text, only: lower, to_text
-   use rbs_io_namelist_pieces, only: nml_entry, nml_scan, add_group, add_entry, add_value
+   use rbs_base_text, only: lower, to_text, integer_length
    use rbs_io_text_file, only: text_file
    implicit none
    private
 
-   public :: scan_namelist
+   public :: nml_entry, nml_group, nml_scan, scan_namelist
 
-   character(len=*), parameter :: letters = 'abcdefghijklmnopqrstuvwxyz'
-   character(len=*), parameter :: name_set = letters//'0123456789_'
+   character(len=*), parameter :: name_set = &
+      'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_'
 
    !> Largest repeat count; a larger one is taken for a typing error.
    integer, parameter :: most_repeats = 100000
@@ -25,71 +24,100 @@ module rbs_io_namelist_scan
    !> Largest numbers of groups, and of entries in a group; no case needs as many.
    integer, parameter :: most_groups = 100000, most_entries = 5000
 
-   !> The text, in which each line ends with a blank, and the position of the scan.
-   type :: cursor
+   !> `name = values` or `name(i) = values`.
+   type :: nml_entry
+      character(len=32) :: name = ''
+      !> Subscript, 0 without one
+      integer :: subscript = 0
+      !> Line in the file
+      integer :: line = 0
+      !> Where its values begin in the text, how many are written, and how many they are with repeats
+      integer :: first = 1, values = 0, total = 0
+   end type nml_entry
+
+   !> One `&name ... /`.
+   type :: nml_group
+      character(len=32) :: name = ''
+      integer :: line = 0
+      !> Its entries are `first` to `last` of the scan
+      integer :: first = 1, last = 0
+   end type nml_group
+
+   type :: nml_scan
+      !> Name of the file, for messages
+      character(len=:), allocatable :: path
+      !> The text without comments, in which each line ends with a blank, and the line of each character
       character(len=:), allocatable :: text
       integer, allocatable :: line_of(:)
+      !> Position of the scan
       integer :: at = 1
-   end type cursor
+      integer :: groups = 0, entries = 0
+      type(nml_group), allocatable :: group(:)
+      type(nml_entry), allocatable :: entry(:)
+      logical, private :: failed = .false.
+   contains
+      procedure :: location
+      procedure :: skip
+      procedure :: take_value
+      procedure, private :: letter
+      procedure, private :: run_of
+      procedure, private :: take_name
+      procedure, private :: complain
+   end type nml_scan
 
 contains
 
    !> Cut a file into groups and entries.
-   subroutine scan_namelist(file, path, scanned, messages)
+   subroutine scan_namelist(file, path, self, messages)
       type(text_file), intent(inout) :: file
-      !> Path of the file, for messages
+      !> Name of the file, for messages
       character(len=*), intent(in) :: path
-      type(nml_scan), intent(out) :: scanned
+      type(nml_scan), intent(out) :: self
       type(message_list), intent(inout) :: messages
-      type(cursor) :: c
-      integer :: known
 
-      known = messages%count
-      allocate (scanned%group(8), scanned%entry(64))
-      call strip_comments(file, path, c, messages)
-      if (messages%count > known) return
-      do
-         call skip_blanks(c)
-         if (c%at > len(c%text)) exit
-         if (c%text(c%at:c%at) /= '&') then
-            call complain(c, path, "'"//word_at(c)//"' stands outside a group; a group begins with "// &
-                          '&name and ends with /', messages)
+      self%path = path
+      allocate (self%group(8), self%entry(64))
+      call strip_comments(file, self, messages)
+      do while (.not. self%failed)
+         call self%skip(' ')
+         if (self%at > len(self%text)) exit
+         if (self%letter() /= '&') then
+            call self%complain("'"//word_at(self)//"' stands outside a group; a group begins with "// &
+                               '&name and ends with /', messages)
             return
          end if
-         c%at = c%at + 1
-         call scan_group(c, path, scanned, messages)
-         if (messages%count > known) return
+         self%at = self%at + 1
+         call scan_group(self, messages)
       end do
-      if (scanned%groups == 0) then
+      if (self%groups == 0 .and. .not. self%failed) then
          call messages%add(path//': has no groups; a case has &column, &shear, &flexure, &loading ...')
       end if
    end subroutine scan_namelist
 
    !> Copy the text without comments, and refuse control characters.
-   subroutine strip_comments(file, path, c, messages)
+   subroutine strip_comments(file, self, messages)
       type(text_file), intent(inout) :: file
-      character(len=*), intent(in) :: path
-      type(cursor), intent(out) :: c
+      type(nml_scan), intent(inout) :: self
       type(message_list), intent(inout) :: messages
       character(len=1) :: quote, letter
       integer :: first, last, i, length
       logical :: found
 
-      allocate (character(len=len(file%text) + 2) :: c%text)
-      allocate (c%line_of(len(file%text) + 2))
+      allocate (character(len=len(file%text) + 2) :: self%text)
+      allocate (self%line_of(len(file%text) + 2))
       length = 0
       do
          call file%next_line(first, last, found)
-         if (.not. found) exit
+         if (.not. found .or. messages%count > most_messages) exit
          quote = ' '
          do i = first, last
             letter = file%text(i:i)
             if (letter == achar(9)) letter = ' '
             if (quote == ' ' .and. letter == '!') exit
             if (iachar(letter) < 32 .or. iachar(letter) == 127) then
-               call messages%add(path//' line '//to_text(file%line)//': a control character (code '// &
+               call messages%add(self%location(file%line)//' a control character (code '// &
                                  to_text(iachar(letter))//') is in the text; is it a text file?')
-               if (messages%count > most_messages) return
+               self%failed = .true.
                exit
             end if
             if (quote == ' ') then
@@ -98,173 +126,176 @@ contains
                quote = ' '
             end if
             length = length + 1
-            c%text(length:length) = letter
-            c%line_of(length) = file%line
+            self%text(length:length) = letter
+            self%line_of(length) = file%line
          end do
-         if (quote /= ' ') then
-            call messages%add(path//' line '//to_text(file%line)//': a text begins with '//quote// &
+         if (quote /= ' ' .and. messages%count <= most_messages) then
+            call messages%add(self%location(file%line)//' a text begins with '//quote// &
                               ' and does not end on the line; close the quotes')
-            if (messages%count > most_messages) return
+            self%failed = .true.
          end if
          length = length + 1
-         c%text(length:length) = ' '
-         c%line_of(length) = file%line
+         self%text(length:length) = ' '
+         self%line_of(length) = file%line
       end do
-      c%text = c%text(:length)
+      self%text = self%text(:length)
    end subroutine strip_comments
 
    !> Scan from the name after & to the closing slash.
-   subroutine scan_group(c, path, scanned, messages)
-      type(cursor), intent(inout) :: c
-      character(len=*), intent(in) :: path
-      type(nml_scan), intent(inout) :: scanned
+   subroutine scan_group(self, messages)
+      type(nml_scan), intent(inout) :: self
       type(message_list), intent(inout) :: messages
-      character(len=:), allocatable :: name
-      integer :: begin, known
+      type(nml_group), allocatable :: longer(:)
+      type(nml_group) :: group
+      integer :: begin
 
-      known = messages%count
-      begin = c%at - 1
-      call take_name(c, name)
-      if (name == '') then
-         call complain(c, path, 'a group has no name after &', messages)
+      begin = self%at - 1
+      group%line = self%line_of(begin)
+      group%first = self%entries + 1
+      call self%take_name(group%name)
+      if (group%name == '') then
+         call self%complain('a group has no name after &', messages)
          return
       end if
-      if (scanned%groups == most_groups) then
-         call complain(c, path, 'there are more than '//to_text(most_groups)//' groups; is it a case?', &
-                       messages)
+      if (self%groups == most_groups) then
+         call self%complain('there are more than '//to_text(most_groups)//' groups; is it a case?', messages)
          return
       end if
-      call add_group(scanned, name, c%line_of(begin))
       do
-         call skip_blanks(c, commas=.true.)
-         if (c%at > len(c%text)) then
-            c%at = begin
-            call complain(c, path, '&'//name//' is not closed; end it with /', messages)
-            return
+         call self%skip(' ,')
+         if (self%at > len(self%text)) then
+            self%at = begin
+            call self%complain('&'//trim(group%name)//' is not closed; end it with /', messages)
+         else if (self%letter() == '/') then
+            exit
+         else if (self%entries - group%first + 1 == most_entries) then
+            call self%complain('&'//trim(group%name)//' has more than '//to_text(most_entries)// &
+                               ' entries; is it a case?', messages)
+         else
+            call scan_entry(self, trim(group%name), messages)
          end if
-         if (c%text(c%at:c%at) == '/') then
-            c%at = c%at + 1
-            scanned%group(scanned%groups)%last = scanned%entries
-            return
-         end if
-         if (scanned%entries - scanned%group(scanned%groups)%first + 1 == most_entries) then
-            call complain(c, path, '&'//name//' has more than '//to_text(most_entries)// &
-                          ' entries; is it a case?', messages)
-            return
-         end if
-         call scan_entry(c, path, name, scanned, messages)
-         if (messages%count > known) return
+         if (self%failed) return
       end do
+      self%at = self%at + 1
+      group%last = self%entries
+      if (self%groups == size(self%group)) then
+         allocate (longer(2*self%groups))
+         longer(:self%groups) = self%group
+         call move_alloc(longer, self%group)
+      end if
+      self%groups = self%groups + 1
+      self%group(self%groups) = group
    end subroutine scan_group
 
    !> Scan `name = values` or `name(i) = values`.
-   subroutine scan_entry(c, path, group, scanned, messages)
-      type(cursor), intent(inout) :: c
-      character(len=*), intent(in) :: path, group
-      type(nml_scan), intent(inout) :: scanned
+   subroutine scan_entry(self, group, messages)
+      type(nml_scan), intent(inout) :: self
+      character(len=*), intent(in) :: group
       type(message_list), intent(inout) :: messages
-      character(len=:), allocatable :: name
-      integer :: subscript, known
+      type(nml_entry), allocatable :: longer(:)
+      type(nml_entry) :: entry
 
-      known = messages%count
-      call take_name(c, name)
-      if (name == '') then
-         call complain(c, path, "'"//word_at(c)//"' in &"//group//' is not a name; entries are '// &
-                       'name = value', messages)
+      call self%take_name(entry%name)
+      if (entry%name == '') then
+         call self%complain("'"//word_at(self)//"' in &"//group//' is not a name; entries are '// &
+                            'name = value', messages)
          return
       end if
-      call add_entry(scanned, name, c%line_of(min(c%at, size(c%line_of)) - 1))
-      subscript = 0
-      call skip_blanks(c)
-      if (at_letter(c, '(')) call take_subscript(c, path, name, subscript, messages)
-      if (messages%count > known) return
-      scanned%entry(scanned%entries)%subscript = subscript
-      call skip_blanks(c)
-      if (.not. at_letter(c, '=')) then
-         call complain(c, path, "'"//name//"' in &"//group//' has no = after it; entries are '// &
-                       'name = value, and texts are in quotes', messages)
+      entry%line = self%line_of(self%at - 1)
+      call self%skip(' ')
+      if (self%letter() == '(') call take_subscript(self, trim(entry%name), entry%subscript, messages)
+      if (self%failed) return
+      call self%skip(' ')
+      if (self%letter() /= '=') then
+         call self%complain("'"//trim(entry%name)//"' in &"//group//' has no = after it; entries are '// &
+                            'name = value, and texts are in quotes', messages)
          return
       end if
-      c%at = c%at + 1
-      call scan_values(c, path, name, scanned%entry(scanned%entries), messages)
+      self%at = self%at + 1
+      call scan_values(self, entry, messages)
+      if (self%entries == size(self%entry)) then
+         allocate (longer(2*self%entries))
+         longer(:self%entries) = self%entry
+         call move_alloc(longer, self%entry)
+      end if
+      self%entries = self%entries + 1
+      self%entry(self%entries) = entry
    end subroutine scan_entry
 
    !> Scan values up to the next name or the end of the group.
-   subroutine scan_values(c, path, name, entry, messages)
-      type(cursor), intent(inout) :: c
-      character(len=*), intent(in) :: path, name
+   subroutine scan_values(self, entry, messages)
+      type(nml_scan), intent(inout) :: self
       type(nml_entry), intent(inout) :: entry
       type(message_list), intent(inout) :: messages
       logical :: after_comma
-      integer :: known
+      integer :: times, first, last
 
-      known = messages%count
       after_comma = .true.
+      entry%first = self%at
       do
-         call skip_blanks(c)
-         if (c%at > len(c%text)) exit
-         if (at_letter(c, '/')) exit
-         if (at_letter(c, ',')) then
+         call self%skip(' ')
+         if (self%at > len(self%text) .or. self%letter() == '/') exit
+         if (self%letter() == ',') then
             if (after_comma) then
-               call complain(c, path, "a value of '"//name//"' is missing before a comma", messages)
+               call self%complain("a value of '"//trim(entry%name)//"' is missing before a comma", messages)
                return
             end if
             after_comma = .true.
-            c%at = c%at + 1
+            self%at = self%at + 1
             cycle
          end if
-         if (is_name_ahead(c)) exit
-         call take_value(c, path, name, entry, messages)
-         if (messages%count > known) return
+         if (is_name_ahead(self)) exit
+         call self%take_value(entry%name, times, first, last, messages)
+         if (self%failed) return
+         entry%values = entry%values + 1
+         entry%total = min(entry%total, huge(1) - most_repeats) + times
          after_comma = .false.
       end do
-      if (entry%values == 0) call complain(c, path, "'"//name//"' has no value", messages)
+      if (entry%values == 0) call self%complain("'"//trim(entry%name)//"' has no value", messages)
    end subroutine scan_values
 
    !> One value: a quoted text or a word, perhaps with a repeat count.
-   subroutine take_value(c, path, name, entry, messages)
-      type(cursor), intent(inout) :: c
-      character(len=*), intent(in) :: path, name
-      type(nml_entry), intent(inout) :: entry
+   subroutine take_value(self, name, times, first, last, messages)
+      class(nml_scan), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      !> Repeat count
+      integer, intent(out) :: times
+      !> Where the value stands in the text, quotes included
+      integer, intent(out) :: first, last
       type(message_list), intent(inout) :: messages
-      character(len=1) :: quote
-      integer :: length, star, times
+      integer :: length, star
 
-      quote = c%text(c%at:c%at)
-      if (quote == '''' .or. quote == '"') then
-         length = quoted_length(c%text(c%at:))
+      times = 1
+      first = self%at
+      last = first
+      if (self%letter() == '''' .or. self%letter() == '"') then
+         length = quoted_length(self%text(first:))
+         if (length == 0) call self%complain("the text of '"//trim(name)//"' has no closing quote", messages)
+      else
+         length = scan(self%text(first:), ' ,/''"=') - 1
+         if (length < 0) length = len(self%text) - first + 1
          if (length == 0) then
-            call complain(c, path, "the text of '"//name//"' has no closing quote", messages)
+            call self%complain("'"//self%letter()//"' is not allowed among the values of '"//trim(name)//"'", &
+                               messages)
             return
          end if
-         call add_value(entry, 1, c%text(c%at:c%at + length - 1))
-         c%at = c%at + length
-         return
-      end if
-      length = scan(c%text(c%at:), ' ,/''"=') - 1
-      if (length < 0) length = len(c%text) - c%at + 1
-      if (length == 0) then
-         call complain(c, path, "'"//c%text(c%at:c%at)//"' is not allowed among the values of '"//name// &
-                       "'", messages)
-         return
-      end if
-      associate (word => c%text(c%at:c%at + length - 1))
-         star = index(word, '*')
-         times = 1
+         star = index(self%text(first:first + length - 1), '*')
          if (star > 0) then
-            times = -1
-            if (star > 1 .and. star <= 7 .and. verify(word(:star - 1), '0123456789') == 0) then
-               read (word(:star - 1), '(i6)') times
+            times = 0
+            if (star > 1 .and. star <= 7 .and. star < length) then
+               if (verify(self%text(first:first + star - 2), '0123456789') == 0) then
+                  read (self%text(first:first + star - 2), '(i6)') times
+               end if
             end if
-            if (times < 1 .or. times > most_repeats .or. star == length) then
-               call complain(c, path, "'"//word//"' of '"//name//"' is not a value; "// &
-                             'repeats are count*value', messages)
-               return
+            if (times < 1 .or. times > most_repeats) then
+               call self%complain("'"//self%text(first:first + length - 1)//"' of '"//trim(name)// &
+                                  "' is not a value; repeats are count*value", messages)
             end if
+            first = first + star
          end if
-         call add_value(entry, times, word(star + 1:))
-      end associate
-      c%at = c%at + length
+      end if
+      self%at = self%at + length
+      last = self%at - 1
    end subroutine take_value
 
    !> Length of a quoted text with its quotes; a quote within is doubled. 0 if the text is not closed.
@@ -285,112 +316,112 @@ contains
    end function quoted_length
 
    !> A subscript (i).
-   subroutine take_subscript(c, path, name, subscript, messages)
-      type(cursor), intent(inout) :: c
-      character(len=*), intent(in) :: path, name
+   subroutine take_subscript(self, name, subscript, messages)
+      type(nml_scan), intent(inout) :: self
+      character(len=*), intent(in) :: name
       integer, intent(out) :: subscript
       type(message_list), intent(inout) :: messages
       character(len=12) :: word
       integer :: length
 
       subscript = 0
-      length = index(c%text(c%at:min(c%at + 11, len(c%text))), ')')
+      length = index(self%text(self%at:min(self%at + 11, len(self%text))), ')')
       if (length > 2) then
          ! Not an associate name: gfortran 12 frees the text of trim(adjustl()) twice.
-         word = adjustl(c%text(c%at + 1:c%at + length - 2))
+         word = adjustl(self%text(self%at + 1:self%at + length - 2))
          if (len_trim(word) > 0 .and. len_trim(word) < 8 .and. verify(trim(word), '0123456789') == 0) then
             read (word, '(i8)') subscript
          end if
       end if
       if (subscript < 1) then
-         call complain(c, path, "the subscript of '"//name//"' must be one whole number from 1", messages)
+         call self%complain("the subscript of '"//name//"' must be one whole number from 1", messages)
          return
       end if
-      c%at = c%at + length
+      self%at = self%at + length
    end subroutine take_subscript
 
    !> Whether a name with its = (or subscript) is next.
-   logical function is_name_ahead(c)
-      type(cursor), intent(in) :: c
+   logical function is_name_ahead(self)
+      type(nml_scan), intent(in) :: self
+      character(len=1) :: letter
       integer :: at
 
-      at = c%at
-      is_name_ahead = .false.
-      if (verify(lower(c%text(at:at)), letters) /= 0) return
-      do while (at <= len(c%text))
-         if (verify(lower(c%text(at:at)), name_set) /= 0) exit
-         at = at + 1
-      end do
-      do while (at <= len(c%text))
-         if (c%text(at:at) /= ' ') exit
-         at = at + 1
-      end do
-      if (at <= len(c%text)) is_name_ahead = c%text(at:at) == '=' .or. c%text(at:at) == '('
+      letter = self%letter()
+      is_name_ahead = (letter >= 'a' .and. letter <= 'z') .or. (letter >= 'A' .and. letter <= 'Z')
+      if (.not. is_name_ahead) return
+      at = self%at + self%run_of(self%at, name_set)
+      at = at + self%run_of(at, ' ')
+      is_name_ahead = at <= len(self%text)
+      if (is_name_ahead) is_name_ahead = scan(self%text(at:at), '=(') > 0
    end function is_name_ahead
 
-   !> Take a name, in lower case; empty if the next character cannot begin one.
-   subroutine take_name(c, name)
-      type(cursor), intent(inout) :: c
-      character(len=:), allocatable, intent(out) :: name
-      integer :: begin
+   !> Take a name, in lower case; blank if the next character cannot begin one.
+   subroutine take_name(self, name)
+      class(nml_scan), intent(inout) :: self
+      character(len=*), intent(out) :: name
+      integer :: length
 
-      begin = c%at
-      do while (c%at <= len(c%text))
-         if (verify(lower(c%text(c%at:c%at)), name_set) /= 0) exit
-         c%at = c%at + 1
-      end do
-      name = lower(c%text(begin:c%at - 1))
-      if (len(name) > 31) name = name(:31)
+      length = self%run_of(self%at, name_set)
+      name = lower(self%text(self%at:self%at + min(length, 31) - 1))
+      self%at = self%at + length
    end subroutine take_name
 
-   subroutine skip_blanks(c, commas)
-      type(cursor), intent(inout) :: c
-      logical, intent(in), optional :: commas
+   subroutine skip(self, set)
+      class(nml_scan), intent(inout) :: self
+      character(len=*), intent(in) :: set
 
-      do while (c%at <= len(c%text))
-         if (c%text(c%at:c%at) /= ' ') then
-            if (.not. present(commas)) exit
-            if (c%text(c%at:c%at) /= ',') exit
-         end if
-         c%at = c%at + 1
-      end do
-   end subroutine skip_blanks
+      self%at = self%at + self%run_of(self%at, set)
+   end subroutine skip
 
-   pure logical function at_letter(c, letter)
-      type(cursor), intent(in) :: c
-      character(len=1), intent(in) :: letter
+   !> Number of characters from a position that belong to a set.
+   pure integer function run_of(self, at, set)
+      class(nml_scan), intent(in) :: self
+      integer, intent(in) :: at
+      character(len=*), intent(in) :: set
 
-      at_letter = .false.
-      if (c%at <= len(c%text)) at_letter = c%text(c%at:c%at) == letter
-   end function at_letter
+      run_of = verify(self%text(at:), set) - 1
+      if (run_of < 0) run_of = len(self%text) - at + 1
+   end function run_of
+
+   !> The next character; a zero byte at the end.
+   pure character(len=1) function letter(self)
+      class(nml_scan), intent(in) :: self
+
+      letter = achar(0)
+      if (self%at <= len(self%text)) letter = self%text(self%at:self%at)
+   end function letter
 
    !> The word at the present position, for a message.
-   pure function word_at(c) result(word)
-      type(cursor), intent(in) :: c
-      character(len=word_length(c)) :: word
+   pure function word_at(self) result(word)
+      type(nml_scan), intent(in) :: self
+      character(len=word_length(self)) :: word
 
-      word = c%text(c%at:c%at + len(word) - 1)
+      word = self%text(self%at:self%at + len(word) - 1)
    end function word_at
 
-   pure integer function word_length(c)
-      type(cursor), intent(in) :: c
+   pure integer function word_length(self)
+      type(nml_scan), intent(in) :: self
 
-      word_length = 0
-      if (c%at > len(c%text)) return
-      word_length = scan(c%text(c%at:), ' ') - 1
-      if (word_length < 1) word_length = len(c%text) - c%at + 1
-      word_length = min(word_length, 30)
+      word_length = min(scan(self%text(self%at:)//' ', ' ') - 1, 30)
    end function word_length
 
-   subroutine complain(c, path, what, messages)
-      type(cursor), intent(in) :: c
-      character(len=*), intent(in) :: path, what
-      type(message_list), intent(inout) :: messages
-      integer :: line
+   !> 'case.nml line 4:', for the start of a message.
+   pure function location(self, line) result(text)
+      class(nml_scan), intent(in) :: self
+      integer, intent(in) :: line
+      character(len=len(self%path) + 7 + integer_length(line)) :: text
 
-      line = 1
-      if (len(c%text) > 0) line = c%line_of(max(1, min(c%at, len(c%text))))
-      call messages%add(path//' line '//to_text(line)//': '//what)
+      text = self%path//' line '//to_text(line)//':'
+   end function location
+
+   !> Report an error of syntax at the present position.
+   subroutine complain(self, what, messages)
+      class(nml_scan), intent(inout) :: self
+      character(len=*), intent(in) :: what
+      type(message_list), intent(inout) :: messages
+
+      self%failed = .true.
+      call messages%add(self%location(self%line_of(min(self%at, len(self%text))))//' '//what)
    end subroutine complain
 
 end module rbs_io_namelist_scan

@@ -263,31 +263,97 @@ contains
    end subroutine go_back
 
    !> Read a word as a number: a sign, digits, a point, an exponent with e or d. A Fortran read would also
-   !> accept `1,5`, `1/2` and `3*4`.
+   !> accept `1,5`, `1/2` and `3*4`, and be slow.
    subroutine read_real(word, value, status)
       character(len=*), intent(in) :: word
       real(wp), intent(out) :: value
       !> `number_ok`, `number_wrong`, or `number_not_finite` for NaN, infinity and overflow
       integer, intent(out) :: status
+      !> Digits that are kept, and those of the largest number, 1.79769313486231580 e308, rounded down
+      integer, parameter :: most_kept = 18, largest_power = 308
+      integer(int64), parameter :: largest = 179769313486231580_int64
+      integer(int64) :: mantissa
+      integer :: i, digit, kept, power, exponent, sign_of_power, first
+      logical :: point, negative, in_exponent, any_digit, exact
+
+      value = 0.0_wp
+      status = number_wrong
+      if (len(word) > most_digits) return
+      mantissa = 0_int64
+      kept = 0
+      power = 0
+      exponent = 0
+      sign_of_power = 1
+      first = 1
+      point = .false.
+      negative = .false.
+      in_exponent = .false.
+      any_digit = .false.
+      exact = .true.
+      do i = 1, len(word)
+         digit = iachar(word(i:i)) - iachar('0')
+         if (digit >= 0 .and. digit <= 9) then
+            any_digit = .true.
+            if (in_exponent) then
+               exponent = min(10*exponent + digit, 1000000)
+               cycle
+            end if
+            if (point) power = power - 1
+            if (kept < most_kept) then
+               mantissa = 10_int64*mantissa + digit
+               if (mantissa > 0_int64) kept = kept + 1
+            else
+               power = power + 1
+               exact = exact .and. digit == 0
+            end if
+         else if (i == first .and. (word(i:i) == '-' .or. word(i:i) == '+')) then
+            if (in_exponent .and. word(i:i) == '-') sign_of_power = -1
+            if (.not. in_exponent) negative = word(i:i) == '-'
+         else if (word(i:i) == '.' .and. .not. (point .or. in_exponent)) then
+            point = .true.
+         else if (any_digit .and. .not. in_exponent .and. scan(word(i:i), 'eEdD') == 1) then
+            in_exponent = .true.
+            any_digit = .false.
+            first = i + 1
+         else
+            select case (lower(word(1 + scan(word(:1), '+-'):)))
+            case ('nan', 'inf', 'infinity')
+               status = number_not_finite
+            end select
+            return
+         end if
+      end do
+      if (.not. any_digit) return
+      status = number_ok
+      power = power + sign_of_power*exponent
+      ! A whole number below 2**53, multiplied or divided by an exact power of ten, is rounded once, which
+      ! gives the nearest number.
+      if (mantissa == 0_int64 .or. (exact .and. mantissa < 2_int64**53 .and. abs(power) <= 22)) then
+         value = real(mantissa, wp)
+         if (mantissa > 0_int64 .and. power > 0) value = value*10.0_wp**power
+         if (mantissa > 0_int64 .and. power < 0) value = value/10.0_wp**(-power)
+         if (negative) value = -value
+         return
+      end if
+      ! Checked before the library reads, which would overflow and end a program that traps overflow.
+      power = power + kept - 1
+      if (power > largest_power .or. &
+          (power == largest_power .and. mantissa*10_int64**(most_kept - kept) >= largest)) then
+         status = number_not_finite
+      else if (power > -2*largest_power) then
+         call read_by_library(word, value, status)
+      end if
+   end subroutine read_real
+
+   !> The nearest number of a word that is a number.
+   subroutine read_by_library(word, value, status)
+      character(len=*), intent(in) :: word
+      real(wp), intent(out) :: value
+      integer, intent(out) :: status
       character(len=64) :: buffer
       character(len=12) :: form
       integer :: ios
 
-      call read_short(word, value, status)
-      if (status == number_ok) return
-      value = 0.0_wp
-      status = number_wrong
-      select case (lower(word(min(1, len(word) + 1):)))
-      case ('nan', '+nan', '-nan', 'inf', '+inf', '-inf', 'infinity', '+infinity', '-infinity')
-         status = number_not_finite
-         return
-      case default
-         if (len(word) > most_digits .or. .not. looks_real(word)) return
-      end select
-      if (overflows(word)) then
-         status = number_not_finite
-         return
-      end if
       if (len(word) <= len(buffer)) then
          buffer = word
          read (buffer, '(f64.0)', iostat=ios) value
@@ -295,156 +361,10 @@ contains
          write (form, '(a, i0, a)') '(f', len(word), '.0)'
          read (word, form, iostat=ios) value
       end if
-      if (ios /= 0) then
-         status = number_not_finite
-      else
-         status = merge(number_ok, number_not_finite, ieee_is_finite(value))
-      end if
-   end subroutine read_real
-
-   !> Read a decimal number with few digits. A whole number below 2**53, multiplied or divided by an exact
-   !> power of ten, is rounded once, which gives the nearest number. Other words are left to the library.
-   pure subroutine read_short(word, value, status)
-      character(len=*), intent(in) :: word
-      real(wp), intent(out) :: value
-      !> `number_ok`, or `number_wrong` if the number has more digits
-      integer, intent(out) :: status
-      integer, parameter :: most_places = 15, most_power = 22
-      real(wp), parameter :: ten = 10.0_wp
-      integer(int64) :: mantissa
-      integer :: i, digit, places, power, exponent, sign_of_power
-      logical :: point, negative, in_exponent
-
-      value = 0.0_wp
-      status = number_wrong
-      mantissa = 0_int64
-      places = 0
-      power = 0
-      exponent = -1
-      sign_of_power = 1
-      point = .false.
-      in_exponent = .false.
-      negative = .false.
-      do i = 1, len(word)
-         digit = iachar(word(i:i)) - iachar('0')
-         if (digit >= 0 .and. digit <= 9) then
-            if (in_exponent) then
-               exponent = 10*max(exponent, 0) + digit
-               if (exponent > most_power + most_places) return
-            else
-               mantissa = 10_int64*mantissa + digit
-               places = places + 1
-               if (places > most_places) return
-               if (point) power = power - 1
-            end if
-         else if (word(i:i) == '.' .and. .not. (point .or. in_exponent)) then
-            point = .true.
-         else if ((word(i:i) == 'e' .or. word(i:i) == 'E') .and. places > 0 .and. .not. in_exponent) then
-            in_exponent = .true.
-         else if (word(i:i) == '-' .and. i == 1) then
-            negative = .true.
-         else if (word(i:i) == '-' .and. in_exponent .and. exponent < 0 .and. sign_of_power == 1) then
-            sign_of_power = -1
-         else
-            return
-         end if
-      end do
-      if (places == 0 .or. (in_exponent .and. exponent < 0)) return
-      power = power + sign_of_power*max(exponent, 0)
-      if (abs(power) > most_power) return
-      value = real(mantissa, wp)
-      if (power > 0) value = value*ten**power
-      if (power < 0) value = value/ten**(-power)
-      if (negative) value = -value
-      status = number_ok
-   end subroutine read_short
-
-   !> Whether a number that `looks_real` is too large for the arithmetic. This is checked before the read,
-   !> which would overflow inside the C library and end a program that traps overflow.
-   pure logical function overflows(word)
-      character(len=*), intent(in) :: word
-      !> Digits of the largest number, rounded down: 1.79769313486231580 e308
-      character(len=*), parameter :: largest = '179769313486231580'
-      integer, parameter :: largest_power = 308
-      character(len=len(largest)) :: digits
-      integer :: mark, at, last, point, count, power, first
-
-      overflows = .false.
-      mark = scan(word, 'eEdD')
-      last = merge(mark - 1, len(word), mark > 0)
-      ! Without an exponent only a very long number can be too large.
-      if (mark == 0 .and. last <= largest_power) return
-      first = scan(word(:last), '123456789')
-      if (first == 0) return
-      point = index(word(:last), '.')
-      if (point == 0) point = last + 1
-      power = merge(point - first - 1, point - first, point > first)
-      if (mark > 0) power = power + exponent_of(word(mark + 1:))
-      overflows = power > largest_power
-      if (power /= largest_power) return
-      digits = repeat('0', len(digits))
-      count = 0
-      do at = first, last
-         if (at == point) cycle
-         count = count + 1
-         if (count > len(digits)) exit
-         digits(count:count) = word(at:at)
-      end do
-      overflows = lge(digits, largest)
-   end function overflows
-
-   !> The exponent of a number, limited to a million in size.
-   pure integer function exponent_of(word) result(power)
-      character(len=*), intent(in) :: word
-      integer :: at
-
-      power = 0
-      do at = 1, len(word)
-         if (scan(word(at:at), '+-') == 1) cycle
-         power = min(10*power + iachar(word(at:at)) - iachar('0'), 1000000)
-      end do
-      if (word(1:1) == '-') power = -power
-   end function exponent_of
-
-   pure logical function looks_real(word)
-      character(len=*), intent(in) :: word
-      character(len=*), parameter :: digits = '0123456789'
-      integer :: at, mantissa, first
-
-      at = 1
-      looks_real = .false.
-      if (len(word) == 0) return
-      if (scan(word(1:1), '+-') == 1) at = 2
-      first = at
-      at = at + run_of(word(at:), digits)
-      mantissa = at - first
-      if (at <= len(word)) then
-         if (word(at:at) == '.') then
-            first = at + 1
-            at = first + run_of(word(first:), digits)
-            mantissa = mantissa + at - first
-         end if
-      end if
-      if (mantissa == 0) return
-      if (at <= len(word)) then
-         if (scan(word(at:at), 'eEdD') == 0) return
-         at = at + 1
-         if (at > len(word)) return
-         if (scan(word(at:at), '+-') == 1) at = at + 1
-         first = at
-         at = at + run_of(word(at:), digits)
-         if (at == first) return
-      end if
-      looks_real = at > len(word)
-   end function looks_real
-
-   !> Number of leading characters that belong to a set.
-   pure integer function run_of(word, set)
-      character(len=*), intent(in) :: word, set
-
-      run_of = verify(word, set) - 1
-      if (run_of < 0) run_of = len(word)
-   end function run_of
+      status = number_not_finite
+      if (ios /= 0) return
+      if (ieee_is_finite(value)) status = number_ok
+   end subroutine read_by_library
 
    !> Whether a word is a whole number without sign that fits into an integer.
    pure logical function is_integer(word)
