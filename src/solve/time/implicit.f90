@@ -10,30 +10,18 @@ module rbs_solve_time_implicit
    use rbs_base_stream, only: stream_type
    use rbs_solve_one_body_implicit_one_body, only: one_body_step
    use rbs_solve_one_body_rk4_one_body, only: softening_of
-   use rbs_solve_time_halving, only: halving_stepper
    use rbs_solve_time_implicit_finite, only: finite_stepper
    use rbs_solve_time_implicit_balance, only: step_balance
    use rbs_solve_time_implicit_tangent, only: step_tangent
    use rbs_loading_loads, only: lateral, horizontal, vertical, axial
-   use rbs_solve_time_state, only: state_type, in_bounds, out_of_bounds
-   use rbs_structure_structure, only: structure_type
+   use rbs_solve_time_newton, only: newton_stepper, move_springs
+   use rbs_solve_time_state, only: state_type
    implicit none
    private
 
    public :: implicit_stepper, fit_one_body, new_newmark, new_generalised_alpha, new_hht, with_finite_rotations
 
-   !> Most iterations of Newton's method, which mostly needs two or three.
-   integer, parameter :: most_iterations = 40
-
-   !> Number of trials in which Newton's method may overshoot.
-   integer, parameter :: most_free = 8
-
-   type, extends(halving_stepper) :: implicit_stepper
-      !> Most changes of lines within a step; 0: a number that follows from that of the springs
-      integer :: most_changes = 0
-      !> The residual has vanished below this share of the forces; where round-off does not let it, below the
-      !> second
-      real(wp) :: wanted = 1.0e-12_wp, acceptable = 1.0e-7_wp
+   type, extends(newton_stepper) :: implicit_stepper
       !> Whether it is average acceleration, which with finite rotations has the forces of the mean
       logical, private :: average = .false.
       type(step_balance) :: step
@@ -44,6 +32,10 @@ module rbs_solve_time_implicit
    contains
       procedure :: prepare
       procedure :: take_step
+      procedure :: correct
+      procedure :: try
+      procedure :: work_of_residual
+      procedure :: is_round_off
       procedure :: serialize
    end type implicit_stepper
 
@@ -190,12 +182,14 @@ contains
       logical, intent(out) :: converged
       !> The spring that changed its line last, 0 for none
       integer, intent(out) :: busiest
+      real(wp) :: size_now
       logical :: marked
 
       marked = .false.
       busiest = 0
       call state%motion%press(state%springs, load)
-      call iterate(self, state, h, load, converged, marked)
+      call begin(self, state, h, load, size_now)
+      call self%iterate(state, h, load, size_now, converged, marked)
       if (.not. converged .and. marked) then
          call state%springs%restore()
          ! Joints under an axial load that varies have no lines that the deformations alone could follow.
@@ -207,107 +201,57 @@ contains
       if (marked) call state%springs%forget_mark()
    end subroutine solve_step
 
-   !> Newton's method with a line search. Every trial goes from the state at the start of the step, each
-   !> spring in one direction, so that earlier trials leave no trace; and the forces of springs that do not
-   !> soften then have a convex potential, on which this converges.
-   subroutine iterate(self, state, h, load, converged, marked)
+   !> The trial at the start of the step.
+   subroutine begin(self, state, h, load, size_now)
       type(implicit_stepper), intent(inout) :: self
-      type(state_type), intent(inout) :: state
+      type(state_type), intent(in) :: state
       real(wp), intent(in) :: h, load(4)
-      logical, intent(out) :: converged
-      !> Whether springs have changed their lines, and a mark was set
-      logical, intent(inout) :: marked
-      real(wp) :: size_now, size_before, slope_before, slope, too_far
-      integer :: iteration, most
+      real(wp), intent(out) :: size_now
 
-      converged = .false.
       self%step%moved = 0.0_wp
       self%step%q1 = state%q
-      most = most_iterations
-      if (self%most_changes > 0) most = self%most_changes
-      ! Modal damping is not in the tangent: an iteration leaves of its share as much as the damping ratio.
-      if (allocated(state%motion%modal)) most = 10*most
       call self%step%find_residual(state, h, load, size_now)
-      do iteration = 1, most
-         size_before = size_now
-         call self%tangent%find_correction(self%step, state, h, self%dx)
-         call state%motion%structure%spring_rates(self%dx, self%dq)
-         slope_before = inner_product(size(self%step%r), self%step%r, self%dx)
-         call try(self, state, h, load, 1.0_wp, marked, size_now)
-         if (.not. size_now < out_of_bounds) return
-         converged = has_converged(self, state%motion%structure, h, size_now, size_before)
-         if (converged) return
-         slope = inner_product(size(self%step%r), self%step%r, self%dx)
-         ! An overshoot mostly does no harm. Where Newton's method goes back and forth, it is bounded.
-         too_far = merge(0.9_wp, 0.05_wp, iteration <= most_free)
-         if (slope < -too_far*slope_before) then
-            call search_line(self, state, h, load, slope_before, slope, too_far/3.0_wp, marked, size_now)
-         end if
-         if (state%springs%stuck) return
-      end do
-   end subroutine iterate
+   end subroutine begin
 
-   !> The trial has gone too far: find the share of the correction at which the residual does little work
-   !> on it, by the method of false position (Illinois).
-   subroutine search_line(self, state, h, load, slope_before, slope_at_end, share_left, marked, size_now)
-      type(implicit_stepper), intent(inout) :: self
-      type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h, load(4)
-      !> Work of the residual on the correction at its start and at its end
-      real(wp), intent(in) :: slope_before, slope_at_end
-      !> Share of the first that may be left
-      real(wp), intent(in) :: share_left
-      logical, intent(inout) :: marked
-      real(wp), intent(inout) :: size_now
-      real(wp) :: low, high, at_low, at_high, share, slope, now
-      integer :: trial
+   subroutine correct(self, state, h, found)
+      class(implicit_stepper), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      real(wp), intent(in) :: h
+      logical, intent(out) :: found
 
-      low = 0.0_wp
-      high = 1.0_wp
-      at_low = slope_before
-      at_high = slope_at_end
-      now = 1.0_wp
-      do trial = 1, 8
-         share = low + (high - low)*at_low/(at_low - at_high)
-         call try(self, state, h, load, share - now, marked, size_now)
-         now = share
-         slope = inner_product(size(self%step%r), self%step%r, self%dx)
-         if (abs(slope) <= share_left*slope_before .or. state%springs%stuck) return
-         if (slope > 0.0_wp) then
-            low = share
-            at_low = slope
-            at_high = 0.5_wp*at_high
-         else
-            high = share
-            at_high = slope
-            at_low = 0.5_wp*at_low
-         end if
-      end do
-   end subroutine search_line
+      call self%tangent%find_correction(self%step, state, h, self%dx)
+      call state%motion%structure%spring_rates(self%dx, self%dq)
+      found = .true.
+   end subroutine correct
 
-   !> Go on (or back) by a share of the correction, and find the residual there.
    subroutine try(self, state, h, load, share, marked, size_now)
-      type(implicit_stepper), intent(inout) :: self
+      class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
       real(wp), intent(in) :: h, load(4), share
       logical, intent(inout) :: marked
       real(wp), intent(out) :: size_now
+      logical :: inside
 
       size_now = huge(1.0_wp)
       self%step%q1 = self%step%q1 + share*self%dq
       self%step%moved = self%step%moved + share*self%dx
-      if (.not. in_bounds(size(self%step%q1), self%step%q1)) return
-      if (marked .or. .not. state%springs%stay_on_lines(self%step%q1)) then
-         if (marked) then
-            call state%springs%restore()
-         else
-            call state%springs%mark()
-            marked = .true.
-         end if
-         call state%springs%move_all(self%step%q1)
-      end if
-      call self%step%find_residual(state, h, load, size_now)
+      call move_springs(state, self%step%q1, marked, inside)
+      if (inside) call self%step%find_residual(state, h, load, size_now)
    end subroutine try
+
+   real(wp) function work_of_residual(self) result(work)
+      class(implicit_stepper), intent(in) :: self
+
+      work = inner_product(size(self%step%r), self%step%r, self%dx)
+   end function work_of_residual
+
+   logical function is_round_off(self, state, h)
+      class(implicit_stepper), intent(in) :: self
+      type(state_type), intent(in) :: state
+      real(wp), intent(in) :: h
+
+      is_round_off = self%step%is_round_off(state%motion%structure, h, self%tangent%stiffness)
+   end function is_round_off
 
    !> The step from end to end of the springs' lines, where `iterate` has failed. On the present lines the
    !> tangent step is exact, so the residual decreases in proportion to the way, and no line is taken twice.
@@ -318,19 +262,15 @@ contains
       logical, intent(out) :: converged
       integer, intent(out) :: busiest
       real(wp) :: share, size_now, size_before
-      integer :: iteration, most, i, way
+      integer :: iteration, i, way
+      logical :: found
 
       converged = .false.
       busiest = 0
-      self%step%moved = 0.0_wp
-      self%step%q1 = state%q
-      most = self%most_changes
-      if (most == 0) most = 100 + 20*state%springs%count
       size_before = huge(1.0_wp)
-      call self%step%find_residual(state, h, load, size_now)
-      do iteration = 1, most
-         call self%tangent%find_correction(self%step, state, h, self%dx)
-         call state%motion%structure%spring_rates(self%dx, self%dq)
+      call begin(self, state, h, load, size_now)
+      do iteration = 1, 100 + 20*state%springs%count
+         call self%correct(state, h, found)
          call first_end(state, self%step%q1, self%dq, share, i, way)
          self%step%q1 = self%step%q1 + share*self%dq
          self%step%moved = self%step%moved + share*self%dx
@@ -344,27 +284,11 @@ contains
          end if
          call self%step%find_residual(state, h, load, size_now)
          if (i > 0) cycle
-         converged = has_converged(self, state%motion%structure, h, size_now, size_before)
+         converged = self%has_converged(state, h, size_now, size_before)
          if (converged .or. .not. size_now < size_before) return
          size_before = size_now
       end do
    end subroutine go_by_events
-
-   !> Whether the residual has vanished, or is as small as round-off lets it be.
-   pure logical function has_converged(self, structure, h, size_now, size_before)
-      type(implicit_stepper), intent(in) :: self
-      class(structure_type), intent(in) :: structure
-      real(wp), intent(in) :: h
-      !> Relative size now and at the last trial
-      real(wp), intent(in) :: size_now, size_before
-
-      has_converged = size_now <= self%wanted
-      if (has_converged .or. self%acceptable < 0.0_wp) return
-      has_converged = size_now <= self%acceptable .and. size_now > 0.5_wp*size_before
-      ! As long as the residual decreases quickly, it is not yet round-off.
-      if (has_converged .or. size_now < 0.1_wp*size_before) return
-      has_converged = self%step%is_round_off(structure, h, self%tangent%stiffness)
-   end function has_converged
 
    !> The share of a correction up to the first end of a line that a spring reaches.
    subroutine first_end(state, q, dq, share, first, way)
