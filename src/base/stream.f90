@@ -29,6 +29,7 @@ module rbs_base_stream
       !> `call stream%item(component)`
       generic :: item => item_real, item_reals, item_table, item_integer, item_long, item_logical, &
          item_logicals
+      procedure :: items
       procedure :: item_count
       procedure, private :: step
    end type stream_type
@@ -87,6 +88,22 @@ contains
          x = self%value(from + 1)
       end if
    end subroutine item_real
+
+   !> Up to eight numbers, one after the other.
+   pure subroutine items(self, x_1, x_2, x_3, x_4, x_5, x_6, x_7, x_8)
+      class(stream_type), intent(inout) :: self
+      real(wp), intent(inout) :: x_1, x_2
+      real(wp), intent(inout), optional :: x_3, x_4, x_5, x_6, x_7, x_8
+
+      call self%item_real(x_1)
+      call self%item_real(x_2)
+      if (present(x_3)) call self%item_real(x_3)
+      if (present(x_4)) call self%item_real(x_4)
+      if (present(x_5)) call self%item_real(x_5)
+      if (present(x_6)) call self%item_real(x_6)
+      if (present(x_7)) call self%item_real(x_7)
+      if (present(x_8)) call self%item_real(x_8)
+   end subroutine items
 
    pure subroutine item_reals(self, x)
       class(stream_type), intent(inout) :: self

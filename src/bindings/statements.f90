@@ -9,7 +9,9 @@ module rbs_bindings_statements
    use rbs_case_case_record, only: case_record
    use rbs_case_group_reader, only: group_reader
    use rbs_column_column, only: column_type
-   use rbs_hysteresis_spring_record, only: spring_record, carries_axial_load, told_capacity
+   use rbs_hysteresis_layered_joint, only: check_axial_load
+   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_spring_record, only: spring_record
    use rbs_solve_make_column, only: make_column
    implicit none
    private
@@ -125,6 +127,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(case_record) :: case
       type(message_list) :: messages
+      class(rule_type), allocatable :: rule
+      character(len=200) :: capacity
 
       call case_from_statements(text, number, case, error)
       if (allocated(error)) return
@@ -133,9 +137,9 @@ contains
       call spring%validate(trim(spring%rule)//' spring', messages)
       call messages%raise(error)
       if (allocated(error)) return
-      if (.not. carries_axial_load(spring)) then
-         call fatal_error(error, bad_input, 'layered spring: '//trim(told_capacity(spring)))
-      end if
+      call spring%make(rule)
+      call check_axial_load(rule, axial_load, capacity)
+      if (capacity /= '') call fatal_error(error, bad_input, 'layered spring: '//trim(capacity))
    end subroutine spring_from_statements
 
 end module rbs_bindings_statements

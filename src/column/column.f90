@@ -16,7 +16,8 @@ module rbs_column_column
    use rbs_column_chain, only: deformations, displacements, body_forces, add_axial_shear, &
                                add_axial_torque, add_joint_stiffness, add_axial_stiffness
    use rbs_column_column_record, only: column_record
-   use rbs_hysteresis_spring_record, only: spring_record
+   use rbs_hysteresis_rule, only: spring_rules
+   use rbs_hysteresis_spring_record, only: spring_record, make_rules
    use rbs_structure_spring_place, only: spring_place, shear, flexure, axial
    use rbs_structure_structure, only: structure_type, unknown_group, lateral, horizontal, vertical, top_axial
    implicit none
@@ -88,6 +89,7 @@ module rbs_column_column
       logical :: damped = .false.
       !> Springs (unknowns), shear first, and their initial stiffness
       type(spring_record), allocatable :: spring(:)
+      type(spring_rules) :: rules
       real(wp), allocatable :: initial_stiffness(:)
       !> Number of the spring of a kind in a joint, from the bottom up (3, n); 0: there is none
       integer, allocatable :: at(:, :)
@@ -299,7 +301,8 @@ contains
       end do
       ! Layered joints share the axial load of load and weight above them.
       column%spring(n + 1:2*n)%axial_load = column%compression
-      column%initial_stiffness = column%spring%initial_stiffness()
+      call make_rules(column%spring, column%rules)
+      column%initial_stiffness = column%rules%initial_stiffness()
    end subroutine set_springs
 
    !> The coordinates of the bodies, in which the mass is diagonal; see `rbs_column_chain`.

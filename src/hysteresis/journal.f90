@@ -1,35 +1,30 @@
-!> Saved states of springs from before they changed their lines, so that a trial can be undone.
+!> Saved states of springs from before they changed their branches, so that a trial can be undone.
 module rbs_hysteresis_journal
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_layered, only: layered_rule
-   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_layered_fibre_section, only: fibre_section
+   use rbs_hysteresis_rule, only: memory_slot, copy_memory
    use rbs_hysteresis_segment, only: segment
    implicit none
    private
 
-   public :: journal_type, rule_slot, save_rule, return_rule
-
-   !> Holds one rule. The program uses arrays of this type in place of polymorphic arrays.
-   type :: rule_slot
-      class(rule_type), allocatable :: rule
-   end type rule_slot
+   public :: journal_type, save_memory, return_memory
 
    type :: journal_type
       !> Whether changes are being saved
       logical :: open = .false.
       !> Deformations and works at the start (count) [m or rad, J]
       real(wp), allocatable :: d(:), work(:)
-      !> Number of lines left at the start
+      !> Number of branches left at the start
       integer :: events = 0
-      !> Number of springs that have changed their lines since, and which (changed)
+      !> Number of springs that have changed their branches since, and which (changed)
       integer :: changed = 0
       integer, allocatable :: spring(:)
       !> Whether each spring is among them (count)
       logical, allocatable :: is_kept(:)
-      !> The lines that they had (changed), and their rules with their memory (count). A layered joint marks
-      !> itself: of its many layers few change
+      !> The branches that they had (changed), and their memories (count). A layered joint marks itself: of its
+      !> many layers few change
       type(segment), allocatable :: line(:)
-      type(rule_slot), allocatable :: slot(:)
+      type(memory_slot), allocatable :: slot(:)
    contains
       procedure :: start
       procedure :: keep
@@ -61,62 +56,57 @@ contains
       self%events = events
    end subroutine start
 
-   !> Save a spring before it changes its line for the first time; a layered joint is marked.
+   !> Save a spring before it changes its branch for the first time; a layered joint is marked.
    subroutine keep(self, i, line, slot)
       class(journal_type), intent(inout) :: self
       integer, intent(in) :: i
       type(segment), intent(in) :: line
-      type(rule_slot), intent(inout) :: slot
+      type(memory_slot), intent(inout) :: slot
 
       if (self%is_kept(i)) return
       self%is_kept(i) = .true.
       self%changed = self%changed + 1
       self%spring(self%changed) = i
       self%line(self%changed) = line
-      call save_rule(slot, self%slot(i))
+      call save_memory(slot, self%slot(i))
    end subroutine keep
 
-   !> Give spring i the rule back that it had at the start.
+   !> Give spring i the memory back that it had at the start.
    subroutine give_back(self, i, slot)
       class(journal_type), intent(inout) :: self
       integer, intent(in) :: i
-      type(rule_slot), intent(inout) :: slot
+      type(memory_slot), intent(inout) :: slot
 
       self%is_kept(i) = .false.
-      call return_rule(slot, self%slot(i))
+      call return_memory(slot, self%slot(i))
    end subroutine give_back
 
-   !> Save a rule with its memory; a layered joint marks itself.
-   subroutine save_rule(slot, kept)
-      type(rule_slot), intent(inout) :: slot
+   !> Save a memory; a layered joint marks itself.
+   subroutine save_memory(slot, kept)
+      type(memory_slot), intent(inout) :: slot
       !> Where it is saved; what is there from earlier is of the same spring
-      type(rule_slot), intent(inout) :: kept
-      logical :: done
+      type(memory_slot), intent(inout) :: kept
 
-      select type (rule => slot%rule)
-      type is (layered_rule)
-         call rule%mark()
+      select type (memory => slot%memory)
+      type is (fibre_section)
+         call memory%mark()
       class default
-         done = .false.
-         if (allocated(kept%rule)) call kept%rule%copy_memory(rule, done)
-         if (.not. done) kept = slot
+         call copy_memory(slot, kept)
       end select
-   end subroutine save_rule
+   end subroutine save_memory
 
-   !> Give a spring the rule back that was saved.
-   subroutine return_rule(slot, kept)
-      type(rule_slot), intent(inout) :: slot
-      type(rule_slot), intent(in) :: kept
-      logical :: done
+   !> Give a spring the memory back that was saved.
+   subroutine return_memory(slot, kept)
+      type(memory_slot), intent(inout) :: slot
+      type(memory_slot), intent(in) :: kept
 
-      select type (rule => slot%rule)
-      type is (layered_rule)
-         call rule%restore()
+      select type (memory => slot%memory)
+      type is (fibre_section)
+         call memory%restore()
       class default
-         call rule%copy_memory(kept%rule, done)
-         if (.not. done) slot = kept
+         call memory%copy(kept%memory)
       end select
-   end subroutine return_rule
+   end subroutine return_memory
 
    !> Discard what has been saved, and stop saving.
    subroutine forget(self)

@@ -6,7 +6,7 @@
 !> so that a layer leaves its line as any spring does.
 module rbs_hysteresis_layer_events
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_layered, only: layered_rule
+   use rbs_hysteresis_layered_fibre_section, only: fibre_section
    use rbs_hysteresis_line_exit, only: line_exit, find_exit
    use rbs_hysteresis_spring_planes, only: spring_planes
    implicit none
@@ -24,15 +24,13 @@ contains
       !> Rotation of the joint and axial load, and their rates
       real(wp), intent(in) :: rotation, axial_load, turn, press
       real(wp), intent(out) :: d, v
-      real(wp) :: turned
 
       d = 0.0_wp
       v = 0.0_wp
-      select type (rule => springs%slot(i)%rule)
-      class is (layered_rule)
-         turned = rotation + rule%rotation_at_rest()
-         d = rule%layers%opening_at(turned, axial_load) + rule%layers%y(layer)*turned
-         v = rule%layers%rate_of_opening(turn, press) + rule%layers%y(layer)*turn
+      select type (section => springs%slot(i)%memory)
+      type is (fibre_section)
+         d = section%opening_at(rotation, axial_load) + section%y(layer)*(rotation + section%rest)
+         v = section%rate_of_opening(turn, press) + section%y(layer)*turn
       end select
    end subroutine layer_motion
 
@@ -44,10 +42,10 @@ contains
 
       finish = 0.0_wp
       digits = 0.0_wp
-      select type (rule => springs%slot(i)%rule)
-      class is (layered_rule)
-         finish = rule%layers%line(layer)%end_toward(way)
-         digits = rule%layers%room_in_digits()
+      select type (section => springs%slot(i)%memory)
+      type is (fibre_section)
+         finish = section%branch(layer)%end_toward(way)
+         digits = section%room_in_digits()
       end select
    end subroutine layer_end
 
@@ -70,29 +68,27 @@ contains
 
       layer = 0
       exit%estimate = huge(1.0_wp)
-      select type (rule => springs%slot(i)%rule)
-      class is (layered_rule)
-         associate (layers => rule%layers)
-            turned = rotation + rule%rotation_at_rest()
-            opening = layers%opening_at(turned, axial_load)
-            open = [layers%rate_of_opening(turn(1), press), layers%rate_of_opening(turn(2), press)]
-            least = [layers%least_rate(open(1), turn(1)), layers%least_rate(open(2), turn(2))]
-            digits = layers%room_in_digits()
-            do j = 1, layers%count
-               d = [layers%deformation(j), opening + layers%y(j)*turned]
-               v = open + layers%y(j)*turn
-               ! Most layers stay inside their line and do not turn.
-               if (d(2) >= layers%lo(j) .and. d(2) <= layers%hi(j) .and. v(1)*v(2) > 0.0_wp .and. &
-                   layers%one_way(j)*v(2) >= 0.0_wp) cycle
-               where (abs(v) <= least) v = 0.0_wp
-               ! A layer that keeps still does not turn.
-               if (.not. any(abs(v) > 0.0_wp)) cycle
-               call find_exit([layers%lo(j), layers%hi(j)], layers%line(j)%one_way, d, v, h, digits, one)
-               if (one%way == 0 .or. one%estimate >= exit%estimate) cycle
-               exit = one
-               layer = j
-            end do
-         end associate
+      select type (section => springs%slot(i)%memory)
+      type is (fibre_section)
+         turned = rotation + section%rest
+         opening = section%opening_at(rotation, axial_load)
+         open = [section%rate_of_opening(turn(1), press), section%rate_of_opening(turn(2), press)]
+         least = [section%least_rate(open(1), turn(1)), section%least_rate(open(2), turn(2))]
+         digits = section%room_in_digits()
+         do j = 1, section%count
+            d = [section%deformation(j), opening + section%y(j)*turned]
+            v = open + section%y(j)*turn
+            ! Most layers stay inside their line and do not turn.
+            if (d(2) >= section%lo(j) .and. d(2) <= section%hi(j) .and. v(1)*v(2) > 0.0_wp .and. &
+                section%one_way(j)*v(2) >= 0.0_wp) cycle
+            where (abs(v) <= least) v = 0.0_wp
+            ! A layer that keeps still does not turn.
+            if (.not. any(abs(v) > 0.0_wp)) cycle
+            call find_exit([section%lo(j), section%hi(j)], section%branch(j)%one_way, d, v, h, digits, one)
+            if (one%way == 0 .or. one%estimate >= exit%estimate) cycle
+            exit = one
+            layer = j
+         end do
       end select
    end subroutine first_layer_exit
 
@@ -104,10 +100,10 @@ contains
       !> The direction in which it goes on
       integer, intent(in) :: way
 
-      select type (rule => springs%slot(i)%rule)
-      class is (layered_rule)
-         call rule%layers%leave(layer, way)
-         call rule%layers%sum_up()
+      select type (section => springs%slot(i)%memory)
+      type is (fibre_section)
+         call section%leave(layer, way)
+         call section%sum_up()
       end select
       springs%events = springs%events + 1
    end subroutine turn_layer

@@ -1,16 +1,17 @@
-!> All rules by name. A new rule needs a file of its own; its name and what allocates it stand here.
+!> All rules by name. A new rule needs a file of its own, and a line here.
 module rbs_hysteresis_registry
    use rbs_base_keys, only: key_type
-   use rbs_hysteresis_bilinear, only: bilinear_rule
-   use rbs_hysteresis_compression, only: compression_rule
-   use rbs_hysteresis_concrete, only: concrete_rule
-   use rbs_hysteresis_elastic, only: elastic_rule
-   use rbs_hysteresis_layered, only: layered_rule
-   use rbs_hysteresis_peak_oriented, only: peak_oriented_rule
-   use rbs_hysteresis_pinching, only: pinching_rule
-   use rbs_hysteresis_rule, only: rule_type, rule_length, places_length
-   use rbs_hysteresis_steel, only: steel_rule
-   use rbs_hysteresis_takeda, only: takeda_rule
+   use rbs_hysteresis_layered_joint, only: layered_rule
+   use rbs_hysteresis_rule, only: rule_type, rule_length, places_length, in_shear, in_flexure, in_axial, &
+                                  in_layer
+   use rbs_hysteresis_rules_bilinear, only: bilinear_rule, bilinear_keys
+   use rbs_hysteresis_rules_compression, only: compression_rule, compression_keys
+   use rbs_hysteresis_rules_concrete, only: concrete_rule, concrete_keys
+   use rbs_hysteresis_rules_elastic, only: elastic_rule, elastic_keys
+   use rbs_hysteresis_rules_peak_oriented, only: peak_oriented_rule, capped_keys
+   use rbs_hysteresis_rules_pinching, only: pinching_rule, pinching_keys
+   use rbs_hysteresis_rules_steel, only: steel_rule, steel_keys
+   use rbs_hysteresis_rules_takeda, only: takeda_rule, takeda_keys
    implicit none
    private
 
@@ -20,34 +21,47 @@ module rbs_hysteresis_registry
       'elastic', 'bilinear', 'takeda', 'compression', 'peak_oriented', 'pinching', 'concrete', 'steel', &
       'layered']
 
+   character(len=*), parameter :: in_joints = in_shear//' '//in_flexure, across_joints = in_axial//' '//in_layer, &
+                                  anywhere = in_joints//' '//across_joints
+
 contains
 
-   !> A rule without parameters yet; not allocated if the name is not known.
-   subroutine new_rule(rule, name)
-      class(rule_type), allocatable, intent(out) :: rule
+   !> A rule without parameters yet, its keys, and where springs of this rule may be used: some of the words of
+   !> `rbs_hysteresis_rule`, separated by blanks. If the name is not known, no rule, no keys and blanks.
+   subroutine new_rule(name, rule, keys, places)
       character(len=*), intent(in) :: name
+      class(rule_type), allocatable, intent(out) :: rule
+      type(key_type), allocatable, intent(out) :: keys(:)
+      character(len=places_length), intent(out), optional :: places
+      character(len=places_length) :: where_used
 
+      where_used = ''
       select case (name)
-      case ('elastic')
-         allocate (elastic_rule :: rule)
-      case ('bilinear')
-         allocate (bilinear_rule :: rule)
-      case ('takeda')
-         allocate (takeda_rule :: rule)
-      case ('compression')
-         allocate (compression_rule :: rule)
-      case ('peak_oriented')
-         allocate (peak_oriented_rule :: rule)
-      case ('pinching')
-         allocate (pinching_rule :: rule)
-      case ('concrete')
-         allocate (concrete_rule :: rule)
-      case ('steel')
-         allocate (steel_rule :: rule)
-      case ('layered')
-         allocate (layered_rule :: rule)
-      case default                                  ! unknown: the caller reports it
+      case ('elastic');       call enter(elastic_rule(), elastic_keys, anywhere)
+      case ('bilinear');      call enter(bilinear_rule(), bilinear_keys, anywhere)
+      case ('takeda');        call enter(takeda_rule(), takeda_keys, in_joints)
+      case ('compression');   call enter(compression_rule(), compression_keys, across_joints)
+      case ('peak_oriented'); call enter(peak_oriented_rule(), capped_keys, in_joints)
+      case ('pinching');      call enter(pinching_rule(), pinching_keys, in_joints)
+      case ('concrete');      call enter(concrete_rule(), concrete_keys, across_joints)
+      case ('steel');         call enter(steel_rule(), steel_keys, anywhere)
+      ! Its layers are springs with parameters of their own.
+      case ('layered');       call enter(layered_rule(), [key_type ::], in_flexure)
+      case default;           allocate (keys(0))
       end select
+      if (present(places)) places = where_used
+
+   contains
+
+      subroutine enter(new, list, used)
+         class(rule_type), intent(in) :: new
+         type(key_type), intent(in) :: list(:)
+         character(len=*), intent(in) :: used
+
+         allocate (rule, source=new)
+         keys = list
+         where_used = used
+      end subroutine enter
    end subroutine new_rule
 
    !> Parameters of a rule by its name; an empty list if the rule is not known.
@@ -56,12 +70,7 @@ contains
       type(key_type), allocatable, intent(out) :: keys(:)
       class(rule_type), allocatable :: rule
 
-      call new_rule(rule, name)
-      if (allocated(rule)) then
-         keys = rule%keys()
-      else
-         allocate (keys(0))
-      end if
+      call new_rule(name, rule, keys)
    end subroutine keys_of
 
    !> Whether springs of a rule may be used in a place, one of the words of `rbs_hysteresis_rule`.
@@ -76,10 +85,9 @@ contains
       character(len=*), intent(in) :: name
       character(len=places_length) :: places
       class(rule_type), allocatable :: rule
+      type(key_type), allocatable :: keys(:)
 
-      places = ''
-      call new_rule(rule, name)
-      if (allocated(rule)) places = rule%places()
+      call new_rule(name, rule, keys, places)
    end function places_of
 
 end module rbs_hysteresis_registry

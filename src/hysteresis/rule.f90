@@ -1,7 +1,7 @@
-!> The interface of a hysteresis rule: its parameters, and the lines that a spring follows.
+!> The interface of a hysteresis rule. A rule holds the parameters of equal springs, which share it; what
+!> changes along the path of a spring is the memory of that spring.
 module rbs_hysteresis_rule
    use rbs_base_error, only: message_list
-   use rbs_base_keys, only: key_type
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
@@ -9,9 +9,9 @@ module rbs_hysteresis_rule
    implicit none
    private
 
-   public :: rule_type, check_product
+   public :: rule_type, rule_memory, rule_slot, memory_slot, spring_rules, copy_memory, check_product
 
-   !> Places of springs; `places` of a rule lists those where it may be used.
+   !> Places of springs; the registry lists those where a rule may be used.
    character(len=*), parameter, public :: in_shear = 'shear', in_flexure = 'flexure'
    character(len=*), parameter, public :: in_axial = 'axial', in_layer = 'layer'
 
@@ -20,39 +20,50 @@ module rbs_hysteresis_rule
 
    integer, parameter, public :: rule_length = 16, places_length = 32
 
-   !> A rule is called only when a line ends or the motion turns back. Its memory is part of its type and is
-   !> copied by assignment.
-   type, abstract :: rule_type
+   !> The history variables of one spring. A rule whose present branch says all adds none; others extend this
+   !> type, and override both procedures.
+   type :: rule_memory
+      !> Work that the flexural spring of the joint has taken up so far [J]; set before each event of a rule
+      !> that `uses_flexural_work`
+      real(wp) :: flexural_work = 0.0_wp
    contains
-      procedure(keys_interface), deferred, nopass :: keys
-      procedure(places_interface), deferred, nopass :: places
+      procedure :: copy
+      procedure :: serialize
+   end type rule_memory
+
+   !> The parameters of a spring. They do not change once they are set.
+   type, abstract :: rule_type
+      !> Whether the spring decays with the work of the flexural spring of its joint
+      logical :: uses_flexural_work = .false.
+   contains
       procedure(set_interface), deferred :: set
       procedure(stiffness_interface), deferred :: initial_stiffness
       procedure :: check
+      procedure :: prepare
       procedure(start_interface), deferred :: start
       procedure(next_interface), deferred :: next
-      procedure(serialize_interface), deferred :: serialize
-      procedure :: copy_memory
-      procedure :: hears
-      procedure :: hear
    end type rule_type
 
+   !> Hold one rule, or one memory. The program uses arrays of these types in place of polymorphic arrays.
+   type :: rule_slot
+      class(rule_type), allocatable :: rule
+   end type rule_slot
+
+   type :: memory_slot
+      class(rule_memory), allocatable :: memory
+   end type memory_slot
+
+   !> The rules of many springs, made once: equal neighbours share one.
+   type :: spring_rules
+      type(rule_slot), allocatable :: list(:)
+      !> The rule of each spring (springs)
+      integer, allocatable :: of(:)
+   contains
+      procedure :: initial_stiffness => stiffness_of_springs
+   end type spring_rules
+
    abstract interface
-      !> The parameters: names, dimensions, bounds, defaults, meaning.
-      pure function keys_interface() result(keys)
-         import :: key_type
-         implicit none
-         type(key_type), allocatable :: keys(:)
-      end function keys_interface
-
-      !> The places where springs of this rule may be used: some of the words above, separated by blanks.
-      pure function places_interface() result(places)
-         import :: places_length
-         implicit none
-         character(len=places_length) :: places
-      end function places_interface
-
-      !> Set the parameters, in the order of `keys`.
+      !> Set the parameters, in the order of the keys of the rule.
       pure subroutine set_interface(self, value)
          import :: rule_type, wp
          implicit none
@@ -67,64 +78,71 @@ module rbs_hysteresis_rule
          class(rule_type), intent(in) :: self
       end function stiffness_interface
 
-      !> The line of the virgin spring; clears the memory.
-      subroutine start_interface(self, line)
-         import :: rule_type, segment
+      !> The memory of a virgin spring, and its branch.
+      subroutine start_interface(self, memory, branch)
+         import :: rule_type, rule_memory, segment
          implicit none
-         class(rule_type), intent(inout) :: self
-         type(segment), intent(out) :: line
+         class(rule_type), intent(in) :: self
+         class(rule_memory), allocatable, intent(out) :: memory
+         type(segment), intent(out) :: branch
       end subroutine start_interface
 
-      !> The line that follows when the motion leaves the present one: at `hi` going up (direction = +1)
-      !> or at `lo` going down (direction = -1). On a one-way line the rear end is the point where the
-      !> motion turned back.
-      subroutine next_interface(self, line, direction)
-         import :: rule_type, segment
+      !> The branch that follows when the motion leaves the present one: at `hi` going up (direction = +1)
+      !> or at `lo` going down (direction = -1). Where a branch unloads on reversal, its rear end is the point
+      !> where the motion turned back.
+      subroutine next_interface(self, memory, branch, direction)
+         import :: rule_type, rule_memory, segment
          implicit none
-         class(rule_type), intent(inout) :: self
-         !> The line that ends, replaced by its successor
-         type(segment), intent(inout) :: line
+         class(rule_type), intent(in) :: self
+         class(rule_memory), intent(inout) :: memory
+         !> The branch that ends, replaced by its successor
+         type(segment), intent(inout) :: branch
          integer, intent(in) :: direction
       end subroutine next_interface
-
-      !> Save or restore everything that `next` changes, not the parameters: what another analysis needs to
-      !> go on.
-      pure subroutine serialize_interface(self, stream)
-         import :: rule_type, stream_type
-         implicit none
-         class(rule_type), intent(inout) :: self
-         type(stream_type), intent(inout) :: stream
-      end subroutine serialize_interface
    end interface
 
 contains
 
-   !> Copy the memory of another rule of the same type and parameters. A rule that is copied often, as that of
-   !> a layer, does so without a new allocation; for all others `done` is false and the whole rule is copied.
-   pure subroutine copy_memory(self, other, done)
-      class(rule_type), intent(inout) :: self
-      class(rule_type), intent(in) :: other
-      logical, intent(out) :: done
+   !> Stiffness of each virgin spring (springs) [N/m or N m/rad].
+   pure function stiffness_of_springs(self) result(k)
+      class(spring_rules), intent(in) :: self
+      real(wp) :: k(size(self%of)), of_rule(size(self%list))
+      integer :: i
 
-      done = .false. .and. same_type_as(self, other)
+      do i = 1, size(of_rule)
+         of_rule(i) = self%list(i)%rule%initial_stiffness()
+      end do
+      k = of_rule(self%of)
+   end function stiffness_of_springs
+
+   !> Become a copy of the memory of another spring with the same rule, without an allocation where there is
+   !> room.
+   pure subroutine copy(self, other)
+      class(rule_memory), intent(inout) :: self
+      class(rule_memory), intent(in) :: other
+
+      self%flexural_work = other%flexural_work
+   end subroutine copy
+
+   !> Save or restore all history variables: everything that `next` changes.
+   pure subroutine serialize(self, stream)
+      class(rule_memory), intent(inout) :: self
+      type(stream_type), intent(inout) :: stream
+
+      if (.false.) call stream%item(self%flexural_work)
+   end subroutine serialize
+
+   !> Copy a memory to where one of the same rule may be already.
+   pure subroutine copy_memory(from, to)
+      type(memory_slot), intent(in) :: from
+      type(memory_slot), intent(inout) :: to
+
+      if (allocated(to%memory)) then
+         call to%memory%copy(from%memory)
+      else
+         allocate (to%memory, source=from%memory)
+      end if
    end subroutine copy_memory
-
-   !> Whether the rule wants to be told of the work of the flexural spring of its joint.
-   pure logical function hears(self)
-      class(rule_type), intent(in) :: self
-
-      hears = .false. .and. same_type_as(self, self)
-   end function hears
-
-   !> Take the work that the flexural spring of the joint has taken up so far. A rule that `hears` is told at
-   !> each of its own events, before `next`.
-   pure subroutine hear(self, work)
-      class(rule_type), intent(inout) :: self
-      !> [J]
-      real(wp), intent(in) :: work
-
-      if (work > 0.0_wp .and. .not. same_type_as(self, self)) return
-   end subroutine hear
 
    !> Add messages on relations between parameters that are each within their bounds. A rule without such
    !> relations inherits this procedure.
@@ -136,6 +154,13 @@ contains
 
       if (.false.) call messages%add(name//to_text(self%initial_stiffness()))
    end subroutine check
+
+   !> Compute what follows from the parameters alone, once they have been checked.
+   pure subroutine prepare(self)
+      class(rule_type), intent(inout) :: self
+
+      if (.false.) self%uses_flexural_work = .false.
+   end subroutine prepare
 
    !> Stiffness times deformation must neither overflow nor vanish.
    subroutine check_product(k, d, name, product_name, messages)

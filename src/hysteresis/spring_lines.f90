@@ -1,12 +1,14 @@
-!> Springs one at a time: rules off the hot path, their present lines as arrays, and a mark to return to.
+!> Springs one at a time: rules off the hot path, their present branches as arrays, and a mark to return to.
 module rbs_hysteresis_spring_lines
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_constants, only: unbounded
-   use rbs_hysteresis_journal, only: journal_type, rule_slot
+   use rbs_hysteresis_journal, only: journal_type
+   use rbs_hysteresis_layered_joint, only: start_under
+   use rbs_hysteresis_rule, only: memory_slot, spring_rules
    use rbs_hysteresis_segment, only: segment
-   use rbs_hysteresis_spring_record, only: spring_record
+   use rbs_hysteresis_spring_record, only: spring_record, make_rules
    implicit none
    private
 
@@ -16,7 +18,7 @@ module rbs_hysteresis_spring_lines
    !> of the rule. The longest correct move closes all open inner loops that a rule remembers.
    integer, parameter :: most_lines = 10000
 
-   !> `count` springs in their present state. Assignment copies everything, memory of the rules too.
+   !> `count` springs in their present state. Assignment copies everything, `copy_state` what changes.
    type :: spring_lines
       !> Number of springs
       integer :: count = 0
@@ -33,7 +35,7 @@ module rbs_hysteresis_spring_lines
       integer, allocatable :: one_way(:)
       !> Work done on each spring along its path, exact (count) [J]
       real(wp), allocatable :: work(:)
-      !> The spring whose work the rule of a spring is told at its events, 0: none (count)
+      !> The flexural spring whose work a spring decays with, 0: none (count)
       integer, allocatable :: heard(:)
       !> Work from before `work` was counted, where a step counts it from its own start (count) [J]
       real(wp), allocatable :: work_before(:)
@@ -44,11 +46,15 @@ module rbs_hysteresis_spring_lines
       integer :: version = 0
       !> Whether a rule has exceeded `most_lines`; the state must not be used then
       logical :: stuck = .false.
-      !> Rules (count), and what `mark` has saved
-      type(rule_slot), allocatable :: slot(:)
+      !> Rules, which equal springs share; memories (count), and what `mark` has saved
+      type(spring_rules) :: rules
+      type(memory_slot), allocatable :: slot(:)
       type(journal_type) :: journal
    contains
-      procedure :: create
+      procedure, private :: create_from_rules, create_from_records
+      generic :: create => create_from_rules, create_from_records
+      procedure :: copy_state
+      procedure :: next_branch
       procedure :: force
       procedure :: end_toward
       procedure :: move
@@ -66,33 +72,90 @@ module rbs_hysteresis_spring_lines
 
 contains
 
-   !> Virgin springs.
-   subroutine create(self, specs, told)
+   !> Virgin springs with rules that have been made.
+   subroutine create_from_rules(self, rules, told, axial_load)
       class(spring_lines), intent(out) :: self
-      !> Validated parameters of each spring
-      type(spring_record), intent(in) :: specs(:)
-      !> The spring whose work the rule of each spring is told if it asks for it, 0: none (size of specs);
-      !> without it, none
-      integer, intent(in), optional :: told(:)
+      type(spring_rules), intent(in) :: rules
+      !> The flexural spring whose work each spring may decay with, 0: none (count)
+      integer, intent(in) :: told(:)
+      !> Axial load that the layers of each spring begin under, compression positive (count) [N]
+      real(wp), intent(in) :: axial_load(:)
       type(segment) :: line
-      integer :: i, n
+      integer :: i, n, before
 
-      n = size(specs)
+      n = size(rules%of)
       self%count = n
+      self%rules = rules
       allocate (self%slot(n), self%one_way(n), self%lo_closed(n), self%hi_closed(n))
       allocate (self%d(n), self%work(n), self%work_before(n), source=0.0_wp)
       allocate (self%d0(n), self%f0(n), self%k(n), self%first(n), self%last(n))
-      do i = 1, n
-         call specs(i)%make(self%slot(i)%rule)
-         call self%slot(i)%rule%start(line)
-         call put_line(self, i, line)
-      end do
       allocate (self%heard(n), source=0)
-      if (.not. present(told)) return
       do i = 1, n
-         if (self%slot(i)%rule%hears()) self%heard(i) = told(i)
+         associate (rule => rules%list(rules%of(i))%rule)
+            before = max(i - 1, 1)
+            if (allocated(self%slot(before)%memory) .and. rules%of(i) == rules%of(before) .and. &
+                .not. abs(axial_load(i) - axial_load(before)) > 0.0_wp) then
+               allocate (self%slot(i)%memory, source=self%slot(before)%memory)
+            else
+               call start_under(rule, axial_load(i), self%slot(i)%memory, line)
+            end if
+            call put_line(self, i, line)
+            if (rule%uses_flexural_work) self%heard(i) = told(i)
+         end associate
       end do
-   end subroutine create
+   end subroutine create_from_rules
+
+   !> Virgin springs of their records.
+   subroutine create_from_records(self, specs, told)
+      class(spring_lines), intent(out) :: self
+      !> Validated parameters of each spring
+      type(spring_record), intent(in) :: specs(:)
+      integer, intent(in), optional :: told(:)
+      type(spring_rules) :: rules
+      integer :: none(size(specs))
+
+      none = 0
+      call make_rules(specs, rules)
+      if (present(told)) then
+         call self%create(rules, told, specs%axial_load)
+      else
+         call self%create(rules, none, specs%axial_load)
+      end if
+   end subroutine create_from_records
+
+   !> Take the state of other springs with the same rules, without an allocation where there is room.
+   subroutine copy_state(self, other)
+      class(spring_lines), intent(inout) :: self
+      class(spring_lines), intent(in) :: other
+      integer :: i
+
+      self%d(:) = other%d
+      self%work(:) = other%work
+      self%work_before(:) = other%work_before
+      self%events = other%events
+      self%stuck = other%stuck
+      call self%journal%forget()
+      do i = 1, self%count
+         call self%slot(i)%memory%copy(other%slot(i)%memory)
+         call put_line(self, i, other%line_of(i))
+         self%first(i) = other%first(i)
+         self%last(i) = other%last(i)
+      end do
+      self%version = modulo(self%version + 1, huge(1))
+   end subroutine copy_state
+
+   !> The branch that follows from the rule of a spring, see `rule_type`.
+   subroutine next_branch(self, i, branch, direction, flexural_work)
+      class(spring_lines), intent(inout) :: self
+      integer, intent(in) :: i
+      type(segment), intent(inout) :: branch
+      integer, intent(in) :: direction
+      !> Work of the flexural spring of the joint so far [J]; for a spring that decays with it
+      real(wp), intent(in) :: flexural_work
+
+      if (self%heard(i) > 0) self%slot(i)%memory%flexural_work = flexural_work
+      call self%rules%list(self%rules%of(i))%rule%next(self%slot(i)%memory, branch, direction)
+   end subroutine next_branch
 
    !> Force of one spring at its present deformation [N or N m].
    pure real(wp) function force(self, i)
@@ -180,14 +243,16 @@ contains
       class(spring_lines), intent(inout) :: self
       integer, intent(in) :: i, direction
       type(segment) :: line
+      real(wp) :: flexural_work
 
       line = self%line_of(i)
       if (self%journal%open) call self%journal%keep(i, line, self%slot(i))
       if (self%one_way(i) /= -direction) call advance_on_branch(self, i, merge(line%hi, line%lo, direction > 0))
+      flexural_work = 0.0_wp
       associate (j => self%heard(i))
-         if (j > 0) call self%slot(i)%rule%hear(self%work_before(j) + self%work(j))
+         if (j > 0) flexural_work = self%work_before(j) + self%work(j)
       end associate
-      call self%slot(i)%rule%next(line, direction)
+      call self%next_branch(i, line, direction, flexural_work)
       self%events = self%events + 1
       self%version = modulo(self%version + 1, huge(1))
       call put_line(self, i, line)
@@ -309,7 +374,7 @@ contains
       call stream%item(self%hi_closed)
       do i = 1, self%count
          call stream%item(self%one_way(i))
-         call self%slot(i)%rule%serialize(stream)
+         call self%slot(i)%memory%serialize(stream)
       end do
       self%version = modulo(self%version + 1, huge(1))
    end subroutine serialize_lines

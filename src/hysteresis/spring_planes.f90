@@ -4,11 +4,13 @@ module rbs_hysteresis_spring_planes
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_constants, only: unbounded
-   use rbs_hysteresis_layer_fall, only: layer_fall, find_fall
-   use rbs_hysteresis_layered, only: layered_rule
+   use rbs_hysteresis_layered_fibre_fall, only: layer_fall, find_fall
+   use rbs_hysteresis_layered_fibre_path, only: choose_branches, go, way_to_event
+   use rbs_hysteresis_layered_fibre_section, only: fibre_section
+   use rbs_hysteresis_layered_joint, only: branch_under
+   use rbs_hysteresis_rule, only: spring_rules
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_spring_lines, only: spring_lines, put_line
-   use rbs_hysteresis_spring_record, only: spring_record
    implicit none
    private
 
@@ -22,7 +24,7 @@ module rbs_hysteresis_spring_planes
       !> [N], and its centre of stiffness e = -dM/dN [m]
       real(wp), allocatable :: press_to(:), press_at(:), centre(:)
    contains
-      procedure :: create
+      procedure, private :: create_from_rules
       procedure :: restore
       procedure :: press_joints
       procedure :: vary_axial_loads
@@ -41,17 +43,26 @@ module rbs_hysteresis_spring_planes
 contains
 
    !> Virgin springs; the axial loads of layered joints do not vary.
-   subroutine create(self, specs, told)
+   subroutine create_from_rules(self, rules, told, axial_load)
       class(spring_planes), intent(out) :: self
-      !> Validated parameters of each spring
-      type(spring_record), intent(in) :: specs(:)
+      type(spring_rules), intent(in) :: rules
       !> See `spring_lines`
-      integer, intent(in), optional :: told(:)
+      integer, intent(in) :: told(:)
+      real(wp), intent(in) :: axial_load(:)
+      logical :: is_layered(size(rules%of))
       integer :: i
 
-      call self%spring_lines%create(specs, told)
-      self%layered = pack([(i, i=1, self%count)], specs%rule == 'layered')
-   end subroutine create
+      call self%spring_lines%create(rules, told, axial_load)
+      do i = 1, self%count
+         select type (section => self%slot(i)%memory)
+         type is (fibre_section)
+            is_layered(i) = .true.
+         class default
+            is_layered(i) = .false.
+         end select
+      end do
+      self%layered = pack([(i, i=1, self%count)], is_layered)
+   end subroutine create_from_rules
 
    !> The axial loads of the layered joints vary from now on: these joints follow straight paths in rotation
    !> and axial load, towards `press_to`, and have no line of their own that the rotation alone could leave.
@@ -70,9 +81,9 @@ contains
       type(spring_planes), intent(inout) :: self
       integer, intent(in) :: i
 
-      select type (rule => self%slot(i)%rule)
-      type is (layered_rule)
-         call rule%plane(self%d0(i), self%press_at(i), self%f0(i), self%k(i), self%centre(i))
+      select type (section => self%slot(i)%memory)
+      type is (fibre_section)
+         call section%read_plane(self%d0(i), self%press_at(i), self%f0(i), self%k(i), self%centre(i))
       end select
       self%first(i) = -unbounded
       self%last(i) = unbounded
@@ -91,9 +102,9 @@ contains
          i = self%layered(j)
          if (.not. abs(d(i) - self%d(i)) + abs(self%press_to(i) - self%press_at(i)) > 0.0_wp) cycle
          if (self%journal%open) call self%journal%keep(i, self%line_of(i), self%slot(i))
-         select type (rule => self%slot(i)%rule)
-         type is (layered_rule)
-            call rule%go(d(i), self%press_to(i), self%work(i))
+         select type (section => self%slot(i)%memory)
+         type is (fibre_section)
+            call go(section, d(i), self%press_to(i), self%work(i))
          end select
          self%events = self%events + 1
          call read_plane(self, i)
@@ -108,9 +119,9 @@ contains
 
       do j = 1, size(self%layered)
          lost = self%layered(j)
-         select type (rule => self%slot(lost)%rule)
-         type is (layered_rule)
-            if (rule%layers%failed) return
+         select type (section => self%slot(lost)%memory)
+         type is (fibre_section)
+            if (section%failed) return
          end select
       end do
       lost = 0
@@ -122,9 +133,9 @@ contains
       integer, intent(in) :: i
       type(layer_fall), intent(out) :: fall
 
-      select type (rule => self%slot(i)%rule)
-      class is (layered_rule)
-         call find_fall(rule%layers, fall)
+      select type (section => self%slot(i)%memory)
+      type is (fibre_section)
+         call find_fall(section, fall)
       end select
    end subroutine fall_of
 
@@ -143,9 +154,9 @@ contains
       do j = 1, size(self%layered)
          i = self%layered(j)
          values(i - n) = self%opening(i, self%d(i), 0.0_wp)
-         select type (rule => self%slot(i)%rule)
-         type is (layered_rule)
-            values(i) = rule%rotation_at_rest()
+         select type (section => self%slot(i)%memory)
+         type is (fibre_section)
+            values(i) = section%rest
          end select
       end do
    end subroutine fill_openings
@@ -159,12 +170,12 @@ contains
       real(wp), intent(in) :: d, share
 
       opening = 0.0_wp
-      select type (rule => self%slot(i)%rule)
-      type is (layered_rule)
+      select type (section => self%slot(i)%memory)
+      type is (fibre_section)
          if (self%pressed) then
-            opening = rule%opening_at(d, self%press_at(i) + share*(self%press_to(i) - self%press_at(i)))
+            opening = section%opening_at(d, self%press_at(i) + share*(self%press_to(i) - self%press_at(i)))
          else
-            opening = rule%opening_at(d, rule%present_load())
+            opening = section%opening_at(d, section%axial_load)
          end if
       end select
    end function opening
@@ -176,9 +187,9 @@ contains
       !> Rates of the rotation [rad] and of the axial load [N]
       real(wp), intent(in) :: turn, press
 
-      select type (rule => self%slot(i)%rule)
-      type is (layered_rule)
-         call rule%choose(turn, press)
+      select type (section => self%slot(i)%memory)
+      type is (fibre_section)
+         call choose_branches(section, turn, press)
       end select
       call read_plane(self, i)
    end subroutine choose_lines
@@ -196,9 +207,9 @@ contains
 
       way = unbounded
       first = 0
-      select type (rule => self%slot(i)%rule)
-      type is (layered_rule)
-         call rule%way_to_event(rotation, axial_load, turn, press, way, first)
+      select type (section => self%slot(i)%memory)
+      type is (fibre_section)
+         call way_to_event(section, rotation, axial_load, turn, press, way, first)
       end select
    end subroutine way_on_plane
 
@@ -210,9 +221,9 @@ contains
       real(wp), intent(in) :: turn, press
 
       turns_on_plane = .false.
-      select type (rule => self%slot(i)%rule)
-      type is (layered_rule)
-         turns_on_plane = rule%turns(turn, press)
+      select type (section => self%slot(i)%memory)
+      type is (fibre_section)
+         turns_on_plane = section%turns_back(turn, press)
       end select
    end function turns_on_plane
 
@@ -224,9 +235,9 @@ contains
       real(wp), intent(in) :: rotation, axial_load, turn, press
       integer, intent(in) :: first
 
-      select type (rule => self%slot(i)%rule)
-      type is (layered_rule)
-         call rule%pass_event(rotation, axial_load, turn, press, first)
+      select type (section => self%slot(i)%memory)
+      type is (fibre_section)
+         call section%put(rotation, axial_load, turn, press, first)
       end select
       call read_plane(self, i)
       self%d(i) = rotation
@@ -281,16 +292,16 @@ contains
       do j = 1, size(self%layered)
          i = self%layered(j)
          load = axial_load(i - size(axial_load))
-         select type (rule => self%slot(i)%rule)
-         type is (layered_rule)
+         select type (section => self%slot(i)%memory)
+         type is (fibre_section)
             if (self%pressed) then
-               if (abs(rule%present_load() - load) > 0.0_wp .or. .not. from_planes) then
-                  call rule%line_under(self%d(i), load, self%work(i), line)
+               if (abs(section%axial_load - load) > 0.0_wp .or. .not. from_planes) then
+                  call branch_under(section, self%d(i), load, self%work(i), line)
                   call read_plane(self, i)
                end if
                self%press_to(i) = load
-            else if (abs(rule%present_load() - load) > 0.0_wp .or. from_planes) then
-               call rule%line_under(self%d(i), load, self%work(i), line)
+            else if (abs(section%axial_load - load) > 0.0_wp .or. from_planes) then
+               call branch_under(section, self%d(i), load, self%work(i), line)
                call put_line(self%spring_lines, i, line)
             end if
          end select

@@ -9,14 +9,13 @@ module rbs_hysteresis_spring_record
    use rbs_base_keys, only: key_type, word_kind, check_number, choice_name, find_key
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text, list_of
-   use rbs_hysteresis_layered, only: layered_rule
+   use rbs_hysteresis_layered_joint, only: layered_rule
    use rbs_hysteresis_registry, only: rule_names, new_rule, keys_of, suits
-   use rbs_hysteresis_rule, only: rule_type, rule_length, most_parameters, in_layer
-   use rbs_hysteresis_segment, only: segment
+   use rbs_hysteresis_rule, only: rule_type, spring_rules, rule_length, most_parameters, in_layer
    implicit none
    private
 
-   public :: spring_record, carries_axial_load, told_capacity
+   public :: spring_record, make_rules
 
    !> The place of a rule among `rule_names`, stored for layers.
    integer, parameter :: no_rule = 0
@@ -147,12 +146,11 @@ contains
       integer :: i, place
       logical :: ok
 
-      call new_rule(rule, self%rule)
+      call new_rule(self%rule, rule, keys)
       if (.not. allocated(rule)) then
          call check_name(self%rule, rule_names, name//': rule', messages, place)
          return
       end if
-      keys = rule%keys()
       call whole_values(self, keys, value)
       ok = .true.
       do i = 1, size(keys)
@@ -272,62 +270,53 @@ contains
       type(key_type), allocatable :: keys(:)
       real(wp) :: value(most_parameters)
 
-      call new_rule(rule, self%rule)
-      keys = rule%keys()
+      call new_rule(self%rule, rule, keys)
       call whole_values(self, keys, value)
       call rule%set(value)
+      call rule%prepare()
       select type (rule)
       type is (layered_rule)
-         rule%axial_load = self%axial_load
          call make_layers(self, rule)
       end select
    end subroutine make
 
-   !> The layers of a joint. Equal ones at one place, as bars in a row, are one that counts several times.
+   !> The layers of a joint. Equal springs share a rule; those at one place, as bars in a row, are one layer that
+   !> counts several times.
    recursive subroutine make_layers(self, joint)
       type(spring_record), intent(in) :: self
       type(layered_rule), intent(inout) :: joint
       type(spring_record) :: layer
       real(wp) :: weight(size(self%y))
-      !> The first equal spring at each layer's place, and anywhere
-      integer, dimension(size(self%y)) :: here, anywhere
-      type(segment) :: line
-      integer :: i, j
+      !> The first layer with the same spring, and the rule of each layer
+      integer, dimension(size(self%y)) :: same, rule_of
+      integer :: i, j, rules
 
       weight = 0.0_wp
+      rules = 0
       do i = 1, size(self%y)
-         here(i) = i
-         anywhere(i) = i
+         same(i) = i
          do j = i - 1, 1, -1
-            if (anywhere(j) < j .or. .not. same_layer(self, i, j)) cycle
-            anywhere(i) = j
+            if (same(j) < j .or. .not. same_layer(self, i, j)) cycle
+            same(i) = j
             exit
          end do
+         if (same(i) == i) rules = rules + 1
+         rule_of(i) = rules
+         if (same(i) < i) rule_of(i) = rule_of(same(i))
          do j = 1, i - 1
-            if (anywhere(j) == anywhere(i) .and. same_bits(self%y(j), self%y(i))) exit
+            if (same(j) == same(i) .and. same_bits(self%y(j), self%y(i))) exit
          end do
-         here(i) = j
          weight(j) = weight(j) + 1.0_wp
       end do
-      joint%layers%y = pack(self%y, weight > 0.0_wp)
-      joint%layers%weight = pack(weight, weight > 0.0_wp)
-      allocate (joint%layers%slot(size(joint%layers%y)))
-      associate (slot => joint%layers%slot)
-         j = 0
-         do i = 1, size(self%y)
-            if (here(i) < i) cycle
-            j = j + 1
-            here(i) = j
-            if (anywhere(i) < i) then
-               allocate (slot(j)%rule, source=slot(here(anywhere(i)))%rule)
-            else
-               layer = self%layer(i)
-               call layer%make(slot(j)%rule)
-               ! What a rule prepares from its parameters is there for the equal layers that follow.
-               call slot(j)%rule%start(line)
-            end if
-         end do
-      end associate
+      joint%y = pack(self%y, weight > 0.0_wp)
+      joint%weight = pack(weight, weight > 0.0_wp)
+      joint%rule_of = pack(rule_of, weight > 0.0_wp)
+      allocate (joint%rule(rules))
+      do i = 1, size(self%y)
+         if (same(i) < i) cycle
+         layer = self%layer(i)
+         call layer%make(joint%rule(rule_of(i))%rule)
+      end do
    end subroutine make_layers
 
    !> Stiffness of the virgin spring, of the stiffer side if they differ [N/m or N m/rad].
@@ -339,43 +328,29 @@ contains
       initial_stiffness = rule%initial_stiffness()
    end function initial_stiffness
 
-   !> Whether the layers of a spring can carry its axial load; all other springs carry none.
-   logical function carries_axial_load(self)
-      type(spring_record), intent(in) :: self
-      class(rule_type), allocatable :: rule
-      type(segment) :: line
+   !> The rules of springs; neighbours that are equal share one.
+   subroutine make_rules(spring, rules)
+      !> Validated
+      type(spring_record), intent(in) :: spring(:)
+      type(spring_rules), intent(out) :: rules
+      integer :: first(size(spring))
+      integer :: i, n
 
-      carries_axial_load = .true.
-      if (self%rule /= 'layered') return
-      call self%make(rule)
-      call rule%start(line)
-      select type (rule)
-      type is (layered_rule)
-         carries_axial_load = rule%carries
-      end select
-   end function carries_axial_load
-
-   !> What is said of an axial load that the layers of a spring do not carry.
-   function told_capacity(self) result(text)
-      type(spring_record), intent(in) :: self
-      character(len=200) :: text
-      type(spring_record) :: other
-      real(wp) :: carried, refused
-      integer :: i
-
-      other = self
-      carried = 0.0_wp
-      refused = self%axial_load
-      do i = 1, 50
-         other%axial_load = 0.5_wp*(carried + refused)
-         if (carries_axial_load(other)) then
-            carried = other%axial_load
-         else
-            refused = other%axial_load
+      allocate (rules%of(size(spring)))
+      n = 0
+      do i = 1, size(spring)
+         if (n > 0) then
+            rules%of(i) = n
+            if (spring(i)%same_as(spring(first(n)))) cycle
          end if
+         n = n + 1
+         first(n) = i
+         rules%of(i) = n
       end do
-      text = 'its layers cannot carry the axial load of '//to_text(self%axial_load)//' N, but '// &
-             to_text(carried)//' N (compression positive); lower it, or give stronger layers'
-   end function told_capacity
+      allocate (rules%list(n))
+      do i = 1, n
+         call spring(first(i))%make(rules%list(i)%rule)
+      end do
+   end subroutine make_rules
 
 end module rbs_hysteresis_spring_record

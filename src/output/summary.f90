@@ -2,7 +2,7 @@
 module rbs_output_summary
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_layer_fall, only: layer_fall
+   use rbs_hysteresis_layered_fibre_fall, only: layer_fall
    use rbs_output_row, only: row_input, row_kinetic, row_spring, row_damping, row_residual
    implicit none
    private

@@ -3,7 +3,8 @@ module rbs_solve_make_column
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, new_column
-   use rbs_hysteresis_spring_record, only: carries_axial_load, told_capacity
+   use rbs_structure_spring_place, only: flexure
+   use rbs_hysteresis_layered_joint, only: check_axial_load
    use rbs_column_column_record, only: column_record
    implicit none
    private
@@ -18,6 +19,7 @@ contains
       type(column_type), intent(out) :: column
       type(error_type), allocatable, intent(out) :: error
       type(message_list) :: messages
+      character(len=200) :: text
       integer :: i
 
       call spec%validate(messages)
@@ -25,11 +27,13 @@ contains
       if (allocated(error)) return
       call new_column(column, spec)
       do i = 1, column%n
-         associate (spring => column%spring(column%n + i))
-            if (carries_axial_load(spring)) cycle
-            call fatal_error(error, bad_input, 'flexure spring of joint '// &
-                             to_text(spec%joint_number(i))//': '//trim(told_capacity(spring)))
+         associate (at => column%at(flexure, i))
+            if (column%spring(at)%rule /= 'layered') cycle
+            call check_axial_load(column%rules%list(column%rules%of(at))%rule, column%spring(at)%axial_load, text)
          end associate
+         if (text == '') cycle
+         call fatal_error(error, bad_input, 'flexure spring of joint '//to_text(spec%joint_number(i))//': '// &
+                          trim(text))
          return
       end do
    end subroutine make_column

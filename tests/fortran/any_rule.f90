@@ -10,9 +10,10 @@ module any_rule
    use rbs_base_keys, only: key_type, choice_name, word_kind, deformation, force, stiffness
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_registry, only: keys_of, rule_names, suits
-   use rbs_hysteresis_rule, only: rule_type, most_parameters, in_layer
+   use rbs_hysteresis_rule, only: rule_type, rule_memory, most_parameters, in_layer
    use rbs_hysteresis_segment, only: segment
-   use rbs_hysteresis_spring_record, only: spring_record, carries_axial_load
+   use rbs_hysteresis_layered_joint, only: carries_axial_load
+   use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: spring_array
    use samples, only: random_type
    implicit none
@@ -179,17 +180,16 @@ contains
       type(spring_record), intent(in) :: spec
       real(wp), intent(in) :: way
       real(wp), intent(out) :: capacity
-      type(spring_record) :: trial
+      class(rule_type), allocatable :: rule
       real(wp) :: high, low, middle
       integer :: i
 
-      trial = spec
+      call spec%make(rule)
       low = 0.0_wp
       high = 10.0_wp*size(spec%y)
       do i = 1, 40
          middle = 0.5_wp*(low + high)
-         trial%axial_load = way*middle
-         if (carries_axial_load(trial)) then
+         if (carries_axial_load(rule, way*middle)) then
             low = middle
          else
             high = middle
@@ -202,10 +202,11 @@ contains
    real(wp) function yield_of(spec) result(d)
       type(spring_record), intent(in) :: spec
       class(rule_type), allocatable :: rule
+      class(rule_memory), allocatable :: memory
       type(segment) :: line
 
       call spec%make(rule)
-      call rule%start(line)
+      call rule%start(memory, line)
       d = unbounded
       if (line%hi > 0.0_wp) d = min(d, line%hi)
       if (line%lo < 0.0_wp) d = min(d, -line%lo)

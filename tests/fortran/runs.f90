@@ -125,7 +125,7 @@ contains
       call state%loads%find_acting()
       call state%motion%create(kept, state%loads%acts, outcome)
       if (allocated(outcome)) error stop 'runs: a column without motion'
-      call state%springs%create(column%spring, column%place%heard)
+      call state%springs%create(column%rules, column%place%heard, column%spring%axial_load)
       call state%loads%at_time(0.0_wp, state%load)
       state%q = q
       state%v = v

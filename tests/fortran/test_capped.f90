@@ -6,10 +6,10 @@ module test_capped
    use rbs_base_check, only: is_given
    use rbs_base_keys, only: find_key, key_type
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_backbone, only: backbone_side
-   use rbs_hysteresis_deterioration, only: deterioration_type
+   use rbs_hysteresis_rules_backbone, only: backbone_side
+   use rbs_hysteresis_rules_deterioration, only: deterioration_type
    use rbs_hysteresis_springs, only: follow_path, spring_array
-   use rbs_hysteresis_backbone_parameters, only: backbone_parameters
+   use rbs_hysteresis_rules_backbone_parameters, only: backbone_parameters
    use rbs_hysteresis_registry, only: keys_of, rule_names
    use rbs_hysteresis_rule, only: most_parameters
    use rbs_column_column_record, only: column_record
@@ -172,8 +172,8 @@ contains
       type(backbone_side) :: side
 
       spec = hand()
-      side = backbone_side(given=side_of(spec, 1))
-      call side%draw()
+      side = backbone_side()
+      call side%draw(side_of(spec, 1))
       call check_same(error, side%d(:side%last), [0.0_wp, 1.0_wp, 3.0_wp, 13.0_wp], 'deformations')
       call check_same(error, side%f(:side%last), [0.0_wp, 100.0_wp, 120.0_wp, 20.0_wp], 'forces')
       call check_same(error, side%force([0.5_wp, 2.0_wp, 8.0_wp, 99.0_wp]), &
@@ -188,14 +188,14 @@ contains
       call spec%set('d_cap', 1.0_wp)
       call spec%set('f_cap', 100.0_wp)
       call spec%set('f_res', 0.0_wp)
-      side = backbone_side(given=side_of(spec, 1))
-      call side%draw()
+      side = backbone_side()
+      call side%draw(side_of(spec, 1))
       call check_close(error, side%d(:side%last), [0.0_wp, 0.25_wp, 1.0_wp, 13.0_wp], 1.0e-15_wp, 0.0_wp, &
                        'cracking, no hardening')
       call check_same(error, side%f(:side%last), [0.0_wp, 40.0_wp, 100.0_wp, 0.0_wp], 'their forces')
       call check_same(error, side%force(13.1_wp), 0.0_wp, 'no force left')
       side%strength = 0.0_wp
-      call side%draw()
+      call side%draw(side_of(spec, 1))
       call check_same(error, side%force([0.1_wp, 1.0_wp, 99.0_wp]), [0.0_wp, 0.0_wp, 0.0_wp], &
                       'no strength left')
    end subroutine corners
@@ -207,21 +207,21 @@ contains
       type(backbone_side) :: side
 
       spec = hand()
-      side = backbone_side(given=side_of(spec, 1), strength=0.5_wp)
-      call side%draw()
+      side = backbone_side(strength=0.5_wp)
+      call side%draw(side_of(spec, 1))
       call check_close(error, side%d(:side%last), [0.0_wp, 0.5_wp, (150.0_wp - 47.5_wp)/15.0_wp, 13.0_wp], &
                        1.0e-14_wp, 0.0_wp, 'half the strength')
-      side = backbone_side(given=side_of(spec, 1), softening=0.6_wp)
-      call side%draw()
+      side = backbone_side(softening=0.6_wp)
+      call side%draw(side_of(spec, 1))
       call check_close(error, side%d(:side%last), [0.0_wp, 90.0_wp/110.0_wp, 7.0_wp], 1.0e-14_wp, 0.0_wp, &
                        'the softening line cuts the elastic one')
       call check_close(error, side%f(1), 9000.0_wp/110.0_wp, 1.0e-14_wp, 0.0_wp, 'there')
-      side = backbone_side(given=side_of(spec, 1), softening=0.1_wp)
-      call side%draw()
+      side = backbone_side(softening=0.1_wp)
+      call side%draw(side_of(spec, 1))
       call check_close(error, side%d(:side%last), [0.0_wp, 0.2_wp], 1.0e-14_wp, 0.0_wp, &
                        'only the residual is left')
-      side = backbone_side(given=side_of(spec, 1), strength=0.01_wp)
-      call side%draw()
+      side = backbone_side(strength=0.01_wp)
+      call side%draw(side_of(spec, 1))
       call check_close(error, side%strength, 0.2_wp, 1.0e-15_wp, 0.0_wp, 'not below the residual')
       call check_close(error, side%force(5.0_wp), 0.2_wp*(100.0_wp + 10.0_wp*4.8_wp), 1.0e-14_wp, 0.0_wp, &
                        'its hardening')
@@ -234,12 +234,12 @@ contains
 
       spec = hand()
       call spec%set('d_u', 8.0_wp)
-      side = backbone_side(given=side_of(spec, 1))
-      call side%draw()
+      side = backbone_side()
+      call side%draw(side_of(spec, 1))
       call check_same(error, side%d(:side%last), [0.0_wp, 1.0_wp, 3.0_wp, 8.0_wp, 8.7_wp], 'while softening')
       call spec%set('d_u', 20.0_wp)
-      side = backbone_side(given=side_of(spec, 1))
-      call side%draw()
+      side = backbone_side()
+      call side%draw(side_of(spec, 1))
       call check_same(error, side%d(:side%last), [0.0_wp, 1.0_wp, 3.0_wp, 13.0_wp, 20.0_wp, 20.2_wp], &
                       'on the residual')
    end subroutine rupture

@@ -4,7 +4,7 @@ module test_concrete
    use paths, only: check_copies, check_increments
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_rule, only: rule_type, rule_memory
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_hysteresis_spring_record, only: spring_record
@@ -31,7 +31,6 @@ contains
                unit_test('forces are continuous where lines meet', continuous), &
                unit_test('property 2: 1, 7, 1000 increments, to the last bit', increments), &
                unit_test('copies and trial moves leave no trace', copies), &
-               unit_test('start clears the memory', forgets), &
                unit_test('property 9: work is not negative', work_positive), &
                unit_test('envelope is never left outward', envelope), &
                unit_test('friction: two paths, and the initial stiffness between them', friction), &
@@ -210,6 +209,7 @@ contains
       type(random_type) :: random
       type(spring_record) :: spec
       class(rule_type), allocatable :: rule
+      class(rule_memory), allocatable :: memory
       type(segment) :: line
       real(wp) :: to(30), d, before
       integer :: path, j, direction, lines
@@ -217,7 +217,7 @@ contains
       do path = 1, 300
          call random_spring(random, spec, to)
          call spec%make(rule)
-         call rule%start(line)
+         call rule%start(memory, line)
          d = 0.0_wp
          do j = 1, size(to)
             direction = merge(1, -1, to(j) > d)
@@ -229,7 +229,7 @@ contains
                if (direction*(to(j) - line%end_toward(direction)) < 0.0_wp) exit
                d = line%end_toward(direction)
                before = line%force(d)
-               call rule%next(line, direction)
+               call rule%next(memory, line, direction)
                call check_close(error, line%force(d), before, 0.0_wp, 1.0e-10_wp, 'force at an event')
                call check_true(error, line%lo <= line%hi, 'ends in order')
                call check_true(error, line%lo <= d .and. d <= line%hi, 'on the new line')
@@ -268,28 +268,6 @@ contains
          call check_copies(error, spec, d, random, 12.0_wp)
       end do
    end subroutine copies
-
-   subroutine forgets(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_record) :: spec
-      class(rule_type), allocatable :: rule
-      type(segment) :: first, line
-      real(wp) :: d(1)
-      integer :: i
-
-      call random_spring(random, spec, d)
-      call spec%make(rule)
-      call rule%start(first)
-      line = first
-      do i = 1, 100
-         ! Down three lines, up three lines: the ends of lines are not targets if they are not finite.
-         call rule%next(line, merge(1, -1, mod(i, 6) > 2))
-      end do
-      call rule%start(line)
-      call check_same(error, [line%d0, line%f0, line%k, line%lo, line%hi], &
-                      [first%d0, first%f0, first%k, first%lo, first%hi], 'first line')
-   end subroutine forgets
 
    subroutine work_positive(error)
       type(error_type), allocatable, intent(inout) :: error

@@ -4,8 +4,10 @@ module test_interaction
    use check, only: unit_test, check_close, check_true
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_layered, only: layered_rule
-   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_layered_fibre_path, only: go
+   use rbs_hysteresis_layered_fibre_section, only: fibre_section
+   use rbs_hysteresis_layered_joint, only: start_under
+   use rbs_hysteresis_rule, only: rule_type, rule_memory
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: bilinear, compression, random_type
@@ -37,36 +39,38 @@ contains
    end subroutine collect_interaction
 
    !> A joint under an axial load at the start.
-   subroutine make_joint(joint, axial_load, y, layer)
-      class(rule_type), allocatable, intent(out) :: joint
+   subroutine make_joint(joint, axial_load, y, layer, line, rule)
+      class(rule_memory), allocatable, intent(out) :: joint
       real(wp), intent(in) :: axial_load, y(:)
       type(spring_record), intent(in) :: layer(:)
+      type(segment), intent(out) :: line
+      class(rule_type), allocatable, intent(out) :: rule
       type(spring_record) :: spec
-      type(segment) :: line
 
       spec%rule = 'layered'
-      spec%axial_load = axial_load
       call spec%set_layers(y, layer)
-      call spec%make(joint)
-      call joint%start(line)
+      call spec%make(rule)
+      call start_under(rule, axial_load, joint, line)
    end subroutine make_joint
 
    !> The unsymmetric joint.
-   subroutine make_unsymmetric(joint, axial_load)
-      class(rule_type), allocatable, intent(out) :: joint
+   subroutine make_unsymmetric(joint, axial_load, line, rule)
+      class(rule_memory), allocatable, intent(out) :: joint
       real(wp), intent(in) :: axial_load
+      type(segment), intent(out) :: line
+      class(rule_type), allocatable, intent(out) :: rule
       type(spring_record) :: layer(4)
       integer :: i
 
       do i = 1, 4
          layer(i) = bilinear(unsymmetric(2, i), unsymmetric(3, i), unsymmetric(4, i))
       end do
-      call make_joint(joint, axial_load, unsymmetric(1, :), layer)
+      call make_joint(joint, axial_load, unsymmetric(1, :), layer, line, rule)
    end subroutine make_unsymmetric
 
    !> Opening, moment, and work of the layers after a straight way to a point.
    subroutine visit(joint, rotation, axial_load, opening, moment, work)
-      class(rule_type), intent(inout) :: joint
+      class(rule_memory), intent(inout) :: joint
       real(wp), intent(in) :: rotation, axial_load
       real(wp), intent(out) :: opening, moment
       !> Work of the moment, added to [J]
@@ -76,17 +80,17 @@ contains
       opening = 0.0_wp
       moment = 0.0_wp
       select type (joint)
-      class is (layered_rule)
-         call joint%go(rotation, axial_load, work)
+      type is (fibre_section)
+         call go(joint, rotation, axial_load, work)
          opening = joint%opening_at(rotation, axial_load)
-         call joint%plane(unused(1), unused(2), moment, unused(3), unused(4))
+         call joint%read_plane(unused(1), unused(2), moment, unused(3), unused(4))
       end select
    end subroutine visit
 
    !> Points of the paths of shared notes, each reached on a straight way from the one before.
    subroutine check_points(error, joint, points)
       type(error_type), allocatable, intent(inout) :: error
-      class(rule_type), intent(inout) :: joint
+      class(rule_memory), intent(inout) :: joint
       !> Rotation, axial load, opening, moment (4, points)
       real(wp), intent(in) :: points(:, :)
       real(wp) :: opening, moment, work
@@ -103,7 +107,9 @@ contains
 
    subroutine contacts(error)
       type(error_type), allocatable, intent(inout) :: error
-      class(rule_type), allocatable :: joint
+      class(rule_memory), allocatable :: joint
+      type(segment) :: line
+      class(rule_type), allocatable :: rule
       real(wp), parameter :: points(4, 6) = reshape( &
                              [0.0_wp, 8.0_wp, -1.0_wp/50.0_wp, 0.0_wp, 0.01_wp, 8.0_wp, -1.0_wp/60.0_wp, &
                                  16.0_wp, &
@@ -114,13 +120,15 @@ contains
       type(spring_record) :: layer(4)
 
       layer = compression(100.0_wp)
-      call make_joint(joint, 8.0_wp, four, layer)
+      call make_joint(joint, 8.0_wp, four, layer, line, rule)
       call check_points(error, joint, points)
    end subroutine contacts
 
    subroutine bilinear_layers(error)
       type(error_type), allocatable, intent(inout) :: error
-      class(rule_type), allocatable :: joint
+      class(rule_memory), allocatable :: joint
+      type(segment) :: line
+      class(rule_type), allocatable :: rule
       !> Rotations counted from the layers without load
       real(wp), parameter :: points(4, 7) = reshape( &
                              [0.006_wp, 4.0e5_wp, -5.4166666667e-05_wp, 2.0493750000e+05_wp, &
@@ -133,7 +141,7 @@ contains
       real(wp), parameter :: rest = -2.279202279e-4_wp
       real(wp) :: from_rest(4, 7)
 
-      call make_unsymmetric(joint, 4.0e5_wp)
+      call make_unsymmetric(joint, 4.0e5_wp, line, rule)
       from_rest = points
       from_rest(1, :) = points(1, :) - rest
       call check_points(error, joint, from_rest)
@@ -141,15 +149,17 @@ contains
 
    subroutine increments(error)
       type(error_type), allocatable, intent(inout) :: error
-      class(rule_type), allocatable :: joint, other
+      class(rule_memory), allocatable :: joint, other
+      type(segment) :: line
+      class(rule_type), allocatable :: rule
       type(random_type) :: random
       real(wp) :: from(2), to(2), opening(2), moment(2), work(2)
       integer, parameter :: counts(3) = [3, 7, 50]
       integer :: path, point, i, count
 
       do path = 1, 30
-         call make_unsymmetric(joint, 3.0e5_wp)
-         call make_unsymmetric(other, 3.0e5_wp)
+         call make_unsymmetric(joint, 3.0e5_wp, line, rule)
+         call make_unsymmetric(other, 3.0e5_wp, line, rule)
          work = 0.0_wp
          from = [0.0_wp, 3.0e5_wp]
          count = counts(modulo(path, 3) + 1)
@@ -172,14 +182,16 @@ contains
    !> rule.
    subroutine energy(error)
       type(error_type), allocatable, intent(inout) :: error
-      class(rule_type), allocatable :: joint
+      class(rule_memory), allocatable :: joint
+      type(segment) :: line
+      class(rule_type), allocatable :: rule
       real(wp) :: opening, moment, work, before(2), of_load, of_moment, stored
       integer, parameter :: steps = 2000
       integer :: i
       type(spring_record) :: layer(4)
 
       layer = compression(100.0_wp)
-      call make_joint(joint, 8.0_wp, four, layer)
+      call make_joint(joint, 8.0_wp, four, layer, line, rule)
       work = 0.0_wp
       of_load = 0.0_wp
       call visit(joint, 0.0_wp, 8.0_wp, opening, moment, work)
@@ -200,14 +212,16 @@ contains
    !> A second pass through the same closed path gives no energy.
    subroutine closed_paths(error)
       type(error_type), allocatable, intent(inout) :: error
-      class(rule_type), allocatable :: joint
+      class(rule_memory), allocatable :: joint
+      type(segment) :: line
+      class(rule_type), allocatable :: rule
       type(random_type) :: random
       real(wp) :: points(2, 5), opening, moment, first_pass, work, of_load, before(2)
       integer :: path, pass, j, i
       integer, parameter :: steps = 50
 
       do path = 1, 200
-         call make_unsymmetric(joint, 3.0e5_wp)
+         call make_unsymmetric(joint, 3.0e5_wp, line, rule)
          do j = 1, 5
             points(:, j) = [random%uniform(-1.0e-2_wp, 1.0e-2_wp), random%uniform(-3.0e5_wp, 1.0e6_wp)]
          end do
@@ -250,22 +264,24 @@ contains
          type(error_type), allocatable, intent(inout) :: error
          real(wp), intent(in) :: begin, points(:, :), load, opening
          integer, intent(in) :: way
-         class(rule_type), allocatable :: joint
+         class(rule_memory), allocatable :: joint
+         type(segment) :: line
+         class(rule_type), allocatable :: rule
          real(wp) :: work
          integer :: j
 
-         call make_joint(joint, begin, four, layer)
+         call make_joint(joint, begin, four, layer, line, rule)
          work = 0.0_wp
          select type (joint)
-         class is (layered_rule)
+         type is (fibre_section)
             do j = 1, size(points, 2)
-               call check_true(error, .not. joint%failed(), 'the joint carries its load so far')
-               call joint%go(points(1, j), points(2, j), work)
+               call check_true(error, .not. joint%failed, 'the joint carries its load so far')
+               call go(joint, points(1, j), points(2, j), work)
             end do
-            call check_true(error, joint%failed(), 'the joint fails')
-            call check_close(error, joint%present_load(), load, 1.0e-12_wp, 0.0_wp, 'load at failure')
-            call check_close(error, joint%layers%opening, opening, 1.0e-9_wp, 0.0_wp, 'opening at failure')
-            call check_true(error, joint%layers%failure_way == way, 'way at failure')
+            call check_true(error, joint%failed, 'the joint fails')
+            call check_close(error, joint%axial_load, load, 1.0e-12_wp, 0.0_wp, 'load at failure')
+            call check_close(error, joint%opening, opening, 1.0e-9_wp, 0.0_wp, 'opening at failure')
+            call check_true(error, joint%failure_way == way, 'way at failure')
          end select
       end subroutine check_failure
 
@@ -274,15 +290,15 @@ contains
    !> `next` at a constant axial load and `go` are two doors to the same path.
    subroutine constant_load(error)
       type(error_type), allocatable, intent(inout) :: error
-      class(rule_type), allocatable :: joint, other
+      class(rule_memory), allocatable :: joint, other
+      class(rule_type), allocatable :: rule
       type(segment) :: line
       type(random_type) :: random
       real(wp) :: rotation, target, opening, moment, work
       integer :: point, direction
 
-      call make_unsymmetric(joint, 4.0e5_wp)
-      call make_unsymmetric(other, 4.0e5_wp)
-      call joint%start(line)
+      call make_unsymmetric(joint, 4.0e5_wp, line, rule)
+      call make_unsymmetric(other, 4.0e5_wp, line, rule)
       rotation = 0.0_wp
       work = 0.0_wp
       do point = 1, 200
@@ -296,7 +312,7 @@ contains
                exit
             end if
             rotation = line%end_toward(direction)
-            call joint%next(line, direction)
+            call rule%next(joint, line, direction)
          end do
          rotation = target
          call visit(other, target, 4.0e5_wp, opening, moment, work)

@@ -7,7 +7,7 @@ module test_steel
    use paths, only: check_copies, check_increments
    use rbs_base_error, only: error_type, message_list
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_rule, only: rule_type, rule_memory
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_hysteresis_spring_record, only: spring_record
@@ -50,7 +50,6 @@ contains
                unit_test('few lines in a cycle', lines_of_cycle), &
                unit_test('property 2: 1, 7, 1000 increments, to the last bit', increments), &
                unit_test('copies and trial moves leave no trace', copies), &
-               unit_test('start forgets everything', forgets), &
                unit_test('bars that were stretched far wear faster in compression', buckling)]
    end subroutine collect_steel
 
@@ -488,6 +487,7 @@ contains
       type(random_type) :: random
       type(spring_record) :: spec
       class(rule_type), allocatable :: rule
+      class(rule_memory), allocatable :: memory
       type(segment) :: line
       real(wp) :: to(40), d, before, least
       integer :: path, j, direction, lines
@@ -497,7 +497,7 @@ contains
          least = merge(-0.5_wp, 0.0_wp, mod(path, 2) == 0)
          call random_path(random, to)
          call spec%make(rule)
-         call rule%start(line)
+         call rule%start(memory, line)
          d = 0.0_wp
          do j = 1, size(to)
             direction = merge(1, -1, to(j) > d)
@@ -509,7 +509,7 @@ contains
                if (direction*(to(j) - line%end_toward(direction)) < 0.0_wp) exit
                d = line%end_toward(direction)
                before = line%force(d)
-               call rule%next(line, direction)
+               call rule%next(memory, line, direction)
                call check_close(error, line%force(d), before, 0.0_wp, 1.0e-11_wp, 'force at an event')
                call check_true(error, line%lo <= d .and. d <= line%hi .and. line%lo < line%hi, 'on the line')
                call check_true(error, line%k <= 1.0_wp + 1.0e-12_wp, 'not stiffer than elastic')
@@ -566,28 +566,6 @@ contains
          call check_copies(error, spec, d, random, 12.0_wp)
       end do
    end subroutine copies
-
-   subroutine forgets(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_record) :: spec
-      class(rule_type), allocatable :: rule
-      type(segment) :: line
-      real(wp) :: first(20, 5)
-      integer :: i, pass
-
-      call random_bank(random, spec, options=.true.)
-      call spec%make(rule)
-      do pass = 1, 2
-         call rule%start(line)
-         do i = 1, 20
-            ! Up four lines, down four lines: never to the end of a branch, which has none.
-            call rule%next(line, merge(1, -1, mod(i, 8) < 4))
-            if (pass == 1) first(i, :) = [line%d0, line%f0, line%k, line%lo, line%hi]
-            call check_same(error, [line%d0, line%f0, line%k, line%lo, line%hi], first(i, :), 'lines')
-         end do
-      end do
-   end subroutine forgets
 
    !> Stretched to 4 = 2 d_buckle, a unit of plastic compression counts 1 + 4 (2 - 1) = 5 times: the strength
    !> loses 5/(2 endurance - 5) = 1/19 for each unit of the way; in tension 1/99 as ever.

@@ -160,9 +160,8 @@ contains
          if (side_of(spring, x%q(l, i)) == 0) then
             call advance_on_branch(spring, x%q(l, i))
          else
-            ! The first spring is told what the second has done up to the start of the step.
-            if (springs%heard(i) > 0) call springs%slot(i)%rule%hear(x%work(l, 2))
-            call move_spring(spring, springs%slot(i)%rule, x%q(l, i), events, stuck)
+            ! The first spring may decay with what the second has done up to the start of the step.
+            call move_spring(spring, springs, i, x%q(l, i), x%work(l, 2), events, stuck)
             if (stuck) return
             x%events(l) = x%events(l) + events
             call put_line(x, l, i, spring%line)
@@ -193,7 +192,7 @@ contains
             bent%largest(i) = x%largest(l, i)
             call take_spring(x, l, i, x%q(l, i), bent%spring(i))
          end do
-         call bent%solve(lane%springs%slot, taken)
+         call bent%solve(lane%springs, taken)
          if (.not. taken) return
          x%steps(l) = x%steps(l) + 1.0_wp
          x%events(l) = x%events(l) + bent%events
@@ -399,7 +398,6 @@ contains
       x%per_h(l) = stepper%one_body%per_h
       stepper%one_body%wanted = stepper%wanted
       stepper%one_body%push = 0.0_wp
-      stepper%one_body%hears = state%springs%heard(1) > 0
    end subroutine from_balance
 
    subroutine settle(self, l, task, outcome)

@@ -9,10 +9,10 @@
 module rbs_solve_one_body_implicit_one_body
    use rbs_base_constants, only: out_of_bounds
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_journal, only: rule_slot, save_rule, return_rule
-   use rbs_hysteresis_rule, only: rule_type
+   use rbs_hysteresis_journal, only: save_memory, return_memory
+   use rbs_hysteresis_rule, only: memory_slot
    use rbs_hysteresis_segment, only: segment
-   use rbs_hysteresis_spring_lines, only: first_on, last_on, most_lines
+   use rbs_hysteresis_spring_lines, only: spring_lines, first_on, last_on, most_lines
    use rbs_hysteresis_springs, only: spring_array
    implicit none
    private
@@ -48,9 +48,8 @@ module rbs_solve_one_body_implicit_one_body
       real(wp) :: mass(2) = 1.0_wp, lower = 0.0_wp, upper = 0.0_wp, softening = 0.0_wp
       !> Deformations, velocities, accelerations and forces at the start; the largest forces so far
       real(wp) :: q0(2) = 0.0_wp, v0(2) = 0.0_wp, a0(2) = 0.0_wp, g0(2) = 0.0_wp, largest(2) = 0.0_wp
-      !> The springs; whether the first is told the work of the second at its events; lines left
+      !> The springs; branches left
       type(body_spring) :: spring(2)
-      logical :: hears = .false.
       integer :: events = 0
       !> What the body has moved, the last correction, and the work of the residual on it at its start. The
       !> first is that on the lines of the start, which is given with its work
@@ -70,8 +69,8 @@ module rbs_solve_one_body_implicit_one_body
       real(wp), private :: before(2) = 0.0_wp, carried(2) = 0.0_wp
       !> Whether springs have left their lines, and whether the memories of their rules are saved
       logical, private :: changed = .false., saved(2) = .false., stuck = .false.
-      !> Room for copies of the rules
-      type(rule_slot), private :: kept(2)
+      !> Room for copies of the memories
+      type(memory_slot), private :: kept(2)
    contains
       procedure :: set_step
       procedure :: take_step
@@ -179,8 +178,7 @@ contains
          self%spring(i) = body_spring(springs%line_of(i), springs%first(i), springs%last(i), springs%d(i), &
                                       springs%work(i))
       end do
-      self%hears = springs%heard(1) > 0
-      call self%solve(springs%slot, taken)
+      call self%solve(springs, taken)
       if (.not. taken) return
       do i = 1, 2
          call springs%put(i, self%spring(i)%line, self%spring(i)%d, self%spring(i)%work)
@@ -201,11 +199,11 @@ contains
       self%version = springs%version
    end subroutine fit_to
 
-   !> Find the end of the step. If it is not found, the rules are as before.
-   subroutine solve(self, slot, taken)
+   !> Find the end of the step. If it is not found, the memories are as before.
+   subroutine solve(self, springs, taken)
       class(one_body_step), intent(inout) :: self
-      !> Rules of the springs
-      type(rule_slot), intent(inout) :: slot(2)
+      !> Of which rules and memories are used
+      class(spring_lines), intent(inout) :: springs
       logical, intent(out) :: taken
       type(body_spring) :: start(2)
       real(wp) :: slope
@@ -232,15 +230,15 @@ contains
             self%moved(1) = self%moved(1) + self%dx(1)
             self%moved(2) = self%moved(2) + self%dx(2)
          end if
-         call look(self, start, slot, slope)
+         call look(self, start, springs, slope)
          if (.not. slope < out_of_bounds) exit
          taken = abs(self%r(1)) <= self%wanted*self%scale(1) .and. abs(self%r(2)) <= self%wanted*self%scale(2)
          if (taken) exit
-         if (slope < -too_far*self%work) call cut_correction(self, start, slot, slope)
+         if (slope < -too_far*self%work) call cut_correction(self, start, springs, slope)
          if (self%stuck) exit
       end do
       if (.not. taken) then
-         call put_back(self, start, slot)
+         call put_back(self, start, springs)
          return
       end if
       call fit(self)
@@ -278,10 +276,10 @@ contains
 
    !> The correction has gone too far: go back to where the residual does little work on it, by the method of
    !> false position (Illinois).
-   subroutine cut_correction(self, start, slot, slope)
+   subroutine cut_correction(self, start, springs, slope)
       type(one_body_step), intent(inout) :: self
       type(body_spring), intent(inout) :: start(2)
-      type(rule_slot), intent(inout) :: slot(2)
+      class(spring_lines), intent(inout) :: springs
       !> Work of the residual on the correction at its end
       real(wp), intent(inout) :: slope
       real(wp) :: low, high, at_low, at_high, share, now
@@ -296,7 +294,7 @@ contains
          share = low + (high - low)*at_low/(at_low - at_high)
          self%moved = self%moved + (share - now)*self%dx
          now = share
-         call look(self, start, slot, slope)
+         call look(self, start, springs, slope)
          if (abs(slope) <= too_far/3.0_wp*self%work .or. self%stuck) return
          if (slope > 0.0_wp) then
             low = share
@@ -312,10 +310,10 @@ contains
 
    !> Look where the body is when it has moved so far: put the springs on their lines there, find what is left
    !> of the balance, and its work on the correction.
-   subroutine look(self, start, slot, slope)
+   subroutine look(self, start, springs, slope)
       type(one_body_step), intent(inout) :: self
       type(body_spring), intent(inout) :: start(2)
-      type(rule_slot), intent(inout) :: slot(2)
+      class(spring_lines), intent(inout) :: springs
       !> `huge`: out of bounds, or the springs go round in lines
       real(wp), intent(out) :: slope
 
@@ -324,10 +322,10 @@ contains
       self%q(2) = self%q0(2) + self%moved(2)
       if (.not. (abs(self%q(1)) < out_of_bounds .and. abs(self%q(2)) < out_of_bounds)) return
       if (.not. (is_on_line(self%spring(1), self%q(1)) .and. is_on_line(self%spring(2), self%q(2)))) then
-         if (self%changed) call put_back(self, start, slot)
+         if (self%changed) call put_back(self, start, springs)
          self%changed = .true.
-         call find_line(self, 1, start(1), slot(1))
-         call find_line(self, 2, start(2), slot(2))
+         call find_line(self, 1, start(1), springs)
+         call find_line(self, 2, start(2), springs)
          if (self%stuck) return
       end if
       call find_residual(self)
@@ -345,12 +343,12 @@ contains
 
    !> Put a spring, which is at the start of the step, on the line that it is on at the end. It stays where
    !> that line begins.
-   subroutine find_line(self, i, start, slot)
+   subroutine find_line(self, i, start, springs)
       type(one_body_step), intent(inout) :: self
       integer, intent(in) :: i
       !> Where it was, once it has left its line
       type(body_spring), intent(inout) :: start
-      type(rule_slot), intent(inout) :: slot
+      class(spring_lines), intent(inout) :: springs
       integer :: lines, way
 
       associate (spring => self%spring(i))
@@ -360,11 +358,10 @@ contains
             spring%way = way
             if (.not. self%saved(i)) then
                start = spring
-               call save_rule(slot, self%kept(i))
+               call save_memory(springs%slot(i), self%kept(i))
                self%saved(i) = .true.
             end if
-            if (i == 1 .and. self%hears) call slot%rule%hear(self%spring(2)%work)
-            call change_line(spring, slot%rule, way)
+            call change_line(spring, springs, i, way, self%spring(2)%work)
             self%events = self%events + 1
             ! A new one-way line starts at the present deformation, to the last bit.
             if (spring%line%one_way > 0) spring%first = spring%d
@@ -375,17 +372,17 @@ contains
    end subroutine find_line
 
    !> Put the springs back to the start of the step.
-   subroutine put_back(self, start, slot)
+   subroutine put_back(self, start, springs)
       type(one_body_step), intent(inout) :: self
       type(body_spring), intent(in) :: start(2)
-      type(rule_slot), intent(inout) :: slot(2)
+      class(spring_lines), intent(inout) :: springs
       integer :: i
 
       self%events = 0
       do i = 1, 2
          if (.not. self%saved(i)) cycle
          self%spring(i) = start(i)
-         call return_rule(slot(i), self%kept(i))
+         call return_memory(springs%slot(i), self%kept(i))
          self%saved(i) = .false.
       end do
    end subroutine put_back
@@ -425,11 +422,15 @@ contains
    end function side_of
 
    !> Move monotonically to d, over any number of lines.
-   subroutine move_spring(spring, rule, d, events, stuck)
+   subroutine move_spring(spring, springs, i, d, flexural_work, events, stuck)
       type(body_spring), intent(inout) :: spring
-      class(rule_type), intent(inout) :: rule
+      !> The springs, and which it is
+      class(spring_lines), intent(inout) :: springs
+      integer, intent(in) :: i
       !> New deformation [m or rad]
       real(wp), intent(in) :: d
+      !> See `next_branch`
+      real(wp), intent(in) :: flexural_work
       !> Number of lines left; whether the rule goes round in lines without length
       integer, intent(out) :: events
       logical, intent(out) :: stuck
@@ -442,7 +443,7 @@ contains
             call advance_on_branch(spring, d)
             return
          end if
-         call change_line(spring, rule, way)
+         call change_line(spring, springs, i, way, flexural_work)
       end do
       stuck = .true.
    end subroutine move_spring
@@ -463,17 +464,19 @@ contains
 
    !> Move to the end of the line and get the line that follows from the rule. When the motion turns back, a
    !> one-way line ends at the present deformation.
-   subroutine change_line(spring, rule, way)
+   subroutine change_line(spring, springs, i, way, flexural_work)
       type(body_spring), intent(inout) :: spring
-      class(rule_type), intent(inout) :: rule
+      class(spring_lines), intent(inout) :: springs
+      integer, intent(in) :: i
       !> +1: by the upper end, -1: by the lower end
       integer, intent(in) :: way
+      real(wp), intent(in) :: flexural_work
 
       associate (line => spring%line)
          if (line%one_way > 0) line%lo = spring%d
          if (line%one_way < 0) line%hi = spring%d
          if (line%one_way /= -way) call advance_on_branch(spring, merge(line%hi, line%lo, way > 0))
-         call rule%next(line, way)
+         call springs%next_branch(i, line, way, flexural_work)
          spring%first = first_on(line)
          spring%last = last_on(line)
       end associate

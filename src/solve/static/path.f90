@@ -8,7 +8,7 @@ module rbs_solve_static_path
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, small, finite
    use rbs_column_top, only: largest_turn, top_displacement
-   use rbs_hysteresis_layer_fall, only: layer_fall
+   use rbs_hysteresis_layered_fibre_fall, only: layer_fall
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
                               row_spring, row_damping, row_axial, row_residual, row_top, row_joints
@@ -163,7 +163,7 @@ contains
       self%column = column
       self%by_force = by_force
       self%moving = moving
-      call self%springs%create(column%spring, column%place%heard)
+      call self%springs%create(column%rules, column%place%heard, column%spring%axial_load)
       allocate (self%rate(column%unknowns), source=0.0_wp)
       allocate (self%changed(column%unknowns), source=0)
    end subroutine prepare

@@ -7,7 +7,7 @@ module rbs_solve_time_march
    use rbs_column_column, only: column_type
    use rbs_column_energy, only: kinetic_energy, potential_energy
    use rbs_column_top, only: top_motion, top_position
-   use rbs_hysteresis_layer_fall, only: layer_fall
+   use rbs_hysteresis_layered_fibre_fall, only: layer_fall
    use rbs_output_observer, only: observer_type
    use rbs_output_recorder, only: recorder_type
    use rbs_output_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &

@@ -7,7 +7,6 @@ module rbs_solve_time_start
    use rbs_column_column, only: column_type
    use rbs_column_energy, only: kinetic_energy, potential_energy
    use rbs_column_top, only: top_displacement
-   use rbs_hysteresis_spring_record, only: spring_record
    use rbs_solve_end_state, only: end_state, standing_type, moving_state
    use rbs_loading_loads, only: loads_type, lateral, vertical, top_axial => axial
    use rbs_solve_time_plan, only: time_plan, same_step
@@ -209,18 +208,18 @@ contains
    subroutine create_springs(state, column)
       type(state_type), intent(inout) :: state
       type(column_type), intent(in) :: column
-      type(spring_record), allocatable :: spring(:)
+      real(wp) :: axial_load(column%unknowns)
       integer :: i
 
       if (.not. any(state%loads%acts([vertical, top_axial]))) then
-         call state%springs%create(column%spring, column%place%heard)
+         call state%springs%create(column%rules, column%place%heard, column%spring%axial_load)
          return
       end if
-      spring = column%spring
+      axial_load = column%spring%axial_load
       do i = 1, column%n
-         spring(column%at(flexure, i))%axial_load = column%axial_force(i, state%load)
+         axial_load(column%at(flexure, i)) = column%axial_force(i, state%load)
       end do
-      call state%springs%create(spring, column%place%heard)
+      call state%springs%create(column%rules, column%place%heard, axial_load)
       call state%springs%vary_axial_loads()
       call state%motion%press(state%springs, state%load)
    end subroutine create_springs

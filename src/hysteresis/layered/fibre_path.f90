@@ -1,37 +1,103 @@
-!> The lines on which the layers of a joint go on along a straight path in rotation and axial load.
-module rbs_hysteresis_layer_choice
+!> Straight paths of a fibre section in rotation and axial load: the branches on which its layers go on, and the
+!> way from event to event.
+module rbs_hysteresis_layered_fibre_path
    use rbs_base_constants, only: no_stiffness, unbounded
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_layer_kernels, only: look_along, look_back
-   use rbs_hysteresis_layer_lines, only: layer_lines, no_rate
+   use rbs_hysteresis_layered_fibre_kernels, only: look_along, look_back
+   use rbs_hysteresis_layered_fibre_section, only: fibre_section
    implicit none
    private
 
-   public :: choosing_layers
+   public :: choose_branches, go, way_to_event
 
-   !> Passes in which all layers without room change their lines at once, before both ways of each are
+   !> Passes in which all layers without room change their branches at once, before both ways of each are
    !> weighed.
    integer, parameter :: most_passes = 4
-   !> Lines without length that one layer may pass at one point.
-   integer, parameter :: most_lines = 8
-
-   !> A way beyond this, in units of the rates, is none; a rate below the other is none.
-   real(wp), parameter, public :: beyond = 1.0e100_wp
-   real(wp), parameter :: least_speed = 1.0e-150_wp
-
-   !> Layers that find their lines.
-   type, extends(layer_lines) :: choosing_layers
-   contains
-      procedure :: choose
-      procedure :: least_rate
-   end type choosing_layers
+   !> Branches without length that one layer may pass at one point.
+   integer, parameter, public :: most_branches = 8
+   !> A way beyond this, in units of the rates, is none.
+   real(wp), parameter :: beyond = 1.0e100_wp
+   !> Layers that are looked at together.
+   integer, parameter :: block = 64
 
 contains
 
-   !> Put every layer on the line on which it goes on along a straight path from where the joint stands, and
-   !> find how far the path goes on these lines.
-   subroutine choose(self, turn, press)
-      class(choosing_layers), intent(inout) :: self
+   !> Go straight to a rotation and an axial load, from event to event.
+   subroutine go(self, rotation, axial_load, work)
+      type(fibre_section), intent(inout) :: self
+      real(wp), intent(in) :: rotation, axial_load
+      !> Work of the moment along the way, to be added to [J]
+      real(wp), intent(inout), optional :: work
+      real(wp) :: begin(2), way(2), here, before(2)
+      integer :: event
+      logical :: arrives
+
+      begin = [self%rotation, self%axial_load]
+      way = [rotation + self%rest, axial_load] - begin
+      if (.not. any(abs(way) > 0.0_wp)) return
+      here = 0.0_wp
+      do event = 1, 1000 + 1000*self%count
+         call choose_branches(self, way(1), way(2))
+         if (self%failed) return
+         before = [self%rotation, self%moment]
+         arrives = self%ends%ahead >= 1.0_wp - here
+         if (arrives) then
+            call self%place(rotation + self%rest, axial_load, 1.0_wp - here, 0)
+         else
+            associate (there => here + self%ends%ahead)
+               call self%place(begin(1) + there*way(1), begin(2) + there*way(2), self%ends%ahead, &
+                               self%ends%first_ahead)
+            end associate
+         end if
+         if (present(work)) work = work + 0.5_wp*(before(2) + self%moment)*(self%rotation - before(1))
+         if (arrives) return
+         here = here + self%ends%ahead
+      end do
+      self%failed = .true.
+   end subroutine go
+
+   !> How far a path goes from a point on the present branches until a layer reaches the end of its branch.
+   pure subroutine way_to_event(self, rotation, axial_load, turn, press, way, first)
+      type(fibre_section), intent(in) :: self
+      real(wp), intent(in) :: rotation, axial_load
+      !> Rates of the rotation and of the axial load
+      real(wp), intent(in) :: turn, press
+      !> In units of the rates; `unbounded` if none does
+      real(wp), intent(out) :: way
+      !> The layer, 0 for none
+      integer, intent(out) :: first
+      real(wp) :: ahead(block), turned, opening, open, nearest, least_room, stiffness
+      integer :: i, begin, n
+      logical :: one_way
+
+      way = unbounded
+      first = 0
+      turned = rotation + self%rest
+      opening = self%opening_at(rotation, axial_load)
+      open = self%rate_of_opening(turn, press)
+      do begin = 1, self%count, block
+         n = min(block, self%count - begin + 1)
+         associate (finish => begin + n - 1)
+            ! A layer that unloads on a reversal is an event of its own, see `turns_back`.
+            call look_along(n, self%y(begin:finish), self%k(begin:finish), self%lo(begin:finish), &
+                            self%hi(begin:finish), self%slack(begin:finish), self%one_way(begin:finish), &
+                            self%both_ways(begin:finish), opening, turned, open, turn, &
+                            self%least_rate(open, turn), 0.0_wp, ahead, nearest, least_room, &
+                            one_way, stiffness)
+         end associate
+         if (.not. nearest < min(way, beyond)) cycle
+         do i = 1, n
+            if (ahead(i) <= nearest) exit
+         end do
+         first = begin + i - 1
+         way = nearest
+      end do
+   end subroutine way_to_event
+
+   !> Put every layer on the branch on which it goes on along a straight path from the present point, and find
+   !> how far the path goes on these branches.
+   subroutine choose_branches(self, turn, press)
+      type(fibre_section), intent(inout) :: self
       !> Rates of the rotation [rad] and of the axial load [N]
       real(wp), intent(in) :: turn, press
       real(wp) :: least_room
@@ -56,11 +122,11 @@ contains
       if (self%failed) return
       call look_ahead(self, least_room)
       call set_ends(self)
-   end subroutine choose
+   end subroutine choose_branches
 
-   !> The layer that has come to its end leaves its line, if it goes on in that direction.
+   !> The layer that has come to its end leaves its branch, if it goes on in that direction.
    subroutine leave_end(self)
-      type(choosing_layers), intent(inout) :: self
+      type(fibre_section), intent(inout) :: self
       real(wp) :: v
       integer :: i, way
 
@@ -70,16 +136,16 @@ contains
       v = self%open + self%y(i)*self%turn
       if (.not. abs(v) > self%least_rate(self%open, self%turn)) return
       way = merge(1, -1, v > 0.0_wp)
-      associate (line => self%line(i), d => self%deformation(i))
-         if (abs(line%end_toward(way) - d) > abs(line%end_toward(-way) - d)) return
+      associate (branch => self%branch(i), d => self%deformation(i))
+         if (abs(branch%end_toward(way) - d) > abs(branch%end_toward(-way) - d)) return
       end associate
       call self%leave(i, way)
       call self%sum_up()
    end subroutine leave_end
 
-   !> All layers without room leave their lines.
+   !> All layers without room leave their branches.
    subroutine leave_all(self)
-      type(choosing_layers), intent(inout) :: self
+      type(fibre_section), intent(inout) :: self
       real(wp) :: v, least, room
       integer :: i
 
@@ -95,17 +161,9 @@ contains
       call self%sum_up()
    end subroutine leave_all
 
-   !> Rates of layers that are round-off, as the opening and the rotation move.
-   pure real(wp) function least_rate(self, open, turn)
-      class(choosing_layers), intent(in) :: self
-      real(wp), intent(in) :: open, turn
-
-      least_rate = max(no_rate*(abs(open) + self%reach*abs(turn)), least_speed)
-   end function least_rate
-
-   !> Ways of all layers to the ends of their lines.
+   !> Ways of all layers to the ends of their branches.
    pure subroutine look_ahead(self, least_room)
-      type(choosing_layers), intent(inout) :: self
+      type(fibre_section), intent(inout) :: self
       !> Not above zero if a layer has none
       real(wp), intent(out) :: least_room
 
@@ -117,9 +175,9 @@ contains
       end associate
    end subroutine look_ahead
 
-   !> How far the chosen path goes, ahead and back, until a layer reaches the end of its line.
+   !> How far the chosen path goes, ahead and back, until a layer reaches the end of its branch.
    pure subroutine set_ends(self)
-      type(choosing_layers), intent(inout) :: self
+      type(fibre_section), intent(inout) :: self
       integer :: i
 
       associate (ends => self%ends)
@@ -150,20 +208,20 @@ contains
       end associate
    end subroutine set_ends
 
-   !> The lines that lead on, where changing those without room does not end, or where layers soften or have
+   !> The branches that lead on, where changing those without room does not end, or where layers soften or have
    !> no stiffness. The rate x of the opening is a root of the continuous, piecewise linear
    !>
    !>     G(x) = sum k_i(v_i) v_i = -dN,        v_i = x + y_i dphi
    !>
-   !> with the slopes of the lines on which each layer would go on opening and closing. Without softening G
+   !> with the slopes of the branches on which each layer would go on opening and closing. Without softening G
    !> rises and the root is unique; of several the one nearest to the present rate is taken; none means that
    !> the layers cannot carry the axial load.
    subroutine weigh_both_ways(self)
-      type(choosing_layers), intent(inout) :: self
+      type(fibre_section), intent(inout) :: self
       real(wp), dimension(self%count) :: opening, closing, corner
       real(wp) :: x, best, wanted, at, next_at, slope, value, free, rate
       integer :: order(self%count)
-      integer :: i, j, m, way, lines
+      integer :: i, j, m, way, branches
       logical :: found
 
       m = 0
@@ -219,8 +277,8 @@ contains
          rate = best + self%y(i)*self%turn
          if (abs(rate) <= self%least_rate(best, self%turn)) cycle
          way = merge(1, -1, rate > 0.0_wp)
-         do lines = 1, most_lines
-            if (.not. (self%line(i)%one_way == -way .or. self%has_no_room(i, way))) exit
+         do branches = 1, most_branches
+            if (.not. self%must_leave(i, way)) exit
             call self%leave(i, way)
          end do
       end do
@@ -256,22 +314,22 @@ contains
 
    end subroutine weigh_both_ways
 
-   !> Slope of the line on which a layer would go on in a direction. It goes there and back again.
+   !> Slope of the branch on which a layer would go on in a direction. It goes there and back again.
    real(wp) function slope_ahead(self, i, way) result(k)
-      type(choosing_layers), intent(inout) :: self
+      type(fibre_section), intent(inout) :: self
       integer, intent(in) :: i, way
-      integer :: lines, on_end
+      integer :: branches, on_end
 
       k = self%k(i)
-      if (.not. (self%line(i)%one_way == -way .or. self%has_no_room(i, way))) return
+      if (.not. self%must_leave(i, way)) return
       on_end = self%on_end
-      call self%remember(i)
-      do lines = 1, most_lines
-         if (.not. (self%line(i)%one_way == -way .or. self%has_no_room(i, way))) exit
+      call self%save_layer(i)
+      do branches = 1, most_branches
+         if (.not. self%must_leave(i, way)) exit
          call self%leave(i, way)
       end do
       k = self%k(i)
-      call self%go_back(i)
+      call self%restore_layer(i)
       self%on_end = on_end
    end function slope_ahead
 
@@ -291,4 +349,4 @@ contains
       end do
    end subroutine order_by
 
-end module rbs_hysteresis_layer_choice
+end module rbs_hysteresis_layered_fibre_path

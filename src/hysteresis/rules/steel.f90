@@ -6,7 +6,7 @@
 !> a table that gives the branches the roundness of Menegotto and Pinto (1973). No limit moves faster than
 !> its element can: small reversals have small effects, and closed loops never create energy. Plastic
 !> deformation inside the reach may reduce the strength through the factor w (wear).
-module rbs_hysteresis_steel
+module rbs_hysteresis_rules_steel
    use rbs_base_check, only: is_given
    use rbs_base_constants, only: no_stiffness, unbounded, unset
    use rbs_base_error, only: message_list
@@ -14,8 +14,7 @@ module rbs_hysteresis_steel
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_hysteresis_rule, only: rule_type, check_product, places_length, in_shear, in_flexure, &
-      in_axial, in_layer
+   use rbs_hysteresis_rule, only: rule_type, rule_memory, check_product
    use rbs_hysteresis_segment, only: segment
    implicit none
    private
@@ -40,7 +39,7 @@ module rbs_hysteresis_steel
    !> A limit that moves with at least this share of its element's stiffness carries the element with it
    real(wp), parameter :: as_fast = 1.0_wp - 1.0e-9_wp
 
-   type(key_type), parameter :: parameters(*) = [ &
+   type(key_type), parameter, public :: steel_keys(*) = [ &
       key_type('k', unit=stiffness, bound=above_zero, &
                meaning='elastic stiffness'), &
       key_type('f_y', unit=force, bound=above_zero, &
@@ -75,6 +74,22 @@ module rbs_hysteresis_steel
       real(wp) :: y(elements, most_rows) = 1.0_wp
    end type table_type
 
+   type :: steel_state
+      !> Forces of the elements [N] at the last event, and their slopes on the present branch [N/m]
+      real(wp) :: s(elements) = 0.0_wp, rate(elements) = 0.0_wp
+      !> Deformation at the last event, and extremes of the deformation up to it [m]
+      real(wp) :: d = 0.0_wp, highest = 0.0_wp, lowest = 0.0_wp
+      !> Plastic deformation inside the reach up to it [m], and its growth along the present branch
+      real(wp) :: worn = 0.0_wp, wear_rate = 0.0_wp
+   end type steel_state
+
+   type, extends(rule_memory) :: steel_memory
+      type(steel_state) :: now
+   contains
+      procedure :: copy
+      procedure :: serialize
+   end type steel_memory
+
    type, extends(rule_type) :: steel_rule
       !> Elastic stiffness [N/m], yield force [N], stiffness of hardening [N/m]
       real(wp) :: k = 0.0_wp, f_y = 0.0_wp, k_post = 0.0_wp
@@ -93,43 +108,20 @@ module rbs_hysteresis_steel
       !> Yield deformation [m]
       real(wp), private :: d_y = 0.0_wp
       type(table_type), private :: table
-      !> Whether table and what else follows from the parameters is there; copies of a spring have it too
-      logical, private :: prepared = .false.
       !> Elements that have limits: all, or all but that of hardening
       integer, private :: limited = yielding
-      !> Stiffness of the elements [N/m], and their forces [N] at the last event
-      real(wp), private :: k_element(elements) = 0.0_wp, s(elements) = 0.0_wp
-      !> Their slopes on the present line [N/m]
-      real(wp), private :: rate(elements) = 0.0_wp
-      !> Deformation at the last event, and extremes of the deformation up to it [m]
-      real(wp), private :: d = 0.0_wp, highest = 0.0_wp, lowest = 0.0_wp
-      !> Plastic deformation inside the reach up to it [m], and its growth along the present line
-      real(wp), private :: worn = 0.0_wp, wear_rate = 0.0_wp
+      !> Stiffness of the elements [N/m]
+      real(wp), private :: k_element(elements) = 0.0_wp
    contains
-      procedure, nopass :: keys
-      procedure, nopass :: places
       procedure :: set
       procedure :: initial_stiffness
       procedure :: check
+      procedure :: prepare
       procedure :: start
       procedure :: next
-      procedure :: copy_memory
-      procedure :: serialize
    end type steel_rule
 
 contains
-
-   pure function keys()
-      type(key_type), allocatable :: keys(:)
-
-      keys = parameters
-   end function keys
-
-   pure function places()
-      character(len=places_length) :: places
-
-      places = in_shear//' '//in_flexure//' '//in_axial//' '//in_layer
-   end function places
 
    pure subroutine set(self, value)
       class(steel_rule), intent(inout) :: self
@@ -148,7 +140,6 @@ contains
       self%endurance = value(11)
       self%d_buckle = value(12)
       self%buckling = value(13)
-      self%prepared = .false.
    end subroutine set
 
    pure real(wp) function initial_stiffness(self)
@@ -194,36 +185,43 @@ contains
       end if
    end subroutine check
 
-   subroutine start(self, line)
-      class(steel_rule), intent(inout) :: self
-      type(segment), intent(out) :: line
+   subroutine start(self, memory, branch)
+      class(steel_rule), intent(in) :: self
+      class(rule_memory), allocatable, intent(out) :: memory
+      type(segment), intent(out) :: branch
 
-      if (.not. self%prepared) call prepare(self)
-      self%s = 0.0_wp
-      self%rate = self%k_element
-      self%d = 0.0_wp
-      self%highest = self%d_y
-      self%lowest = -self%d_y
-      self%worn = 0.0_wp
-      self%wear_rate = 0.0_wp
-      line = segment(k=self%k, lo=-self%d_y, hi=self%d_y)
+      allocate (memory, source=steel_memory(now=steel_state(rate=self%k_element, highest=self%d_y, &
+                                                            lowest=-self%d_y)))
+      branch = segment(k=self%k, lo=-self%d_y, hi=self%d_y)
    end subroutine start
 
    !> What follows from the parameters alone.
    pure subroutine prepare(self)
-      type(steel_rule), intent(inout) :: self
+      class(steel_rule), intent(inout) :: self
 
       self%d_y = self%f_y/self%k
       self%k_element = [(self%k - self%k_post)*share, self%k_post]
       self%limited = merge(elements, yielding, is_given(self%f_u))
       call make_table(self, self%table)
       self%most_wear = max(1.0_wp, self%endurance/maxval(self%table%y(:self%limited, :self%table%rows)))
-      self%prepared = .true.
    end subroutine prepare
 
-   subroutine next(self, line, direction)
-      class(steel_rule), intent(inout) :: self
-      type(segment), intent(inout) :: line
+   subroutine next(self, memory, branch, direction)
+      class(steel_rule), intent(in) :: self
+      class(rule_memory), intent(inout) :: memory
+      type(segment), intent(inout) :: branch
+      integer, intent(in) :: direction
+
+      select type (memory)
+      type is (steel_memory)
+         call find_branch(self, memory%now, branch, direction)
+      end select
+   end subroutine next
+
+   subroutine find_branch(self, now, branch, direction)
+      type(steel_rule), intent(in) :: self
+      type(steel_state), intent(inout) :: now
+      type(segment), intent(inout) :: branch
       integer, intent(in) :: direction
       !> As seen in the direction: forces, their limits, growth of the limits with the deformation
       real(wp) :: s(elements), limit(elements), growth(elements)
@@ -232,61 +230,63 @@ contains
       logical :: growing, one_slips, slips(elements)
 
       n = self%limited
-      call bring(self, line%end_toward(direction))
-      reach = self%highest - self%lowest
-      end_of_reach = merge(self%highest, self%lowest, direction > 0)
-      growing = direction*(end_of_reach - self%d) <= 0.0_wp
-      call find_limits(self, growing, limit, growth, ahead)
-      s = direction*self%s
+      call bring(self, now, branch%end_toward(direction))
+      reach = now%highest - now%lowest
+      end_of_reach = merge(now%highest, now%lowest, direction > 0)
+      growing = direction*(end_of_reach - now%d) <= 0.0_wp
+      call find_limits(self, now, growing, limit, growth, ahead)
+      s = direction*now%s
       do i = 1, n
          slips(i) = s(i) >= limit(i) - near_limit*reach*self%k_element(i) .and. &
                     growth(i) < as_fast*self%k_element(i)
          if (slips(i)) s(i) = limit(i)
       end do
       one_slips = any(slips(:n))
-      self%wear_rate = 0.0_wp
+      now%wear_rate = 0.0_wp
       if (self%endurance > 0.0_wp .and. .not. growing .and. one_slips) then
-         call wear(self, bowing(self, direction), limit, slips, growth, ahead)
+         call wear(self, now, bowing(self, now, direction), limit, slips, growth, ahead)
       end if
-      self%rate(:n) = merge(growth(:n), self%k_element(:n), slips(:n))
+      now%rate(:n) = merge(growth(:n), self%k_element(:n), slips(:n))
       do i = 1, n
          if (growth(i) >= as_fast*self%k_element(i) .or. slips(i)) cycle
          ahead = min(ahead, (limit(i) - s(i))/(self%k_element(i) - growth(i)))
       end do
-      self%s(:n) = direction*s(:n)
+      now%s(:n) = direction*s(:n)
 
       f = 0.0_wp
-      if (n < elements) f = self%s(elements)
+      if (n < elements) f = now%s(elements)
       f = f + direction*sum(s(:n))
       slope = self%k
-      if (one_slips) slope = sum(self%rate)
+      if (one_slips) slope = sum(now%rate)
       if (abs(slope) <= no_stiffness*self%k) slope = 0.0_wp
       far = direction*unbounded
-      if (ahead < unbounded) far = self%d + direction*ahead
+      if (ahead < unbounded) far = now%d + direction*ahead
       if (.not. growing .and. direction*(end_of_reach - far) <= 0.0_wp) far = end_of_reach
-      line = segment(d0=self%d, f0=f, k=slope)
-      line = line%outward(direction, near=self%d, far=far, near_closed=.true., one_way=growing .or. one_slips)
-   end subroutine next
+      branch = segment(d0=now%d, f0=f, k=slope)
+      branch = branch%outward(direction, near=now%d, far=far, near_closed=.true., one_way=growing .or. one_slips)
+   end subroutine find_branch
 
-   !> Move along the present line to its end at d.
-   pure subroutine bring(self, d)
-      type(steel_rule), intent(inout) :: self
+   !> Move along the present branch to its end at d.
+   pure subroutine bring(self, now, d)
+      type(steel_rule), intent(in) :: self
+      type(steel_state), intent(inout) :: now
       real(wp), intent(in) :: d
       integer :: n
 
       n = self%limited
-      self%s(:n) = self%s(:n) + self%rate(:n)*(d - self%d)
+      now%s(:n) = now%s(:n) + now%rate(:n)*(d - now%d)
       ! Hardening without end is a line through the origin.
-      if (n < elements) self%s(elements) = self%k_post*d
-      self%worn = self%worn + self%wear_rate*abs(d - self%d)
-      self%d = d
-      self%highest = max(self%highest, d)
-      self%lowest = min(self%lowest, d)
+      if (n < elements) now%s(elements) = self%k_post*d
+      now%worn = now%worn + now%wear_rate*abs(d - now%d)
+      now%d = d
+      now%highest = max(now%highest, d)
+      now%lowest = min(now%lowest, d)
    end subroutine bring
 
    !> Limits of the elements, their growth with the deformation, and distance to the next row of the table.
-   pure subroutine find_limits(self, growing, limit, growth, ahead)
+   pure subroutine find_limits(self, now, growing, limit, growth, ahead)
       type(steel_rule), intent(in) :: self
+      type(steel_state), intent(in) :: now
       logical, intent(in) :: growing
       !> (elements) [N], (elements) [N/m]
       real(wp), intent(out) :: limit(elements), growth(elements)
@@ -297,9 +297,9 @@ contains
 
       strength = 1.0_wp
       if (self%endurance > 0.0_wp) then
-         strength = max(0.0_wp, 1.0_wp - self%worn/(2.0_wp*self%endurance*self%d_y))
+         strength = max(0.0_wp, 1.0_wp - now%worn/(2.0_wp*self%endurance*self%d_y))
       end if
-      q = (self%highest - self%lowest)/self%d_y - 2.0_wp
+      q = (now%highest - now%lowest)/self%d_y - 2.0_wp
       growth = 0.0_wp
       ahead = unbounded
       associate (table => self%table)
@@ -320,20 +320,22 @@ contains
 
    !> Factor of the wear: a bar that has been stretched beyond `d_buckle` bows when it is compressed, and what
    !> is bowed and straightened cracks. The largest elongation is settled where the bar turns back.
-   pure real(wp) function bowing(self, direction)
+   pure real(wp) function bowing(self, now, direction)
       type(steel_rule), intent(in) :: self
+      type(steel_state), intent(in) :: now
       integer, intent(in) :: direction
 
       bowing = 1.0_wp
       if (direction > 0 .or. .not. self%buckling > 0.0_wp) return
-      if (self%highest <= self%d_buckle) return
-      bowing = min(1.0_wp + self%buckling*(self%highest/self%d_buckle - 1.0_wp), self%most_wear)
+      if (now%highest <= self%d_buckle) return
+      bowing = min(1.0_wp + self%buckling*(now%highest/self%d_buckle - 1.0_wp), self%most_wear)
    end function bowing
 
-   !> Wear and force along a line determine each other: the limits y_i lose e_i for each unit of plastic
+   !> Wear and force along a branch determine each other: the limits y_i lose e_i for each unit of plastic
    !> deformation d - f/k, and its share in the deformation follows from the slope that this gives.
-   pure subroutine wear(self, times, limit, slips, growth, ahead)
-      type(steel_rule), intent(inout) :: self
+   pure subroutine wear(self, now, times, limit, slips, growth, ahead)
+      type(steel_rule), intent(in) :: self
+      type(steel_state), intent(inout) :: now
       !> What a unit of plastic deformation counts
       real(wp), intent(in) :: times
       real(wp), intent(in) :: limit(elements)
@@ -347,9 +349,9 @@ contains
 
       n = self%limited
       growth = 0.0_wp
-      left = 2.0_wp*self%endurance*self%d_y - self%worn
-      if (left <= near_limit*(self%highest - self%lowest)) then
-         self%worn = 2.0_wp*self%endurance*self%d_y
+      left = 2.0_wp*self%endurance*self%d_y - now%worn
+      if (left <= near_limit*(now%highest - now%lowest)) then
+         now%worn = 2.0_wp*self%endurance*self%d_y
          return
       end if
       loss(:n) = times*limit(:n)/left
@@ -358,8 +360,8 @@ contains
       if (n < elements) slope = slope + self%k_post
       slope = slope/(1.0_wp - slipping/self%k)
       growth(:n) = -loss(:n)*(1.0_wp - slope/self%k)
-      self%wear_rate = times*(1.0_wp - slope/self%k)
-      ahead = min(ahead, left/self%wear_rate)
+      now%wear_rate = times*(1.0_wp - slope/self%k)
+      ahead = min(ahead, left/now%wear_rate)
    end subroutine wear
 
    !> The widest limit of an element that has one, over k_i d_y.
@@ -469,38 +471,25 @@ contains
       end do
    end subroutine limit_row
 
-   !> Copy the memory of another spring of this rule and its parameters.
-   pure subroutine copy_memory(self, other, done)
-      class(steel_rule), intent(inout) :: self
-      class(rule_type), intent(in) :: other
-      logical, intent(out) :: done
+   pure subroutine copy(self, other)
+      class(steel_memory), intent(inout) :: self
+      class(rule_memory), intent(in) :: other
 
-      done = .false.
       select type (other)
-      type is (steel_rule)
-         self%s = other%s
-         self%rate = other%rate
-         self%d = other%d
-         self%highest = other%highest
-         self%lowest = other%lowest
-         self%worn = other%worn
-         self%wear_rate = other%wear_rate
-         done = .true.
+      type is (steel_memory)
+         self%now = other%now
       end select
-   end subroutine copy_memory
+   end subroutine copy
 
-   !> Save or restore all history variables.
    pure subroutine serialize(self, stream)
-      class(steel_rule), intent(inout) :: self
+      class(steel_memory), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
 
-      call stream%item(self%s)
-      call stream%item(self%rate)
-      call stream%item(self%d)
-      call stream%item(self%highest)
-      call stream%item(self%lowest)
-      call stream%item(self%worn)
-      call stream%item(self%wear_rate)
+      associate (now => self%now)
+         call stream%item(now%s)
+         call stream%item(now%rate)
+         call stream%items(now%d, now%highest, now%lowest, now%worn, now%wear_rate)
+      end associate
    end subroutine serialize
 
-end module rbs_hysteresis_steel
+end module rbs_hysteresis_rules_steel

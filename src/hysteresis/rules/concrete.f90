@@ -14,7 +14,7 @@
 !> With `friction` the path of opening has only a share of the force of the path of closing. Between the two
 !> the spring moves with its initial stiffness, as a block that rubs: what is closed and opened again takes
 !> up energy, whether the crack opens or not.
-module rbs_hysteresis_concrete
+module rbs_hysteresis_rules_concrete
    use rbs_base_error, only: message_list
    use rbs_base_keys, only: bound_type, key_type, above_zero, not_negative, share_below_one, &
                            force, deformation, stiffness
@@ -22,14 +22,14 @@ module rbs_hysteresis_concrete
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_base_constants, only: unbounded
-   use rbs_hysteresis_rule, only: rule_type, check_product, places_length, in_axial, in_layer
+   use rbs_hysteresis_rule, only: rule_type, rule_memory, check_product
    use rbs_hysteresis_segment, only: segment
    implicit none
    private
 
    public :: concrete_rule
 
-   !> Kinds of the present line
+   !> Kinds of branch
    integer, parameter :: envelope = 1, unloading = 2, contact = 3, opening = 4, closing = 5
    !> With friction: on the lower path while the spring opens, and between the paths
    integer, parameter :: releasing = 6, parting = 7, between = 8
@@ -37,7 +37,7 @@ module rbs_hysteresis_concrete
    !> Corners of the chords of the rising curve, as shares of the closing at the peak
    real(wp), parameter :: chord_ends(4) = [0.25_wp, 0.5_wp, 0.75_wp, 1.0_wp]
 
-   type(key_type), parameter :: parameters(*) = [ &
+   type(key_type), parameter, public :: concrete_keys(*) = [ &
       key_type('k', unit=stiffness, bound=above_zero, &
                meaning='initial stiffness'), &
       key_type('f_peak', unit=force, bound=above_zero, &
@@ -62,6 +62,26 @@ module rbs_hysteresis_concrete
                meaning='share of the early touch that opening does not follow: what was pressed '// &
                'together fits')]
 
+   type :: concrete_state
+      !> Kind of the present branch
+      integer :: kind = envelope
+      !> Largest closing so far and the force there without wear; plastic closing [m, N]
+      real(wp) :: c_u = 0.0_wp, f_u = 0.0_wp, c_p = 0.0_wp
+      !> Largest force so far, without wear [N]
+      real(wp) :: f_largest = 0.0_wp
+      !> How far before the plastic closing the faces touch, and widest opening so far, from there too [m]
+      real(wp) :: gap = 0.0_wp, widest = 0.0_wp
+      !> Where the present opening began [m]; remaining share of the strength
+      real(wp) :: c_opened = 0.0_wp, strength = 1.0_wp
+   end type concrete_state
+
+   type, extends(rule_memory) :: concrete_memory
+      type(concrete_state) :: now
+   contains
+      procedure :: copy
+      procedure :: serialize
+   end type concrete_memory
+
    type, extends(rule_type) :: concrete_rule
       !> Initial stiffness [N/m]
       real(wp) :: k = 0.0_wp
@@ -82,40 +102,15 @@ module rbs_hysteresis_concrete
       !> Share of the gap that opening does not follow; whether opening and closing have paths of their own
       real(wp) :: seating = 0.0_wp
       logical, private :: rubs = .false.
-      integer, private :: stage = envelope
-      !> Largest closing so far and the force there without wear; plastic closing [m, N]
-      real(wp), private :: c_u = 0.0_wp, f_u = 0.0_wp, c_p = 0.0_wp
-      !> Largest force so far, without wear [N]
-      real(wp), private :: f_largest = 0.0_wp
-      !> How far before the plastic closing the faces touch, and widest opening so far, from there too [m]
-      real(wp), private :: gap = 0.0_wp, widest = 0.0_wp
-      !> Where the present opening began [m]; remaining share of the strength
-      real(wp), private :: c_opened = 0.0_wp, strength = 1.0_wp
    contains
-      procedure, nopass :: keys
-      procedure, nopass :: places
       procedure :: set
       procedure :: initial_stiffness
       procedure :: check
       procedure :: start
       procedure :: next
-      procedure :: copy_memory
-      procedure :: serialize
    end type concrete_rule
 
 contains
-
-   pure function keys()
-      type(key_type), allocatable :: keys(:)
-
-      keys = parameters
-   end function keys
-
-   pure function places()
-      character(len=places_length) :: places
-
-      places = in_axial//' '//in_layer
-   end function places
 
    pure subroutine set(self, value)
       class(concrete_rule), intent(inout) :: self
@@ -157,116 +152,127 @@ contains
       call check_product(self%k, self%d_peak, name, 'k d_peak', messages)
    end subroutine check
 
-   subroutine start(self, line)
-      class(concrete_rule), intent(inout) :: self
-      type(segment), intent(out) :: line
+   subroutine start(self, memory, branch)
+      class(concrete_rule), intent(in) :: self
+      class(rule_memory), allocatable, intent(out) :: memory
+      type(segment), intent(out) :: branch
+      type(concrete_state) :: virgin
 
-      self%c_u = 0.0_wp
-      self%f_u = 0.0_wp
-      self%c_p = 0.0_wp
-      self%f_largest = 0.0_wp
-      self%gap = 0.0_wp
-      self%widest = 0.0_wp
-      self%strength = 1.0_wp
-      call follow_envelope(self, 0.0_wp, 0.0_wp, line)
+      call follow_envelope(self, virgin, 0.0_wp, 0.0_wp, branch)
+      allocate (memory, source=concrete_memory(now=virgin))
    end subroutine start
 
-   subroutine next(self, line, direction)
-      class(concrete_rule), intent(inout) :: self
-      type(segment), intent(inout) :: line
+   subroutine next(self, memory, branch, direction)
+      class(concrete_rule), intent(in) :: self
+      class(rule_memory), intent(inout) :: memory
+      type(segment), intent(inout) :: branch
+      integer, intent(in) :: direction
+
+      select type (memory)
+      type is (concrete_memory)
+         call find_branch(self, memory%now, branch, direction)
+      end select
+   end subroutine next
+
+   subroutine find_branch(self, now, branch, direction)
+      type(concrete_rule), intent(in) :: self
+      type(concrete_state), intent(inout) :: now
+      type(segment), intent(inout) :: branch
       integer, intent(in) :: direction
       real(wp) :: c, f
 
-      c = -line%end_toward(direction)
-      f = -line%force(-c)
+      c = -branch%end_toward(direction)
+      f = -branch%force(-c)
       if (direction < 0) then
-         select case (self%stage)
+         select case (now%kind)
          case (envelope)
-            call follow_envelope(self, c, f, line)
+            call follow_envelope(self, now, c, f, branch)
          case (unloading)
-            call follow_envelope(self, self%c_u, self%strength*self%f_u, line)
+            call follow_envelope(self, now, now%c_u, now%strength*now%f_u, branch)
          case (contact)
-            call unload(self, line)
+            call unload(self, now, branch)
          case (opening)
-            call widen(self, c)
-            if (self%seating > 0.0_wp .and. c > self%c_p - self%gap) then
-               call rub(self, c, 0.0_wp, line)
+            call widen(self, now, c)
+            if (self%seating > 0.0_wp .and. c > now%c_p - now%gap) then
+               call rub(self, now, c, 0.0_wp, branch)
             else
-               call close_up(self, c, line)
+               call close_up(self, now, c, branch)
             end if
          case (releasing, parting)
-            call rub(self, c, f, line)
+            call rub(self, now, c, f, branch)
          case (between)
-            call close_on(self, c, line)
+            call close_on(self, now, c, branch)
          case default
-            call touch(self, line)
+            call touch(self, now, branch)
          end select
       else
-         select case (self%stage)
+         select case (now%kind)
          case (envelope)
             if (c > 0.0_wp) then
-               call leave_envelope(self, c, f/self%strength)
+               call leave_envelope(self, now, c, f/now%strength)
                if (self%rubs) then
-                  call rub(self, c, f, line)
+                  call rub(self, now, c, f, branch)
                else
-                  call unload(self, line)
+                  call unload(self, now, branch)
                end if
             else
-               call open_up(self, c, line)
+               call open_up(now, c, branch)
             end if
          case (unloading)
             if (self%rubs) then
-               call rub(self, c, f, line)
+               call rub(self, now, c, f, branch)
             else
-               call touch(self, line)
+               call touch(self, now, branch)
             end if
          case (contact)
-            if (self%rubs .and. c > self%c_p - self%gap) then
-               call rub(self, c, f, line)
+            if (self%rubs .and. c > now%c_p - now%gap) then
+               call rub(self, now, c, f, branch)
             else
-               call open_up(self, c, line)
+               call open_up(now, c, branch)
             end if
          case (between)
-            call release(self, c, line)
+            call release(self, now, c, branch)
          case (releasing)
-            call release(self, c, line)
+            call release(self, now, c, branch)
          case default
-            call open_up(self, c, line)
+            call open_up(now, c, branch)
          end select
       end if
-   end subroutine next
+   end subroutine find_branch
 
    !> On the envelope from (c, f) to its next corner.
-   subroutine follow_envelope(self, c, f, line)
-      type(concrete_rule), intent(inout) :: self
+   subroutine follow_envelope(self, now, c, f, branch)
+      type(concrete_rule), intent(in) :: self
+      type(concrete_state), intent(inout) :: now
       !> Where the spring is: closing [m], force [N]
       real(wp), intent(in) :: c, f
-      type(segment), intent(out) :: line
+      type(segment), intent(out) :: branch
       real(wp) :: c_next, f_next, c_flat
       integer :: i
 
-      self%stage = envelope
+      now%kind = envelope
       do i = 1, size(chord_ends)
          c_next = chord_ends(i)*self%d_peak
          if (c_next > c*(1.0_wp + 1.0e-9_wp)) then
-            f_next = self%strength*curve(self, c_next)
-            line = chord(c, f, c_next, f_next)
-            call set_one_way(line)
+            f_next = now%strength*curve(self, c_next)
+            branch = chord(c, f, c_next, f_next)
+            call set_one_way(branch)
             return
          end if
       end do
       c_flat = self%d_peak + (self%f_peak - self%f_res)/self%k_soft
       if (c_flat > c*(1.0_wp + 1.0e-9_wp)) then
-         line = chord(c, f, c_flat, self%strength*self%f_res)
+         branch = chord(c, f, c_flat, now%strength*self%f_res)
       else
-         line = segment(d0=-c, f0=-f, lo=-unbounded, hi=-c)
+         branch = segment(d0=-c, f0=-f, lo=-unbounded, hi=-c)
       end if
-      call set_one_way(line)
+      call set_one_way(branch)
    end subroutine follow_envelope
 
    !> The motion has turned back on the envelope at (c, f), f without wear.
-   pure subroutine leave_envelope(self, c, f)
-      type(concrete_rule), intent(inout) :: self
+   pure subroutine leave_envelope(self, now, c, f)
+      type(concrete_rule), intent(in) :: self
+      type(concrete_state), intent(inout) :: now
       real(wp), intent(in) :: c, f
       real(wp) :: largest, share
 
@@ -274,15 +280,15 @@ contains
       ! unloading would store more than the envelope has given.
       largest = f
       if (c > self%d_peak) largest = self%f_peak
-      if (largest > self%f_largest) then
-         self%gap = self%gap*(self%f_largest/largest)
-         self%f_largest = largest
+      if (largest > now%f_largest) then
+         now%gap = now%gap*(now%f_largest/largest)
+         now%f_largest = largest
       end if
-      self%c_u = c
-      self%f_u = f
+      now%c_u = c
+      now%f_u = f
       share = karsan_jirsa(c/self%d_peak) - karsan_jirsa(chord_ends(1))
       ! Unloading is never stiffer than `k`.
-      self%c_p = max(min(self%plastic*share*self%d_peak, c - f/self%k), 0.0_wp)
+      now%c_p = max(min(self%plastic*share*self%d_peak, c - f/self%k), 0.0_wp)
    end subroutine leave_envelope
 
    !> Plastic closing after unloading from x, both over the closing at the peak (Karsan and Jirsa 1969); a
@@ -295,99 +301,106 @@ contains
    end function karsan_jirsa
 
    !> On the line of unloading between full closing and the envelope.
-   subroutine unload(self, line)
-      type(concrete_rule), intent(inout) :: self
-      type(segment), intent(out) :: line
+   subroutine unload(self, now, branch)
+      type(concrete_rule), intent(in) :: self
+      type(concrete_state), intent(inout) :: now
+      type(segment), intent(out) :: branch
       real(wp) :: c_closed, f_closed
 
-      self%stage = unloading
-      call full_closing(self, c_closed, f_closed)
-      line = chord(c_closed, f_closed, self%c_u, self%strength*self%f_u)
+      now%kind = unloading
+      call full_closing(self, now, c_closed, f_closed)
+      branch = chord(c_closed, f_closed, now%c_u, now%strength*now%f_u)
       if (self%rubs) then
-         call set_one_way(line)
+         call set_one_way(branch)
       else
-         line%hi_closed = .not. self%gap > 0.0_wp
+         branch%hi_closed = .not. now%gap > 0.0_wp
       end if
    end subroutine unload
 
    !> On the line between the first touch of the faces and full closing; without length it is skipped.
-   subroutine touch(self, line)
-      type(concrete_rule), intent(inout) :: self
-      type(segment), intent(inout) :: line
+   subroutine touch(self, now, branch)
+      type(concrete_rule), intent(in) :: self
+      type(concrete_state), intent(inout) :: now
+      type(segment), intent(inout) :: branch
       real(wp) :: c_closed, f_closed
 
-      call full_closing(self, c_closed, f_closed)
-      if (self%gap > 0.0_wp) then
-         self%stage = contact
+      call full_closing(self, now, c_closed, f_closed)
+      if (now%gap > 0.0_wp) then
+         now%kind = contact
          ! The lines before and after it lead both ways, so both corners belong to this line.
-         line = chord(self%c_p - self%gap, 0.0_wp, c_closed, f_closed)
-         line%lo_closed = .true.
-         line%hi_closed = .true.
-         if (self%rubs) call set_one_way(line)
-      else if (self%stage == closing) then
-         call unload(self, line)
+         branch = chord(now%c_p - now%gap, 0.0_wp, c_closed, f_closed)
+         branch%lo_closed = .true.
+         branch%hi_closed = .true.
+         if (self%rubs) call set_one_way(branch)
+      else if (now%kind == closing) then
+         call unload(self, now, branch)
       else
-         call open_up(self, self%c_p, line)
+         call open_up(now, now%c_p, branch)
       end if
    end subroutine touch
 
    !> Between the paths through (c, f): as stiff as the virgin spring, up to the path of closing and down to
    !> that of opening.
-   subroutine rub(self, c, f, line)
-      type(concrete_rule), intent(inout) :: self
+   subroutine rub(self, now, c, f, branch)
+      type(concrete_rule), intent(in) :: self
+      type(concrete_state), intent(inout) :: now
       real(wp), intent(in) :: c, f
-      type(segment), intent(out) :: line
+      type(segment), intent(out) :: branch
       real(wp) :: upper, lower
 
       upper = c
       lower = c
-      if (self%stage == releasing .or. self%stage == parting .or. self%stage == opening) then
-         upper = min(max(meeting(self, 1.0_wp, self%c_p - self%gap, c, f), c), self%c_u)
+      if (now%kind == releasing .or. now%kind == parting .or. now%kind == opening) then
+         upper = min(max(meeting(self, now, 1.0_wp, now%c_p - now%gap, c, f), c), now%c_u)
       else
-         lower = min(meeting(self, 1.0_wp - share_of_friction(self), parting_end(self), c, f), c)
+         lower = min(meeting(self, now, 1.0_wp - share_of_friction(self, now), parting_end(self, now), c, f), c)
       end if
-      self%stage = between
-      line = segment(d0=-c, f0=-f, k=self%k, lo=-upper, hi=-lower)
+      now%kind = between
+      branch = segment(d0=-c, f0=-f, k=self%k, lo=-upper, hi=-lower)
    end subroutine rub
 
    !> The share by which the path of opening is lower: none where the virgin spring is elastic.
-   elemental real(wp) function share_of_friction(self)
+   elemental real(wp) function share_of_friction(self, now)
       type(concrete_rule), intent(in) :: self
+      type(concrete_state), intent(in) :: now
 
-      share_of_friction = self%friction*crushed(self)
+      share_of_friction = self%friction*crushed(self, now)
    end function share_of_friction
 
    !> From 0, where the virgin spring is elastic, to 1 at the closing at the peak.
-   elemental real(wp) function crushed(self)
+   elemental real(wp) function crushed(self, now)
       type(concrete_rule), intent(in) :: self
+      type(concrete_state), intent(in) :: now
 
-      crushed = (self%c_u/self%d_peak - chord_ends(1))/(1.0_wp - chord_ends(1))
+      crushed = (now%c_u/self%d_peak - chord_ends(1))/(1.0_wp - chord_ends(1))
       crushed = min(max(crushed, 0.0_wp), 1.0_wp)
    end function crushed
 
    !> The closing at which the path of opening has no force any more [m].
-   elemental real(wp) function parting_end(self)
+   elemental real(wp) function parting_end(self, now)
       type(concrete_rule), intent(in) :: self
+      type(concrete_state), intent(in) :: now
 
-      parting_end = self%c_p - self%gap
-      if (self%seating > 0.0_wp) parting_end = self%c_p - (1.0_wp - self%seating*crushed(self))*self%gap
+      parting_end = now%c_p - now%gap
+      if (self%seating > 0.0_wp) parting_end = now%c_p - (1.0_wp - self%seating*crushed(self, now))*now%gap
    end function parting_end
 
    !> Where the line of the initial stiffness through (c, f) meets a path: a share of that of closing above
    !> full closing, and a line from there to no force at the closing `c_none` [m].
-   real(wp) function meeting(self, share, c_none, c, f)
+   real(wp) function meeting(self, now, share, c_none, c, f)
       type(concrete_rule), intent(in) :: self
+      type(concrete_state), intent(in) :: now
       real(wp), intent(in) :: share, c_none, c, f
       real(wp) :: c_closed, f_closed, c_0, f_0, slope
 
-      call full_closing(self, c_closed, f_closed)
+      call full_closing(self, now, c_closed, f_closed)
       if (f + self%k*(c_closed - c) < share*f_closed) then
          c_0 = c_closed
          f_0 = share*f_closed
          meeting = c_0
          ! The path ends where it closes.
-         if (.not. self%c_u > c_0) return
-         slope = (share*self%strength*self%f_u - f_0)/(self%c_u - c_0)
+         if (.not. now%c_u > c_0) return
+         slope = (share*now%strength*now%f_u - f_0)/(now%c_u - c_0)
       else
          c_0 = c_none
          f_0 = 0.0_wp
@@ -398,112 +411,117 @@ contains
       ! Both lines from c_0 on.
       meeting = c_0
       if (self%k*(1.0_wp - 1.0e-9_wp) > slope) meeting = c_0 + (f_0 - f - self%k*(c_0 - c))/(self%k - slope)
-      meeting = max(meeting, self%c_p - self%gap)
+      meeting = max(meeting, now%c_p - now%gap)
    end function meeting
 
    !> On the path of closing from the closing c on.
-   subroutine close_on(self, c, line)
-      type(concrete_rule), intent(inout) :: self
+   subroutine close_on(self, now, c, branch)
+      type(concrete_rule), intent(in) :: self
+      type(concrete_state), intent(inout) :: now
       real(wp), intent(in) :: c
-      type(segment), intent(out) :: line
+      type(segment), intent(out) :: branch
       real(wp) :: c_closed, f_closed
 
-      call full_closing(self, c_closed, f_closed)
-      if (c >= self%c_u) then
-         call follow_envelope(self, self%c_u, self%strength*self%f_u, line)
+      call full_closing(self, now, c_closed, f_closed)
+      if (c >= now%c_u) then
+         call follow_envelope(self, now, now%c_u, now%strength*now%f_u, branch)
       else if (c >= c_closed) then
-         call unload(self, line)
-         line%hi = -c
+         call unload(self, now, branch)
+         branch%hi = -c
       else
-         self%stage = contact
-         line = chord(self%c_p - self%gap, 0.0_wp, c_closed, f_closed)
-         line%hi = -c
-         call set_one_way(line)
+         now%kind = contact
+         branch = chord(now%c_p - now%gap, 0.0_wp, c_closed, f_closed)
+         branch%hi = -c
+         call set_one_way(branch)
       end if
    end subroutine close_on
 
    !> On the path of opening from the closing c on.
-   subroutine release(self, c, line)
-      type(concrete_rule), intent(inout) :: self
+   subroutine release(self, now, c, branch)
+      type(concrete_rule), intent(in) :: self
+      type(concrete_state), intent(inout) :: now
       real(wp), intent(in) :: c
-      type(segment), intent(out) :: line
+      type(segment), intent(out) :: branch
       real(wp) :: c_closed, f_closed, left, c_none
 
-      call full_closing(self, c_closed, f_closed)
-      left = 1.0_wp - share_of_friction(self)
-      c_none = parting_end(self)
+      call full_closing(self, now, c_closed, f_closed)
+      left = 1.0_wp - share_of_friction(self, now)
+      c_none = parting_end(self, now)
       if (c > c_closed) then
-         self%stage = releasing
-         line = chord(c_closed, left*f_closed, self%c_u, left*self%strength*self%f_u)
+         now%kind = releasing
+         branch = chord(c_closed, left*f_closed, now%c_u, left*now%strength*now%f_u)
       else if (c > c_none) then
-         self%stage = parting
-         line = chord(c_none, 0.0_wp, c_closed, left*f_closed)
+         now%kind = parting
+         branch = chord(c_none, 0.0_wp, c_closed, left*f_closed)
       else
-         call open_up(self, c, line)
+         call open_up(now, c, branch)
          return
       end if
-      line%lo = -c
-      line%lo_closed = .true.
-      line%one_way = 1
+      branch%lo = -c
+      branch%lo_closed = .true.
+      branch%one_way = 1
    end subroutine release
 
    !> Where a closing crack is fully closed.
-   pure subroutine full_closing(self, c, f)
+   pure subroutine full_closing(self, now, c, f)
       type(concrete_rule), intent(in) :: self
+      type(concrete_state), intent(in) :: now
       !> Closing [m] and force [N]
       real(wp), intent(out) :: c, f
 
-      c = self%c_p
+      c = now%c_p
       f = 0.0_wp
-      if (.not. self%gap > 0.0_wp) return
-      c = self%c_p + self%contact*(self%c_u - self%c_p)
-      f = self%contact*self%strength*self%f_u
+      if (.not. now%gap > 0.0_wp) return
+      c = now%c_p + self%contact*(now%c_u - now%c_p)
+      f = self%contact*now%strength*now%f_u
    end subroutine full_closing
 
    !> The line of zero force while the crack opens, from the closing c.
-   subroutine open_up(self, c, line)
-      type(concrete_rule), intent(inout) :: self
+   subroutine open_up(now, c, branch)
+      type(concrete_state), intent(inout) :: now
       real(wp), intent(in) :: c
-      type(segment), intent(out) :: line
+      type(segment), intent(out) :: branch
 
-      self%stage = opening
-      self%c_opened = c
-      line = segment(d0=-c, lo=-c, hi=unbounded, lo_closed=.true., one_way=1)
+      now%kind = opening
+      now%c_opened = c
+      branch = segment(d0=-c, lo=-c, hi=unbounded, lo_closed=.true., one_way=1)
    end subroutine open_up
 
    !> The line of zero force while the crack closes, from the closing c until the faces touch.
-   subroutine close_up(self, c, line)
-      type(concrete_rule), intent(inout) :: self
+   subroutine close_up(self, now, c, branch)
+      type(concrete_rule), intent(in) :: self
+      type(concrete_state), intent(inout) :: now
       real(wp), intent(in) :: c
-      type(segment), intent(out) :: line
+      type(segment), intent(out) :: branch
 
-      self%stage = closing
-      line = chord(c, 0.0_wp, self%c_p - self%gap, 0.0_wp)
+      now%kind = closing
+      branch = chord(c, 0.0_wp, now%c_p - now%gap, 0.0_wp)
       ! Openings are added up only if they have an effect.
-      if (self%wear > 0.0_wp) call set_one_way(line)
+      if (self%wear > 0.0_wp) call set_one_way(branch)
    end subroutine close_up
 
    !> The crack has opened to a closing c: the wider it was, the earlier its faces touch, and the
    !> strength falls with the way. There is no force, so neither is felt at once.
-   pure subroutine widen(self, c)
-      type(concrete_rule), intent(inout) :: self
+   pure subroutine widen(self, now, c)
+      type(concrete_rule), intent(in) :: self
+      type(concrete_state), intent(inout) :: now
       real(wp), intent(in) :: c
       real(wp) :: before, width, inside, openings
 
-      before = self%c_p - self%c_opened
-      width = self%c_p - c
-      self%gap = max(self%gap, self%misfit*width)
-      if (self%wear > 0.0_wp .and. self%c_u > 0.0_wp) then
+      before = now%c_p - now%c_opened
+      width = now%c_p - c
+      now%gap = max(now%gap, self%misfit*width)
+      if (self%wear > 0.0_wp .and. now%c_u > 0.0_wp) then
          ! The way over the width so far, integrated as the width grows.
-         inside = min(width, self%widest) - min(before, self%widest)
-         openings = inside/(self%widest + self%d_peak)
-         if (width > self%widest) then
-            openings = openings + log((width + self%d_peak)/(max(self%widest, before) + self%d_peak))
+         inside = min(width, now%widest) - min(before, now%widest)
+         openings = inside/(now%widest + self%d_peak)
+         if (width > now%widest) then
+            openings = openings + log((width + self%d_peak)/(max(now%widest, before) + self%d_peak))
          end if
-         self%strength = self%strength* &
-                         (1.0_wp - self%wear)**(openings*min(1.0_wp, 0.5_wp*self%c_u/self%d_peak))
+         now%strength = now%strength* &
+                         (1.0_wp - self%wear)**(openings*min(1.0_wp, 0.5_wp*now%c_u/self%d_peak))
       end if
-      self%widest = max(self%widest, width)
+      now%widest = max(now%widest, width)
    end subroutine widen
 
    !> Rising curve of Popovics (1973) [N].
@@ -519,57 +537,39 @@ contains
    end function curve
 
    !> The line through two points (closing, force), of which the second is further closed; both ends open.
-   pure type(segment) function chord(c_1, f_1, c_2, f_2) result(line)
+   pure type(segment) function chord(c_1, f_1, c_2, f_2) result(branch)
       real(wp), intent(in) :: c_1, f_1, c_2, f_2
 
-      line = segment(d0=-c_1, f0=-f_1, lo=-c_2, hi=-c_1)
-      if (c_2 > c_1) line%k = (f_2 - f_1)/(c_2 - c_1)
+      branch = segment(d0=-c_1, f0=-f_1, lo=-c_2, hi=-c_1)
+      if (c_2 > c_1) branch%k = (f_2 - f_1)/(c_2 - c_1)
    end function chord
 
    !> Make a line of the envelope one-way: it is left when the motion turns back.
-   pure subroutine set_one_way(line)
-      type(segment), intent(inout) :: line
+   pure subroutine set_one_way(branch)
+      type(segment), intent(inout) :: branch
 
-      line%hi_closed = .true.
-      line%one_way = -1
+      branch%hi_closed = .true.
+      branch%one_way = -1
    end subroutine set_one_way
 
-   !> Copy the memory of another spring of this rule and its parameters.
-   pure subroutine copy_memory(self, other, done)
-      class(concrete_rule), intent(inout) :: self
-      class(rule_type), intent(in) :: other
-      logical, intent(out) :: done
+   pure subroutine copy(self, other)
+      class(concrete_memory), intent(inout) :: self
+      class(rule_memory), intent(in) :: other
 
-      done = .false.
       select type (other)
-      type is (concrete_rule)
-         self%stage = other%stage
-         self%c_u = other%c_u
-         self%f_u = other%f_u
-         self%c_p = other%c_p
-         self%f_largest = other%f_largest
-         self%gap = other%gap
-         self%widest = other%widest
-         self%c_opened = other%c_opened
-         self%strength = other%strength
-         done = .true.
+      type is (concrete_memory)
+         self%now = other%now
       end select
-   end subroutine copy_memory
+   end subroutine copy
 
-   !> Save or restore all history variables.
    pure subroutine serialize(self, stream)
-      class(concrete_rule), intent(inout) :: self
+      class(concrete_memory), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
 
-      call stream%item(self%stage)
-      call stream%item(self%c_u)
-      call stream%item(self%f_u)
-      call stream%item(self%c_p)
-      call stream%item(self%f_largest)
-      call stream%item(self%gap)
-      call stream%item(self%widest)
-      call stream%item(self%c_opened)
-      call stream%item(self%strength)
+      associate (now => self%now)
+         call stream%item(now%kind)
+         call stream%items(now%c_u, now%f_u, now%c_p, now%f_largest, now%gap, now%widest, now%c_opened, now%strength)
+      end associate
    end subroutine serialize
 
-end module rbs_hysteresis_concrete
+end module rbs_hysteresis_rules_concrete

@@ -1,18 +1,18 @@
 !> Peak-oriented spring with a capped backbone and cyclic deterioration: Ibarra, Medina, Krawinkler 2005
 !> (Earthquake Eng. Struct. Dyn. 34, 1489-1511), with a cracking point and an unloading stiffness that may
-!> decrease with ductility (Takeda 1970). Its mechanics are those of `rbs_hysteresis_capped`.
-module rbs_hysteresis_peak_oriented
+!> decrease with ductility (Takeda 1970). Its mechanics are those of `rbs_hysteresis_rules_capped`.
+module rbs_hysteresis_rules_peak_oriented
    use rbs_base_check, only: is_given
    use rbs_base_error, only: message_list
    use rbs_base_keys, only: key_type, bound_type, not_negative, share_below_one
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_hysteresis_backbone_parameters, only: backbone_parameters, backbone_keys, other_side_keys, &
+   use rbs_hysteresis_rules_backbone_parameters, only: backbone_parameters, backbone_keys, other_side_keys, &
                                                   from_values
-   use rbs_hysteresis_capped, only: capped_part
-   use rbs_hysteresis_deterioration, only: deterioration_type
-   use rbs_hysteresis_rule, only: rule_type, places_length, in_shear, in_flexure
+   use rbs_hysteresis_rules_capped, only: capped_part, capped_memory
+   use rbs_hysteresis_rules_deterioration, only: deterioration_type
+   use rbs_hysteresis_rule, only: rule_type, rule_memory
    use rbs_hysteresis_segment, only: segment
    implicit none
    private
@@ -51,32 +51,21 @@ module rbs_hysteresis_peak_oriented
    type, extends(rule_type) :: peak_oriented_rule
       type(capped_part) :: part
    contains
-      procedure, nopass :: keys
-      procedure, nopass :: places
       procedure :: set
       procedure :: initial_stiffness
       procedure :: check
       procedure :: start
       procedure :: next
-      procedure :: copy_memory
-      procedure :: serialize
-      procedure :: hears
-      procedure :: hear
    end type peak_oriented_rule
 
+   type, extends(rule_memory) :: peak_oriented_memory
+      type(capped_memory) :: part
+   contains
+      procedure :: copy
+      procedure :: serialize
+   end type peak_oriented_memory
+
 contains
-
-   pure function keys()
-      type(key_type), allocatable :: keys(:)
-
-      keys = capped_keys
-   end function keys
-
-   pure function places()
-      character(len=places_length) :: places
-
-      places = in_shear//' '//in_flexure
-   end function places
 
    pure subroutine set(self, value)
       class(peak_oriented_rule), intent(inout) :: self
@@ -93,6 +82,8 @@ contains
             part%hinge_work = value(sides + 7)*energy
             part%s_min = value(sides + 8)
          end associate
+         part%k_0 = max(part%given(1)%stiffness(), part%given(-1)%stiffness())
+         self%uses_flexural_work = part%hinge_work > 0.0_wp
       end associate
    end subroutine set
 
@@ -106,7 +97,7 @@ contains
    pure real(wp) function initial_stiffness(self)
       class(peak_oriented_rule), intent(in) :: self
 
-      initial_stiffness = self%part%initial_stiffness()
+      initial_stiffness = self%part%k_0
    end function initial_stiffness
 
    subroutine check(self, name, messages)
@@ -151,55 +142,46 @@ contains
       fastest = side%f_cap**2*(1.0_wp + side%d_cap/side%d_pc)
    end function fastest
 
-   subroutine start(self, line)
-      class(peak_oriented_rule), intent(inout) :: self
-      type(segment), intent(out) :: line
+   subroutine start(self, memory, branch)
+      class(peak_oriented_rule), intent(in) :: self
+      class(rule_memory), allocatable, intent(out) :: memory
+      type(segment), intent(out) :: branch
 
-      call self%part%start(line)
+      allocate (peak_oriented_memory :: memory)
+      select type (memory)
+      type is (peak_oriented_memory)
+         call self%part%start(memory%part, branch)
+      end select
    end subroutine start
 
-   subroutine next(self, line, direction)
-      class(peak_oriented_rule), intent(inout) :: self
-      type(segment), intent(inout) :: line
+   subroutine next(self, memory, branch, direction)
+      class(peak_oriented_rule), intent(in) :: self
+      class(rule_memory), intent(inout) :: memory
+      type(segment), intent(inout) :: branch
       integer, intent(in) :: direction
 
-      call self%part%next(line, direction)
+      select type (memory)
+      type is (peak_oriented_memory)
+         memory%part%now%flexural_work = memory%flexural_work
+         call self%part%next(memory%part, branch, direction)
+      end select
    end subroutine next
 
-   pure subroutine copy_memory(self, other, done)
-      class(peak_oriented_rule), intent(inout) :: self
-      class(rule_type), intent(in) :: other
-      logical, intent(out) :: done
+   pure subroutine copy(self, other)
+      class(peak_oriented_memory), intent(inout) :: self
+      class(rule_memory), intent(in) :: other
 
-      done = .false.
       select type (other)
-      class is (peak_oriented_rule)
-         call self%part%copy_memory(other%part)
-         done = .true.
+      type is (peak_oriented_memory)
+         call self%part%copy(other%part)
       end select
-   end subroutine copy_memory
+   end subroutine copy
 
-   !> Whether the strength falls with the work of the flexural spring.
-   pure logical function hears(self)
-      class(peak_oriented_rule), intent(in) :: self
-
-      hears = self%part%hinge_work > 0.0_wp
-   end function hears
-
-   !> Take the work of the flexural spring so far [J].
-   pure subroutine hear(self, work)
-      class(peak_oriented_rule), intent(inout) :: self
-      real(wp), intent(in) :: work
-
-      self%part%heard = work
-   end subroutine hear
-
-   !> Save or restore all history variables.
    pure subroutine serialize(self, stream)
-      class(peak_oriented_rule), intent(inout) :: self
+      class(peak_oriented_memory), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
 
       call self%part%serialize(stream)
    end subroutine serialize
 
-end module rbs_hysteresis_peak_oriented
+end module rbs_hysteresis_rules_peak_oriented

@@ -1,5 +1,5 @@
 !> The memory of a reloading rule: the peaks of inner loops that are still open, oldest first.
-module rbs_hysteresis_inner_peaks
+module rbs_hysteresis_rules_inner_peaks
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
@@ -184,4 +184,4 @@ contains
       end do
    end subroutine serialize_peaks
 
-end module rbs_hysteresis_inner_peaks
+end module rbs_hysteresis_rules_inner_peaks

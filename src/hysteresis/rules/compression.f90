@@ -1,18 +1,17 @@
 !> A contact: elastic while the joint is closed, without force while it is open. With a gap it closes only
 !> after the joint has closed by that much.
-module rbs_hysteresis_compression
+module rbs_hysteresis_rules_compression
    use rbs_base_keys, only: key_type, above_zero, not_negative, deformation, stiffness
    use rbs_base_kinds, only: wp
-   use rbs_base_stream, only: stream_type
    use rbs_base_constants, only: unbounded
-   use rbs_hysteresis_rule, only: rule_type, places_length, in_axial, in_layer
+   use rbs_hysteresis_rule, only: rule_type, rule_memory
    use rbs_hysteresis_segment, only: segment
    implicit none
    private
 
    public :: compression_rule
 
-   type(key_type), parameter :: parameters(*) = [ &
+   type(key_type), parameter, public :: compression_keys(*) = [ &
       key_type('k', unit=stiffness, bound=above_zero, &
                meaning='stiffness in compression; there is none in tension'), &
       key_type('gap', unit=deformation, bound=not_negative, default=0.0_wp, &
@@ -24,28 +23,13 @@ module rbs_hysteresis_compression
       !> Closing at which it begins to carry [m]
       real(wp) :: gap = 0.0_wp
    contains
-      procedure, nopass :: keys
-      procedure, nopass :: places
       procedure :: set
       procedure :: initial_stiffness
       procedure :: start
       procedure :: next
-      procedure :: serialize
    end type compression_rule
 
 contains
-
-   pure function keys()
-      type(key_type), allocatable :: keys(:)
-
-      keys = parameters
-   end function keys
-
-   pure function places()
-      character(len=places_length) :: places
-
-      places = in_axial//' '//in_layer
-   end function places
 
    pure subroutine set(self, value)
       class(compression_rule), intent(inout) :: self
@@ -62,35 +46,31 @@ contains
    end function initial_stiffness
 
    !> The joint is closed at zero opening, or with a gap at minus that; openings are positive.
-   subroutine start(self, line)
-      class(compression_rule), intent(inout) :: self
-      type(segment), intent(out) :: line
+   subroutine start(self, memory, branch)
+      class(compression_rule), intent(in) :: self
+      class(rule_memory), allocatable, intent(out) :: memory
+      type(segment), intent(out) :: branch
 
+      allocate (memory)
       if (self%gap > 0.0_wp) then
-         line = segment(k=0.0_wp, lo=-self%gap, hi=unbounded)
+         branch = segment(k=0.0_wp, lo=-self%gap, hi=unbounded)
       else
-         line = segment(k=self%k, hi=0.0_wp, hi_closed=.true.)
+         branch = segment(k=self%k, hi=0.0_wp, hi_closed=.true.)
       end if
    end subroutine start
 
-   subroutine next(self, line, direction)
-      class(compression_rule), intent(inout) :: self
-      type(segment), intent(inout) :: line
+   subroutine next(self, memory, branch, direction)
+      class(compression_rule), intent(in) :: self
+      class(rule_memory), intent(inout) :: memory
+      type(segment), intent(inout) :: branch
       integer, intent(in) :: direction
 
+      if (.false.) memory%flexural_work = 0.0_wp                   ! there is no memory: the branch says all
       if (direction > 0) then
-         line = segment(k=0.0_wp, lo=-self%gap, hi=unbounded)
+         branch = segment(k=0.0_wp, lo=-self%gap, hi=unbounded)
       else
-         line = segment(d0=-self%gap, k=self%k, lo=-unbounded, hi=-self%gap, hi_closed=.true.)
+         branch = segment(d0=-self%gap, k=self%k, lo=-unbounded, hi=-self%gap, hi_closed=.true.)
       end if
    end subroutine next
 
-   !> There is no memory: the line says all.
-   pure subroutine serialize(self, stream)
-      class(compression_rule), intent(inout) :: self
-      type(stream_type), intent(inout) :: stream
-
-      stream%broken = stream%broken .or. .not. self%k > 0.0_wp
-   end subroutine serialize
-
-end module rbs_hysteresis_compression
+end module rbs_hysteresis_rules_compression

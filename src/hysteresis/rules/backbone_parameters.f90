@@ -9,7 +9,7 @@
 !>              0   d_c  d_y  d_cap          d_u       deformation
 !>
 !> All values are positive on both sides.
-module rbs_hysteresis_backbone_parameters
+module rbs_hysteresis_rules_backbone_parameters
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unset
    use rbs_base_error, only: message_list
@@ -159,4 +159,4 @@ contains
       if (self%d_c > 0.0_wp) stiffness = self%f_c/self%d_c
    end function stiffness
 
-end module rbs_hysteresis_backbone_parameters
+end module rbs_hysteresis_rules_backbone_parameters

@@ -1,9 +1,9 @@
 !> The memory of a spring that reloads: the turns of one side whose inner loops are still open, oldest first.
-module rbs_hysteresis_open_turns
+module rbs_hysteresis_rules_open_turns
    use rbs_base_constants, only: unbounded
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
-   use rbs_hysteresis_inner_peaks, only: point
+   use rbs_hysteresis_rules_inner_peaks, only: point
    implicit none
    private
 
@@ -201,4 +201,4 @@ contains
       end do
    end subroutine serialize_turns
 
-end module rbs_hysteresis_open_turns
+end module rbs_hysteresis_rules_open_turns

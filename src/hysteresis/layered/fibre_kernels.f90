@@ -1,6 +1,6 @@
 !> The two loops over all layers of a joint that every event needs, on plain arrays. Sums and minima may be
 !> taken in any order (`omp simd`), so that they are taken several layers at a time.
-module rbs_hysteresis_layer_kernels
+module rbs_hysteresis_layered_fibre_kernels
    use rbs_base_kinds, only: wp
    implicit none
    private
@@ -111,4 +111,4 @@ contains
       end do
    end subroutine look_back
 
-end module rbs_hysteresis_layer_kernels
+end module rbs_hysteresis_layered_fibre_kernels

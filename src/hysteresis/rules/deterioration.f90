@@ -8,7 +8,7 @@
 !> dissipated, for the unloading stiffness that of both sides. In the source each excursion takes the share
 !> (E/(E_t - sum E))^c of what is left. For c = 1 and small excursions in one direction both are the same; but
 !> there an excursion and its two halves differ, so that a reversal of any size changes the response.
-module rbs_hysteresis_deterioration
+module rbs_hysteresis_rules_deterioration
    use rbs_base_kinds, only: wp
    implicit none
    private
@@ -70,4 +70,4 @@ contains
       acts = max(self%strength, self%softening, self%unloading, self%target) > 0.0_wp
    end function acts
 
-end module rbs_hysteresis_deterioration
+end module rbs_hysteresis_rules_deterioration

@@ -4,12 +4,12 @@
 !> Struct. Dyn. 34, section 3): cracking point, yield point and slope to the cap are multiplied by
 !> `strength`, the force of the softening line at zero deformation by `softening`. Cap and start of the
 !> residual are the points where the lines meet; beyond `d_u` the force drops to zero.
-module rbs_hysteresis_backbone
+module rbs_hysteresis_rules_backbone
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_constants, only: unbounded
    use rbs_hysteresis_segment, only: segment
-   use rbs_hysteresis_backbone_parameters, only: backbone_parameters
+   use rbs_hysteresis_rules_backbone_parameters, only: backbone_parameters
    use rbs_base_check, only: is_given
    implicit none
    private
@@ -17,8 +17,6 @@ module rbs_hysteresis_backbone
    public :: backbone_side
 
    type :: backbone_side
-      !> The parameters of the user
-      type(backbone_parameters) :: given
       !> Remaining shares of the strength, and of the force of the softening line
       real(wp) :: strength = 1.0_wp, softening = 1.0_wp
       !> Present corners from 0, the origin: deformations [m or rad] and forces [N or N m]
@@ -39,13 +37,14 @@ module rbs_hysteresis_backbone
 contains
 
    !> Find the corners for the present factors.
-   pure subroutine draw(self)
+   pure subroutine draw(self, given)
       class(backbone_side), intent(inout) :: self
+      type(backbone_parameters), intent(in) :: given
       real(wp) :: hardening, softening, f_zero, d_res, d_x, d, f, slope
 
       self%last = 0
       self%d_y = 0.0_wp
-      associate (b => self%given)
+      associate (b => given)
          ! Residual strength does not deteriorate.
          self%strength = max(self%strength, b%f_res/b%f_y)
          if (.not. self%strength > 0.0_wp) return
@@ -82,7 +81,7 @@ contains
          if (self%strength >= 1.0_wp .and. self%softening >= 1.0_wp) f = b%f_cap
          if (d_x > self%d(self%last)) call self%add_corner(d_x, f)
          if (d_res > d_x) call self%add_corner(d_res, b%f_res)
-         if (is_given(b%d_u)) call self%end_at_rupture()
+         if (is_given(b%d_u)) call self%end_at_rupture(given)
       end associate
 
    contains
@@ -91,16 +90,17 @@ contains
       pure real(wp) function limit(at)
          real(wp), intent(in) :: at
 
-         limit = max(f_zero + softening*at, self%given%f_res)
+         limit = max(f_zero + softening*at, given%f_res)
       end function limit
    end subroutine draw
 
    !> Cut the lines at d_u; from there the force drops to zero with the slope of the line from zero to yield.
-   pure subroutine end_at_rupture(self)
+   pure subroutine end_at_rupture(self, given)
       class(backbone_side), intent(inout) :: self
+      type(backbone_parameters), intent(in) :: given
       real(wp) :: f
 
-      associate (d_u => self%given%d_u)
+      associate (d_u => given%d_u)
          f = self%force(d_u)
          if (.not. f > 0.0_wp) return
          do while (self%last > 0)
@@ -108,7 +108,7 @@ contains
             self%last = self%last - 1
          end do
          call self%add_corner(d_u, f)
-         call self%add_corner(d_u + f*(self%given%d_y/self%given%f_y), 0.0_wp)
+         call self%add_corner(d_u + f*(given%d_y/given%f_y), 0.0_wp)
       end associate
    end subroutine end_at_rupture
 
@@ -196,12 +196,11 @@ contains
       class(backbone_side), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
 
-      call stream%item(self%strength)
-      call stream%item(self%softening)
+      call stream%items(self%strength, self%softening)
       call stream%item_count(self%last, ubound(self%d, 1))
       call stream%item(self%d)
       call stream%item(self%f)
       call stream%item(self%d_y)
    end subroutine serialize
 
-end module rbs_hysteresis_backbone
+end module rbs_hysteresis_rules_backbone

@@ -1,20 +1,20 @@
 !> What becomes of a joint whose layers can no longer carry its axial load: the load that they can carry at
 !> that rotation, and where the joint comes to rest if it falls, if it does.
 !>
-!> At a fixed rotation the joint closes (or opens, where tension is lost) from end to end of the lines of its
+!> At a fixed rotation the joint closes (or opens, where tension is lost) from end to end of the branches of its
 !> layers. It rests at the first point at which the layers carry the load again and their stiffness ahead is
 !> positive; what the load does on the way beyond the work of the layers is set free.
-module rbs_hysteresis_layer_fall
+module rbs_hysteresis_layered_fibre_fall
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_layers, only: layer_bank
+   use rbs_hysteresis_layered_fibre_path, only: most_branches
+   use rbs_hysteresis_layered_fibre_section, only: fibre_section
    implicit none
    private
 
    public :: layer_fall, find_fall
 
-   !> A step beyond this is none, and lines without length that one layer may pass at one point.
+   !> A step beyond this is none.
    real(wp), parameter :: no_step = 1.0e100_wp
-   integer, parameter :: most_lines = 8
    !> A load that is missing by less than this share is carried.
    real(wp), parameter :: carried = 1.0e-12_wp
 
@@ -32,19 +32,19 @@ module rbs_hysteresis_layer_fall
 contains
 
    !> Let a copy of a joint fall from where it stands.
-   subroutine find_fall(bank, fall)
-      type(layer_bank), intent(in) :: bank
+   subroutine find_fall(section, fall)
+      type(fibre_section), intent(in) :: section
       type(layer_fall), intent(out) :: fall
-      type(layer_bank) :: copy
+      type(fibre_section) :: copy
       real(wp) :: begin, gain, most, work, step, next, scale
       integer :: event, i, way
 
-      copy = bank
-      way = bank%failure_way
-      if (way == 0) way = merge(-1, 1, bank%axial_load >= 0.0_wp)
-      fall%axial_load = bank%axial_load
+      copy = section
+      way = section%failure_way
+      if (way == 0) way = merge(-1, 1, section%axial_load >= 0.0_wp)
+      fall%axial_load = section%axial_load
       begin = copy%opening
-      scale = carried*(abs(bank%axial_load) + bank%stiffness*bank%largest)
+      scale = carried*(abs(section%axial_load) + section%stiffness*section%largest)
       most = 0.0_wp
       work = 0.0_wp
       do event = 1, 1000 + 1000*copy%count
@@ -76,15 +76,15 @@ contains
       fall%capacity = fall%axial_load - way*most
    end subroutine find_fall
 
-   !> Put every layer on the line on which it goes on in a direction.
+   !> Put every layer on the branch on which it goes on in a direction.
    subroutine go_on(copy, way)
-      type(layer_bank), intent(inout) :: copy
+      type(fibre_section), intent(inout) :: copy
       integer, intent(in) :: way
-      integer :: i, lines
+      integer :: i, branches
 
       do i = 1, copy%count
-         do lines = 1, most_lines
-            if (.not. (copy%line(i)%one_way == -way .or. copy%has_no_room(i, way))) exit
+         do branches = 1, most_branches
+            if (.not. copy%must_leave(i, way)) exit
             call copy%leave(i, way)
          end do
       end do
@@ -93,7 +93,7 @@ contains
 
    !> Force of the layers, tension positive, a way beyond the present opening [N].
    pure real(wp) function tension(copy, further)
-      type(layer_bank), intent(in) :: copy
+      type(fibre_section), intent(in) :: copy
       real(wp), intent(in) :: further
 
       tension = copy%force_0 + copy%a*(copy%opening + further) + copy%s*copy%rotation
@@ -101,10 +101,10 @@ contains
 
    !> What the layers carry beyond the axial load, in the direction of the fall [N].
    pure real(wp) function beyond_load(copy, way)
-      type(layer_bank), intent(in) :: copy
+      type(fibre_section), intent(in) :: copy
       integer, intent(in) :: way
 
       beyond_load = way*(tension(copy, 0.0_wp) + copy%axial_load)
    end function beyond_load
 
-end module rbs_hysteresis_layer_fall
+end module rbs_hysteresis_layered_fibre_fall

@@ -1,0 +1,236 @@
+!> The rule of a layered joint: a fibre section (`rbs_hysteresis_layered_fibre_section`) under a constant axial
+!> load is, like any spring, on a branch with two ends: it ends where the first layer reaches an end (`next`).
+!> Where the axial load varies, the joint follows a straight path in rotation and axial load from event to event.
+module rbs_hysteresis_layered_joint
+   use rbs_base_constants, only: no_stiffness, unbounded
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_hysteresis_layered_fibre_path, only: choose_branches, go
+   use rbs_hysteresis_layered_fibre_section, only: fibre_section
+   use rbs_hysteresis_rule, only: rule_type, rule_memory, rule_slot
+   use rbs_hysteresis_segment, only: segment
+   implicit none
+   private
+
+   public :: layered_rule, start_under, branch_under, carries_axial_load, check_axial_load
+
+   !> Most events on the way to the rotation without moment
+   integer, parameter :: most_events = 10000
+
+   !> The layers are springs with rules of their own, which `set_layers` of the spring gives.
+   type, extends(rule_type) :: layered_rule
+      !> Distances from the middle of the section [m], and how many equal layers each stands for (layers)
+      real(wp), allocatable :: y(:), weight(:)
+      !> The rules of the layers, and which of them each layer has (layers)
+      type(rule_slot), allocatable :: rule(:)
+      integer, allocatable :: rule_of(:)
+   contains
+      procedure :: set
+      procedure :: initial_stiffness
+      procedure :: start
+      procedure :: next
+   end type layered_rule
+
+contains
+
+   !> The rule has no parameters of its own.
+   pure subroutine set(self, value)
+      class(layered_rule), intent(inout) :: self
+      real(wp), intent(in) :: value(:)
+
+      self%uses_flexural_work = size(value) < 0
+   end subroutine set
+
+   !> Rotational stiffness with all layers uncracked [N m/rad].
+   pure real(wp) function initial_stiffness(self)
+      class(layered_rule), intent(in) :: self
+      real(wp) :: k(size(self%y))
+      integer :: i
+
+      do i = 1, size(k)
+         k(i) = self%rule(self%rule_of(i))%rule%initial_stiffness()*self%weight(i)
+      end do
+      associate (y => self%y)
+         initial_stiffness = sum(k*(y - sum(k*y)/sum(k))**2)
+      end associate
+   end function initial_stiffness
+
+   subroutine start(self, memory, branch)
+      class(layered_rule), intent(in) :: self
+      class(rule_memory), allocatable, intent(out) :: memory
+      type(segment), intent(out) :: branch
+
+      call start_under(self, 0.0_wp, memory, branch)
+   end subroutine start
+
+   !> The memory of a virgin spring under an axial load, and its branch. Only layers carry one; an unsymmetric
+   !> section rotates until there is no moment.
+   subroutine start_under(rule, axial_load, memory, branch)
+      class(rule_type), intent(in) :: rule
+      !> Compression positive [N]
+      real(wp), intent(in) :: axial_load
+      class(rule_memory), allocatable, intent(out) :: memory
+      type(segment), intent(out) :: branch
+
+      select type (rule)
+      type is (layered_rule)
+         allocate (fibre_section :: memory)
+         select type (memory)
+         type is (fibre_section)
+            call memory%start(rule%y, rule%weight, rule%rule, rule%rule_of)
+            call go(memory, 0.0_wp, axial_load)
+            memory%carries = .not. memory%failed
+            call find_branch(memory, 1, branch)
+            if (memory%carries) call find_rest(memory, branch)
+         end select
+      class default
+         call rule%start(memory, branch)
+      end select
+   end subroutine start_under
+
+   subroutine next(self, memory, branch, direction)
+      class(layered_rule), intent(in) :: self
+      class(rule_memory), intent(inout) :: memory
+      type(segment), intent(inout) :: branch
+      integer, intent(in) :: direction
+
+      select type (section => memory)
+      type is (fibre_section)
+         if (.false.) section%count = size(self%y)             ! the section has its layers and loads itself
+         call leave_branch(section, branch, direction)
+      end select
+   end subroutine next
+
+   !> At the end of the present branch, or where the motion reverses, find the next one.
+   subroutine leave_branch(section, branch, direction)
+      type(fibre_section), intent(inout) :: section
+      type(segment), intent(inout) :: branch
+      integer, intent(in) :: direction
+      real(wp) :: rotation, way
+      integer :: first
+
+      rotation = branch%end_toward(direction) + section%rest
+      if (section%failed .and. abs(rotation - section%rotation) > 0.0_wp) then
+         ! What lies behind a failure has no meaning; the moment stays as it was.
+         branch = segment(d0=branch%d0, f0=branch%f0)
+         return
+      end if
+      way = section%turn*(rotation - section%rotation)
+      first = merge(section%ends%first_ahead, section%ends%first_behind, direction*section%turn > 0.0_wp)
+      ! Reversed somewhere between the ends.
+      if (branch%one_way == -direction) first = 0
+      call section%place(rotation, section%axial_load, way, first)
+      call find_branch(section, direction, branch)
+   end subroutine leave_branch
+
+   !> The branch of the joint at its present axial load when it rotates further in a direction; it ends on each
+   !> side where the first of its layers ends.
+   subroutine find_branch(section, direction, branch)
+      type(fibre_section), intent(inout) :: section
+      integer, intent(in) :: direction
+      type(segment), intent(out) :: branch
+      real(wp) :: near, far
+
+      ! Both ends belong to the branch: where a joint stands exactly on a corner, as one of contacts without an
+      ! axial load does at rest, it would otherwise have no branch.
+      call choose_branches(section, real(direction, wp), 0.0_wp)
+      branch%d0 = section%rotation - section%rest
+      branch%f0 = section%moment
+      if (section%failed) then
+         ! The joint keeps its moment for the rest of the motion; whoever moves it asks `failed`.
+         branch = branch%outward(direction, near=branch%d0, far=direction*unbounded, near_closed=.true., &
+                                 one_way=.true.)
+         return
+      end if
+      branch%k = section%ends%stiffness
+      if (abs(branch%k) <= no_stiffness*section%turning) branch%k = 0.0_wp
+      far = direction*unbounded
+      near = -direction*unbounded
+      if (section%ends%ahead < unbounded) far = branch%d0 + direction*section%ends%ahead
+      if (section%ends%behind < unbounded) near = branch%d0 - direction*section%ends%behind
+      branch = branch%outward(direction, near=near, far=far, near_closed=.true., one_way=section%ends%one_way)
+   end subroutine find_branch
+
+   !> Rotate until there is no moment, and measure rotations from there.
+   subroutine find_rest(section, branch)
+      type(fibre_section), intent(inout) :: section
+      type(segment), intent(inout) :: branch
+      real(wp) :: moment, way
+      integer :: event, s
+
+      do event = 1, most_events
+         moment = section%moment
+         if (.not. abs(moment) > 0.0_wp) exit
+         s = merge(-1, 1, moment > 0.0_wp)
+         if (event == 1) call find_branch(section, s, branch)
+         if (section%failed .or. .not. branch%k > 0.0_wp) exit
+         way = -branch%force(section%rotation)/branch%k
+         if (abs(way) <= abs(branch%end_toward(s) - section%rotation)) then
+            call section%place(section%rotation + way, section%axial_load, abs(way), 0)
+            exit
+         end if
+         call leave_branch(section, branch, s)
+      end do
+      section%rest = section%rotation
+      call find_branch(section, 1, branch)
+      branch%f0 = 0.0_wp
+   end subroutine find_rest
+
+   !> What is said of an axial load that the layers of a spring do not carry; blank if they do, or if there are
+   !> none.
+   subroutine check_axial_load(rule, axial_load, text)
+      class(rule_type), intent(in) :: rule
+      !> Compression positive [N]
+      real(wp), intent(in) :: axial_load
+      character(len=*), intent(out) :: text
+      real(wp) :: carried, refused, trial
+      integer :: i
+
+      text = ''
+      if (carries_axial_load(rule, axial_load)) return
+      carried = 0.0_wp
+      refused = axial_load
+      do i = 1, 50
+         trial = 0.5_wp*(carried + refused)
+         if (carries_axial_load(rule, trial)) then
+            carried = trial
+         else
+            refused = trial
+         end if
+      end do
+      text = 'its layers cannot carry the axial load of '//to_text(axial_load)//' N, but '// &
+             to_text(carried)//' N (compression positive); lower it, or give stronger layers'
+   end subroutine check_axial_load
+
+   !> Whether the layers of a spring carry an axial load; true of other springs, which carry none.
+   logical function carries_axial_load(rule, axial_load)
+      class(rule_type), intent(in) :: rule
+      real(wp), intent(in) :: axial_load
+      class(rule_memory), allocatable :: memory
+      type(segment) :: branch
+
+      call start_under(rule, axial_load, memory, branch)
+      carries_axial_load = .true.
+      select type (memory)
+      type is (fibre_section)
+         carries_axial_load = memory%carries
+      end select
+   end function carries_axial_load
+
+   !> At a rotation the axial load changes at once; the branch of the joint from there on.
+   subroutine branch_under(section, rotation, axial_load, work, branch)
+      type(fibre_section), intent(inout) :: section
+      !> Present rotation, on the present branch
+      real(wp), intent(in) :: rotation, axial_load
+      !> Work of the moment, to be added to [J]
+      real(wp), intent(inout) :: work
+      type(segment), intent(out) :: branch
+      real(wp) :: way
+
+      way = section%turn*(rotation + section%rest - section%rotation)
+      if (abs(way) > 0.0_wp) call section%place(rotation + section%rest, section%axial_load, way, 0)
+      call go(section, rotation, axial_load, work)
+      call find_branch(section, 1, branch)
+   end subroutine branch_under
+
+end module rbs_hysteresis_layered_joint

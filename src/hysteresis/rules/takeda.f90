@@ -1,0 +1,493 @@
+!> Trilinear Takeda spring with the degradation factors B0 and B1 (paper, table 1, flexural spring).
+!>
+!> Takeda, Sozen, Nielsen 1970 (ASCE 96 ST12) in six kinds of branch; s is the side of the force:
+!>
+!>     uncracked          slope k_c, ends at cracking
+!>     cracked backbone   slope k_y, ends at yield; turning back: outer unloading
+!>     yielded backbone   slope k_u; turning back: outer unloading
+!>     outer unloading    from the peak of the side, slope K_r; ends at zero force
+!>     reloading          toward the newest open inner peak of its side, else the backbone peak
+!>     inner unloading    from a reversal on reloading, an inner peak, slope K_in; ends at zero force
+!>
+!> K_r = (|Fm| + f_c)/(|Dm| + d_c) before yield, K_0 (d_y/|Dm|)^B0 after it, K_0 = (f_c + f_y)/(d_c + d_y)
+!> (eq 7). K_in = B1 k_c (`inner = 'kc'`), B1 K_r ('kr') or K_r ('one'), never above K_r and never below
+!> the secant to the zero crossing of the excursion: below it a loop would create energy.
+module rbs_hysteresis_rules_takeda
+   use, intrinsic :: iso_fortran_env, only: int64
+   use rbs_base_error, only: message_list
+   use rbs_base_keys, only: key_type, word_kind, above_zero, not_negative, deformation, stiffness
+   use rbs_base_kinds, only: wp
+   use rbs_base_stream, only: stream_type
+   use rbs_base_text, only: to_text
+   use rbs_base_constants, only: unbounded
+   use rbs_hysteresis_rules_inner_peaks, only: point, reloading_line, inner_peaks
+   use rbs_hysteresis_rule, only: rule_type, rule_memory, check_product
+   use rbs_hysteresis_segment, only: segment
+   implicit none
+   private
+
+   public :: takeda_rule
+
+   integer, parameter :: uncracked = 0, cracked_backbone = 1, yielded_backbone = 2
+   integer, parameter :: outer_unloading = 3, reloading = 4, inner_unloading = 5
+
+   !> What B1 multiplies: the uncracked or the outer unloading stiffness; nothing is the third choice.
+   integer, parameter :: of_uncracked = 1, of_outer = 2
+
+   !> Below this share of the yield force a reversal counts as one at zero force.
+   real(wp), parameter :: no_force = 1.0e-12_wp
+
+   !> A branch this close to the slope of the yielded backbone does not meet it. K_r is so close only at
+   !> unrealistic ductilities.
+   real(wp), parameter :: parallel = 1.0e-9_wp
+
+   type(key_type), parameter, public :: takeda_keys(*) = [ &
+      key_type('k_c', unit=stiffness, bound=above_zero, &
+               meaning='uncracked stiffness'), &
+      key_type('d_c', unit=deformation, bound=above_zero, &
+               meaning='cracking deformation'), &
+      key_type('k_y', unit=stiffness, bound=above_zero, &
+               meaning='cracked stiffness, below k_c'), &
+      key_type('d_y', unit=deformation, bound=above_zero, &
+               meaning='yield deformation, above d_c'), &
+      key_type('k_u', unit=stiffness, bound=not_negative, &
+               meaning='stiffness after yield, up to k_y'), &
+      key_type('b0', bound=not_negative, default=0.4_wp, &
+               meaning='exponent of the outer unloading stiffness'), &
+      key_type('b1', bound=above_zero, default=1.0_wp, &
+               meaning='factor of the inner unloading stiffness'), &
+      key_type('inner', kind=word_kind, default=1.0_wp, choices='kc kr one', &
+               meaning='what b1 multiplies: k_c, the outer unloading stiffness, or nothing')]
+
+   !> Where a spring is on its rule.
+   type :: takeda_state
+      !> Present branch and its side
+      integer :: branch = uncracked, side = 0
+      !> Of each side: whether it has cracked, its backbone peak, the slope of its last outer unloading
+      logical :: cracked(-1:1) = .false.
+      type(point) :: peak(-1:1)
+      real(wp) :: k_r(-1:1) = 0.0_wp
+      !> The present reloading branch
+      type(reloading_line) :: aim
+   end type takeda_state
+
+   type, extends(rule_memory) :: takeda_memory
+      type(takeda_state) :: now
+      !> Inner peaks whose loops are still open, with the reloading branches that were left there
+      type(inner_peaks) :: open
+   contains
+      procedure :: copy
+      procedure :: serialize
+   end type takeda_memory
+
+   type, extends(rule_type) :: takeda_rule
+      !> Uncracked, cracked and yielded stiffness [N/m or N m/rad]
+      real(wp) :: k_c = 0.0_wp, k_y = 0.0_wp, k_u = 0.0_wp
+      !> Cracking and yield deformation [m or rad]
+      real(wp) :: d_c = 0.0_wp, d_y = 0.0_wp
+      !> Degradation factors
+      real(wp) :: b0 = 0.0_wp, b1 = 0.0_wp
+      !> What B1 multiplies, the place of its name among the choices
+      integer :: inner = of_uncracked
+      !> Cracking and yield force [N or N m]
+      real(wp), private :: f_c = 0.0_wp, f_y = 0.0_wp
+   contains
+      procedure :: set
+      procedure :: initial_stiffness
+      procedure :: check
+      procedure :: start
+      procedure :: next
+   end type takeda_rule
+
+contains
+
+   pure subroutine set(self, value)
+      class(takeda_rule), intent(inout) :: self
+      real(wp), intent(in) :: value(:)
+
+      self%k_c = value(1)
+      self%d_c = value(2)
+      self%k_y = value(3)
+      self%d_y = value(4)
+      self%k_u = value(5)
+      self%b0 = value(6)
+      self%b1 = value(7)
+      self%inner = nint(value(8))
+      self%f_c = self%k_c*self%d_c
+      self%f_y = self%f_c + self%k_y*(self%d_y - self%d_c)
+   end subroutine set
+
+   pure real(wp) function initial_stiffness(self)
+      class(takeda_rule), intent(in) :: self
+
+      initial_stiffness = self%k_c
+   end function initial_stiffness
+
+   subroutine check(self, name, messages)
+      class(takeda_rule), intent(in) :: self
+      character(len=*), intent(in) :: name
+      type(message_list), intent(inout) :: messages
+
+      if (self%d_y <= self%d_c) then
+         call messages%add(name//': d_y = '//to_text(self%d_y)//' must be above d_c = '// &
+                           to_text(self%d_c)//' (yield comes after cracking)')
+      end if
+      if (self%k_y >= self%k_c) then
+         call messages%add(name//': k_y = '//to_text(self%k_y)//' must be below k_c = '// &
+                           to_text(self%k_c)//' (cracking softens)')
+      end if
+      if (self%k_u > self%k_y) then
+         call messages%add(name//': k_u = '//to_text(self%k_u)//' must not be above k_y = '// &
+                           to_text(self%k_y)//' (yielding softens)')
+      end if
+      call check_product(self%k_c, self%d_y, name, 'k_c d_y', messages)
+   end subroutine check
+
+   subroutine start(self, memory, branch)
+      class(takeda_rule), intent(in) :: self
+      class(rule_memory), allocatable, intent(out) :: memory
+      type(segment), intent(out) :: branch
+
+      allocate (takeda_memory :: memory)
+      branch = segment(k=self%k_c, lo=-self%d_c, hi=self%d_c)
+   end subroutine start
+
+   subroutine next(self, memory, branch, direction)
+      class(takeda_rule), intent(in) :: self
+      class(rule_memory), intent(inout) :: memory
+      type(segment), intent(inout) :: branch
+      integer, intent(in) :: direction
+
+      select type (memory)
+      type is (takeda_memory)
+         call find_branch(self, memory%now, memory%open, branch, direction)
+      end select
+   end subroutine next
+
+   !> The next branch at the end of the present one, where the motion continues or reverses.
+   subroutine find_branch(self, now, open, branch, direction)
+      type(takeda_rule), intent(in) :: self
+      type(takeda_state), intent(inout) :: now
+      type(inner_peaks), intent(inout) :: open
+      type(segment), intent(inout) :: branch
+      integer, intent(in) :: direction
+      type(point) :: here
+      logical :: outward
+
+      here%d = branch%end_toward(direction)
+      here%f = branch%force(here%d)
+      outward = direction == now%side
+
+      select case (now%branch)
+      case (uncracked)
+         now%cracked(direction) = .true.
+         call follow_backbone(self, now, branch, direction, direction*self%d_c)
+      case (cracked_backbone, yielded_backbone)
+         if (outward) then
+            call follow_backbone(self, now, branch, (now%side), here%d)
+         else
+            call unload_from_peak(self, now, branch, here)
+         end if
+      case (outer_unloading)
+         if (outward) then
+            call follow_backbone(self, now, branch, (now%side), here%d)
+         else if (now%cracked(direction)) then
+            call reload_from_outer(self, now, branch, here%d)
+         else
+            call crack_on_reversal(self, now, branch, here%d)
+         end if
+      case (reloading)
+         if (outward) then
+            call reach_target(self, now, open, branch)
+         else
+            call unload_from_inner_peak(self, now, open, branch, here)
+         end if
+      case (inner_unloading)
+         if (outward) then
+            call resume_reloading(now, open, branch, (open%count))
+         else
+            call reload_from_inner(self, now, open, branch, direction, here)
+         end if
+      end select
+   end subroutine find_branch
+
+   !> On the backbone of side s from deformation d on.
+   subroutine follow_backbone(self, now, branch, s, d)
+      type(takeda_rule), intent(in) :: self
+      type(takeda_state), intent(inout) :: now
+      type(segment), intent(inout) :: branch
+      integer, intent(in) :: s
+      real(wp), intent(in) :: d
+
+      now%side = s
+      if (s*d < self%d_y) then
+         now%branch = cracked_backbone
+         branch = segment(d0=s*self%d_c, f0=s*self%f_c, k=self%k_y)
+         branch = branch%outward(s, near=d, far=s*self%d_y, near_closed=.true., one_way=.true.)
+      else
+         now%branch = yielded_backbone
+         branch = segment(d0=s*self%d_y, f0=s*self%f_y, k=self%k_u)
+         branch = branch%outward(s, near=d, far=s*unbounded, near_closed=.true., one_way=.true.)
+      end if
+   end subroutine follow_backbone
+
+   !> Reversal on the backbone: a new peak of this side, unloading with K_r.
+   subroutine unload_from_peak(self, now, branch, peak)
+      type(takeda_rule), intent(in) :: self
+      type(takeda_state), intent(inout) :: now
+      type(segment), intent(inout) :: branch
+      type(point), intent(in) :: peak
+      real(wp) :: near
+      integer :: s
+
+      s = now%side
+      now%branch = outer_unloading
+      now%peak(s) = peak
+      now%k_r(s) = outer_stiffness(self, abs(peak%d), abs(peak%f))
+      branch = segment(d0=peak%d, f0=peak%f, k=now%k_r(s))
+      if (now%cracked(-s)) then
+         near = peak%d - peak%f/now%k_r(s)
+      else if (abs(peak%d) <= self%d_y) then
+         near = -s*self%d_c                         ! by definition K_r leads to the cracking point
+      else
+         near = peak%d - (peak%f + s*self%f_c)/now%k_r(s)
+      end if
+      branch = branch%outward(s, near=near, far=peak%d, near_closed=now%cracked(-s), one_way=.false.)
+   end subroutine unload_from_peak
+
+   !> K_r of a peak (eq 7), not below the secant: unloading must not end on the other side of the origin.
+   elemental real(wp) function outer_stiffness(self, d, f) result(k_r)
+      type(takeda_rule), intent(in) :: self
+      !> Peak, both positive
+      real(wp), intent(in) :: d, f
+
+      if (d <= self%d_y) then
+         k_r = (f + self%f_c)/(d + self%d_c)
+      else
+         k_r = (self%f_c + self%f_y)/(self%d_c + self%d_y)*(self%d_y/d)**self%b0
+      end if
+      k_r = max(k_r, f/d)
+   end function outer_stiffness
+
+   !> Outer unloading has reached zero force, and the other side has cracked: reload toward its peak, or
+   !> toward its yield point if it has not yielded and the line to it is steeper.
+   subroutine reload_from_outer(self, now, branch, zero)
+      type(takeda_rule), intent(in) :: self
+      type(takeda_state), intent(inout) :: now
+      type(segment), intent(inout) :: branch
+      real(wp), intent(in) :: zero
+      type(point) :: yield
+      integer :: s
+
+      s = -now%side
+      yield = point(s*self%d_y, s*self%f_y)
+      if (s*now%peak(s)%d < self%d_y) then
+         if (yield%f/(yield%d - zero) > now%peak(s)%f/(now%peak(s)%d - zero)) now%peak(s) = yield
+      end if
+      call reload_toward_peak(self, now, branch, s, point(zero, 0.0_wp), zero)
+   end subroutine reload_from_outer
+
+   !> Outer unloading has continued to the cracking force of the other side, which cracks.
+   subroutine crack_on_reversal(self, now, branch, d)
+      type(takeda_rule), intent(in) :: self
+      type(takeda_state), intent(inout) :: now
+      type(segment), intent(inout) :: branch
+      real(wp), intent(in) :: d
+      real(wp) :: zero, k_r, ahead, d_peak
+      integer :: s
+
+      s = -now%side
+      now%cracked(s) = .true.
+      associate (left => now%peak(-s))
+         k_r = now%k_r(-s)
+         if (abs(left%d) <= self%d_y) then
+            call follow_backbone(self, now, branch, s, d)
+            return
+         end if
+         zero = left%d - left%f/k_r
+      end associate
+      now%peak(s) = point(s*self%d_y, s*self%f_y)
+      ahead = s*(now%peak(s)%d - d)
+      if (self%f_y - self%f_c > k_r*ahead .and. k_r > (1.0_wp + parallel)*self%k_u) then
+         ! The line to the yield point is steeper than K_r or leads back: continue with K_r to the yielded
+         ! backbone.
+         d_peak = (self%f_y - self%k_u*self%d_y - self%f_c + k_r*s*d)/(k_r - self%k_u)
+         now%peak(s) = point(s*d_peak, s*(self%f_y + self%k_u*(d_peak - self%d_y)))
+      end if
+      call reload_toward_peak(self, now, branch, s, point(d, s*self%f_c), zero)
+   end subroutine crack_on_reversal
+
+   !> Reloading has reached its target.
+   subroutine reach_target(self, now, open, branch)
+      type(takeda_rule), intent(in) :: self
+      type(takeda_state), intent(inout) :: now
+      type(inner_peaks), intent(inout) :: open
+      type(segment), intent(inout) :: branch
+      type(point) :: here
+      integer :: place
+
+      here = now%aim%target
+      place = open%place_of(now%aim%target_serial)
+      if (place > 0) then
+         call resume_reloading(now, open, branch, place)
+         return
+      end if
+      open%count = 0
+      if (now%aim%target_serial == 0_int64) then
+         call follow_backbone(self, now, branch, (now%side), here%d)
+      else
+         ! The inner peak was so old that it has been forgotten: continue to the backbone.
+         call reload_toward_peak(self, now, branch, (now%side), here, (now%aim%zero))
+      end if
+   end subroutine reach_target
+
+   !> Reversal on reloading before its target: a new inner peak, from which unloading has slope K_in.
+   subroutine unload_from_inner_peak(self, now, open, branch, here)
+      type(takeda_rule), intent(in) :: self
+      type(takeda_state), intent(inout) :: now
+      type(inner_peaks), intent(inout) :: open
+      type(segment), intent(inout) :: branch
+      type(point), intent(in) :: here
+      real(wp) :: k_in
+      integer :: s
+
+      s = now%side
+      if (abs(here%f) <= no_force*self%f_y) then
+         call reload_from_inner(self, now, open, branch, -s, here)
+         return
+      end if
+      now%aim%line = branch
+      call open%push(s, here, now%aim)
+      now%branch = inner_unloading
+      k_in = inner_stiffness(self, now, here)
+      branch = segment(d0=here%d, f0=here%f, k=k_in)
+      branch = branch%outward(s, near=here%d - here%f/k_in, far=here%d, near_closed=.true., &
+                               one_way=.false.)
+   end subroutine unload_from_inner_peak
+
+   !> K_in of an inner peak within its bounds, of which the lower one has priority.
+   pure real(wp) function inner_stiffness(self, now, peak) result(k_in)
+      type(takeda_rule), intent(in) :: self
+      type(takeda_state), intent(in) :: now
+      type(point), intent(in) :: peak
+      real(wp) :: k_r, way
+
+      k_r = now%k_r(now%side)
+      if (.not. k_r > 0.0_wp) k_r = now%k_r(-now%side)
+      select case (self%inner)
+      case (of_uncracked)
+         k_in = self%b1*self%k_c
+      case (of_outer)
+         k_in = self%b1*k_r
+      case default
+         k_in = k_r
+      end select
+      k_in = min(k_in, k_r)
+      ! At ductilities of 1e16 round-off leaves no distance from the zero crossing.
+      way = now%side*(peak%d - now%aim%zero)
+      if (way > 0.0_wp) k_in = max(k_in, now%side*peak%f/way)
+   end function inner_stiffness
+
+   !> Continue on the reloading branch that was left at an inner peak; it and all newer peaks are closed.
+   subroutine resume_reloading(now, open, branch, place)
+      type(takeda_state), intent(inout) :: now
+      type(inner_peaks), intent(inout) :: open
+      type(segment), intent(inout) :: branch
+      integer, intent(in) :: place
+
+      associate (peak => open%peak(place))
+         now%branch = reloading
+         now%side = peak%side
+         now%aim = peak%left
+         branch = now%aim%line%outward(peak%side, near=peak%at%d, far=now%aim%target%d, &
+                                         near_closed=.true., one_way=.true.)
+      end associate
+      open%count = place - 1
+   end subroutine resume_reloading
+
+   !> Inner unloading has reached zero force: reload toward the newest open peak of side s, else toward its
+   !> backbone peak. If the target were the yield point instead, inner loops would not close.
+   subroutine reload_from_inner(self, now, open, branch, s, from)
+      type(takeda_rule), intent(in) :: self
+      type(takeda_state), intent(inout) :: now
+      type(inner_peaks), intent(inout) :: open
+      type(segment), intent(inout) :: branch
+      integer, intent(in) :: s
+      type(point), intent(in) :: from
+      integer :: place
+
+      place = open%newest_of_side(s)
+      if (place == 0) then
+         call reload_toward_peak(self, now, branch, s, from, from%d)
+      else
+         now%aim = reloading_line(target=open%peak(place)%at, &
+                                  target_serial=open%peak(place)%serial, zero=from%d)
+         call reload(self, now, branch, s, from)
+      end if
+   end subroutine reload_from_inner
+
+   !> Reload toward the backbone peak of side s.
+   subroutine reload_toward_peak(self, now, branch, s, from, zero)
+      type(takeda_rule), intent(in) :: self
+      type(takeda_state), intent(inout) :: now
+      type(segment), intent(inout) :: branch
+      integer, intent(in) :: s
+      type(point), intent(in) :: from
+      real(wp), intent(in) :: zero
+
+      now%aim = reloading_line(target=now%peak(s), zero=zero)
+      call reload(self, now, branch, s, from)
+   end subroutine reload_toward_peak
+
+   !> The straight line to the target. The target is its anchor, so that a peak is met exactly.
+   subroutine reload(self, now, branch, s, from)
+      type(takeda_rule), intent(in) :: self
+      type(takeda_state), intent(inout) :: now
+      type(segment), intent(inout) :: branch
+      integer, intent(in) :: s
+      type(point), intent(in) :: from
+      real(wp) :: way, k
+
+      now%branch = reloading
+      now%side = s
+      associate (target => now%aim%target)
+         way = target%d - from%d
+         ! If round-off leaves no distance, the target is met at once.
+         k = self%k_c
+         if (s*way > 0.0_wp) k = (target%f - from%f)/way
+         branch = segment(d0=target%d, f0=target%f, k=k)
+         branch = branch%outward(s, near=from%d, far=s*max(s*target%d, s*from%d), near_closed=.true., &
+                               one_way=.true.)
+      end associate
+   end subroutine reload
+
+   pure subroutine copy(self, other)
+      class(takeda_memory), intent(inout) :: self
+      class(rule_memory), intent(in) :: other
+
+      select type (other)
+      type is (takeda_memory)
+         self%now = other%now
+         call self%open%take(other%open)
+      end select
+   end subroutine copy
+
+   pure subroutine serialize(self, stream)
+      class(takeda_memory), intent(inout) :: self
+      type(stream_type), intent(inout) :: stream
+      integer :: s
+
+      associate (now => self%now)
+         call stream%item(now%branch)
+         call stream%item(now%side)
+         call stream%item(now%cracked)
+         do s = -1, 1, 2
+            call now%peak(s)%serialize(stream)
+         end do
+         call stream%item(now%k_r)
+         call now%aim%serialize(stream)
+      end associate
+      call self%open%serialize(stream)
+   end subroutine serialize
+
+end module rbs_hysteresis_rules_takeda
