@@ -1,13 +1,15 @@
-!> Dead loads on the column with exact rotations: forces and stiffness from one potential.
+!> Dead loads on the column: forces and stiffness from one potential, with exact rotations
 !>
 !>     A = sum P_i l_i cos th_i + sum Q_i (-u_i sin th_{i-1} + w_i cos th_{i-1}) - F x_T
 !>     x_T = sum l_i sin th_i + u_i cos th_{i-1} + w_i sin th_{i-1}
 !>
-!> with P = `axial_body`, Q = `axial_joint`, th_0 = 0. In absolute rotations joints meet only their
-!> neighbours. Unknowns stand joint by joint here: slip, opening if there is one, absolute rotation.
+!> or, with the other kinematics, to second order without what the lateral force does on rotated bodies and the
+!> axial loads on openings of rotated joints. P = `axial_body`, Q = `axial_joint` (`axial_slip` on slips),
+!> th_0 = 0. In absolute rotations joints meet only their neighbours. Unknowns stand joint by joint here: slip,
+!> opening if there is one, absolute rotation.
 module rbs_column_dead_loads
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type
+   use rbs_column_column, only: column_type, finite
    implicit none
    private
 
@@ -35,11 +37,12 @@ contains
       real(wp), intent(out), contiguous :: band(:, :)
       !> Displacement of the top [m]
       real(wp), intent(out) :: top
-      real(wp) :: rotation, s, c, across, along, opening
+      real(wp) :: rotation, s, c, across, along, opening, exact
       integer :: i, j, n, per
 
       n = column%n
       per = per_joint(column)
+      exact = merge(1.0_wp, 0.0_wp, column%kinematics == finite)
       band = 0.0_wp
       top = 0.0_wp
       rotation = 0.0_wp
@@ -53,31 +56,35 @@ contains
             c = 1.0_wp
          end if
          ! Forces of the loads above, across and along the body below the joint.
-         across = force*c + column%axial_joint(i)*s
-         along = force*s - column%axial_joint(i)*c
+         across = force*c + column%axial_slip(i)*s
+         along = exact*force*s - column%axial_slip(i)*c
          j = per*(i - 1)
          if (column%opens) opening = q(2*n + i)
          load(j + 1) = across
          arm(j + 1) = c
-         top = top + q(i)*c + opening*s
+         top = top + q(i)*c + exact*opening*s
          if (column%opens) then
-            load(j + 2) = along
-            arm(j + 2) = s
+            load(j + 2) = exact*force*s - column%axial_joint(i)*c
+            arm(j + 2) = exact*s
          end if
          if (i > 1 .and. .not. (i == n .and. column%held)) then
-            load(j) = load(j) - q(i)*along + opening*across
-            arm(j) = arm(j) - q(i)*s + opening*c
-            band(1, j) = band(1, j) + q(i)*across + opening*along
+            load(j) = load(j) - q(i)*along + exact*opening*across
+            arm(j) = arm(j) - exact*(q(i)*s - opening*c)
+            band(1, j) = band(1, j) + exact*(q(i)*across + opening*along)
             band(2, j) = along
-            if (column%opens) band(3, j) = -across
+            if (column%opens) band(3, j) = -exact*across
          end if
          rotation = rotation + q(n + i)
-         s = sin(rotation)
-         c = cos(rotation)
+         if (exact > 0.0_wp) then
+            s = sin(rotation)
+            c = cos(rotation)
+         else
+            s = rotation
+         end if
          j = per*i
          load(j) = column%length(i)*(force*c + column%axial_body(i)*s)
          arm(j) = column%length(i)*c
-         band(1, j) = column%length(i)*(force*s - column%axial_body(i)*c)
+         band(1, j) = column%length(i)*(exact*force*s - column%axial_body(i)*c)
          top = top + column%length(i)*s
       end do
    end subroutine dead_loads

@@ -20,6 +20,8 @@ module rbs_hysteresis_spring_planes
       !> Layered joints among the springs, and whether their axial loads vary along the path
       integer, allocatable :: layered(:)
       logical :: pressed = .false.
+      !> Whether a spring is on a plane (count)
+      logical, allocatable :: on_plane(:)
       !> Where they vary (count): axial load that the joint is to reach, axial load of the present plane
       !> [N], and its centre of stiffness e = -dM/dN [m]
       real(wp), allocatable :: press_to(:), press_at(:), centre(:)
@@ -33,9 +35,10 @@ module rbs_hysteresis_spring_planes
       procedure :: fill_openings
       procedure :: opening
       procedure :: choose_lines
-      procedure :: way_on_plane
+      procedure :: nearest_layer
+      procedure :: moment_on_plane
       procedure :: put_on_plane
-      procedure :: turns_on_plane
+      procedure :: least_forward_rate
       procedure :: serialize
       procedure :: go_under
    end type spring_planes
@@ -62,6 +65,7 @@ contains
          end select
       end do
       self%layered = pack([(i, i=1, self%count)], is_layered)
+      allocate (self%on_plane(self%count), source=.false.)
    end subroutine create_from_rules
 
    !> The axial loads of the layered joints vary from now on: these joints follow straight paths in rotation
@@ -71,6 +75,7 @@ contains
 
       self%pressed = size(self%layered) > 0
       if (.not. self%pressed) return
+      self%on_plane(self%layered) = .true.
       allocate (self%press_to(self%count), self%press_at(self%count), self%centre(self%count), &
                 source=0.0_wp)
       call read_planes(self)
@@ -194,38 +199,56 @@ contains
       call read_plane(self, i)
    end subroutine choose_lines
 
-   !> How far a layered joint can go from a point of its plane along a straight path until a layer reaches the
-   !> end of its line.
-   pure subroutine way_on_plane(self, i, rotation, axial_load, turn, press, way, first)
+   !> How far the layered joints can go from points of their planes along straight paths until the first layer
+   !> reaches the end of its line.
+   pure subroutine nearest_layer(self, rotation, axial_load, turn, press, way, joint, layer)
       class(spring_planes), intent(in) :: self
-      integer, intent(in) :: i
-      real(wp), intent(in) :: rotation, axial_load, turn, press
+      !> Of the joints, and rates (count); rate of all axial loads
+      real(wp), intent(in) :: rotation(:), axial_load(:), turn(:), press
       !> In units of the rates; `unbounded` if there is no end
       real(wp), intent(out) :: way
-      !> The layer, 0 for none
-      integer, intent(out) :: first
+      !> The spring and its layer, 0 for none
+      integer, intent(out) :: joint, layer
+      real(wp) :: room
+      integer :: i, j, first
 
       way = unbounded
-      first = 0
-      select type (section => self%slot(i)%memory)
-      type is (fibre_section)
-         call way_to_event(section, rotation, axial_load, turn, press, way, first)
-      end select
-   end subroutine way_on_plane
+      joint = 0
+      layer = 0
+      do j = 1, size(self%layered)
+         i = self%layered(j)
+         select type (section => self%slot(i)%memory)
+         type is (fibre_section)
+            call way_to_event(section, rotation(i), axial_load(i), turn(i), press, room, first)
+            if (first == 0 .or. room >= way) cycle
+            way = room
+            joint = i
+            layer = first
+         end select
+      end do
+   end subroutine nearest_layer
 
-   !> Whether a layer of a joint goes back on a one-way line.
-   pure logical function turns_on_plane(self, i, turn, press)
+   !> Moment of a layered joint on its plane [N m].
+   elemental real(wp) function moment_on_plane(self, i, rotation, axial_load) result(moment)
       class(spring_planes), intent(in) :: self
       integer, intent(in) :: i
-      !> Rates of the rotation and of the axial load
-      real(wp), intent(in) :: turn, press
+      real(wp), intent(in) :: rotation, axial_load
 
-      turns_on_plane = .false.
+      moment = self%f0(i) + self%k(i)*(rotation - self%d0(i)) - self%centre(i)*(axial_load - self%press_at(i))
+   end function moment_on_plane
+
+   !> The least forward rate of the layers of a joint on one-way lines, see `fibre_section`.
+   pure real(wp) function least_forward_rate(self, i, turn, press, digits) result(least)
+      class(spring_planes), intent(in) :: self
+      integer, intent(in) :: i
+      real(wp), intent(in) :: turn(3), press(3), digits
+
+      least = 1.0_wp
       select type (section => self%slot(i)%memory)
       type is (fibre_section)
-         turns_on_plane = section%turns_back(turn, press)
+         least = section%least_forward_rate(turn, press, digits)
       end select
-   end function turns_on_plane
+   end function least_forward_rate
 
    !> Move a layered joint on its plane to a point, where a layer (0: none) comes to the end of its line.
    !> Its work is left to the caller, who knows the path.

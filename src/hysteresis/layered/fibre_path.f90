@@ -78,7 +78,7 @@ contains
       do begin = 1, self%count, block
          n = min(block, self%count - begin + 1)
          associate (finish => begin + n - 1)
-            ! A layer that unloads on a reversal is an event of its own, see `turns_back`.
+            ! A layer that unloads on a reversal is an event of its own, see `least_forward_rate`.
             call look_along(n, self%y(begin:finish), self%k(begin:finish), self%lo(begin:finish), &
                             self%hi(begin:finish), self%slack(begin:finish), self%one_way(begin:finish), &
                             self%both_ways(begin:finish), opening, turned, open, turn, &

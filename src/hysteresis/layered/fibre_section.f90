@@ -122,7 +122,7 @@ module rbs_hysteresis_layered_fibre_section
       procedure :: opening_at
       procedure :: rate_of_opening
       procedure :: read_plane
-      procedure :: turns_back
+      procedure :: least_forward_rate
       procedure :: mark
       procedure :: restore
       procedure :: forget
@@ -328,20 +328,29 @@ contains
       if (abs(stiffness) <= no_stiffness*self%turning) stiffness = 0.0_wp
    end subroutine read_plane
 
-   !> Whether a layer unloads on a reversal on a path on the present branches.
-   pure logical function turns_back(self, turn, press)
+   !> The least forward rate of layers on one-way lines on the first of three paths on the present lines, in
+   !> shares of their largest on the other two; below zero a layer goes back.
+   pure real(wp) function least_forward_rate(self, turn, press, digits) result(least)
       class(fibre_section), intent(in) :: self
-      real(wp), intent(in) :: turn, press
-      real(wp) :: open, least_rate
+      !> Rates of the rotation and of the axial load
+      real(wp), intent(in) :: turn(3), press(3)
+      !> Below this number of the least rates that count, a rate is none
+      real(wp), intent(in) :: digits
+      real(wp) :: open(3), v(3), least_rate
       integer :: i
 
-      open = self%rate_of_opening(turn, press)
-      least_rate = self%least_rate(open, turn)
-      turns_back = .false.
-      do i = 1, self%count
-         turns_back = turns_back .or. self%one_way(i)*(open + self%y(i)*turn) < -least_rate
+      least_rate = 0.0_wp
+      do i = 1, 3
+         open(i) = self%rate_of_opening(turn(i), press(i))
+         least_rate = max(least_rate, digits*self%least_rate(open(i), turn(i)))
       end do
-   end function turns_back
+      least = 1.0_wp
+      do i = 1, self%count
+         if (.not. abs(self%one_way(i)) > 0.0_wp) cycle
+         v = open + self%y(i)*turn
+         least = min(least, self%one_way(i)*v(1)/max(abs(v(2)), abs(v(3)), least_rate))
+      end do
+   end function least_forward_rate
 
    !> Put the joint on a point of its present branches that lies ahead on a path with given rates. Its work is
    !> left to the caller, who knows the path.

@@ -50,6 +50,8 @@ contains
             return
          end if
          count = without_room(path)
+         if (path%springs%pressed) call choose_planes(path, count)
+         if (path%springs%lost_joint() > 0) return
          if (count == 0) then
             path%direction = direction
             return
@@ -72,6 +74,22 @@ contains
                           'top go on. A driven top cannot follow that; use a dynamic analysis')
       end if
    end subroutine turn_corner
+
+   !> The layers of joints whose axial loads vary choose their lines for the present rates; a joint whose plane
+   !> changes by that had no room on it.
+   subroutine choose_planes(path, count)
+      class(static_path), intent(inout) :: path
+      integer, intent(inout) :: count
+      real(wp) :: before(2)
+      integer :: i, j
+
+      do j = 1, size(path%springs%layered)
+         i = path%springs%layered(j)
+         before = [path%springs%k(i), path%springs%centre(i)]
+         call path%springs%choose_lines(i, path%rate(i), path%axial_rate)
+         if (any(abs(before - [path%springs%k(i), path%springs%centre(i)]) > 0.0_wp)) count = count + 1
+      end do
+   end subroutine choose_planes
 
    !> There is no stiffness under the driven force in this direction, but some springs would unload: let them.
    subroutine let_unload(path, direction, some)
@@ -141,7 +159,7 @@ contains
       integer, intent(in) :: direction
       logical, intent(out) :: found
       integer, allocatable :: tried(:)
-      integer :: trial, i, most
+      integer :: trial, i, most, count
 
       tried = pack([(i, i=1, path%moving)], [(at_corner(path, i), i=1, path%moving)])
       tried = [pack(tried, path%changed(tried) > 1), pack(tried, path%changed(tried) <= 1)]
@@ -151,7 +169,9 @@ contains
       do trial = 1, 2**size(tried)
          call path%solve_line(direction, found)
          if (found) then
-            found = without_room(path) == 0
+            count = without_room(path)
+            if (path%springs%pressed) call choose_planes(path, count)
+            found = count == 0
             if (found) return
          end if
          ! The bit that changes next in the Gray code.

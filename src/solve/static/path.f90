@@ -6,8 +6,9 @@ module rbs_solve_static_path
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type, small, finite
-   use rbs_column_top, only: largest_turn, top_displacement
+   use rbs_column_column, only: column_type, finite
+   use rbs_column_energy, only: potential_energy
+   use rbs_column_top, only: largest_turn, top_displacement, top_position
    use rbs_hysteresis_layered_fibre_fall, only: layer_fall
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
@@ -18,7 +19,7 @@ module rbs_solve_static_path
    implicit none
    private
 
-   public :: static_path, kept_rows, is_on_end, top_height, describe_state, missing_work, name_spring, &
+   public :: static_path, kept_rows, is_on_end, describe_state, missing_work, name_spring, &
              on_the_end, serialize_path
 
    !> A spring this close to an end of its line, relative to the end, is on it. Not a tolerance of the
@@ -34,7 +35,8 @@ module rbs_solve_static_path
 
    !> The state of a path and how it goes on.
    type, abstract :: static_path
-      type(column_type) :: column
+      !> The column, and under its constant axial loads alone where others vary, as the potential needs it
+      type(column_type) :: column, steady
       type(spring_array) :: springs
       !> Number of springs that can move: with small rotations the openings keep still
       integer :: moving = 0
@@ -47,10 +49,13 @@ module rbs_solve_static_path
       integer :: direction = 0
       !> Change of the deformations per unit of what is driven, in its direction (unknowns)
       real(wp), allocatable :: rate(:)
+      !> The same of the axial load at the top where it varies [N]
+      real(wp) :: axial_rate = 0.0_wp
       !> How often each spring has changed its line at the present corner (unknowns)
       integer, allocatable :: changed(:)
-      !> Energy of springs and axial load at the start [J], and the steps that were cut
-      real(wp) :: at_begin = 0.0_wp
+      !> Energy of springs and axial load at the start, work of the axial load as far as it varies [J], and the
+      !> steps that were cut
+      real(wp) :: at_begin = 0.0_wp, load_work = 0.0_wp
       integer :: cuts = 0
       !> Axial load at the top without what follows the force [N], and energy that was damped before [J]
       real(wp) :: load_now = 0.0_wp, damped_before = 0.0_wp
@@ -69,7 +74,7 @@ module rbs_solve_static_path
       procedure(serialize_interface), deferred :: serialize
       procedure(advance_interface), deferred :: advance
       procedure(solve_line_interface), deferred :: solve_line
-      procedure(measure_interface), deferred :: measure
+      procedure, private :: axial_work
       procedure(balance_interface), deferred :: find_balance
       procedure(unbalance_interface), deferred :: unbalance
       procedure(stand_interface), deferred :: stand_still
@@ -94,15 +99,6 @@ module rbs_solve_static_path
          integer, intent(in) :: direction
          logical, intent(out) :: found
       end subroutine solve_line_interface
-
-      !> The values of a row that do not follow from the springs.
-      pure subroutine measure_interface(self, axial_work, height)
-         import :: static_path, wp
-         implicit none
-         class(static_path), intent(in) :: self
-         !> Potential of axial load and weight [J], and height of the top above the ground [m]
-         real(wp), intent(out) :: axial_work, height
-      end subroutine measure_interface
 
       !> What takes the springs, where they are and on their present lines, to equilibrium at the
       !> displacement of the top.
@@ -178,15 +174,13 @@ contains
       !> Whether the axial loads of layered joints vary
       logical, intent(in) :: varies
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: axial_work, height
 
       call self%prepare(column, by_force, moving)
       if (column%opens) call self%compress(error)
       if (allocated(error)) return
       if (varies) call self%springs%vary_axial_loads()
       self%load_now = column%axial_load
-      call self%measure(axial_work, height)
-      self%at_begin = sum(self%springs%work) + axial_work
+      self%at_begin = sum(self%springs%work) + self%axial_work()
    end subroutine begin
 
    !> Save or restore what every path remembers; solvers add what is their own.
@@ -363,11 +357,9 @@ contains
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(inout) :: failure
       character(len=:), allocatable :: fault, spring
-      real(wp) :: axial_work, height
 
-      call self%measure(axial_work, height)
       call check%look(self%column, self%springs, self%displacement, self%force, self%unbalance(), &
-                      [self%work, sum(self%springs%work), axial_work], missing_work(self), fault)
+                      [self%work, sum(self%springs%work), self%axial_work()], missing_work(self), fault)
       if (.not. allocated(fault)) return
       call name_spring(self, spring)
       call fatal_error(failure, analysis_failed, 'on the way to '//to_text(target)//' '// &
@@ -381,11 +373,16 @@ contains
    !> Work that the balance of energy misses [J].
    pure real(wp) function missing_work(self)
       class(static_path), intent(in) :: self
-      real(wp) :: axial_work, height
 
-      call self%measure(axial_work, height)
-      missing_work = self%work + self%at_begin - sum(self%springs%work) - self%damped_before - axial_work
+      missing_work = self%work + self%at_begin - sum(self%springs%work) - self%damped_before - self%axial_work()
    end function missing_work
+
+   !> Potential of the constant axial loads, and the work of those that vary [J].
+   pure real(wp) function axial_work(self)
+      class(static_path), intent(in) :: self
+
+      axial_work = potential_energy(self%steady, self%springs%d) + self%load_work
+   end function axial_work
 
    !> The present state as a row.
    subroutine fill_row(self, row, number)
@@ -393,6 +390,7 @@ contains
       real(wp), intent(out) :: row(:)
       !> Number of the row, between two targets with the share of the way
       real(wp), intent(in) :: number
+      real(wp) :: top(2)
       integer :: m
 
       associate (springs => self%springs)
@@ -404,32 +402,15 @@ contains
          row(row_kinetic) = 0.0_wp
          row(row_spring) = sum(springs%work)
          row(row_damping) = self%damped_before
-         call self%measure(row(row_axial), row(row_top))
+         row(row_axial) = self%axial_work()
+         top = top_position(self%column, springs%d)
+         row(row_top) = top(2)
          row(row_residual) = missing_work(self)
          row(row_joints:row_joints + m - 1) = springs%d
          row(row_joints + m:row_joints + 2*m - 1) = springs%f0 + springs%k*(springs%d - springs%d0)
          call springs%fill_openings(self%column%n, row(row_joints + 2*m:))
       end associate
    end subroutine fill_row
-
-   !> Height of the top with small rotations, with `pdelta` to second order as the axial load sees it [m].
-   pure subroutine top_height(path, height)
-      class(static_path), intent(in) :: path
-      real(wp), intent(out) :: height
-      real(wp) :: turned, lost
-      integer :: i, n
-
-      n = path%column%n
-      turned = 0.0_wp
-      lost = 0.0_wp
-      do i = 1, n
-         if (i < n .or. .not. path%column%held) lost = lost + path%springs%d(i)*turned
-         turned = turned + path%springs%d(n + i)
-         lost = lost + 0.5_wp*path%column%length(i)*turned**2
-      end do
-      height = path%column%joint_height(n + 1)
-      if (path%column%kinematics /= small) height = height - lost
-   end subroutine top_height
 
    !> Where the path is, for a message.
    subroutine describe_state(path, text)

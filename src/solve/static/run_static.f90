@@ -5,9 +5,8 @@ module rbs_solve_static_run_static
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type, small, finite
    use rbs_solve_check_values, only: check_values
+   use rbs_solve_static_curved, only: trace_curved
    use rbs_solve_static_trace, only: trace
-   use rbs_solve_static_trace_finite, only: trace_finite
-   use rbs_solve_static_trace_interaction, only: trace_interaction
    use rbs_solve_task, only: task_type
    implicit none
    private
@@ -47,7 +46,7 @@ contains
             call put_under(loaded, load(1))
          end if
       end if
-      if (varies) then
+      if (varies .or. column%kinematics == finite) then
          call check_interaction(column, error)
          if (allocated(error)) return
       end if
@@ -57,10 +56,8 @@ contains
          call check_values(target, 'displacement', error)
       end if
       if (allocated(error)) return
-      if (varies) then
-         call trace_interaction(column, by_force, target, load, task, error)
-      else if (column%kinematics == finite) then
-         call trace_finite(loaded, by_force, target, task, error)
+      if (varies .or. column%kinematics == finite) then
+         call trace_curved(loaded, by_force, target, pack(load, varies), task, error)
       else
          call trace(loaded, by_force, target, task, error)
       end if

@@ -6,12 +6,11 @@ module rbs_solve_static_trace
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_column_axial, only: axial_energy
    use rbs_column_column, only: column_type
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_path, only: static_path, describe_state, is_on_end, on_the_end, &
-                                    top_height, serialize_path
+                                    serialize_path
    use rbs_solve_static_resume, only: begin_path, end_path
    use rbs_solve_task, only: task_type
    implicit none
@@ -38,7 +37,6 @@ module rbs_solve_static_trace
    contains
       procedure :: advance
       procedure :: solve_line
-      procedure :: measure
       procedure :: find_balance
       procedure :: unbalance
       procedure :: stand_still
@@ -62,6 +60,7 @@ contains
       m = 2*column%n
       call path%equilibrium%create(column)
       allocate (path%q(m), path%residual(m), path%correction(m), path%f(m), source=0.0_wp)
+      path%steady = column
       call begin_path(path, column, by_force, m, .false., error, task%before)
       if (allocated(error)) return
       call path%follow(target, task, error)
@@ -271,21 +270,5 @@ contains
       call stream%item(self%ends)
       call self%equilibrium%few%serialize(stream)
    end subroutine serialize
-
-   !> The second-order work of the axial load and its work on the openings; the height of the top, with
-   !> `pdelta` to second order, as the axial load sees it.
-   pure subroutine measure(self, axial_work, height)
-      class(straight_path), intent(in) :: self
-      real(wp), intent(out) :: axial_work, height
-      integer :: n
-
-      n = self%column%n
-      call top_height(self, height)
-      axial_work = 0.0_wp
-      if (self%column%axially_loaded) axial_work = axial_energy(self%column, self%springs%d)
-      if (.not. self%column%opens) return
-      height = height + sum(self%springs%d(2*n + 1:))
-      axial_work = axial_work + sum(self%column%axial_joint*self%springs%d(2*n + 1:))
-   end subroutine measure
 
 end module rbs_solve_static_trace
