@@ -218,7 +218,7 @@ contains
       logical, intent(in) :: round_core
       integer, intent(in) :: number
       type(answer_type), intent(inout) :: answer
-      class(shape_type), allocatable :: inside
+      type(shape_type), allocatable :: inside
       type(strips_type) :: strips
 
       call outline_core(reader%case%drawing%section, round_core, inside)

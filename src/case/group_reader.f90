@@ -13,7 +13,7 @@ module rbs_case_group_reader
    use rbs_case_spring_entry, only: entry_list, spring_groups, place_springs
    use rbs_hysteresis_registry, only: rule_names, keys_of
    use rbs_section_settings_record, only: diagram_record, layer_record, shear_record, springs_record
-   use rbs_section_shapes, only: shape_names
+   use rbs_section_shape, only: shape_names
    implicit none
    private
 

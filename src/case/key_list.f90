@@ -11,8 +11,7 @@ module rbs_case_key_list
    use rbs_case_group_reader, only: group_names, group_reader, section_groups
    use rbs_case_text_buffer, only: text_buffer
    use rbs_hysteresis_registry, only: rule_names, keys_of, places_of
-   use rbs_section_shape, only: shape_type
-   use rbs_section_shapes, only: new_shape, shape_names
+   use rbs_section_shape, only: new_shape, shape_names, shape_type
    implicit none
    private
 
@@ -28,7 +27,7 @@ contains
       type(key_type), allocatable, intent(out) :: keys(:)
       type(group_reader) :: reader
       type(message_list) :: messages
-      class(shape_type), allocatable :: shape
+      type(shape_type), allocatable :: shape
       type(key_visitor) :: v
       logical :: ok
 

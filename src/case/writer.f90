@@ -13,7 +13,7 @@ module rbs_case_writer
    use rbs_hysteresis_registry, only: keys_of
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_section_cross_section, only: no_ties
-   use rbs_section_shapes, only: new_shape
+   use rbs_section_shape, only: new_shape
    implicit none
    private
 

@@ -16,7 +16,7 @@ module rbs_section_concrete_law
    private
 
    public :: concrete_record, concrete_type, plain_concrete, confined_concrete, spalling_concrete
-   public :: concrete_stress, concrete_tangent, concrete_both
+   public :: concrete_stress, concrete_both
 
    !> Tension laws: no tension at any strain; none beyond f_t; tension stiffening f_t/(1 + sqrt(500 eps))
    !> beyond f_t (Collins and Mitchell 1987).
@@ -123,15 +123,6 @@ contains
 
       call concrete_both(law, strain, stress, tangent)
    end function concrete_stress
-
-   !> Slope of the law [Pa].
-   elemental real(wp) function concrete_tangent(law, strain) result(tangent)
-      type(concrete_type), intent(in) :: law
-      real(wp), intent(in) :: strain
-      real(wp) :: stress
-
-      call concrete_both(law, strain, stress, tangent)
-   end function concrete_tangent
 
    !> Stress and slope together, as both need the same costly power.
    elemental subroutine concrete_both(law, strain, stress, tangent)

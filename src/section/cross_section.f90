@@ -7,17 +7,13 @@ module rbs_section_cross_section
    use rbs_base_constants, only: pi
    use rbs_base_kinds, only: wp
    use rbs_section_concrete_law, only: concrete_type
-   use rbs_section_shape, only: shape_type
-   use rbs_section_shapes, only: new_core
+   use rbs_section_shape, only: new_core, shape_type
    use rbs_section_steel_law, only: steel_type
    use rbs_section_strips, only: cut_strips, strips_type
    implicit none
    private
 
    public :: section_type, transverse_type, enclose_core, slice, steel_area, hoop_area
-
-   !> Strips over the depth; 400 as in the reference values of the documentation.
-   integer, parameter, public :: default_strips = 400
 
    !> Kinds of transverse reinforcement.
    integer, parameter, public :: no_ties = 0, ties = 1, spiral = 2, circular_hoops = 3
@@ -36,7 +32,7 @@ module rbs_section_cross_section
 
    type :: section_type
       !> Outline of the concrete, and of the core between the centre lines of the hoops
-      class(shape_type), allocatable :: shape, core_shape
+      type(shape_type), allocatable :: shape, core_shape
       !> Clear cover to the outer edge of the transverse bars, at the faces y = +-depth/2 and at the sides [m]
       real(wp) :: cover = 0.0_wp, side_cover = 0.0_wp
       !> Diameter of the main bars, for hinge length and confinement [m]

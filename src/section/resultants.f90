@@ -7,7 +7,7 @@ module rbs_section_resultants
    implicit none
    private
 
-   public :: laws_type, section_laws, resultants_type, resultants, edge_strain, force_scale
+   public :: laws_type, section_laws, resultants_type, resultants, force_scale
 
    !> The laws of the concrete outside and inside the hoops.
    type :: laws_type
@@ -155,15 +155,6 @@ contains
          sums%stiffness = sums%stiffness + (tangent - slope)*section%bar_area(i)
       end do
    end subroutine add_bars
-
-   !> Strain at a distance from mid-depth.
-   elemental real(wp) function edge_strain(eps0, curvature, y)
-      real(wp), intent(in) :: eps0, curvature
-      !> [m]
-      real(wp), intent(in) :: y
-
-      edge_strain = eps0 - curvature*y
-   end function edge_strain
 
    !> Scale of the forces, to which residuals are compared [N].
    pure real(wp) function force_scale(section)

@@ -7,8 +7,7 @@ module rbs_section_section_build
    use rbs_section_cross_section, only: enclose_core, no_ties, section_type, slice, spiral, circular_hoops
    use rbs_section_section_check, only: check_section
    use rbs_section_section_record, only: find_steel, section_record
-   use rbs_section_shape, only: shape_type
-   use rbs_section_shapes, only: new_core
+   use rbs_section_shape, only: new_core, shape_type
    implicit none
    private
 
@@ -87,7 +86,7 @@ contains
       type(section_record), intent(in) :: record
       !> Whether the hoops are round although they are given as ties
       logical, intent(in) :: round
-      class(shape_type), allocatable, intent(inout) :: core
+      type(shape_type), allocatable, intent(inout) :: core
       real(wp) :: side, tie
 
       side = record%cover

@@ -17,11 +17,9 @@ module rbs_section_section_figures
       'area', 'inertia', 'shear_area', 'fc', 'ft', 'ec', 'eps0', 'n', 'decay', 'fcc', 'eps_cc', 'r', &
       'eps_cu', 'effectiveness', 'lateral_stress', 'ratio', 'width', 'depth']
 
-   !> Points of a moment-curvature diagram [1/m, N m], in the order of these events.
+   !> Points of a moment-curvature diagram [1/m, N m].
    character(len=16), parameter, public :: point_values(4) = [character(len=16) :: &
       'curvature', 'moment', 'strain', 'found']
-   character(len=16), parameter, public :: event_names(5) = [character(len=16) :: &
-      'cracking', 'yielding', 'peak', 'ultimate', 'end']
 
    !> Points of a shear diagram [1/m, N m, N]; its layers at the last point [m, Pa].
    character(len=16), parameter, public :: shear_values(4) = [character(len=16) :: &

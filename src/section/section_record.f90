@@ -8,8 +8,7 @@ module rbs_section_section_record
    use rbs_base_text, only: to_text
    use rbs_section_concrete_law, only: concrete_record
    use rbs_section_cross_section, only: no_ties, ties, spiral, circular_hoops
-   use rbs_section_shape, only: column_size, shape_type
-   use rbs_section_shapes, only: new_shape, shape_choices
+   use rbs_section_shape, only: column_size, new_shape, shape_choices, shape_type
    use rbs_section_steel_law, only: steel_record
    implicit none
    private
@@ -53,7 +52,7 @@ module rbs_section_section_record
       !> Name of the shape
       character(len=16) :: shape_name = ''
       !> Outline of the concrete with its sizes, made when the name is put
-      class(shape_type), allocatable :: shape
+      type(shape_type), allocatable :: shape
       !> Clear cover to the outer edge of the hoops, at the faces y = +-depth/2 and at the sides [m]
       real(wp) :: cover = 0.0_wp, side_cover = unset
       !> Diameter of the main bars [m]

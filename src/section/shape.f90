@@ -1,83 +1,208 @@
-!> The shape of a section: a plane figure, symmetric about mid-depth and about the direction of loading.
+!> The shape of a section: a rectangle or a circle, or one of them with a void of the same form in its middle.
 !>
 !> y runs from mid-depth. The concrete outline of a section is a shape, and so is the core that its hoops
-!> enclose. A new shape is one file with a type that extends this one, and two lines in `shapes.f90`.
+!> enclose; where there is a void, the core lies between hoops around the outside and hoops around the void,
+!> with the same cover at both. A hollow figure is the difference of two solid ones.
 module rbs_section_shape
+   use rbs_base_constants, only: pi
    use rbs_base_key_visitor, only: key_visitor
    use rbs_base_keys, only: bound_type
    use rbs_base_kinds, only: wp
    implicit none
    private
 
-   public :: shape_type
+   public :: shape_type, new_shape, new_core
+
+   character(len=16), parameter, public :: shape_names(4) = [character(len=16) :: &
+      'rectangle', 'circle', 'hollow_rectangle', 'hollow_circle']
+   !> The names as choices of a key
+   character(len=*), parameter, public :: shape_choices = 'rectangle circle hollow_rectangle hollow_circle'
 
    !> Sizes of columns [m]: a larger number was given in millimetres.
    type(bound_type), parameter, public :: column_size = &
       bound_type(0.0_wp, 50.0_wp, least_open=.true., reason='(400 mm is 0.4)')
 
-   type, abstract :: shape_type
+   type :: shape_type
       !> Sizes of the smallest rectangle around the figure: across and along the direction of loading [m]
       real(wp) :: width = 0.0_wp, depth = 0.0_wp
-      !> Whether there is a void in the middle, and whether round hoops enclose a figure of the same shape
-      logical :: hollow = .false., round = .false.
+      !> Whether it is a circle, else a rectangle; whether there is a void in the middle
+      logical :: round = .false., hollow = .false.
+      !> Thickness of the walls around the void: at the faces y = +-depth/2, and of the webs [m]
+      real(wp) :: wall = 0.0_wp, side_wall = 0.0_wp
    contains
-      !> Width at a distance from mid-depth [m]; zero outside
-      procedure(at_depth), deferred :: width_at
-      !> Integrals of the width and of y times the width between two distances from mid-depth [m2], [m3]
-      procedure(between), deferred :: area_between
-      procedure(between), deferred :: moment_between
-      !> Area [m2], second moment about mid-depth [m4]
-      procedure(figure), deferred :: area
-      procedure(figure), deferred :: second_moment
-      !> Area of an elastic section that carries shear [m2]
-      procedure(figure), deferred :: shear_area
+      procedure :: width_at
+      procedure :: area_between
+      procedure :: moment_between
+      procedure :: area
+      procedure :: second_moment
+      procedure :: shear_area
       procedure :: leg_share
-      !> Reduce the sizes, not below zero
-      procedure(reduce), deferred :: shrink
-      !> Show the sizes as keys
-      procedure(show_keys), deferred :: visit
+      procedure :: shrink
+      procedure :: visit
    end type shape_type
 
-   abstract interface
-      elemental real(wp) function at_depth(self, y)
-         import :: shape_type, wp
-         implicit none
-         class(shape_type), intent(in) :: self
-         !> Distance from mid-depth [m]
-         real(wp), intent(in) :: y
-      end function at_depth
-
-      elemental real(wp) function between(self, lo, hi)
-         import :: shape_type, wp
-         implicit none
-         class(shape_type), intent(in) :: self
-         !> Distances from mid-depth, lo <= hi [m]
-         real(wp), intent(in) :: lo, hi
-      end function between
-
-      elemental real(wp) function figure(self)
-         import :: shape_type, wp
-         implicit none
-         class(shape_type), intent(in) :: self
-      end function figure
-
-      pure subroutine reduce(self, width_by, depth_by)
-         import :: shape_type, wp
-         implicit none
-         class(shape_type), intent(inout) :: self
-         !> [m]
-         real(wp), intent(in) :: width_by, depth_by
-      end subroutine reduce
-
-      subroutine show_keys(self, v)
-         import :: key_visitor, shape_type
-         implicit none
-         class(shape_type), intent(inout) :: self
-         type(key_visitor), intent(inout) :: v
-      end subroutine show_keys
-   end interface
-
 contains
+
+   !> Make a shape by its name; of another name none is made.
+   subroutine new_shape(name, width, depth, shape)
+      !> One of `shape_names`
+      character(len=*), intent(in) :: name
+      !> Sizes across and along the direction of loading [m]; `unset` where keys will put them
+      real(wp), intent(in) :: width, depth
+      type(shape_type), allocatable, intent(out) :: shape
+
+      if (all(shape_names /= name)) return
+      shape = shape_type(width, depth, round=index(name, 'circle') > 0, hollow=index(name, 'hollow') > 0)
+   end subroutine new_shape
+
+   !> Make the shape that the hoops of an outline enclose: a round hoop encloses a circle, ties enclose a
+   !> smaller figure of the same shape.
+   subroutine new_core(outline, round, width_by, depth_by, core)
+      type(shape_type), intent(in) :: outline
+      !> Whether the hoops are round
+      logical, intent(in) :: round
+      !> Reductions of width and depth from the outline to the hoop centre lines [m]
+      real(wp), intent(in) :: width_by, depth_by
+      type(shape_type), allocatable, intent(out) :: core
+
+      core = outline
+      if (round .and. .not. outline%round) core = shape_type(outline%depth, outline%depth, round=.true.)
+      call core%shrink(width_by, depth_by)
+   end subroutine new_core
+
+   !> The void of a hollow shape, as a solid one.
+   elemental type(shape_type) function void_of(self) result(void)
+      type(shape_type), intent(in) :: self
+
+      void%round = self%round
+      void%width = max(0.0_wp, self%width - 2.0_wp*self%side_wall)
+      void%depth = max(0.0_wp, self%depth - 2.0_wp*self%wall)
+   end function void_of
+
+   !> Width at a distance from mid-depth [m]; zero outside.
+   elemental real(wp) function width_at(self, y) result(width)
+      class(shape_type), intent(in) :: self
+      !> [m]
+      real(wp), intent(in) :: y
+
+      width = solid_width(self, y)
+      if (self%hollow) width = width - solid_width(void_of(self), y)
+   end function width_at
+
+   elemental real(wp) function solid_width(self, y) result(width)
+      type(shape_type), intent(in) :: self
+      real(wp), intent(in) :: y
+
+      width = 0.0_wp
+      if (self%round) then
+         width = 2.0_wp*sqrt(max(0.0_wp, (0.5_wp*self%depth)**2 - y**2))
+      else if (abs(y) <= 0.5_wp*self%depth) then
+         width = self%width
+      end if
+   end function solid_width
+
+   !> Integral of the width between two distances from mid-depth [m2].
+   elemental real(wp) function area_between(self, lo, hi) result(area)
+      class(shape_type), intent(in) :: self
+      !> lo <= hi [m]
+      real(wp), intent(in) :: lo, hi
+
+      area = solid_area_between(self, lo, hi)
+      if (self%hollow) area = area - solid_area_between(void_of(self), lo, hi)
+   end function area_between
+
+   elemental real(wp) function solid_area_between(self, lo, hi) result(area)
+      type(shape_type), intent(in) :: self
+      real(wp), intent(in) :: lo, hi
+      real(wp) :: radius, a, b
+
+      area = 0.0_wp
+      radius = 0.5_wp*self%depth
+      if (.not. self%round) then
+         area = self%width*max(0.0_wp, min(hi, radius) - max(lo, -radius))
+      else if (radius > 0.0_wp) then
+         a = min(max(lo/radius, -1.0_wp), 1.0_wp)
+         b = min(max(hi/radius, -1.0_wp), 1.0_wp)
+         area = radius**2*((b*sqrt(1.0_wp - b**2) + asin(b)) - (a*sqrt(1.0_wp - a**2) + asin(a)))
+      end if
+   end function solid_area_between
+
+   !> Integral of y times the width between two distances from mid-depth [m3].
+   elemental real(wp) function moment_between(self, lo, hi) result(moment)
+      class(shape_type), intent(in) :: self
+      real(wp), intent(in) :: lo, hi
+
+      moment = solid_moment_between(self, lo, hi)
+      if (self%hollow) moment = moment - solid_moment_between(void_of(self), lo, hi)
+   end function moment_between
+
+   elemental real(wp) function solid_moment_between(self, lo, hi) result(moment)
+      type(shape_type), intent(in) :: self
+      real(wp), intent(in) :: lo, hi
+      real(wp) :: radius, a, b
+
+      moment = 0.0_wp
+      radius = 0.5_wp*self%depth
+      if (.not. self%round) then
+         a = max(lo, -radius)
+         b = min(hi, radius)
+         moment = 0.5_wp*(a + b)*self%width*max(0.0_wp, b - a)
+      else if (radius > 0.0_wp) then
+         a = 1.0_wp - min(max(lo/radius, -1.0_wp), 1.0_wp)**2
+         b = 1.0_wp - min(max(hi/radius, -1.0_wp), 1.0_wp)**2
+         moment = 2.0_wp/3.0_wp*radius**3*(a*sqrt(a) - b*sqrt(b))
+      end if
+   end function solid_moment_between
+
+   !> Area [m2].
+   elemental real(wp) function area(self)
+      class(shape_type), intent(in) :: self
+
+      area = solid_area(self)
+      if (self%hollow) area = area - solid_area(void_of(self))
+   end function area
+
+   elemental real(wp) function solid_area(self)
+      type(shape_type), intent(in) :: self
+
+      solid_area = merge(0.25_wp*pi*self%depth**2, self%width*self%depth, self%round)
+   end function solid_area
+
+   !> Second moment of the area about mid-depth [m4].
+   elemental real(wp) function second_moment(self)
+      class(shape_type), intent(in) :: self
+
+      second_moment = solid_second_moment(self)
+      if (self%hollow) second_moment = second_moment - solid_second_moment(void_of(self))
+   end function second_moment
+
+   elemental real(wp) function solid_second_moment(self)
+      type(shape_type), intent(in) :: self
+
+      solid_second_moment = merge(pi*self%depth**4/64.0_wp, self%width*self%depth**3/12.0_wp, self%round)
+   end function solid_second_moment
+
+   !> Area of an elastic section that carries shear [m2]: 5/6 of a rectangle, 0.9 of a circle, 5/6 of the webs
+   !> of a box over the whole depth. From 0.9 to half of the area of a thin ring, as the factor of Cowper (1966)
+   !> falls with the square of the ratio of the radii (no Poisson's ratio).
+   elemental real(wp) function shear_area(self) result(area)
+      class(shape_type), intent(in) :: self
+      type(shape_type) :: void
+      real(wp) :: m, factor
+
+      if (self%round .and. self%hollow) then
+         void = void_of(self)
+         m = 0.0_wp
+         if (self%depth > 0.0_wp) m = (void%depth/self%depth)**2
+         factor = (1.0_wp + m)**2/((1.0_wp + m)**2 + 20.0_wp/7.0_wp*m)
+         ! The factor goes from 1 to 7/12; so does this from 0.9 to 0.5.
+         area = (0.5_wp + 0.4_wp*(factor - 7.0_wp/12.0_wp)*12.0_wp/5.0_wp)*self%area()
+      else if (self%hollow) then
+         area = 5.0_wp/6.0_wp*min(2.0_wp*self%side_wall, self%width)*self%depth
+      else
+         area = merge(0.9_wp, 5.0_wp/6.0_wp, self%round)*self%area()
+      end if
+   end function shear_area
 
    !> Share of their force with which the legs of a hoop along the outline pull in the direction of loading:
    !> all of it on a straight side; sqrt(1 - (y/r)^2), the share of the width, where the hoop is round.
@@ -87,7 +212,44 @@ contains
       real(wp), intent(in) :: y
 
       leg_share = 0.0_wp
-      if (self%width > 0.0_wp) leg_share = self%width_at(min(abs(y), 0.5_wp*self%depth))/self%width
+      if (.not. merge(self%depth, self%width, self%round) > 0.0_wp) return
+      leg_share = 1.0_wp
+      if (self%round) leg_share = solid_width(self, min(abs(y), 0.5_wp*self%depth))/self%depth
    end function leg_share
+
+   !> Reduce the sizes, not below zero; a void grows as much as the outside moves inwards.
+   pure subroutine shrink(self, width_by, depth_by)
+      class(shape_type), intent(inout) :: self
+      !> [m]
+      real(wp), intent(in) :: width_by, depth_by
+
+      self%width = max(0.0_wp, self%width - width_by)
+      self%depth = max(0.0_wp, self%depth - depth_by)
+      if (self%round .and. .not. self%hollow) then
+         self%depth = min(self%width, self%depth)
+         self%width = self%depth
+      end if
+      self%wall = max(0.0_wp, self%wall - depth_by)
+      self%side_wall = max(0.0_wp, self%side_wall - width_by)
+   end subroutine shrink
+
+   !> Show the sizes as keys.
+   subroutine visit(self, v)
+      class(shape_type), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      if (self%round) then
+         call v%key('diameter', self%depth, 'm', column_size, 'diameter')
+         if (self%hollow) call v%key('wall', self%wall, 'm', column_size, 'thickness of the wall')
+         self%width = self%depth
+         self%side_wall = self%wall
+      else
+         call v%key('width', self%width, 'm', column_size, 'width, across the direction of loading')
+         call v%key('depth', self%depth, 'm', column_size, 'depth, in the direction of loading')
+         if (.not. self%hollow) return
+         call v%key('wall', self%wall, 'm', column_size, 'thickness of the walls at the faces')
+         call v%key('side_wall', self%side_wall, 'm', column_size, 'thickness of the webs')
+      end if
+   end subroutine visit
 
 end module rbs_section_shape

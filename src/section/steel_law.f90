@@ -14,7 +14,7 @@ module rbs_section_steel_law
    implicit none
    private
 
-   public :: steel_record, steel_type, steel_stress, steel_tangent, steel_both, steel_yield_strain
+   public :: steel_record, steel_type, steel_stress, steel_both, steel_yield_strain
 
    type :: steel_type
       !> Yield stress, largest stress, modulus of elasticity [Pa]
@@ -59,15 +59,6 @@ contains
 
       call steel_both(law, strain, stress, tangent)
    end function steel_stress
-
-   !> Slope of the law [Pa].
-   elemental real(wp) function steel_tangent(law, strain) result(tangent)
-      type(steel_type), intent(in) :: law
-      real(wp), intent(in) :: strain
-      real(wp) :: stress
-
-      call steel_both(law, strain, stress, tangent)
-   end function steel_tangent
 
    elemental subroutine steel_both(law, strain, stress, tangent)
       type(steel_type), intent(in) :: law

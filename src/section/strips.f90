@@ -22,7 +22,7 @@ contains
 
    !> Cut into `count` strips of equal height.
    pure subroutine cut_strips(outline, core, count, strips)
-      class(shape_type), intent(in) :: outline, core
+      type(shape_type), intent(in) :: outline, core
       integer, intent(in) :: count
       type(strips_type), intent(inout) :: strips
       real(wp) :: low(count), high(count)
@@ -37,7 +37,7 @@ contains
 
    !> Centroids of core and cover in each strip [m]; the middle of a strip that has no core, or no cover.
    pure subroutine strip_centroids(outline, core, strips, core_y, cover_y)
-      class(shape_type), intent(in) :: outline, core
+      type(shape_type), intent(in) :: outline, core
       type(strips_type), intent(in) :: strips
       real(wp), intent(out) :: core_y(:), cover_y(:)
       real(wp), dimension(size(core_y)) :: low, high, middle, moment, core_moment, cover_area
@@ -54,7 +54,7 @@ contains
 
    !> Lower and upper edge and middle of each strip [m]; those of mirrored strips differ by their sign alone.
    pure subroutine find_edges(outline, count, low, high, middle)
-      class(shape_type), intent(in) :: outline
+      type(shape_type), intent(in) :: outline
       integer, intent(in) :: count
       real(wp), intent(out) :: low(count), high(count), middle(count)
       real(wp) :: half

@@ -5,7 +5,7 @@ module test_section
    use rbs_base_error, only: analysis_failed, bad_input, error_type
    use rbs_base_kinds, only: wp
    use rbs_section_balance, only: axial_capacity, follow
-   use rbs_section_concrete_law, only: concrete_stress, concrete_tangent, concrete_type, confined_concrete, &
+   use rbs_section_concrete_law, only: concrete_both, concrete_stress, concrete_type, confined_concrete, &
                                        plain_concrete, spalling_concrete, tension_bare, tension_ts, &
                                        tension_zero
    use rbs_section_confinement, only: volumetric_ratio
@@ -14,10 +14,8 @@ module test_section
    use rbs_section_resultants, only: laws_type, resultants, resultants_type, section_laws
    use rbs_section_cross_section, only: section_type, spiral, ties
    use rbs_section_section_build, only: build_section
-   use rbs_section_shape, only: shape_type
-   use rbs_section_shape_hollow, only: hollow_type
-   use rbs_section_shapes, only: new_core, new_shape, shape_names
-   use rbs_section_steel_law, only: steel_stress, steel_tangent, steel_type
+   use rbs_section_shape, only: new_core, new_shape, shape_names, shape_type
+   use rbs_section_steel_law, only: steel_both, steel_stress, steel_type
    use rbs_section_strips, only: cut_strips, strip_centroids, strips_type
    implicit none
    private
@@ -205,17 +203,14 @@ contains
    subroutine shapes_agree(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: many = 20000
-      class(shape_type), allocatable :: shape
+      type(shape_type), allocatable :: shape
       real(wp) :: y(many), width(many), dy
       integer :: place, i
 
       do place = 1, size(shape_names)
          call new_shape(shape_names(place), 0.6_wp, 0.6_wp, shape)
-         select type (shape)
-         class is (hollow_type)
-            shape%wall = 0.12_wp
-            shape%side_wall = 0.09_wp
-         end select
+         if (shape%hollow) shape%wall = 0.12_wp
+         if (shape%hollow) shape%side_wall = 0.09_wp
          dy = shape%depth/many
          y = [(-0.5_wp*shape%depth + (i - 0.5_wp)*dy, i=1, many)]
          width = shape%width_at(y)
@@ -248,7 +243,7 @@ contains
    !> 4 r/(3 pi), and core and cover balance about mid-depth in each half.
    subroutine round_core(error)
       type(error_type), allocatable, intent(inout) :: error
-      class(shape_type), allocatable :: outline, core
+      type(shape_type), allocatable :: outline, core
       type(strips_type) :: strips
       real(wp) :: core_y(2), cover_y(2)
 
@@ -454,5 +449,22 @@ contains
                        (spring%d_c + spring%d_y)*(spring%yield%curvature/spring%ultimate%curvature)**0.4_wp, &
                        1.0e-12_wp, 0.0_wp, 'eq 7')
    end subroutine no_line
+
+   !> Slopes of the laws [Pa].
+   elemental real(wp) function concrete_tangent(law, strain) result(tangent)
+      type(concrete_type), intent(in) :: law
+      real(wp), intent(in) :: strain
+      real(wp) :: stress
+
+      call concrete_both(law, strain, stress, tangent)
+   end function concrete_tangent
+
+   elemental real(wp) function steel_tangent(law, strain) result(tangent)
+      type(steel_type), intent(in) :: law
+      real(wp), intent(in) :: strain
+      real(wp) :: stress
+
+      call steel_both(law, strain, stress, tangent)
+   end function steel_tangent
 
 end module test_section

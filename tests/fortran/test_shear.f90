@@ -13,8 +13,7 @@ module test_shear
    use rbs_section_resultants, only: section_laws
    use rbs_section_cross_section, only: section_type, slice, spiral, ties
    use rbs_section_section_build, only: build_section
-   use rbs_section_shape_hollow, only: hollow_type
-   use rbs_section_shapes, only: new_shape, shape_names
+   use rbs_section_shape, only: new_shape, shape_names
    use rbs_section_shear_diagram, only: check_curvatures, follow_shear, shear_diagram_type
    use rbs_section_shear_coupling, only: couple
    use rbs_section_shear_flow, only: begin_flow, flow_type, shear_stresses, transverse_ratio
@@ -407,11 +406,8 @@ contains
       do shape = 1, size(shape_names)
          section = sample_section()
          call new_shape(shape_names(shape), 0.55_wp, 0.55_wp, section%shape)
-         select type (outline => section%shape)
-         class is (hollow_type)
-            outline%wall = 0.15_wp
-            outline%side_wall = 0.15_wp
-         end select
+         if (section%shape%hollow) section%shape%wall = 0.15_wp
+         section%shape%side_wall = section%shape%wall
          section%bar_area = 1.0e-12_wp*section%bar_area
          call build_section(section, 0.006_wp, 400)
          call follow_shear(section, tension_ts, .false., .false., 1.0e3_wp, span, 80, 0.48_wp, [1.0e-7_wp], &
