@@ -141,7 +141,6 @@ class _Rows:
         release(self.answer)
 
 
-_NO_ROWS = np.empty((0, 0))
 _NO_CONTROL = np.zeros(2, np.int32)
 
 
@@ -171,7 +170,7 @@ def _ask(
     return Answer(
         raw[:length].decode("utf-8", errors="replace"),
         values,
-        np.asarray(holder) if rows else _NO_ROWS,
+        np.asarray(holder) if rows else np.empty((0, int(width))),
         int(status),
     )
 
@@ -253,25 +252,16 @@ def keys() -> dict[str, Any]:
 
 
 @cache
-def _names(**has: bool) -> list[str]:
+def _names() -> list[str]:
     """Return the names of what comes back, a text for each kind of it."""
-    return _evaluate("quantities", **has).text.splitlines()
+    return _evaluate("quantities").text.splitlines()
 
 
 @cache
-def quantities(
-    opens: bool, with_base: bool = False, with_openings: bool = False, with_motion: bool = False
-) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return the names of the values of a row (joints: with an asterisk) and of a summary.
-
-    `with_base`: whether the row has the forces at the base, as in time with damping;
-    `with_openings`: whether it has the openings of layered joints; `with_motion`: whether it has
-    the motion of the top.
-    """
-    names = _names(
-        opens=opens, with_base=with_base, with_openings=with_openings, with_motion=with_motion
-    )
-    return tuple(names[0].split()), tuple(names[1].split())
+def units() -> dict[str, str]:
+    """Return the units of all values that a row may hold, by name."""
+    found = (channel.partition(" ") for channel in _names()[0].rstrip(";").split(";"))
+    return {name: unit for name, _, unit in found}
 
 
 def check_spring(statement: Statement, axial_load: float) -> None:
@@ -287,13 +277,9 @@ def spring_response(statement: Statement, axial_load: float, deformation: Array)
     return answer.values
 
 
-#: Rows, the state at the end (None after a failure), summary values, the error that ended a run
-#: early, and a note on its accuracy.
-Run = tuple[Array, Array | None, dict[str, Any], SolveError | None, str]
-
-#: Number of bodies, and what the rows hold: openings of axial springs, forces at the base, openings
-#: of layered joints, motion of the top.
-Shape = tuple[int, bool, bool, bool, bool]
+#: Arrays by name in the order of the channels, the state at the end (None after a failure), summary
+#: values, the error that ended a run early, and a note on its accuracy.
+Run = tuple[dict[str, Array], Array | None, dict[str, Any], SolveError | None, str]
 
 
 def check_column(column: Statement) -> list[str]:
@@ -319,7 +305,6 @@ def mass_matrix(column: Statement, paper: bool) -> Array:
 
 def cyclic(
     column: Statement,
-    shape: Shape,
     by_force: bool,
     target: Array,
     axial_load: Array | None,
@@ -341,12 +326,11 @@ def cyclic(
         before=before,
         corners=corners,
     )
-    return _finish(shape, answer, answer.values)
+    return _finish(answer, answer.values)
 
 
 def time_history(
     column: Statement,
-    shape: Shape,
     time: Array,
     loads: Mapping[str, Array],
     initial: Array | None,
@@ -379,7 +363,7 @@ def time_history(
         tell(answer.text)
         told = True
     count = len(watches)
-    run = _finish(shape, answer, answer.values[2 * count :])
+    run = _finish(answer, answer.values[2 * count :])
     if "force" not in loads:
         for name in ("peak_force", "displacement_at_peak_force"):
             del run[2][name]
@@ -677,18 +661,18 @@ def layer_response(
     return rows[:-1], rows[-1]
 
 
-def _finish(shape: Shape, answer: Answer, values: Array) -> Run:
-    """Name the figures of a run; raise wrong input, return a failed analysis as an error."""
+def _finish(answer: Answer, values: Array) -> Run:
+    """Name arrays and figures of a run; raise wrong input, return a failed analysis as an error."""
     if answer.status not in (0, _ANALYSIS_FAILED):
         raise InputError(answer.text)
-    rows = answer.rows
-    if not rows.size:
-        bodies, *has = shape
-        names = quantities(*has)[0]
-        rows = np.empty((0, sum(bodies if name.endswith("*") else 1 for name in names)))
-    method, reason, note = answer.text.split("\n", 2)
+    method, reason, channels, note = answer.text.split("\n", 3)
+    words = channels.split()
+    arrays, at = dict[str, Array](), 0
+    for name, joints in zip(words[::2], map(int, words[1::2]), strict=True):
+        arrays[name] = answer.rows[:, at : at + joints] if joints else answer.rows[:, at]
+        at += max(joints, 1)
     error = SolveError(note) if answer.status else None
-    figures = quantities(False)[1]
+    figures = _names()[1].split()
     named: dict[str, Any] = dict(zip(figures, values.tolist(), strict=False))
     for name in _COUNTS:
         named[name] = int(named[name])
@@ -707,4 +691,4 @@ def _finish(shape: Shape, answer: Answer, values: Array) -> Run:
     named["status"] = "failed" if error else status
     after = values[len(figures) :]
     state = None if error or not after.size else after.copy()
-    return rows, state, named, error, "" if error else note
+    return arrays, state, named, error, "" if error else note

@@ -20,7 +20,7 @@ from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning
 from rbsdem.methods import IN_TIME
 from rbsdem.motions.acting import acting
 from rbsdem.motions.motion import GroundMotion
-from rbsdem.result import Result, result_from_rows
+from rbsdem.result import Result, result_from_arrays
 from rbsdem.state_file import named_state, state_of
 
 #: Names of the methods in time.
@@ -177,7 +177,6 @@ def cyclic(
     settings = settings_of(every, kept, collapse_drift=collapse_drift)
     run = _core.cyclic(
         column._statement + settings,
-        (len(column.joint_numbers), column.opens, False, kept, False),
         by_force,
         values,
         load,
@@ -332,7 +331,6 @@ def time_history(
     from_end = initial is not None and not isinstance(initial, Mapping)
     run, reached = _core.time_history(
         column._statement + settings,
-        (len(column.joint_numbers), column.opens, column.damped, kept, moves),
         times,
         loads,
         *((_NONE, False) if from_end else _initial_state(initial, column)),
@@ -419,13 +417,13 @@ def _return(
     call: dict[str, Any],
     reached: Array | None = None,
 ) -> Result:
-    rows, state, summary, error, note = run
+    arrays, state, summary, error, note = run
     summary |= about
     summary["kinematics"] = column.kinematics
     if "lost_joint" in summary:
         summary["lost_joint"] = column.joint_numbers[summary["lost_joint"] - 1]
     given = {name: value for name, value in call.items() if value is not None}
-    result = result_from_rows(rows, column, summary, given, state, reached)
+    result = result_from_arrays(arrays, column, summary, given, state, reached)
     if error is not None:
         error.result = result
         raise error

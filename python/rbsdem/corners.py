@@ -5,7 +5,7 @@ from __future__ import annotations
 from rbsdem import _core
 from rbsdem._views import view_of
 from rbsdem.analysis import settings_of
-from rbsdem.result import Result, result_from_rows
+from rbsdem.result import Result, result_from_arrays
 from rbsdem.state_file import state_of
 
 
@@ -15,10 +15,8 @@ def path_of(result: Result) -> Result:
     column, call = result.column, result.call
     by_force = result.summary["driven"] == "force"
     values = call["force" if by_force else "displacement"]
-    openings = not column.opens
     run = _core.cyclic(
-        column._statement + settings_of(None, openings, collapse_drift=call.get("collapse_drift")),
-        (len(column.joint_numbers), column.opens, False, openings, False),
+        column._statement + settings_of(None, True, collapse_drift=call.get("collapse_drift")),
         by_force,
         values,
         call.get("axial_load"),
@@ -26,6 +24,6 @@ def path_of(result: Result) -> Result:
         corners=True,
     )
     # Where the path broke off, the result has been told of it.
-    path = result_from_rows(run[0], column, result.summary, call, result.state)
+    path = result_from_arrays(run[0], column, result.summary, call, result.state)
     vars(path)["_is_path"] = True
     return path

@@ -131,6 +131,8 @@ class Result:
         The column.
     call : dict
         The loading and the settings that were given, as keywords of `cyclic` or `time_history`.
+    channels : tuple of str
+        Names of the quantities that the rows hold, in the order of the executable's csv.
     case : Case or None
         The case that was run; None if the analysis was called for the column.
     state : ndarray or None
@@ -165,6 +167,7 @@ class Result:
     top: Array
     column: Column
     call: dict[str, Any]
+    channels: tuple[str, ...]
     case: Case | None = None
     rest: Array | None = None
     state: Array | None = None
@@ -609,58 +612,38 @@ def _last_zero(displacement: Array, force: Array) -> float:
     return float(displacement[row] + share * (displacement[row + 1] - displacement[row]))
 
 
-def _width(column: Column, with_base: bool) -> int:
-    """Return the number of values in a row without the openings of layered joints."""
-    names = _core.quantities(column.opens, with_base)[0]
-    return sum(len(column.joint_numbers) if name.endswith("*") else 1 for name in names)
-
-
-def result_from_rows(
-    rows: Array,
+def result_from_arrays(
+    arrays: dict[str, Array],
     column: Column,
     summary: dict[str, Any],
     call: dict[str, Any],
     state: Array | None = None,
     reached: Array | None = None,
 ) -> Result:
-    """Return the result whose arrays are views of rows of the Fortran part."""
-    values: dict[str, Array] = {}
-    at = 0
-    with_base = column.damped and summary["analysis"] == "dynamic"
-    joints = len(column.joint_numbers)
-    # Openings are an even number of values, the motion of the top is three.
-    more = rows.shape[1] - _width(column, with_base)
-    with_motion = more % 2 == 1
-    with_openings = more > (3 if with_motion else 0)
-    for name in _core.quantities(column.opens, with_base, with_openings, with_motion)[0]:
-        if name.endswith("*"):
-            values[name[:-1]] = rows[:, at : at + joints]
-            at += joints
-        else:
-            values[name] = rows[:, at]
-            at += 1
+    """Return the result of the arrays of a run."""
     motion = None
-    if with_motion:
+    if "velocity" in arrays:
         names = ("velocity", "acceleration", "ground_acceleration")
-        motion = np.column_stack([values[name] for name in names])
+        motion = np.column_stack([arrays[name] for name in names])
     return Result(
-        time=values["time"],
-        displacement=values["displacement"],
-        force=values["force"],
-        slip=values["slip"],
-        rotation=values["rotation"],
-        shear=values["shear"],
-        moment=values["moment"],
-        base_shear=values.get("base_shear", values["shear"][:, 0]),
-        base_moment=values.get("base_moment", values["moment"][:, 0]),
-        energy={name: values[name] for name in ENERGIES},
+        time=arrays["time" if "time" in arrays else "step"],
+        displacement=arrays["displacement"],
+        force=arrays["force"],
+        slip=arrays["slip"],
+        rotation=arrays["rotation"],
+        shear=arrays["shear"],
+        moment=arrays["moment"],
+        base_shear=arrays.get("base_shear", arrays["shear"][:, 0]),
+        base_moment=arrays.get("base_moment", arrays["moment"][:, 0]),
+        energy={name: arrays[name] for name in ENERGIES},
         summary=summary,
-        opening=values.get("opening", np.zeros(values["slip"].shape)),
-        axial_force=values.get("axial_force"),
-        rest=values.get("rest"),
-        top=np.column_stack((values["displacement"], values["top_height"])),
+        opening=arrays.get("opening", np.zeros(arrays["slip"].shape)),
+        axial_force=arrays.get("axial_force"),
+        rest=arrays.get("rest"),
+        top=np.column_stack((arrays["displacement"], arrays["top_height"])),
         column=column,
         call=call,
+        channels=tuple(arrays),
         state=state,
         motion=motion,
         reached=reached,

@@ -18,7 +18,7 @@ module rbs_app_commands
    use rbs_io_state_file, only: read_state, write_state
    use rbs_io_posix, only: is_standard_output, same_file, standard_input
    use rbs_output_notes, only: column_notes, drift_note, rotation_note
-   use rbs_output_row, only: row_labels
+   use rbs_output_channels, only: new_channels
    use rbs_output_summary, only: summary_type, summary_names, summary_units
    use rbs_solve_end_state, only: end_state
    use rbs_solve_make_column, only: make_column
@@ -97,8 +97,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(len=:), allocatable :: place
 
-      place = 'step '//to_text(nint(recorder%last_time))
-      if (case%analysis%dynamic()) place = 'time '//to_text(recorder%last_time)//' s'
+      place = 'step '//to_text(nint(summary%last_time))
+      if (case%analysis%dynamic()) place = 'time '//to_text(summary%last_time)//' s'
       call fatal_error(error, column_collapsed, 'collapsed at '//place//': the top is at '// &
                        to_text(summary%peak_displacement)//' m, beyond collapse_drift = '// &
                        to_text(case%analysis%collapse_drift)//' of the height; the rows up to there '// &
@@ -113,8 +113,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(len=:), allocatable :: place, fate
 
-      place = 'step '//to_text(nint(recorder%last_time))
-      if (case%analysis%dynamic()) place = 'time '//to_text(recorder%last_time)//' s'
+      place = 'step '//to_text(nint(summary%last_time))
+      if (case%analysis%dynamic()) place = 'time '//to_text(summary%last_time)//' s'
       fate = ', and the joint would fall without end'
       if (summary%fall%rests) then
          fate = ', and the joint would rest after '//to_text(abs(summary%fall%drop))//' m'
@@ -235,7 +235,6 @@ contains
       type(time_plan) :: plan
       type(initial_state) :: at_rest
       type(end_state) :: before, after
-      character(len=32), allocatable :: labels(:)
 
       plan%method = 'static'
       if (allocated(case%analysis%initial)) then
@@ -249,15 +248,12 @@ contains
          if (.not. quiet) call warn_of_long_run(column, plan)
       end if
       recorder%units = case%units%system()
-      recorder%openings = case%output%openings .and. .not. column%opens
-      recorder%motion = case%output%motion .and. case%analysis%dynamic()
-      call row_labels(column%n, column%opens, case%analysis%dynamic(), &
-                      case%analysis%dynamic() .and. column%damped, recorder%openings, recorder%units, &
-                      labels, recorder%si, merge(0, 1, column%footing), recorder%motion)
+      recorder%channels = new_channels(column, case%analysis%dynamic(), case%output%openings, &
+                                       case%output%motion)
       call recorder%open(path, error)
       if (allocated(error)) return
       call remove_if_stopped(recorder%file%own)
-      call recorder%write_head(header(case, plan%method), labels, error)
+      call recorder%write_head(header(case, plan%method), error)
       if (allocated(error)) return
       call progress%start(quiet)
       if (case%analysis%dynamic()) then

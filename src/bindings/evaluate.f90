@@ -22,7 +22,7 @@ module rbs_bindings_evaluate
    use rbs_loading_protocol, only: protocol_values
    use rbs_loading_spectrum, only: response_spectrum
    use rbs_output_notes, only: column_notes
-   use rbs_output_row, only: row_quantities
+   use rbs_output_channels, only: channel_units
    use rbs_output_summary, only: figure_names
    use rbs_section_flexural_spring, only: spring_figures
    use rbs_section_section_figures, only: layer_values, point_values, profile_values, section_figures, &
@@ -53,7 +53,7 @@ contains
          call keys_as_json(buffer)
          answer%text = buffer%text(:buffer%length)
       case ('quantities')
-         call name_quantities(request, answer)
+         call name_quantities(answer)
       case ('check_spring', 'spring_response')
          call evaluate_spring(request, answer)
       case ('check_column', 'modes', 'mass_matrix')
@@ -82,18 +82,15 @@ contains
       end select
    end subroutine evaluate
 
-   !> Names of the values that come back, a line each: values of a row, `slip*` for one a joint, figures of a
+   !> Names of the values that come back, a line each: values of rows with their units, figures of a
    !> run, measures of a run of an ensemble; then what belongs to a section.
-   subroutine name_quantities(request, answer)
-      type(request_type), intent(in) :: request
+   subroutine name_quantities(answer)
       type(answer_type), intent(inout) :: answer
       character(len=1), parameter :: line = new_line('a')
 
-      answer%text = trim(row_quantities(request%wants('opens'), request%wants('with_base'), &
-                                        request%wants('with_openings'), request%wants('with_motion')))//line// &
-                    trim(figure_names())//line//trim(measure_names())//line//list_of(section_figures)//line// &
-                    list_of(spring_figures)//line//list_of(point_values)//line//list_of(shear_values)//line// &
-                    list_of(profile_values)//line//list_of(layer_values)
+      answer%text = trim(channel_units())//line//trim(figure_names())//line//trim(measure_names())//line// &
+                    list_of(section_figures)//line//list_of(spring_figures)//line//list_of(point_values)//line// &
+                    list_of(shear_values)//line//list_of(profile_values)//line//list_of(layer_values)
    end subroutine name_quantities
 
    !> Whether the rule allows a spring, or the forces of a virgin one along a path of deformations.

@@ -11,6 +11,7 @@ module rbs_bindings_runs
    use rbs_case_case_record, only: case_record
    use rbs_column_column, only: column_type
    use rbs_loading_signal, only: signal_type
+   use rbs_output_channels, only: new_channels
    use rbs_output_notes, only: rotation_note
    use rbs_output_recorder, only: array_recorder
    use rbs_output_summary, only: summary_type
@@ -45,8 +46,8 @@ contains
 
    !> A static path or a response in time. Rows: those of the run. Values: when each of the `watches` is reached
    !> first [s] and the displacement of the top then [m], not numbers where it is not; figures of the run; the
-   !> state at its end, if there is one. The text is the method, the reason for it and a note on a run that
-   !> succeeded, with line ends between.
+   !> state at its end, if there is one. The text is the method, the reason for it, the channels of the rows
+   !> and a note on a run that succeeded, with line ends between.
    subroutine run_analysis(request, answer)
       type(request_type), intent(in) :: request
       type(answer_type), intent(inout) :: answer
@@ -58,6 +59,10 @@ contains
       call run%sight%watch_for(watches_of(watches), size(watches)/6)
       call column_from_statements(request%statement, request%number, run%column, run%case, answer%error)
       if (.not. allocated(answer%error)) then
+         associate (output => run%case%output)
+            run%recorder%channels = new_channels(run%column, request%what /= 'cyclic', output%openings, &
+                                                 output%motion)
+         end associate
          call take_from(request%array('before'), run%task%before)
          if (request%what == 'cyclic') then
             call run_cyclic(request, run, answer%error)
@@ -71,6 +76,7 @@ contains
       else if (answer%error%code /= analysis_failed) then
          return
       end if
+      if (run%recorder%count == 0) allocate (run%recorder%rows(run%recorder%channels%width, 0))
       call move_alloc(run%recorder%rows, answer%rows)
       answer%kept = run%recorder%count
       associate (sight => run%sight)
@@ -83,7 +89,8 @@ contains
       if (run%task%after%is_given()) then
          answer%value = [answer%value, run%task%after%stream%value(:run%task%after%stream%count)]
       end if
-      answer%text = trim(run%task%summary%method)//new_line('a')//trim(run%task%summary%reason)//new_line('a')//note
+      answer%text = trim(run%task%summary%method)//new_line('a')//trim(run%task%summary%reason)//new_line('a')// &
+                    trim(run%recorder%channels%names())//new_line('a')//note
    end subroutine run_analysis
 
    !> Static path through the `target`s.
@@ -98,7 +105,6 @@ contains
       if (allocated(error)) return
       target => request%array('target')
       associate (every => run%case%output%every)
-         run%recorder%openings = run%case%output%openings .and. .not. run%column%opens
          run%recorder%corners = request%wants('corners')
          run%recorder%expected = kept_rows(size(target), every)
          run%task%recorder => run%recorder
@@ -184,8 +190,6 @@ contains
             initial%velocity = start(column%unknowns + 1:)
             initial%opening_given = request%wants('opening_given')
          end if
-         run%recorder%motion = output%motion
-         run%recorder%openings = output%openings .and. .not. column%opens
          run%recorder%expected = plan%rows(output%every)
          call run_dynamic(column, analysis, plan, time, loads, initial, output%every, run%recorder, &
                           run%task%summary, error, before=run%task%before, after=run%task%after, sight=run%sight)

@@ -5,7 +5,6 @@ module rbs_io_csv
    use rbs_base_units, only: unit_system
    use rbs_io_output_file, only: output_file
    use rbs_output_recorder, only: recorder_type
-   use rbs_output_row, only: row_time
    implicit none
    private
 
@@ -17,12 +16,10 @@ module rbs_io_csv
    type, extends(recorder_type) :: csv_recorder
       !> Rows written so far
       integer :: count = 0
-      !> First value of the last row: time [s], or number of the point
-      real(wp) :: last_time = 0.0_wp
       type(output_file) :: file
       !> Units of the file, and the SI units of the values of a row (values of a row)
       type(unit_system) :: units
-      character(len=4), allocatable :: si(:)
+      character(len=4), allocatable, private :: si(:)
       character(len=:), allocatable, private :: buffer
    contains
       procedure :: open => open_csv
@@ -45,13 +42,12 @@ contains
    end subroutine open_csv
 
    !> Write comment lines, then the names of the columns.
-   subroutine write_head(self, comments, labels, error)
+   subroutine write_head(self, comments, error)
       class(csv_recorder), intent(inout) :: self
       !> Lines of the header, without the mark of a comment
       character(len=*), intent(in) :: comments(:)
-      !> Names of the columns
-      character(len=*), intent(in) :: labels(:)
       type(error_type), allocatable, intent(out) :: error
+      character(len=32), allocatable :: labels(:)
       character(len=:), allocatable :: line
       integer :: i
 
@@ -59,6 +55,7 @@ contains
          call put_line(self, '# '//trim(comments(i)), error)
          if (allocated(error)) return
       end do
+      call self%channels%get_labels(self%units, labels, self%si)
       line = trim(labels(1))
       do i = 2, size(labels)
          line = line//','//trim(labels(i))
@@ -89,7 +86,6 @@ contains
       end do
       call put_line(self, self%buffer(:at - 1), error)
       self%count = self%count + 1
-      self%last_time = row(row_time)
    end subroutine record
 
    subroutine put_line(self, line, error)

@@ -2,24 +2,26 @@
 module rbs_output_recorder
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
+   use rbs_hysteresis_springs, only: spring_array
+   use rbs_output_channels, only: channel_list, response_type
    implicit none
    private
 
    public :: recorder_type, array_recorder
 
    type, abstract :: recorder_type
-      !> Whether the rows hold the openings of layered joints
-      logical :: openings = .false.
-      !> Whether the rows of an analysis in time hold how the top moves
-      logical :: motion = .false.
+      !> What a row holds; where this is not set no rows are kept
+      type(channel_list) :: channels
       !> Whether a static path has rows at its corners too, where a spring leaves its line between two targets
       logical :: corners = .false.
+      real(wp), allocatable, private :: row(:)
    contains
+      procedure :: keep
       procedure(record_interface), deferred :: record
    end type recorder_type
 
    abstract interface
-      !> Take one kept row; the order of its values is that of `rbs_output_row`.
+      !> Take one row, in the order of the channels.
       subroutine record_interface(self, row, error)
          import :: recorder_type, error_type, wp
          implicit none
@@ -40,6 +42,22 @@ module rbs_output_recorder
    end type array_recorder
 
 contains
+
+   !> Make a row of a response and keep it.
+   subroutine keep(self, response, springs, deformation, error)
+      class(recorder_type), intent(inout) :: self
+      type(response_type), intent(in) :: response
+      type(spring_array), intent(in) :: springs
+      !> Deformations of the springs [m, rad]
+      real(wp), intent(in), contiguous :: deformation(:)
+      type(error_type), allocatable, intent(inout) :: error
+
+      if (self%channels%width == 0) return
+      if (.not. allocated(self%row)) allocate (self%row(0))
+      if (size(self%row) /= self%channels%width) self%row = spread(0.0_wp, 1, self%channels%width)
+      call self%channels%fill(response, springs, deformation, self%row)
+      call self%record(self%row, error)
+   end subroutine keep
 
    subroutine record(self, row, error)
       class(array_recorder), intent(inout) :: self

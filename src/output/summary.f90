@@ -3,7 +3,7 @@ module rbs_output_summary
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_layered_fibre_fall, only: layer_fall
-   use rbs_output_row, only: row_input, row_kinetic, row_spring, row_damping, row_residual
+   use rbs_output_channels, only: energy_type
    implicit none
    private
 
@@ -45,8 +45,10 @@ module rbs_output_summary
       integer :: steps = 0, rows = 0, events = 0
       !> Time step and stability limit of the scheme [s]; 0 in a static analysis
       real(wp) :: time_step = 0.0_wp, stable_step = 0.0_wp
-      !> Energies at the end [J]
-      real(wp) :: input = 0.0_wp, spring = 0.0_wp, damping = 0.0_wp
+      !> Time [s] or number of the last row kept, and the displacement of the top there [m]
+      real(wp) :: last_time = 0.0_wp, last_displacement = 0.0_wp
+      !> Energies at the end
+      type(energy_type) :: energy
       !> Steps that were cut: at an event, for accuracy, or because they did not converge
       integer :: cut_steps = 0
       !> Whether the analysis ended where the user's criterion of collapse was met
@@ -63,7 +65,6 @@ module rbs_output_summary
       !> times of the loading (in time)
       real(wp) :: residual = 0.0_wp, largest = 0.0_wp
    contains
-      procedure :: see_fall
       procedure :: see_energies
       procedure :: as_array
    end type summary_type
@@ -110,25 +111,14 @@ contains
       self%peak_floor_acceleration = max(self%peak_floor_acceleration, abs(acceleration))
    end subroutine see_floor
 
-   !> Take the fall of the joint that lost its axial load into account.
-   pure subroutine see_fall(self, fall)
-      class(summary_type), intent(inout) :: self
-      type(layer_fall), intent(in) :: fall
-
-      self%fall = fall
-   end subroutine see_fall
-
    !> Take the energies of a moment into account; those of the last one stay.
-   pure subroutine see_energies(self, row)
+   pure subroutine see_energies(self, energy)
       class(summary_type), intent(inout) :: self
-      !> Values as in `rbs_output_row`
-      real(wp), intent(in) :: row(:)
+      type(energy_type), intent(in) :: energy
 
-      self%input = row(row_input)
-      self%spring = row(row_spring)
-      self%damping = row(row_damping)
-      self%residual = max(self%residual, abs(row(row_residual)))
-      self%largest = max(self%largest, abs(row(row_input)), row(row_kinetic) + row(row_spring))
+      self%energy = energy
+      self%residual = max(self%residual, abs(energy%residual))
+      self%largest = max(self%largest, abs(energy%input), energy%kinetic + energy%spring)
    end subroutine see_energies
 
    !> The figures in the order of `summary_names`.
@@ -138,7 +128,7 @@ contains
 
       values = [real(self%steps, wp), real(self%rows, wp), real(self%events, wp), self%time_step, &
                 self%stable_step, self%peak_displacement, self%peak_force, self%displacement_at_peak, &
-                self%peak_base_shear, self%input, self%spring, self%damping, self%residual, &
+                self%peak_base_shear, self%energy%input, self%energy%spring, self%energy%damping, self%residual, &
                 self%residual/max(self%largest, tiny(1.0_wp)), self%peak_rotation, &
                 self%peak_floor_acceleration, real(self%cut_steps, wp), &
                 merge(1.0_wp, 0.0_wp, self%collapsed), real(self%lost_joint, wp), self%fall%axial_load, &

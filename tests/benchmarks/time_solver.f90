@@ -17,8 +17,8 @@ program time_solver
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
    use rbs_hysteresis_springs, only: follow_path, spring_array
+   use rbs_output_channels, only: new_channels
    use rbs_output_recorder, only: array_recorder
-   use rbs_output_row, only: row_size
    use rbs_output_summary, only: summary_type
    use rbs_solve_make_column, only: make_column
    use rbs_solve_static_run_static, only: run_static
@@ -248,7 +248,8 @@ contains
 
       call make_paper_column(column, 'pdelta', 1)
       allocate (x(m), source=wave(m, 20, 0.05_wp))
-      allocate (recorder%rows(row_size(column%unknowns), m))
+      recorder%channels = new_channels(column, .false., .false., .false.)
+      recorder%expected = m
       call cpu_time(begin)
       task%recorder => recorder
       call run_static(column, .false., x, task, error)
@@ -302,7 +303,8 @@ contains
 
       call plan_dynamic(column, analysis, loads%force%time, loads, plan, error)
       if (allocated(error)) call give_up(error)
-      allocate (recorder%rows(row_size(column%unknowns), plan%rows(1000)))
+      recorder%channels = new_channels(column, .true., .false., .false.)
+      recorder%expected = plan%rows(1000)
       call cpu_time(begin)
       call run_dynamic(column, analysis, plan, loads%force%time, loads, rest, 1000, recorder, summary, error)
       call cpu_time(finish)
@@ -372,7 +374,8 @@ contains
 
       call make_bilinear_column(column, 1, 1.0_wp)
       allocate (x(points), source=wave(points, 20, 0.05_wp))
-      allocate (recorder%rows(row_size(column%unknowns), points/1000 + 2))
+      recorder%channels = new_channels(column, .false., .false., .false.)
+      recorder%expected = points/1000 + 2
       call cpu_time(begin)
       task%recorder => recorder
       task%every = 1000

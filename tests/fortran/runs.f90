@@ -9,8 +9,8 @@ module runs
    use rbs_column_column, only: column_type
    use rbs_loading_signal, only: signal_type
    use rbs_column_energy, only: kinetic_energy, potential_energy
+   use rbs_output_channels, only: new_channels
    use rbs_output_recorder, only: array_recorder
-   use rbs_output_row, only: row_size, row_joints
    use rbs_output_summary, only: summary_type
    use rbs_loading_loads, only: loads_type
    use rbs_solve_time_located, only: located_stepper
@@ -24,6 +24,7 @@ module runs
    use rbs_column_column_record, only: column_record
    use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: bilinear, chain, column_1, made, random_type, d_c, k_c
+   use row_places, only: row_joints
    implicit none
    private
 
@@ -68,7 +69,8 @@ contains
       loads = loads_of(data)
       call plan_dynamic(column, data%analysis, data%time, loads, data%plan, data%outcome)
       if (allocated(data%outcome)) return
-      allocate (recorder%rows(row_size(column%unknowns, column%damped), data%plan%rows(data%every)))
+      recorder%channels = new_channels(column, .true., .false., .false.)
+      recorder%expected = data%plan%rows(data%every)
       call run_dynamic(column, data%analysis, data%plan, data%time, loads, data%initial, data%every, &
                        recorder, data%summary, data%outcome)
       data%rows = recorder%rows(:, :recorder%count)

@@ -10,9 +10,8 @@ module test_history
    use rbs_column_energy, only: kinetic_energy, potential_energy
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_output_observer, only: observer_type
+   use rbs_output_channels, only: new_channels
    use rbs_output_recorder, only: array_recorder, recorder_type
-   use rbs_output_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
-                              row_spring, row_damping, row_axial, row_residual, row_joints
    use rbs_output_summary, only: summary_type
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_solve_static_run_static, only: run_static
@@ -26,6 +25,8 @@ module test_history
    use rbs_column_column_record, only: column_record
    use runs, only: run_data, run, times, last_deformation
    use samples, only: chain, column_1, elastic, made, random_type, d_y, k_u, mass_1, height_1
+   use row_places, only: row_time, row_displacement, row_force, row_input, row_kinetic, row_spring, &
+                         row_damping, row_axial, row_residual, row_joints
    implicit none
    private
 
@@ -320,6 +321,7 @@ contains
             plan%steps = steps
             plan%finish = steps*plan%dt
             recorder = array_recorder()
+            recorder%channels = new_channels(column, .true., .false., .false.)
             stepper = rk4_stepper()
             call stepper%scheme%create(column)
             call march(column, plan, stepper, [0.0_wp, plan%finish], none, start, unset, steps, recorder, &
@@ -545,6 +547,7 @@ contains
          call check_passed(error, data%outcome, 'run')
          if (allocated(error)) return
          recorder = array_recorder()
+         recorder%channels = new_channels(made(spec), .false., .false., .false.)
          task%recorder => recorder
          task%every = 1
          call run_static(made(spec), .true., data%force, task, outcome)
@@ -673,6 +676,7 @@ contains
       data%time = times(5, 0.25_wp)
       call plan_dynamic(column, data%analysis, data%time, none, plan, outcome)
       call check_passed(error, outcome, 'plan')
+      recorder%channels = new_channels(column, .true., .false., .false.)
       call run_dynamic(column, data%analysis, plan, data%time, none, data%initial, unset_integer, recorder, &
                        summary, outcome)
       call check_failed(error, outcome, analysis_failed, 'disk full at 0.5 s')

@@ -5,11 +5,12 @@ module test_results
    use rbs_base_error, only: error_type, fatal_error
    use rbs_base_kinds, only: wp
    use rbs_base_units, only: unit_system
+   use rbs_column_column_record, only: column_record
+   use rbs_output_channels, only: channel_list, energy_type, new_channels
    use rbs_output_recorder, only: array_recorder
-   use rbs_output_row, only: row_size, row_labels, row_time, row_displacement, row_force, row_input, &
-                              row_kinetic, row_spring, row_damping, row_axial, row_residual, row_top, &
-                              row_joints
    use rbs_output_summary, only: summary_type, summary_size, summary_names
+   use samples, only: chain, made, random_type, rich_column
+   use row_places, only: row_time, row_displacement, row_force, row_residual, row_top, row_joints
    implicit none
    private
 
@@ -20,8 +21,7 @@ contains
    subroutine collect_results(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
-      tests = [unit_test('columns of a row are all different and fill it', places), &
-               unit_test('labels carry joint and unit', labels), &
+      tests = [unit_test('labels carry joint and unit', labels), &
                unit_test('labels of joints that open', labels_of_openings), &
                unit_test('recorder keeps rows until it is full', recorder), &
                unit_test('recorder keeps nothing after an error', recorder_after_error), &
@@ -30,49 +30,52 @@ contains
                unit_test('summary as an array, in the order of its names', as_array)]
    end subroutine collect_results
 
-   subroutine places(error)
-      type(error_type), allocatable, intent(inout) :: error
-      integer :: i
-      integer, parameter :: all_places(11) = [row_time, row_displacement, row_force, row_input, &
-                                              row_kinetic, row_spring, row_damping, row_axial, &
-                                              row_residual, row_top, row_joints]
-
-      do i = 1, 11
-         call check_equal(error, all_places(i), i, 'place')
-      end do
-      call check_equal(error, row_size(2), 14, 'one body')
-      call check_equal(error, row_size(3), 16, 'one body that opens')
-      call check_equal(error, row_size(100), 210, 'fifty bodies')
-   end subroutine places
-
    subroutine labels(error)
       type(error_type), allocatable, intent(inout) :: error
+      type(channel_list) :: channels
+      type(column_record) :: spec
       character(len=32), allocatable :: label(:)
       character(len=4), allocatable :: si(:)
       type(unit_system) :: units
 
-      call row_labels(12, .false., .true., .false., .false., units, label, si)
-      call check_equal(error, size(label), row_size(24), 'number of labels')
+      spec = chain(12, 'small')
+      channels = new_channels(made(spec), .true., .false., .false.)
+      call channels%get_labels(units, label, si)
+      call check_equal(error, size(label), row_joints + 4*12 - 1, 'number of labels')
       call check_equal(error, trim(label(row_time)), 'time_s', 'dynamic')
+      call check_equal(error, trim(label(row_displacement)), 'displacement_m', 'displacement')
+      call check_equal(error, trim(label(row_force)), 'force_N', 'force')
       call check_equal(error, trim(label(row_residual)), 'residual_J', 'residual')
       call check_equal(error, trim(label(row_top)), 'top_height_m', 'height of the top')
       call check_equal(error, trim(label(row_joints)), 'slip_1_m', 'first slip')
       call check_equal(error, trim(label(row_joints + 12)), 'rotation_1_rad', 'first rotation')
       call check_equal(error, trim(label(row_joints + 35)), 'shear_12_N', 'last shear')
       call check_equal(error, trim(label(row_joints + 47)), 'moment_12_Nm', 'last moment')
-      call row_labels(1, .false., .false., .false., .false., units, label, si)
+      channels = new_channels(made(spec), .false., .false., .true.)
+      call channels%get_labels(units, label, si)
       call check_equal(error, trim(label(row_time)), 'step', 'static')
+      call check_equal(error, size(label), row_joints + 4*12 - 1, 'nothing moves')
+      spec%damping%mass = 1.0_wp
+      channels = new_channels(made(spec), .true., .true., .true.)
+      call channels%get_labels(units, label, si)
+      call check_equal(error, trim(label(row_joints + 49)), 'base_moment_Nm', 'forces at the base')
+      call check_equal(error, trim(label(row_joints + 52)), 'ground_acceleration_m/s2', 'motion')
+      call check_equal(error, trim(label(row_joints + 53)), 'opening_1_m', 'opening of a layered joint')
+      call check_equal(error, trim(label(size(label))), 'rest_12_rad', 'rotation at rest')
    end subroutine labels
 
    subroutine labels_of_openings(error)
       type(error_type), allocatable, intent(inout) :: error
+      type(channel_list) :: channels
       character(len=32), allocatable :: label(:)
       character(len=4), allocatable :: si(:)
       type(unit_system) :: units
+      type(random_type) :: random
       integer :: i, j
 
-      call row_labels(12, .true., .true., .false., .false., units, label, si)
-      call check_equal(error, size(label), row_size(36), 'number of labels')
+      channels = new_channels(made(rich_column(12, 'small', .true., random)), .true., .true., .false.)
+      call channels%get_labels(units, label, si)
+      call check_equal(error, size(label), row_joints + 6*12 - 1, 'number of labels')
       call check_equal(error, trim(label(row_joints + 23)), 'rotation_12_rad', 'last rotation')
       call check_equal(error, trim(label(row_joints + 24)), 'opening_1_m', 'first opening')
       call check_equal(error, trim(label(row_joints + 35)), 'opening_12_m', 'last opening')
@@ -111,20 +114,12 @@ contains
       call check_true(error, allocated(outcome), 'the error is still there')
    end subroutine recorder_after_error
 
-   !> A row with a displacement, a force, and energies that all differ.
-   pure function row_of(displacement, force, residual) result(row)
-      real(wp), intent(in) :: displacement, force, residual
-      real(wp) :: row(14)
+   !> Energies that all differ.
+   pure type(energy_type) function energy_of(input, residual) result(energy)
+      real(wp), intent(in) :: input, residual
 
-      row = 0.0_wp
-      row(row_displacement) = displacement
-      row(row_force) = force
-      row(row_input) = 10.0_wp*force
-      row(row_kinetic) = 1.0_wp
-      row(row_spring) = 2.0_wp
-      row(row_damping) = 3.0_wp
-      row(row_residual) = residual
-   end function row_of
+      energy = energy_type(input=input, kinetic=1.0_wp, spring=2.0_wp, damping=3.0_wp, residual=residual)
+   end function energy_of
 
    subroutine peaks(error)
       type(error_type), allocatable, intent(inout) :: error
@@ -144,10 +139,10 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(summary_type) :: summary
 
-      call summary%see_energies(row_of(0.1_wp, 5.0_wp, 1.0e-9_wp))
-      call summary%see_energies(row_of(-0.3_wp, -4.0_wp, -2.0e-9_wp))
-      call summary%see_energies(row_of(0.2_wp, -6.0_wp, 0.0_wp))
-      call check_same(error, [summary%input, summary%spring, summary%damping], [-60.0_wp, 2.0_wp, 3.0_wp], &
+      call summary%see_energies(energy_of(50.0_wp, 1.0e-9_wp))
+      call summary%see_energies(energy_of(-40.0_wp, -2.0e-9_wp))
+      call summary%see_energies(energy_of(-60.0_wp, 0.0_wp))
+      call check_same(error, [summary%energy%input, summary%energy%spring, summary%energy%damping], [-60.0_wp, 2.0_wp, 3.0_wp], &
                       'energies at the end')
       call check_same(error, summary%residual, 2.0e-9_wp, 'largest residual')
       call check_same(error, summary%largest, 60.0_wp, 'largest energy')
@@ -168,7 +163,7 @@ contains
       summary%steps = 7
       summary%stable_step = 0.5_wp
       call summary%see_peak(0.1_wp, 5.0_wp)
-      call summary%see_energies(row_of(0.1_wp, 5.0_wp, 1.0e-9_wp))
+      call summary%see_energies(energy_of(50.0_wp, 1.0e-9_wp))
       values = summary%as_array()
       call check_same(error, values(named('steps')), 7.0_wp, 'steps')
       call check_same(error, values(named('stable_step')), 0.5_wp, 'stable step')

@@ -9,9 +9,8 @@ module test_run
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
+   use rbs_output_channels, only: new_channels
    use rbs_output_recorder, only: array_recorder
-   use rbs_output_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
-                              row_spring, row_damping, row_axial, row_residual, row_top, row_joints
    use rbs_output_summary, only: summary_type
    use rbs_loading_loads, only: loads_type
    use rbs_solve_time_located, only: located_stepper
@@ -23,6 +22,8 @@ module test_run
    use rbs_column_column_record, only: column_record
    use runs, only: run_data, run, times, new_located
    use samples, only: bilinear, chain, column_1, compression, elastic, made, k_c, k_u, height_1
+   use row_places, only: row_time, row_displacement, row_force, row_input, row_kinetic, row_spring, &
+                         row_damping, row_axial, row_residual, row_top, row_joints
    implicit none
    private
 
@@ -176,7 +177,7 @@ contains
       integer :: level, method
 
       ! Of a damped column: with shear and moment at the base.
-      allocate (unit(row_size(9, .true.)))
+      allocate (unit(row_joints + 2*9 + 1))
       unit(row_time) = time
       unit(row_displacement) = length
       unit(row_force) = mass*length/time**2
@@ -681,6 +682,7 @@ contains
          call new_plan(plan, [0.0_wp, 1.0_wp], 0.125_wp, 1.0_wp, 1.0_wp, outcome)
          call check_passed(error, outcome, 'plan')
          recorder = array_recorder()
+         recorder%channels = new_channels(made(column_1('small')), .true., .false., .false.)
          summary = summary_type()
          stepper = failing_stepper()
          call march(made(column_1('small')), plan, stepper, [0.0_wp, 1.0_wp], none, rest, unset, every, &

@@ -9,9 +9,8 @@ module test_static
    use rbs_column_axial, only: geometric_forces
    use rbs_column_column, only: column_type
    use rbs_hysteresis_springs, only: follow_path, spring_array
+   use rbs_output_channels, only: new_channels
    use rbs_output_recorder, only: array_recorder, recorder_type
-   use rbs_output_row, only: row_size, row_time, row_displacement, row_force, row_axial, row_residual, &
-                              row_joints, row_spring, row_input, row_top
    use rbs_output_summary, only: summary_type
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_run_static, only: run_static
@@ -20,6 +19,8 @@ module test_static
    use rbs_column_column_record, only: column_record
    use samples, only: bilinear, bilinear_1, chain, column_1, elastic, made, random_type, takeda_1, &
                       k_c, d_y, f_y, k_u, s_k, s_d, height_1
+   use row_places, only: row_time, row_displacement, row_force, row_axial, row_residual, row_joints, &
+                         row_spring, row_input, row_top
    implicit none
    private
 
@@ -94,7 +95,7 @@ contains
 
       if (present(every)) task%every = every
       column = made(spec)
-      allocate (recorder%rows(row_size(column%unknowns), max(size(values), 1)))
+      recorder%channels = new_channels(column, .false., .false., .false.)
       task%recorder => recorder
       if (present(collapse_drift)) task%collapse_drift = collapse_drift
       call run_static(column, by_force, values, task, outcome)
@@ -555,6 +556,7 @@ contains
       type(task_type) :: task
 
       task%recorder => recorder
+      recorder%channels = new_channels(made(column_1('small')), .false., .false., .false.)
       call run_static(made(column_1('small')), .false., [0.01_wp, 0.02_wp, 0.03_wp, 0.04_wp], task, outcome)
       call check_failed(error, outcome, analysis_failed, 'disk full at row 2')
       call check_equal(error, recorder%count, 3, 'rows offered')

@@ -7,9 +7,8 @@ module test_static_finite
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
    use rbs_hysteresis_springs, only: follow_path, spring_array
+   use rbs_output_channels, only: new_channels
    use rbs_output_recorder, only: array_recorder
-   use rbs_output_row, only: row_size, row_displacement, row_force, row_axial, row_residual, row_joints, &
-                              row_spring, row_input, row_top
    use rbs_output_summary, only: summary_type
    use rbs_solve_static_run_static, only: run_static
    use rbs_solve_task, only: task_type
@@ -17,6 +16,8 @@ module test_static_finite
    use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: bilinear, bilinear_1, chain, column_1, compression, elastic, made, random_type, &
       takeda, takeda_1, f_y, d_y, k_u, s_k, height_1, mass_1
+   use row_places, only: row_displacement, row_force, row_axial, row_residual, row_joints, row_spring, &
+                         row_input, row_top
    implicit none
    private
 
@@ -66,7 +67,7 @@ contains
       type(task_type) :: task
 
       column = made(spec)
-      allocate (recorder%rows(row_size(column%unknowns), max(size(values), 1)))
+      recorder%channels = new_channels(column, .false., .false., .false.)
       task%recorder => recorder
       if (present(drift)) task%collapse_drift = drift
       call run_static(column, by_force, values, task, outcome)

@@ -20,7 +20,6 @@ from rbsdem._views import view_of
 from rbsdem.case import Case, read_case
 from rbsdem.column import Column, without_notes
 from rbsdem.errors import InputError
-from rbsdem.export.table import UNITS
 from rbsdem.result import Result
 
 __all__ = ["load"]
@@ -49,11 +48,11 @@ def save(result: Result, path: str | os.PathLike[str]) -> None:
     }
     dataset = xarray.Dataset(
         {name.replace("/", ":"): value for name, value in variables.items()},
-        attrs={"about": json.dumps(about), "units": json.dumps(UNITS)},
+        attrs={"about": json.dumps(about), "units": json.dumps(_core.units())},
     )
     for name, variable in dataset.variables.items():
-        if name in UNITS:
-            variable.attrs["units"] = UNITS[name]
+        if name in _core.units():
+            variable.attrs["units"] = _core.units()[name]
     with whole_file(path) as file:
         file.write(bytes(dataset.to_netcdf(engine="scipy")))
 
@@ -122,7 +121,8 @@ def _parts(result: Result) -> tuple[dict[str, Any], dict[str, Any]]:
         "format": _FORMAT,
         "format_version": _FORMAT_VERSION,
         "version": _core.version(),
-        "units": UNITS,
+        "units": _core.units(),
+        "channels": result.channels,
         "column": result.column.to_namelist(),
         "case": None if result.case is None else result.case.to_namelist(),
         "summary": result.summary,
@@ -190,6 +190,7 @@ def _result(about: dict[str, Any], arrays: dict[str, Any]) -> Result:
         summary=about["summary"],
         column=column,
         call=_together(about["call"], arrays),
+        channels=tuple(about["channels"]),
         case=case,
     )
 

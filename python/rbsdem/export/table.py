@@ -12,57 +12,29 @@ from rbsdem._core import Array
 from rbsdem._files import whole_file
 from rbsdem._optional import need_pandas, need_xarray
 from rbsdem._views import view_of
-from rbsdem.result import ENERGIES, Result
-
-UNITS = {
-    "time": "s",
-    "displacement": "m",
-    "force": "N",
-    "top_height": "m",
-    "slip": "m",
-    "rotation": "rad",
-    "opening": "m",
-    "shear": "N",
-    "moment": "N m",
-    "axial_force": "N",
-    "base_shear": "N",
-    "base_moment": "N m",
-    "rest": "rad",
-    "velocity": "m/s",
-    "acceleration": "m/s2",
-    "ground_acceleration": "m/s2",
-} | dict.fromkeys(ENERGIES, "J")
-"""Units of the arrays of a result."""
+from rbsdem.result import Result
 
 
 def quantities(result: Result) -> dict[str, Array]:
     """Return the arrays of a result in the order of the executable's csv, joints as columns."""
-    column = result.column
-    known = result.energy | {"top_height": result.top[:, 1]}
-    with_openings = result.rest is not None and not column.opens
-    with_base = column.damped and result.dynamic
-    with_motion = result.motion is not None
+    known = result.energy | {"step": result.time, "top_height": result.top[:, 1]}
     if result.motion is not None:
         known["ground_acceleration"] = result.motion[:, 2]
-    found = {}
-    for name in _core.quantities(column.opens, with_base, with_openings, with_motion)[0]:
-        plain = name.rstrip("*")
-        found[plain] = known[plain] if plain in known else getattr(result, plain)
-    return found
+    return {
+        name: known[name] if name in known else getattr(result, name) for name in result.channels
+    }
 
 
 def columns(result: Result) -> dict[str, Array]:
     """Return the columns of the csv: one for each value, with its unit in its name."""
     found = {}
     for name, values in quantities(result).items():
-        unit = UNITS[name].replace(" ", "")
-        if name == "time" and not result.dynamic:
-            found["step"] = values
-        elif values.ndim == 1:
-            found[f"{name}_{unit}"] = values
+        unit = f"_{_core.units()[name]}".replace(" ", "").rstrip("_")
+        if values.ndim == 1:
+            found[name + unit] = values
         else:
             for at, joint in enumerate(result.column.joint_numbers):
-                found[f"{name}_{joint}_{unit}"] = values[:, at]
+                found[f"{name}_{joint}{unit}"] = values[:, at]
     return found
 
 
@@ -77,17 +49,18 @@ def to_pandas(result: Result) -> Any:
 @view_of(Result, "to_xarray")
 def to_xarray(result: Result) -> Any:
     """Return a Dataset: rows along time (or step), joints from 1 at the ground."""
-    along = "time" if result.dynamic else "step"
+    units = {name: {"units": unit} if unit else {} for name, unit in _core.units().items()}
     arrays = quantities(result)
-    time = arrays.pop("time")
+    along = result.channels[0]
+    time = arrays.pop(along)
     variables = {
-        name: ((along, "joint")[: values.ndim], values, {"units": UNITS[name]})
+        name: ((along, "joint")[: values.ndim], values, units[name])
         for name, values in arrays.items()
     }
     return need_xarray().Dataset(
         variables,
         {
-            along: (along, time, {"units": "s"} if result.dynamic else {}),
+            along: (along, time, units[along]),
             "joint": np.array(result.column.joint_numbers),
         },
         {"program": "rbsdem", "version": _core.version(), "column": result.column.to_namelist()}

@@ -3,13 +3,14 @@ module rbs_solve_ensemble_block
    use rbs_base_constants, only: unset_integer
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
+   use rbs_output_recorder, only: array_recorder
    use rbs_output_summary, only: summary_type
    use rbs_solve_end_state, only: end_state, standing_type
    use rbs_solve_ensemble_lane_choice, only: takes_lanes, are_alike
    use rbs_solve_ensemble_lane_runs, only: run_in_lanes
    use rbs_solve_ensemble_outcome, only: outcome_type
    use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, run_type, lane_task
-   use rbs_solve_ensemble_tally, only: tally_recorder, settle
+   use rbs_solve_ensemble_tally, only: settle
    use rbs_solve_time_effort, only: expected_seconds
    use rbs_loading_loads, only: loads_type
    use rbs_solve_time_march, only: initial_state
@@ -216,22 +217,22 @@ contains
       type(loads_type) :: loads
       type(initial_state) :: at_rest
       type(end_state) :: before
-      type(tally_recorder) :: tally
+      type(array_recorder) :: no_rows
       type(sight_type) :: sight
       type(summary_type) :: summary
       type(error_type), allocatable :: error
 
       call sight%watch_for(column%watch, column%states)
       if (allocated(unplanned)) then
-         call settle(tally, sight%reached, summary, unplanned, outcome)
+         call settle(sight%reached, summary, unplanned, outcome)
          return
       end if
       loads%ground%time = motion%time
       loads%ground%value = scale*motion%acceleration
       call take_before(column, before)
       call run_dynamic(column%column, column%analysis, plan, motion%time, loads, at_rest, unset_integer, &
-                       tally, summary, error, before=before, sight=sight)
-      call settle(tally, sight%reached, summary, error, outcome)
+                       no_rows, summary, error, before=before, sight=sight)
+      call settle(sight%reached, summary, error, outcome)
    end subroutine run_alone
 
 end module rbs_solve_ensemble_block

@@ -3,7 +3,7 @@ module rbs_solve_ensemble_chain_team
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
-   use rbs_output_row, only: row_joints
+   use rbs_output_channels, only: energy_type
    use rbs_output_summary, only: summary_type
    use rbs_solve_ensemble_chain_lane, only: fit_block, enter_column, enter_springs, enter_tangent, &
                                             enter_state, enter_bounds, take_springs, take_state, take_tangent
@@ -11,7 +11,7 @@ module rbs_solve_ensemble_chain_team
    use rbs_solve_ensemble_motions, only: motion_table
    use rbs_solve_ensemble_outcome, only: outcome_type
    use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, lane_task
-   use rbs_solve_ensemble_tally, only: tally_recorder, settle_tally => settle
+   use rbs_solve_ensemble_tally, only: settle_tally => settle
    use rbs_solve_ensemble_team, only: team_type, begin_run, show_motion, show_seen, take_seen
    use rbs_solve_time_implicit, only: implicit_stepper
    use rbs_loading_loads, only: horizontal
@@ -21,10 +21,10 @@ module rbs_solve_ensemble_chain_team
 
    public :: chain_team, new_chain_team
 
-   !> The balance of energy of a run, and a row for it.
+   !> The balance of energy of a run.
    type :: lane_rows
       type(summary_type) :: summary
-      real(wp) :: row(row_joints) = 0.0_wp
+      type(energy_type) :: energy
    end type lane_rows
 
    type, extends(team_type) :: chain_team
@@ -69,7 +69,7 @@ contains
       j = (l - 1)/few + 1
       i = l - (j - 1)*few
       self%rows(l)%summary = fresh
-      call balance(self%lane(l)%state, self%rows(l)%row, self%rows(l)%summary)
+      call balance(self%lane(l)%state, self%rows(l)%energy, self%rows(l)%summary)
       call enter_column(self%block(j), i, self%lane(l)%state%motion)
       call enter_state(self%block(j), i, self%lane(l)%state)
       call enter_springs(self%block(j), i, self%lane(l)%state)
@@ -187,7 +187,7 @@ contains
             call take_springs(self%block(j), i, state, self%block(j)%q)
             call take_state(self%block(j), i, state)
             state%of_loads = self%x%of_loads(l)
-            call balance(state, self%rows(l)%row, self%rows(l)%summary)
+            call balance(state, self%rows(l)%energy, self%rows(l)%summary)
          end associate
       end do
    end subroutine finish
@@ -221,12 +221,11 @@ contains
       type(lane_task), intent(in) :: task
       type(outcome_type), intent(inout) :: outcome
       type(summary_type) :: summary
-      type(tally_recorder) :: tally
       type(error_type), allocatable :: none
 
       summary = self%rows(l)%summary
-      tally%displacement = self%x%displacement(l)
-      tally%time = self%x%t(l)
+      summary%last_displacement = self%x%displacement(l)
+      summary%last_time = self%x%t(l)
       summary%time_step = task%plan%dt
       summary%peak_displacement = self%x%peak(l)
       summary%peak_base_shear = self%x%base(l)
@@ -235,7 +234,7 @@ contains
       summary%events = self%lane(l)%state%springs%events
       summary%steps = nint(self%x%steps(l)) + self%lane(l)%stepper%steps
       summary%cut_steps = self%lane(l)%stepper%cut_steps
-      call settle_tally(tally, self%lane(l)%state%sight%reached, summary, none, outcome)
+      call settle_tally(self%lane(l)%state%sight%reached, summary, none, outcome)
    end subroutine settle
 
 end module rbs_solve_ensemble_chain_team

@@ -3,8 +3,6 @@ module rbs_solve_ensemble_tally
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_output_recorder, only: recorder_type
-   use rbs_output_row, only: row_time, row_displacement
    use rbs_output_summary, only: summary_type
    use rbs_solve_ensemble_outcome, only: outcome_type, fate_completed, fate_collapsed, fate_axial, &
                                          fate_failed, at_peak_displacement, at_residual_displacement, &
@@ -14,31 +12,12 @@ module rbs_solve_ensemble_tally
    implicit none
    private
 
-   public :: tally_recorder, settle
-
-   !> Keeps of the rows when the last one was, and where.
-   type, extends(recorder_type) :: tally_recorder
-      !> Displacement and time [m, s]
-      real(wp) :: displacement = 0.0_wp, time = 0.0_wp
-   contains
-      procedure :: record
-   end type tally_recorder
+   public :: settle
 
 contains
 
-   subroutine record(self, row, error)
-      class(tally_recorder), intent(inout) :: self
-      real(wp), intent(in) :: row(:)
-      type(error_type), allocatable, intent(inout) :: error
-
-      if (allocated(error)) return
-      self%time = row(row_time)
-      self%displacement = row(row_displacement)
-   end subroutine record
-
    !> Fate and measures of a run that has ended.
-   subroutine settle(tally, reached, summary, error, outcome)
-      type(tally_recorder), intent(in) :: tally
+   subroutine settle(reached, summary, error, outcome)
       !> When each limit state was reached, `huge` if it was not (states) [s]
       real(wp), intent(in) :: reached(:)
       type(summary_type), intent(in) :: summary
@@ -59,17 +38,17 @@ contains
       if (summary%lost_joint > 0) outcome%fate = fate_axial
       associate (value => outcome%value)
          value(at_peak_displacement) = summary%peak_displacement
-         value(at_residual_displacement) = tally%displacement
+         value(at_residual_displacement) = summary%last_displacement
          value(at_peak_base_shear) = summary%peak_base_shear
          value(at_peak_rotation) = summary%peak_rotation
-         value(at_input) = summary%input
-         value(at_spring) = summary%spring
-         value(at_damping) = summary%damping
+         value(at_input) = summary%energy%input
+         value(at_spring) = summary%energy%spring
+         value(at_damping) = summary%energy%damping
          value(at_residual) = summary%residual
          value(at_relative_residual) = summary%residual/max(summary%largest, tiny(1.0_wp))
          outcome%reached = merge(reached, nothing, reached < huge(1.0_wp))
          value(at_first_yield) = outcome%reached(1)
-         value(at_end) = tally%time
+         value(at_end) = summary%last_time
          value(at_time_step) = summary%time_step
          value(at_steps) = real(summary%steps, wp)
          value(at_events) = real(summary%events, wp)

@@ -9,10 +9,8 @@ module rbs_solve_static_path
    use rbs_column_column, only: column_type, finite
    use rbs_column_energy, only: potential_energy
    use rbs_column_top, only: largest_turn, top_displacement, top_position
-   use rbs_hysteresis_layered_fibre_fall, only: layer_fall
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_output_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
-                              row_spring, row_damping, row_axial, row_residual, row_top, row_joints
+   use rbs_output_channels, only: response_type
    use rbs_solve_static_row_check, only: row_check
    use rbs_solve_task, only: task_type
    use rbs_structure_spring_place, only: spring_name
@@ -64,7 +62,6 @@ module rbs_solve_static_path
       integer, private :: number = 0
       !> What is told of a corner between two targets: its summary, and its recorder if the row is to be kept
       type(task_type), pointer, private :: task => null()
-      real(wp), allocatable, private :: row_values(:)
    contains
       procedure :: prepare
       procedure :: begin
@@ -230,16 +227,14 @@ contains
       !> On failure everything up to the last good state has been recorded
       type(error_type), allocatable, intent(out) :: error
       type(error_type), allocatable :: failure
-      type(layer_fall) :: fall
       type(row_check) :: check
+      type(response_type) :: response
       logical :: may_collapse
       integer :: i, n
 
       n = task%every
       if (n == unset_integer) n = 1
       may_collapse = task%collapse_drift > unset
-      allocate (self%row_values(row_size(self%column%unknowns, &
-                                         layered=merge(self%column%n, 0, task%recorder%openings))))
       self%task => task
       call check%begin(self%column, missing_work(self))
       ! A path that goes on has forces and works from before, and the round-off of theirs.
@@ -263,20 +258,20 @@ contains
          end if
          task%summary%lost_joint = max(self%springs%lost_joint() - self%column%n, 0)
          if (task%summary%lost_joint > 0) then
-            call self%springs%fall_of(self%column%n + task%summary%lost_joint, fall)
-            call task%summary%see_fall(fall)
+            call self%springs%fall_of(self%column%n + task%summary%lost_joint, task%summary%fall)
          end if
          ! Where a joint has lost its axial load, that is what ends the path.
          if (task%summary%lost_joint > 0 .and. allocated(failure)) deallocate (failure)
          if (allocated(failure)) failure%message = 'row '//to_text(i)//': '//failure%message
          call see_peaks(self)
          if (may_collapse) task%summary%collapsed = abs(self%displacement)/self%column%height >= task%collapse_drift
-         call fill_row(self, self%row_values, real(i - 1, wp))
-         call task%summary%see_energies(self%row_values)
+         call find_response(self, real(i - 1, wp), response)
+         call task%summary%see_energies(response%energy)
          if (mod(i - 1, n) == 0 .or. i == size(target) .or. allocated(failure) .or. &
              task%summary%collapsed .or. task%summary%lost_joint > 0) then
             task%summary%rows = task%summary%rows + 1
-            call task%recorder%record(self%row_values, error)
+            task%summary%last_time = response%time
+            call task%recorder%keep(response, self%springs, self%springs%d, error)
             if (allocated(error)) return
          end if
          task%summary%steps = i
@@ -297,11 +292,12 @@ contains
       class(static_path), intent(inout) :: self
       real(wp), intent(in) :: share
       type(error_type), allocatable :: error
+      type(response_type) :: response
 
       call see_peaks(self)
       if (.not. self%task%recorder%corners) return
-      call fill_row(self, self%row_values, self%number - 1 + share)
-      call self%task%recorder%record(self%row_values, error)
+      call find_response(self, self%number - 1 + share, response)
+      call self%task%recorder%keep(response, self%springs, self%springs%d, error)
    end subroutine see_corner
 
    !> Tell the summary of the present force, displacement and rotations.
@@ -384,33 +380,25 @@ contains
       axial_work = potential_energy(self%steady, self%springs%d) + self%load_work
    end function axial_work
 
-   !> The present state as a row.
-   subroutine fill_row(self, row, number)
+   !> The response at the present point.
+   subroutine find_response(self, number, response)
       class(static_path), intent(in) :: self
-      real(wp), intent(out) :: row(:)
-      !> Number of the row, between two targets with the share of the way
+      !> Of the row, between two targets with the share of the way
       real(wp), intent(in) :: number
+      type(response_type), intent(out) :: response
       real(wp) :: top(2)
-      integer :: m
 
-      associate (springs => self%springs)
-         m = springs%count
-         row(row_time) = number
-         row(row_displacement) = self%displacement
-         row(row_force) = self%force
-         row(row_input) = self%work
-         row(row_kinetic) = 0.0_wp
-         row(row_spring) = sum(springs%work)
-         row(row_damping) = self%damped_before
-         row(row_axial) = self%axial_work()
-         top = top_position(self%column, springs%d)
-         row(row_top) = top(2)
-         row(row_residual) = missing_work(self)
-         row(row_joints:row_joints + m - 1) = springs%d
-         row(row_joints + m:row_joints + 2*m - 1) = springs%f0 + springs%k*(springs%d - springs%d0)
-         call springs%fill_openings(self%column%n, row(row_joints + 2*m:))
-      end associate
-   end subroutine fill_row
+      response%time = number
+      response%displacement = self%displacement
+      response%force = self%force
+      response%energy%input = self%work
+      response%energy%spring = sum(self%springs%work)
+      response%energy%damping = self%damped_before
+      response%energy%axial = self%axial_work()
+      top = top_position(self%column, self%springs%d)
+      response%height = top(2)
+      response%energy%residual = missing_work(self)
+   end subroutine find_response
 
    !> Where the path is, for a message.
    subroutine describe_state(path, text)

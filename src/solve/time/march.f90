@@ -7,11 +7,9 @@ module rbs_solve_time_march
    use rbs_column_column, only: column_type
    use rbs_column_energy, only: kinetic_energy, potential_energy
    use rbs_column_top, only: top_motion, top_position
-   use rbs_hysteresis_layered_fibre_fall, only: layer_fall
    use rbs_output_observer, only: observer_type
+   use rbs_output_channels, only: energy_type, response_type
    use rbs_output_recorder, only: recorder_type
-   use rbs_output_row, only: row_size, row_time, row_displacement, row_force, row_input, row_kinetic, &
-                              row_spring, row_damping, row_axial, row_residual, row_top, row_joints
    use rbs_output_summary, only: summary_type
    use rbs_solve_end_state, only: end_state, standing_type
    use rbs_loading_loads, only: loads_type, lateral, horizontal
@@ -59,7 +57,7 @@ contains
       type(standing_type) :: standing
       type(time_plan) :: plan
       type(state_type) :: state
-      real(wp), allocatable :: row(:)
+      type(response_type) :: response
       integer :: step
 
       plan = planned
@@ -72,12 +70,13 @@ contains
       end if
       if (standing%kind == 0) call start_state(state, column, loads, initial, plan%begin, error)
       if (allocated(error)) return
-      allocate (row(row_size(column%unknowns, column%damped, merge(column%n, 0, recorder%openings), &
-                             recorder%motion)))
       if (present(sight)) state%sight = sight
-      call state%begin_sight(collapse_drift, recorder%motion)
+      call state%begin_sight(collapse_drift, recorder%channels%motion)
       summary%time_step = plan%dt
-      call take_steps(state, plan, stepper, time, every, row, step, recorder, summary, error, progress)
+      call take_steps(state, plan, stepper, time, every, response, step, recorder, summary, error, &
+                      progress)
+      summary%last_time = response%time
+      summary%last_displacement = response%displacement
       summary%peaks_type = state%sight%peaks_type
       summary%collapsed = state%sight%collapsed
       summary%events = state%springs%events
@@ -86,37 +85,36 @@ contains
       if (stepper%longest_step > 0.0_wp) summary%time_step = stepper%longest_step
       if (present(sight)) sight = state%sight
       if (allocated(error) .or. .not. present(after) .or. summary%lost_joint > 0) return
-      call keep_state(state, stepper, plan, step, row(row_residual), method, setting, after)
+      call keep_state(state, stepper, plan, step, response%energy%residual, method, setting, after)
    end subroutine march
 
    !> The steps of the plan, up to the end of the run.
-   subroutine take_steps(state, plan, stepper, time, every, row, step, recorder, summary, error, progress)
+   subroutine take_steps(state, plan, stepper, time, every, response, step, recorder, summary, error, progress)
       type(state_type), intent(inout) :: state
       type(time_plan), intent(in) :: plan
       class(stepper_type), intent(inout) :: stepper
       !> See `march`
       real(wp), intent(in) :: time(:)
       integer, intent(in) :: every
-      !> The last state in the end
-      real(wp), intent(inout) :: row(:)
+      !> That of the last row in the end
+      type(response_type), intent(inout) :: response
       !> Steps taken, as planned
       integer, intent(out) :: step
       class(recorder_type), intent(inout) :: recorder
       type(summary_type), intent(inout) :: summary
       type(error_type), allocatable, intent(inout) :: error
       class(observer_type), intent(inout), optional :: progress
-      type(layer_fall) :: fall
       type(motion_result) :: now
       real(wp) :: begin, finish, h
       integer :: interval, part, parts, next_row, lost
       logical :: ends
 
-      if (recorder%motion) call now%create(state%motion%column)
+      if (recorder%channels%motion) call now%create(state%motion%column)
       next_row = huge(1)
       if (every /= unset_integer) next_row = min(every, plan%steps)
       step = 0
-      call balance(state, row, summary)
-      call keep(state, row, recorder, summary, error, now)
+      call balance(state, response%energy, summary)
+      call keep(state, response, recorder, summary, error, now)
       if (allocated(error)) return
       finish = plan%begin
       do interval = 1, plan%intervals
@@ -126,7 +124,7 @@ contains
          do part = 1, parts
             call stepper%advance(state, h, error)
             if (allocated(error)) then
-               call keep_last(state, now, row, recorder, summary)
+               call keep_last(state, now, response, recorder, summary)
                return
             end if
             step = step + 1
@@ -147,13 +145,12 @@ contains
             call state%see(state%clock)
             ends = ends .or. state%sight%collapsed
             if (summary%lost_joint > 0) then
-               call state%springs%fall_of(lost, fall)
-               call summary%see_fall(fall)
+               call state%springs%fall_of(lost, summary%fall)
             end if
-            if (ends .or. part == parts) call balance(state, row, summary)
+            if (ends .or. part == parts) call balance(state, response%energy, summary)
             if (ends .or. step == next_row .or. (every == unset_integer .and. part == parts)) then
-               if (.not. (ends .or. part == parts)) call balance(state, row)
-               call keep(state, row, recorder, summary, error, now)
+               if (.not. (ends .or. part == parts)) call balance(state, response%energy)
+               call keep(state, response, recorder, summary, error, now)
                if (allocated(error) .or. ends) return
                if (every /= unset_integer) next_row = min(step + every, plan%steps)
             end if
@@ -211,73 +208,62 @@ contains
    end subroutine report_state
 
    !> Record the last good state before a failure.
-   subroutine keep_last(state, now, row, recorder, summary)
+   subroutine keep_last(state, now, response, recorder, summary)
       type(state_type), intent(inout) :: state
       type(motion_result), intent(inout) :: now
-      real(wp), intent(inout) :: row(:)
+      type(response_type), intent(inout) :: response
       class(recorder_type), intent(inout) :: recorder
       type(summary_type), intent(inout) :: summary
       type(error_type), allocatable :: ignored
 
       state%clock = state%begin + state%time
-      if (state%lost .or. .not. state%clock > row(row_time)) return
+      if (state%lost .or. .not. state%clock > response%time) return
       call state%see(state%clock)
-      call balance(state, row, summary)
-      call keep(state, row, recorder, summary, ignored, now)
+      call balance(state, response%energy, summary)
+      call keep(state, response, recorder, summary, ignored, now)
    end subroutine keep_last
 
    !> The energies of the present state.
-   subroutine balance(state, row, summary)
+   subroutine balance(state, energy, summary)
       type(state_type), intent(in) :: state
-      real(wp), intent(inout) :: row(:)
+      type(energy_type), intent(out) :: energy
       !> That takes them into account
       type(summary_type), intent(inout), optional :: summary
 
-      row(row_input) = state%of_loads
-      row(row_kinetic) = kinetic_energy(state%motion%column, state%q, state%v) + state%along_joints
-      row(row_spring) = sum(state%springs%work)
-      row(row_damping) = state%of_damping
-      row(row_axial) = potential_energy(state%motion%column, state%q)
-      row(row_residual) = state%of_loads + state%at_begin - row(row_kinetic) - row(row_spring) &
-                          - row(row_damping) - row(row_axial)
-      if (present(summary)) call summary%see_energies(row)
+      energy%input = state%of_loads
+      energy%kinetic = kinetic_energy(state%motion%column, state%q, state%v) + state%along_joints
+      energy%spring = sum(state%springs%work)
+      energy%damping = state%of_damping
+      energy%axial = potential_energy(state%motion%column, state%q)
+      energy%residual = state%of_loads + state%at_begin - energy%kinetic - energy%spring - energy%damping &
+                        - energy%axial
+      if (present(summary)) call summary%see_energies(energy)
    end subroutine balance
 
-   !> Record the present state, whose energies are in the row.
-   subroutine keep(state, row, recorder, summary, error, now)
+   !> Keep the present state, whose energies are in the response.
+   subroutine keep(state, response, recorder, summary, error, now)
       type(state_type), intent(in) :: state
-      real(wp), intent(inout) :: row(:)
+      type(response_type), intent(inout) :: response
       class(recorder_type), intent(inout) :: recorder
       type(summary_type), intent(inout) :: summary
       type(error_type), allocatable, intent(inout) :: error
       !> Created if the rows hold how the top moves
       type(motion_result), intent(inout) :: now
       real(wp) :: top(2)
-      integer :: m, at
 
-      m = state%springs%count
       top = top_position(state%motion%column, state%q)
-      row(row_time) = state%clock
-      row(row_displacement) = top(1)
-      row(row_force) = state%load(lateral)
-      row(row_top) = top(2)
-      row(row_joints:row_joints + m - 1) = state%q
-      row(row_joints + m:row_joints + 2*m - 1) = state%springs%f0 &
-                                                 + state%springs%k*(state%q - state%springs%d0)
-      if (state%motion%damped) then
-         row(row_joints + 2*m:row_joints + 2*m + 1) = state%motion%base_reaction(state%springs, state%q, &
-                                                                                 state%v)
-      end if
-      at = row_joints + 2*m + merge(2, 0, state%motion%damped)
-      if (recorder%motion) then
+      response%time = state%clock
+      response%displacement = top(1)
+      response%height = top(2)
+      response%force = state%load(lateral)
+      if (state%motion%damped) response%base = state%motion%base_reaction(state%springs, state%q, state%v)
+      if (recorder%channels%motion) then
          call state%motion%acceleration(state%springs, state%q, state%v, state%load, now)
-         call top_motion(state%motion%column, state%q, state%v, now%a, row(at), row(at + 1))
-         row(at + 2) = state%load(horizontal)
-         at = at + 3
+         call top_motion(state%motion%column, state%q, state%v, now%a, response%motion(1), response%motion(2))
+         response%motion(3) = state%load(horizontal)
       end if
-      call state%springs%fill_openings(state%motion%column%n, row(at:))
       summary%rows = summary%rows + 1
-      call recorder%record(row, error)
+      call recorder%keep(response, state%springs, state%q, error)
    end subroutine keep
 
 end module rbs_solve_time_march
