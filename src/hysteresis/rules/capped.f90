@@ -181,16 +181,16 @@ contains
          if (direction*here%d > 0.0_wp) then
             ! What the flexural spring did before counts for nothing: an uncracked spring has not decayed.
             now%work_at_cracking = now%flexural_work
-            call follow_backbone(self, now, open, branch, direction, here)
+            call follow_backbone(direction, here)
          else
             now%side = direction
             branch = virgin_branch(self, now, direction)
          end if
       case (on_backbone)
          if (outward) then
-            call follow_backbone(self, now, open, branch, direction, here)
+            call follow_backbone(direction, here)
          else
-            call unload(self, now, open, branch, here)
+            call unload(here)
          end if
       case (unloading)
          if (outward) then
@@ -198,379 +198,337 @@ contains
             branch = now%left%outward(now%side, near=here%d, far=now%left%end_toward(direction), &
                                      near_closed=.true., one_way=.true.)
          else
-            call end_excursion(self, now, open, branch, here%d)
+            call end_excursion(here%d)
          end if
       case (reloading)
          if (outward) then
-            call go_on(self, now, open, branch, here)
+            call go_on(here)
          else
-            call unload(self, now, open, branch, here)
+            call unload(here)
          end if
       case default                                   ! in a gap
          if (outward) then
-            call reload(self, now, open, branch)
+            call reload()
          else
             now%way_back = 0.0_wp
-            call enter(self, now, open, branch, direction, here%d)
+            call enter(direction, here%d)
          end if
       end select
-   end subroutine find_branch
 
-   !> On the backbone of side s from a point on.
-   subroutine follow_backbone(self, now, open, branch, s, here)
-      class(capped_part), intent(in) :: self
-      type(capped_state), intent(inout) :: now
-      type(open_turns), intent(inout) :: open(-1:1)
-      type(segment), intent(inout) :: branch
-      integer, intent(in) :: s
-      type(point), intent(in) :: here
-      real(wp) :: k
+   contains
 
-      now%side = s
-      now%branch = on_backbone
-      ! No turn of this side lies ahead any more.
-      open(s)%count = 0
-      if (.not. now%yielded .and. s*here%d >= now%backbone(s)%d_y) then
-         ! What was dissipated before yield does not deteriorate.
-         k = unloading_stiffness(self, now, s, point(s*here%d, s*here%f))
-         now%work_at_zero = now%work - 0.5_wp*here%f**2/k
-         now%yielded = .true.
-      end if
-      branch = now%backbone(s)%line_from(s, here%d)
-   end subroutine follow_backbone
+      !> On the backbone of side s from a point on.
+      subroutine follow_backbone(s, here)
+         integer, intent(in) :: s
+         type(point), intent(in) :: here
+         real(wp) :: k
 
-   !> The motion has turned back: unload toward zero force.
-   subroutine unload(self, now, open, branch, here)
-      class(capped_part), intent(in) :: self
-      type(capped_state), intent(inout) :: now
-      type(open_turns), intent(inout) :: open(-1:1)
-      type(segment), intent(inout) :: branch
-      type(point), intent(in) :: here
-      type(point) :: at
-      real(wp) :: k
-      integer :: s
-
-      s = now%side
-      at = point(s*here%d, s*here%f)
-      now%peak(s) = max(now%peak(s), at%d)
-      now%worn = max(now%worn, spent_at(self, now, at%f))
-      now%turned = turn(at, now%start_at, now%goal)
-      now%left = branch
-      now%left_branch = now%branch
-      now%branch = unloading
-      if (at%f <= no_force*self%given(s)%f_y) then
-         ! There is no force to unload.
-         call end_excursion(self, now, open, branch, here%d)
-         return
-      end if
-      k = unloading_stiffness(self, now, s, at)
-      branch = segment(d0=here%d, f0=here%f, k=k)
-      branch = branch%outward(s, near=here%d - here%f/k, far=here%d, near_closed=.true., one_way=.false.)
-   end subroutine unload
-
-   !> Zero force is reached: the excursion to the present side is over.
-   subroutine end_excursion(self, now, open, branch, zero)
-      class(capped_part), intent(in) :: self
-      type(capped_state), intent(inout) :: now
-      type(open_turns), intent(inout) :: open(-1:1)
-      type(segment), intent(inout) :: branch
-      real(wp), intent(in) :: zero
-
-      associate (s => now%side)
-         if (now%yielded) now%dissipated(s) = now%dissipated(s) + (now%work - now%work_at_zero)
-         now%work_at_zero = now%work
-         call open(-s)%fade(now%turned%at%d)
-         ! A turn behind others that were closed takes their place.
-         now%time = modulo(now%time, huge(1) - 1) + 1
-         now%turned%time = min(now%closed_time, now%time)
-         call open(s)%push(now%turned)
-         now%way_back = now%turned%at%d - now%entered
-         call enter(self, now, open, branch, -s, zero)
-      end associate
-   end subroutine end_excursion
-
-   !> Without force the motion goes toward side s, which deteriorates.
-   subroutine enter(self, now, open, branch, s, zero)
-      class(capped_part), intent(in) :: self
-      type(capped_state), intent(inout) :: now
-      type(open_turns), intent(inout) :: open(-1:1)
-      type(segment), intent(inout) :: branch
-      integer, intent(in) :: s
-      !> Where the force is zero [m or rad]
-      real(wp), intent(in) :: zero
-      real(wp) :: least
-
-      now%side = s
-      now%begun = point(zero, 0.0_wp)
-      now%entered = s*zero
-      if (self%deterioration%acts() .or. self%hinge_work > 0.0_wp) call deteriorate(self, now, open, s)
-      now%start_at = s*zero
-      if (self%slips) then
-         least = least_start(self, now, s)
-         now%start_at = max(now%start_at, least)
-         call find_turns(self, now, open, s, least)
-      else
-         call find_turns(self, now, open, s, -unbounded)
-      end if
-      call open(s)%forget_inside(now%start_at)
-      if (now%start_at > s*zero) then
-         now%branch = gap
-         branch = segment(d0=zero)
-         branch = branch%outward(s, near=zero, far=s*now%start_at, near_closed=.true., one_way=.true.)
-      else
-         call reload(self, now, open, branch)
-      end if
-   end subroutine enter
-
-   !> Start reloading, to the newest open turn or the peak.
-   subroutine reload(self, now, open, branch)
-      class(capped_part), intent(in) :: self
-      type(capped_state), intent(inout) :: now
-      type(open_turns), intent(inout) :: open(-1:1)
-      type(segment), intent(inout) :: branch
-      logical :: found
-
-      now%branch = reloading
-      now%closed_start = now%start_at
-      now%closed_at = now%start_at
-      now%closed_time = huge(1)
-      associate (s => now%side, turns => open(now%side))
-         do while (turns%count > 0)
-            call turns%list(turns%count)%shift(now%start_at, self%k_0, found)
-            if (found) exit
-            turns%count = turns%count - 1
-         end do
-         now%to_turn = turns%count > 0
-         if (now%to_turn) then
-            now%goal = turns%list(turns%count)%at
-         else
-            now%goal = goal_from(self, now, s, now%start_at)
+         now%side = s
+         now%branch = on_backbone
+         ! No turn of this side lies ahead any more.
+         open(s)%count = 0
+         if (.not. now%yielded .and. s*here%d >= now%backbone(s)%d_y) then
+            ! What was dissipated before yield does not deteriorate.
+            k = unloading_stiffness(s, point(s*here%d, s*here%f))
+            now%work_at_zero = now%work - 0.5_wp*here%f**2/k
+            now%yielded = .true.
          end if
-         call aim(self, now, branch, point(now%start_at, 0.0_wp))
-      end associate
-   end subroutine reload
+         branch = now%backbone(s)%line_from(s, here%d)
+      end subroutine follow_backbone
 
-   !> The goal of reloading is reached.
-   subroutine go_on(self, now, open, branch, here)
-      class(capped_part), intent(in) :: self
-      type(capped_state), intent(inout) :: now
-      type(open_turns), intent(inout) :: open(-1:1)
-      type(segment), intent(inout) :: branch
-      type(point), intent(in) :: here
+      !> The motion has turned back: unload toward zero force.
+      subroutine unload(here)
+         type(point), intent(in) :: here
+         type(point) :: at
+         real(wp) :: k
+         integer :: s
 
-      associate (s => now%side, turns => open(now%side))
-         now%closed_start = outermost_rest(now, s*here%d)
-         now%closed_at = s*here%d
-         if (now%to_turn) then
-            ! The inner loop is closed.
-            now%closed_time = turns%list(turns%count)%time
-            call open(-s)%let_fade(now%closed_time, s*here%d)
-            now%start_at = turns%list(turns%count)%start
-            now%goal = turns%list(turns%count)%goal
-            turns%count = turns%count - 1
+         s = now%side
+         at = point(s*here%d, s*here%f)
+         now%peak(s) = max(now%peak(s), at%d)
+         now%worn = max(now%worn, spent_at(at%f))
+         now%turned = turn(at, now%start_at, now%goal)
+         now%left = branch
+         now%left_branch = now%branch
+         now%branch = unloading
+         if (at%f <= no_force*self%given(s)%f_y) then
+            ! There is no force to unload.
+            call end_excursion(here%d)
+            return
+         end if
+         k = unloading_stiffness(s, at)
+         branch = segment(d0=here%d, f0=here%f, k=k)
+         branch = branch%outward(s, near=here%d - here%f/k, far=here%d, near_closed=.true., one_way=.false.)
+      end subroutine unload
+
+      !> Zero force is reached: the excursion to the present side is over.
+      subroutine end_excursion(zero)
+         real(wp), intent(in) :: zero
+
+         associate (s => now%side)
+            if (now%yielded) now%dissipated(s) = now%dissipated(s) + (now%work - now%work_at_zero)
+            now%work_at_zero = now%work
+            call open(-s)%fade(now%turned%at%d)
+            ! A turn behind others that were closed takes their place.
+            now%time = modulo(now%time, huge(1) - 1) + 1
+            now%turned%time = min(now%closed_time, now%time)
+            call open(s)%push(now%turned)
+            now%way_back = now%turned%at%d - now%entered
+            call enter(-s, zero)
+         end associate
+      end subroutine end_excursion
+
+      !> Without force the motion goes toward side s, which deteriorates.
+      subroutine enter(s, zero)
+         integer, intent(in) :: s
+         !> Where the force is zero [m or rad]
+         real(wp), intent(in) :: zero
+         real(wp) :: least
+
+         now%side = s
+         now%begun = point(zero, 0.0_wp)
+         now%entered = s*zero
+         if (self%deterioration%acts() .or. self%hinge_work > 0.0_wp) call deteriorate(s)
+         now%start_at = s*zero
+         if (self%slips) then
+            least = least_start(s)
+            now%start_at = max(now%start_at, least)
+            call find_turns(s, least)
+         else
+            call find_turns(s, -unbounded)
+         end if
+         call open(s)%forget_inside(now%start_at)
+         if (now%start_at > s*zero) then
+            now%branch = gap
+            branch = segment(d0=zero)
+            branch = branch%outward(s, near=zero, far=s*now%start_at, near_closed=.true., one_way=.true.)
+         else
+            call reload()
+         end if
+      end subroutine enter
+
+      !> Start reloading, to the newest open turn or the peak.
+      subroutine reload()
+         logical :: found
+
+         now%branch = reloading
+         now%closed_start = now%start_at
+         now%closed_at = now%start_at
+         now%closed_time = huge(1)
+         associate (s => now%side, turns => open(now%side))
+            do while (turns%count > 0)
+               call turns%list(turns%count)%shift(now%start_at, self%k_0, found)
+               if (found) exit
+               turns%count = turns%count - 1
+            end do
             now%to_turn = turns%count > 0
-            call aim(self, now, branch, point(s*here%d, s*here%f))
-         else
-            call open(-s)%let_fade(0, s*here%d)
-            call follow_backbone(self, now, open, branch, s, here)
-         end if
-      end associate
-   end subroutine go_on
-
-   !> The straight line to the goal. That point is its anchor, so that it is met exactly.
-   subroutine aim(self, now, branch, from)
-      class(capped_part), intent(in) :: self
-      type(capped_state), intent(in) :: now
-      type(segment), intent(inout) :: branch
-      !> As seen from the side
-      type(point), intent(in) :: from
-      real(wp) :: way, k
-
-      associate (s => now%side, at => now%goal)
-         way = at%d - from%d
-         ! If round-off leaves no distance, the point is met at once.
-         k = self%k_0
-         if (way > 0.0_wp) then
-            k = (at%f - from%f)/way
-            branch = segment(d0=s*at%d, f0=0.0_wp + s*at%f, k=k)
-         else
-            branch = segment(d0=s*from%d, f0=0.0_wp + s*from%f, k=k)
-         end if
-         branch = branch%outward(s, near=s*from%d, far=s*max(at%d, from%d), near_closed=.true., one_way=.true.)
-      end associate
-   end subroutine aim
-
-   !> Stiffness at which a turn unloads [N/m or N m/rad].
-   pure real(wp) function unloading_stiffness(self, now, s, at) result(k)
-      class(capped_part), intent(in) :: self
-      type(capped_state), intent(in) :: now
-      integer, intent(in) :: s
-      !> The turn, both positive
-      type(point), intent(in) :: at
-      real(wp) :: least
-
-      k = virgin_unloading(self, s, max(now%peak(s), at%d))* &
-          stiffness_left(self, max(now%worn, spent_at(self, now, at%f)))
-      ! Unloading must not pass the deformation where loading started: that would create energy.
-      least = outermost_rest(now, at%d)
-      if (at%d > least) k = max(k, at%f/(at%d - least))
-      k = min(k, self%k_0)
-   end function unloading_stiffness
-
-   !> The deformation, as seen from the side, that unloading from a deformation does not pass.
-   pure real(wp) function outermost_rest(now, d)
-      type(capped_state), intent(in) :: now
-      real(wp), intent(in) :: d
-
-      outermost_rest = max(now%start_at, now%closed_start - release*(d - now%closed_at))
-   end function outermost_rest
-
-   !> Energy that is dissipated at a turn: without what the stiffest unloading would return [J]. It never
-   !> decreases along a line.
-   pure real(wp) function spent_at(self, now, f)
-      class(capped_part), intent(in) :: self
-      type(capped_state), intent(in) :: now
-      real(wp), intent(in) :: f
-
-      spent_at = 0.0_wp
-      if (.not. now%yielded) return
-      spent_at = now%dissipated(1) + now%dissipated(-1) + (now%work - now%work_at_zero) - &
-                 0.5_wp*f**2/self%k_0
-   end function spent_at
-
-   !> Share of the unloading stiffness that deterioration has left.
-   pure real(wp) function stiffness_left(self, spent) result(share)
-      class(capped_part), intent(in) :: self
-      !> Energy dissipated at the last turn [J]
-      real(wp), intent(in) :: spent
-
-      share = max(self%deterioration%left(self%deterioration%unloading, spent), least_stiffness)
-   end function stiffness_left
-
-   !> Unloading stiffness without deterioration from the largest deformation of a side: before yield toward
-   !> the cracking force of the other side, after it decreasing with ductility [N/m or N m/rad].
-   pure real(wp) function virgin_unloading(self, s, d) result(k)
-      class(capped_part), intent(in) :: self
-      integer, intent(in) :: s
-      !> Positive
-      real(wp), intent(in) :: d
-      real(wp) :: f, beyond
-
-      associate (own => self%given(s), other => self%given(-s))
-         k = own%stiffness()
-         if (d <= own%d_c .or. (d < own%d_y .and. .not. own%d_c > 0.0_wp)) return
-         ! Where the elastic line of this side has the cracking force of the other.
-         beyond = other%f_c/k
-         if (d < own%d_y) then
-            f = own%f_c + (own%f_y - own%f_c)*((d - own%d_c)/(own%d_y - own%d_c))
-            k = (f + other%f_c)/(d + beyond)
-         else
-            k = (own%f_y + other%f_c)/(own%d_y + beyond)*(own%d_y/d)**self%b0
-         end if
-      end associate
-   end function virgin_unloading
-
-   !> The backbone and the peak of a side as they are after what the other side has dissipated.
-   pure subroutine deteriorate(self, now, open, s)
-      class(capped_part), intent(in) :: self
-      type(capped_state), intent(inout) :: now
-      type(open_turns), intent(inout) :: open(-1:1)
-      integer, intent(in) :: s
-      real(wp) :: left, moved, worked
-
-      associate (law => self%deterioration, energy => now%dissipated(-s), backbone => now%backbone(s), &
-                 given => self%given(s))
-         backbone%strength = law%strength_left(energy)
-         if (self%hinge_work > 0.0_wp) then
-            worked = max(now%flexural_work - now%work_at_cracking, 0.0_wp)/self%hinge_work
-            left = self%s_min + (1.0_wp - self%s_min)/(1.0_wp + worked)
-            ! After a small excursion to the other side little has changed.
-            left = max(left, now%left_by_hinge(s) - decay_rate*max(now%way_back, 0.0_wp)/given%d_y)
-            now%left_by_hinge(s) = min(left, now%left_by_hinge(s))
-            backbone%strength = backbone%strength*now%left_by_hinge(s)
-         end if
-         backbone%softening = law%left(law%softening, energy)
-         call backbone%draw(given)
-         left = law%left(law%target, energy)
-         if (left < now%target_left(s)) then
-            moved = distant*(given%d_cap + given%d_pc)
-            if (left*moved > now%peak(s)*now%target_left(s)) moved = now%peak(s)*now%target_left(s)/left
-            if (is_given(given%d_u)) moved = min(moved, max(now%peak(s), given%d_u))
-            moved = max(moved, now%peak(s))
-            call open(s)%move_with_peak(now%peak(s), moved)
-            now%peak(s) = moved
-            now%target_left(s) = left
-         end if
-      end associate
-   end subroutine deteriorate
-
-   !> Where reloading of a part that slips starts at least: at a share of the permanent deformation, where
-   !> unloading from the peak ends.
-   pure real(wp) function least_start(self, now, s)
-      class(capped_part), intent(in) :: self
-      type(capped_state), intent(in) :: now
-      integer, intent(in) :: s
-      real(wp) :: k
-
-      k = virgin_unloading(self, s, now%peak(s))*stiffness_left(self, now%worn)
-      least_start = self%slip*max(now%peak(s) - now%backbone(s)%force(now%peak(s))/k, 0.0_wp)
-   end function least_start
-
-   !> Put the open turns of a side on the lines as they are now.
-   pure subroutine find_turns(self, now, open, s, least)
-      class(capped_part), intent(in) :: self
-      type(capped_state), intent(inout) :: now
-      type(open_turns), intent(inout) :: open(-1:1)
-      integer, intent(in) :: s
-      !> Lines start here or farther in
-      real(wp), intent(in) :: least
-      integer :: i
-
-      do i = 1, open(s)%count
-         associate (turned => open(s)%list(i))
-            ! That of the peak itself stays: unloading from it ends behind `least` in any case.
-            if (turned%at%d < turned%goal%d) turned%start = max(turned%start, least)
-            if (i == 1) then
-               turned%goal = goal_from(self, now, s, turned%start)
+            if (now%to_turn) then
+               now%goal = turns%list(turns%count)%at
             else
-               turned%goal = open(s)%list(i - 1)%at
+               now%goal = goal_from(s, now%start_at)
             end if
-            if (turned%at%d >= turned%goal%d) then
-               turned%at%f = now%backbone(s)%force(turned%at%d)
-            else if (turned%at%d > turned%start) then
-               turned%at%f = turned%goal%f*((turned%at%d - turned%start)/(turned%goal%d - turned%start))
+            call aim(point(now%start_at, 0.0_wp))
+         end associate
+      end subroutine reload
+
+      !> The goal of reloading is reached.
+      subroutine go_on(here)
+         type(point), intent(in) :: here
+
+         associate (s => now%side, turns => open(now%side))
+            now%closed_start = outermost_rest(s*here%d)
+            now%closed_at = s*here%d
+            if (now%to_turn) then
+               ! The inner loop is closed.
+               now%closed_time = turns%list(turns%count)%time
+               call open(-s)%let_fade(now%closed_time, s*here%d)
+               now%start_at = turns%list(turns%count)%start
+               now%goal = turns%list(turns%count)%goal
+               turns%count = turns%count - 1
+               now%to_turn = turns%count > 0
+               call aim(point(s*here%d, s*here%f))
+            else
+               call open(-s)%let_fade(0, s*here%d)
+               call follow_backbone(s, here)
             end if
          end associate
-      end do
-   end subroutine find_turns
+      end subroutine go_on
 
-   !> The point of the backbone to which a line from zero force leads: the peak, or a corner beyond it if the
-   !> line to it is steeper (as to yield in Takeda's rule).
-   pure type(point) function goal_from(self, now, s, start) result(goal)
-      class(capped_part), intent(in) :: self
-      type(capped_state), intent(in) :: now
-      integer, intent(in) :: s
-      !> As seen from the side
-      real(wp), intent(in) :: start
-      real(wp) :: slope
-      integer :: i
+      !> The straight line to the goal. That point is its anchor, so that it is met exactly.
+      subroutine aim(from)
+         !> As seen from the side
+         type(point), intent(in) :: from
+         real(wp) :: way, k
 
-      associate (backbone => now%backbone(s))
-         goal = point(now%peak(s), backbone%force(now%peak(s)))
-         slope = -1.0_wp
-         if (goal%d > start) slope = goal%f/(goal%d - start)
-         do i = 1, backbone%last
-            if (backbone%d(i) <= max(now%peak(s), start)) cycle
-            if (backbone%f(i) <= slope*(backbone%d(i) - start)) cycle
-            goal = point(backbone%d(i), backbone%f(i))
-            slope = goal%f/(goal%d - start)
+         associate (s => now%side, at => now%goal)
+            way = at%d - from%d
+            ! If round-off leaves no distance, the point is met at once.
+            k = self%k_0
+            if (way > 0.0_wp) then
+               k = (at%f - from%f)/way
+               branch = segment(d0=s*at%d, f0=0.0_wp + s*at%f, k=k)
+            else
+               branch = segment(d0=s*from%d, f0=0.0_wp + s*from%f, k=k)
+            end if
+            branch = branch%outward(s, near=s*from%d, far=s*max(at%d, from%d), near_closed=.true., one_way=.true.)
+         end associate
+      end subroutine aim
+
+      !> Stiffness at which a turn unloads [N/m or N m/rad].
+      real(wp) function unloading_stiffness(s, at) result(k)
+         integer, intent(in) :: s
+         !> The turn, both positive
+         type(point), intent(in) :: at
+         real(wp) :: least
+
+         k = virgin_unloading(s, max(now%peak(s), at%d))* &
+             stiffness_left(max(now%worn, spent_at(at%f)))
+         ! Unloading must not pass the deformation where loading started: that would create energy.
+         least = outermost_rest(at%d)
+         if (at%d > least) k = max(k, at%f/(at%d - least))
+         k = min(k, self%k_0)
+      end function unloading_stiffness
+
+      !> The deformation, as seen from the side, that unloading from a deformation does not pass.
+      real(wp) function outermost_rest(d)
+         real(wp), intent(in) :: d
+
+         outermost_rest = max(now%start_at, now%closed_start - release*(d - now%closed_at))
+      end function outermost_rest
+
+      !> Energy that is dissipated at a turn: without what the stiffest unloading would return [J]. It never
+      !> decreases along a line.
+      real(wp) function spent_at(f)
+         real(wp), intent(in) :: f
+
+         spent_at = 0.0_wp
+         if (.not. now%yielded) return
+         spent_at = now%dissipated(1) + now%dissipated(-1) + (now%work - now%work_at_zero) - &
+                    0.5_wp*f**2/self%k_0
+      end function spent_at
+
+      !> Share of the unloading stiffness that deterioration has left.
+      real(wp) function stiffness_left(spent) result(share)
+         !> Energy dissipated at the last turn [J]
+         real(wp), intent(in) :: spent
+
+         share = max(self%deterioration%left(self%deterioration%unloading, spent), least_stiffness)
+      end function stiffness_left
+
+      !> Unloading stiffness without deterioration from the largest deformation of a side: before yield toward
+      !> the cracking force of the other side, after it decreasing with ductility [N/m or N m/rad].
+      real(wp) function virgin_unloading(s, d) result(k)
+         integer, intent(in) :: s
+         !> Positive
+         real(wp), intent(in) :: d
+         real(wp) :: f, beyond
+
+         associate (own => self%given(s), other => self%given(-s))
+            k = own%stiffness()
+            if (d <= own%d_c .or. (d < own%d_y .and. .not. own%d_c > 0.0_wp)) return
+            ! Where the elastic line of this side has the cracking force of the other.
+            beyond = other%f_c/k
+            if (d < own%d_y) then
+               f = own%f_c + (own%f_y - own%f_c)*((d - own%d_c)/(own%d_y - own%d_c))
+               k = (f + other%f_c)/(d + beyond)
+            else
+               k = (own%f_y + other%f_c)/(own%d_y + beyond)*(own%d_y/d)**self%b0
+            end if
+         end associate
+      end function virgin_unloading
+
+      !> The backbone and the peak of a side as they are after what the other side has dissipated.
+      subroutine deteriorate(s)
+         integer, intent(in) :: s
+         real(wp) :: left, moved, worked
+
+         associate (law => self%deterioration, energy => now%dissipated(-s), backbone => now%backbone(s), &
+                    given => self%given(s))
+            backbone%strength = law%strength_left(energy)
+            if (self%hinge_work > 0.0_wp) then
+               worked = max(now%flexural_work - now%work_at_cracking, 0.0_wp)/self%hinge_work
+               left = self%s_min + (1.0_wp - self%s_min)/(1.0_wp + worked)
+               ! After a small excursion to the other side little has changed.
+               left = max(left, now%left_by_hinge(s) - decay_rate*max(now%way_back, 0.0_wp)/given%d_y)
+               now%left_by_hinge(s) = min(left, now%left_by_hinge(s))
+               backbone%strength = backbone%strength*now%left_by_hinge(s)
+            end if
+            backbone%softening = law%left(law%softening, energy)
+            call backbone%draw(given)
+            left = law%left(law%target, energy)
+            if (left < now%target_left(s)) then
+               moved = distant*(given%d_cap + given%d_pc)
+               if (left*moved > now%peak(s)*now%target_left(s)) moved = now%peak(s)*now%target_left(s)/left
+               if (is_given(given%d_u)) moved = min(moved, max(now%peak(s), given%d_u))
+               moved = max(moved, now%peak(s))
+               call open(s)%move_with_peak(now%peak(s), moved)
+               now%peak(s) = moved
+               now%target_left(s) = left
+            end if
+         end associate
+      end subroutine deteriorate
+
+      !> Where reloading of a part that slips starts at least: at a share of the permanent deformation, where
+      !> unloading from the peak ends.
+      real(wp) function least_start(s)
+         integer, intent(in) :: s
+         real(wp) :: k
+
+         k = virgin_unloading(s, now%peak(s))*stiffness_left(now%worn)
+         least_start = self%slip*max(now%peak(s) - now%backbone(s)%force(now%peak(s))/k, 0.0_wp)
+      end function least_start
+
+      !> Put the open turns of a side on the lines as they are now.
+      subroutine find_turns(s, least)
+         integer, intent(in) :: s
+         !> Lines start here or farther in
+         real(wp), intent(in) :: least
+         integer :: i
+
+         do i = 1, open(s)%count
+            associate (turned => open(s)%list(i))
+               ! That of the peak itself stays: unloading from it ends behind `least` in any case.
+               if (turned%at%d < turned%goal%d) turned%start = max(turned%start, least)
+               if (i == 1) then
+                  turned%goal = goal_from(s, turned%start)
+               else
+                  turned%goal = open(s)%list(i - 1)%at
+               end if
+               if (turned%at%d >= turned%goal%d) then
+                  turned%at%f = now%backbone(s)%force(turned%at%d)
+               else if (turned%at%d > turned%start) then
+                  turned%at%f = turned%goal%f*((turned%at%d - turned%start)/(turned%goal%d - turned%start))
+               end if
+            end associate
          end do
-         if (slope < 0.0_wp .or. slope > self%k_0*(1.0_wp + parallel)) then
-            goal%d = backbone%meeting(self%k_0, start)
-            goal%f = backbone%force(goal%d)
-         end if
-      end associate
-   end function goal_from
+      end subroutine find_turns
+
+      !> The point of the backbone to which a line from zero force leads: the peak, or a corner beyond it if the
+      !> line to it is steeper (as to yield in Takeda's rule).
+      type(point) function goal_from(s, start) result(goal)
+         integer, intent(in) :: s
+         !> As seen from the side
+         real(wp), intent(in) :: start
+         real(wp) :: slope
+         integer :: i
+
+         associate (backbone => now%backbone(s))
+            goal = point(now%peak(s), backbone%force(now%peak(s)))
+            slope = -1.0_wp
+            if (goal%d > start) slope = goal%f/(goal%d - start)
+            do i = 1, backbone%last
+               if (backbone%d(i) <= max(now%peak(s), start)) cycle
+               if (backbone%f(i) <= slope*(backbone%d(i) - start)) cycle
+               goal = point(backbone%d(i), backbone%f(i))
+               slope = goal%f/(goal%d - start)
+            end do
+            if (slope < 0.0_wp .or. slope > self%k_0*(1.0_wp + parallel)) then
+               goal%d = backbone%meeting(self%k_0, start)
+               goal%f = backbone%force(goal%d)
+            end if
+         end associate
+      end function goal_from
+   end subroutine find_branch
 
    pure subroutine copy(self, other)
       class(capped_memory), intent(inout) :: self

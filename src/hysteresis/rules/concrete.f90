@@ -158,7 +158,9 @@ contains
       type(segment), intent(out) :: branch
       type(concrete_state) :: virgin
 
-      call follow_envelope(self, virgin, 0.0_wp, 0.0_wp, branch)
+      ! The envelope begins at zero.
+      branch%lo = 0.0_wp
+      call find_branch(self, virgin, branch, -1)
       allocate (memory, source=concrete_memory(now=virgin))
    end subroutine start
 
@@ -186,110 +188,299 @@ contains
       if (direction < 0) then
          select case (now%kind)
          case (envelope)
-            call follow_envelope(self, now, c, f, branch)
+            call follow_envelope(c, f)
          case (unloading)
-            call follow_envelope(self, now, now%c_u, now%strength*now%f_u, branch)
+            call follow_envelope(now%c_u, now%strength*now%f_u)
          case (contact)
-            call unload(self, now, branch)
+            call unload()
          case (opening)
-            call widen(self, now, c)
+            call widen(c)
             if (self%seating > 0.0_wp .and. c > now%c_p - now%gap) then
-               call rub(self, now, c, 0.0_wp, branch)
+               call rub(c, 0.0_wp)
             else
-               call close_up(self, now, c, branch)
+               call close_up(c)
             end if
          case (releasing, parting)
-            call rub(self, now, c, f, branch)
+            call rub(c, f)
          case (between)
-            call close_on(self, now, c, branch)
+            call close_on(c)
          case default
-            call touch(self, now, branch)
+            call touch()
          end select
       else
          select case (now%kind)
          case (envelope)
             if (c > 0.0_wp) then
-               call leave_envelope(self, now, c, f/now%strength)
+               call leave_envelope(c, f/now%strength)
                if (self%rubs) then
-                  call rub(self, now, c, f, branch)
+                  call rub(c, f)
                else
-                  call unload(self, now, branch)
+                  call unload()
                end if
             else
-               call open_up(now, c, branch)
+               call open_up(c)
             end if
          case (unloading)
             if (self%rubs) then
-               call rub(self, now, c, f, branch)
+               call rub(c, f)
             else
-               call touch(self, now, branch)
+               call touch()
             end if
          case (contact)
             if (self%rubs .and. c > now%c_p - now%gap) then
-               call rub(self, now, c, f, branch)
+               call rub(c, f)
             else
-               call open_up(now, c, branch)
+               call open_up(c)
             end if
          case (between)
-            call release(self, now, c, branch)
+            call release(c)
          case (releasing)
-            call release(self, now, c, branch)
+            call release(c)
          case default
-            call open_up(now, c, branch)
+            call open_up(c)
          end select
       end if
-   end subroutine find_branch
 
-   !> On the envelope from (c, f) to its next corner.
-   subroutine follow_envelope(self, now, c, f, branch)
-      type(concrete_rule), intent(in) :: self
-      type(concrete_state), intent(inout) :: now
-      !> Where the spring is: closing [m], force [N]
-      real(wp), intent(in) :: c, f
-      type(segment), intent(out) :: branch
-      real(wp) :: c_next, f_next, c_flat
-      integer :: i
+   contains
 
-      now%kind = envelope
-      do i = 1, size(chord_ends)
-         c_next = chord_ends(i)*self%d_peak
-         if (c_next > c*(1.0_wp + 1.0e-9_wp)) then
-            f_next = now%strength*curve(self, c_next)
-            branch = chord(c, f, c_next, f_next)
+      !> On the envelope from (c, f) to its next corner.
+      subroutine follow_envelope(c, f)
+         !> Where the spring is: closing [m], force [N]
+         real(wp), intent(in) :: c, f
+         real(wp) :: c_next, f_next, c_flat
+         integer :: i
+
+         now%kind = envelope
+         do i = 1, size(chord_ends)
+            c_next = chord_ends(i)*self%d_peak
+            if (c_next > c*(1.0_wp + 1.0e-9_wp)) then
+               f_next = now%strength*curve(self, c_next)
+               branch = chord(c, f, c_next, f_next)
+               call set_one_way(branch)
+               return
+            end if
+         end do
+         c_flat = self%d_peak + (self%f_peak - self%f_res)/self%k_soft
+         if (c_flat > c*(1.0_wp + 1.0e-9_wp)) then
+            branch = chord(c, f, c_flat, now%strength*self%f_res)
+         else
+            branch = segment(d0=-c, f0=-f, lo=-unbounded, hi=-c)
+         end if
+         call set_one_way(branch)
+      end subroutine follow_envelope
+
+      !> The motion has turned back on the envelope at (c, f), f without wear.
+      subroutine leave_envelope(c, f)
+         real(wp), intent(in) :: c, f
+         real(wp) :: largest, share
+
+         ! Crushing wears down what keeps the faces apart: gap times force does not grow, or the path of
+         ! unloading would store more than the envelope has given.
+         largest = f
+         if (c > self%d_peak) largest = self%f_peak
+         if (largest > now%f_largest) then
+            now%gap = now%gap*(now%f_largest/largest)
+            now%f_largest = largest
+         end if
+         now%c_u = c
+         now%f_u = f
+         share = karsan_jirsa(c/self%d_peak) - karsan_jirsa(chord_ends(1))
+         ! Unloading is never stiffer than `k`.
+         now%c_p = max(min(self%plastic*share*self%d_peak, c - f/self%k), 0.0_wp)
+      end subroutine leave_envelope
+
+      !> On the line of unloading between full closing and the envelope.
+      subroutine unload()
+         real(wp) :: c_closed, f_closed
+
+         now%kind = unloading
+         call full_closing(c_closed, f_closed)
+         branch = chord(c_closed, f_closed, now%c_u, now%strength*now%f_u)
+         if (self%rubs) then
             call set_one_way(branch)
+         else
+            branch%hi_closed = .not. now%gap > 0.0_wp
+         end if
+      end subroutine unload
+
+      !> On the line between the first touch of the faces and full closing; without length it is skipped.
+      subroutine touch()
+         real(wp) :: c_closed, f_closed
+
+         call full_closing(c_closed, f_closed)
+         if (now%gap > 0.0_wp) then
+            now%kind = contact
+            ! The lines before and after it lead both ways, so both corners belong to this line.
+            branch = chord(now%c_p - now%gap, 0.0_wp, c_closed, f_closed)
+            branch%lo_closed = .true.
+            branch%hi_closed = .true.
+            if (self%rubs) call set_one_way(branch)
+         else if (now%kind == closing) then
+            call unload()
+         else
+            call open_up(now%c_p)
+         end if
+      end subroutine touch
+
+      !> Between the paths through (c, f): as stiff as the virgin spring, up to the path of closing and down to
+      !> that of opening.
+      subroutine rub(c, f)
+         real(wp), intent(in) :: c, f
+         real(wp) :: upper, lower
+
+         upper = c
+         lower = c
+         if (now%kind == releasing .or. now%kind == parting .or. now%kind == opening) then
+            upper = min(max(meeting(1.0_wp, now%c_p - now%gap, c, f), c), now%c_u)
+         else
+            lower = min(meeting(1.0_wp - share_of_friction(), parting_end(), c, f), c)
+         end if
+         now%kind = between
+         branch = segment(d0=-c, f0=-f, k=self%k, lo=-upper, hi=-lower)
+      end subroutine rub
+
+      !> The share by which the path of opening is lower: none where the virgin spring is elastic.
+      real(wp) function share_of_friction()
+
+         share_of_friction = self%friction*crushed()
+      end function share_of_friction
+
+      !> From 0, where the virgin spring is elastic, to 1 at the closing at the peak.
+      real(wp) function crushed()
+
+         crushed = (now%c_u/self%d_peak - chord_ends(1))/(1.0_wp - chord_ends(1))
+         crushed = min(max(crushed, 0.0_wp), 1.0_wp)
+      end function crushed
+
+      !> The closing at which the path of opening has no force any more [m].
+      real(wp) function parting_end()
+
+         parting_end = now%c_p - now%gap
+         if (self%seating > 0.0_wp) parting_end = now%c_p - (1.0_wp - self%seating*crushed())*now%gap
+      end function parting_end
+
+      !> Where the line of the initial stiffness through (c, f) meets a path: a share of that of closing above
+      !> full closing, and a line from there to no force at the closing `c_none` [m].
+      real(wp) function meeting(share, c_none, c, f)
+         real(wp), intent(in) :: share, c_none, c, f
+         real(wp) :: c_closed, f_closed, c_0, f_0, slope
+
+         call full_closing(c_closed, f_closed)
+         if (f + self%k*(c_closed - c) < share*f_closed) then
+            c_0 = c_closed
+            f_0 = share*f_closed
+            meeting = c_0
+            ! The path ends where it closes.
+            if (.not. now%c_u > c_0) return
+            slope = (share*now%strength*now%f_u - f_0)/(now%c_u - c_0)
+         else
+            c_0 = c_none
+            f_0 = 0.0_wp
+            slope = 0.0_wp
+            ! Before it the path has no force.
+            if (c_closed > c_0 .and. f < self%k*(c - c_0)) slope = share*f_closed/(c_closed - c_0)
+         end if
+         ! Both lines from c_0 on.
+         meeting = c_0
+         if (self%k*(1.0_wp - 1.0e-9_wp) > slope) meeting = c_0 + (f_0 - f - self%k*(c_0 - c))/(self%k - slope)
+         meeting = max(meeting, now%c_p - now%gap)
+      end function meeting
+
+      !> On the path of closing from the closing c on.
+      subroutine close_on(c)
+         real(wp), intent(in) :: c
+         real(wp) :: c_closed, f_closed
+
+         call full_closing(c_closed, f_closed)
+         if (c >= now%c_u) then
+            call follow_envelope(now%c_u, now%strength*now%f_u)
+         else if (c >= c_closed) then
+            call unload()
+            branch%hi = -c
+         else
+            now%kind = contact
+            branch = chord(now%c_p - now%gap, 0.0_wp, c_closed, f_closed)
+            branch%hi = -c
+            call set_one_way(branch)
+         end if
+      end subroutine close_on
+
+      !> On the path of opening from the closing c on.
+      subroutine release(c)
+         real(wp), intent(in) :: c
+         real(wp) :: c_closed, f_closed, left, c_none
+
+         call full_closing(c_closed, f_closed)
+         left = 1.0_wp - share_of_friction()
+         c_none = parting_end()
+         if (c > c_closed) then
+            now%kind = releasing
+            branch = chord(c_closed, left*f_closed, now%c_u, left*now%strength*now%f_u)
+         else if (c > c_none) then
+            now%kind = parting
+            branch = chord(c_none, 0.0_wp, c_closed, left*f_closed)
+         else
+            call open_up(c)
             return
          end if
-      end do
-      c_flat = self%d_peak + (self%f_peak - self%f_res)/self%k_soft
-      if (c_flat > c*(1.0_wp + 1.0e-9_wp)) then
-         branch = chord(c, f, c_flat, now%strength*self%f_res)
-      else
-         branch = segment(d0=-c, f0=-f, lo=-unbounded, hi=-c)
-      end if
-      call set_one_way(branch)
-   end subroutine follow_envelope
+         branch%lo = -c
+         branch%lo_closed = .true.
+         branch%one_way = 1
+      end subroutine release
 
-   !> The motion has turned back on the envelope at (c, f), f without wear.
-   pure subroutine leave_envelope(self, now, c, f)
-      type(concrete_rule), intent(in) :: self
-      type(concrete_state), intent(inout) :: now
-      real(wp), intent(in) :: c, f
-      real(wp) :: largest, share
+      !> Where a closing crack is fully closed.
+      subroutine full_closing(c, f)
+         !> Closing [m] and force [N]
+         real(wp), intent(out) :: c, f
 
-      ! Crushing wears down what keeps the faces apart: gap times force does not grow, or the path of
-      ! unloading would store more than the envelope has given.
-      largest = f
-      if (c > self%d_peak) largest = self%f_peak
-      if (largest > now%f_largest) then
-         now%gap = now%gap*(now%f_largest/largest)
-         now%f_largest = largest
-      end if
-      now%c_u = c
-      now%f_u = f
-      share = karsan_jirsa(c/self%d_peak) - karsan_jirsa(chord_ends(1))
-      ! Unloading is never stiffer than `k`.
-      now%c_p = max(min(self%plastic*share*self%d_peak, c - f/self%k), 0.0_wp)
-   end subroutine leave_envelope
+         c = now%c_p
+         f = 0.0_wp
+         if (.not. now%gap > 0.0_wp) return
+         c = now%c_p + self%contact*(now%c_u - now%c_p)
+         f = self%contact*now%strength*now%f_u
+      end subroutine full_closing
+
+      !> The line of zero force while the crack opens, from the closing c.
+      subroutine open_up(c)
+         real(wp), intent(in) :: c
+
+         now%kind = opening
+         now%c_opened = c
+         branch = segment(d0=-c, lo=-c, hi=unbounded, lo_closed=.true., one_way=1)
+      end subroutine open_up
+
+      !> The line of zero force while the crack closes, from the closing c until the faces touch.
+      subroutine close_up(c)
+         real(wp), intent(in) :: c
+
+         now%kind = closing
+         branch = chord(c, 0.0_wp, now%c_p - now%gap, 0.0_wp)
+         ! Openings are added up only if they have an effect.
+         if (self%wear > 0.0_wp) call set_one_way(branch)
+      end subroutine close_up
+
+      !> The crack has opened to a closing c: the wider it was, the earlier its faces touch, and the
+      !> strength falls with the way. There is no force, so neither is felt at once.
+      subroutine widen(c)
+         real(wp), intent(in) :: c
+         real(wp) :: before, width, inside, openings
+
+         before = now%c_p - now%c_opened
+         width = now%c_p - c
+         now%gap = max(now%gap, self%misfit*width)
+         if (self%wear > 0.0_wp .and. now%c_u > 0.0_wp) then
+            ! The way over the width so far, integrated as the width grows.
+            inside = min(width, now%widest) - min(before, now%widest)
+            openings = inside/(now%widest + self%d_peak)
+            if (width > now%widest) then
+               openings = openings + log((width + self%d_peak)/(max(now%widest, before) + self%d_peak))
+            end if
+            now%strength = now%strength* &
+                            (1.0_wp - self%wear)**(openings*min(1.0_wp, 0.5_wp*now%c_u/self%d_peak))
+         end if
+         now%widest = max(now%widest, width)
+      end subroutine widen
+   end subroutine find_branch
 
    !> Plastic closing after unloading from x, both over the closing at the peak (Karsan and Jirsa 1969); a
    !> straight line beyond x = 2.
@@ -299,230 +490,6 @@ contains
       karsan_jirsa = 0.145_wp*x**2 + 0.13_wp*x
       if (x > 2.0_wp) karsan_jirsa = 0.84_wp + 0.834_wp*(x - 2.0_wp)
    end function karsan_jirsa
-
-   !> On the line of unloading between full closing and the envelope.
-   subroutine unload(self, now, branch)
-      type(concrete_rule), intent(in) :: self
-      type(concrete_state), intent(inout) :: now
-      type(segment), intent(out) :: branch
-      real(wp) :: c_closed, f_closed
-
-      now%kind = unloading
-      call full_closing(self, now, c_closed, f_closed)
-      branch = chord(c_closed, f_closed, now%c_u, now%strength*now%f_u)
-      if (self%rubs) then
-         call set_one_way(branch)
-      else
-         branch%hi_closed = .not. now%gap > 0.0_wp
-      end if
-   end subroutine unload
-
-   !> On the line between the first touch of the faces and full closing; without length it is skipped.
-   subroutine touch(self, now, branch)
-      type(concrete_rule), intent(in) :: self
-      type(concrete_state), intent(inout) :: now
-      type(segment), intent(inout) :: branch
-      real(wp) :: c_closed, f_closed
-
-      call full_closing(self, now, c_closed, f_closed)
-      if (now%gap > 0.0_wp) then
-         now%kind = contact
-         ! The lines before and after it lead both ways, so both corners belong to this line.
-         branch = chord(now%c_p - now%gap, 0.0_wp, c_closed, f_closed)
-         branch%lo_closed = .true.
-         branch%hi_closed = .true.
-         if (self%rubs) call set_one_way(branch)
-      else if (now%kind == closing) then
-         call unload(self, now, branch)
-      else
-         call open_up(now, now%c_p, branch)
-      end if
-   end subroutine touch
-
-   !> Between the paths through (c, f): as stiff as the virgin spring, up to the path of closing and down to
-   !> that of opening.
-   subroutine rub(self, now, c, f, branch)
-      type(concrete_rule), intent(in) :: self
-      type(concrete_state), intent(inout) :: now
-      real(wp), intent(in) :: c, f
-      type(segment), intent(out) :: branch
-      real(wp) :: upper, lower
-
-      upper = c
-      lower = c
-      if (now%kind == releasing .or. now%kind == parting .or. now%kind == opening) then
-         upper = min(max(meeting(self, now, 1.0_wp, now%c_p - now%gap, c, f), c), now%c_u)
-      else
-         lower = min(meeting(self, now, 1.0_wp - share_of_friction(self, now), parting_end(self, now), c, f), c)
-      end if
-      now%kind = between
-      branch = segment(d0=-c, f0=-f, k=self%k, lo=-upper, hi=-lower)
-   end subroutine rub
-
-   !> The share by which the path of opening is lower: none where the virgin spring is elastic.
-   elemental real(wp) function share_of_friction(self, now)
-      type(concrete_rule), intent(in) :: self
-      type(concrete_state), intent(in) :: now
-
-      share_of_friction = self%friction*crushed(self, now)
-   end function share_of_friction
-
-   !> From 0, where the virgin spring is elastic, to 1 at the closing at the peak.
-   elemental real(wp) function crushed(self, now)
-      type(concrete_rule), intent(in) :: self
-      type(concrete_state), intent(in) :: now
-
-      crushed = (now%c_u/self%d_peak - chord_ends(1))/(1.0_wp - chord_ends(1))
-      crushed = min(max(crushed, 0.0_wp), 1.0_wp)
-   end function crushed
-
-   !> The closing at which the path of opening has no force any more [m].
-   elemental real(wp) function parting_end(self, now)
-      type(concrete_rule), intent(in) :: self
-      type(concrete_state), intent(in) :: now
-
-      parting_end = now%c_p - now%gap
-      if (self%seating > 0.0_wp) parting_end = now%c_p - (1.0_wp - self%seating*crushed(self, now))*now%gap
-   end function parting_end
-
-   !> Where the line of the initial stiffness through (c, f) meets a path: a share of that of closing above
-   !> full closing, and a line from there to no force at the closing `c_none` [m].
-   real(wp) function meeting(self, now, share, c_none, c, f)
-      type(concrete_rule), intent(in) :: self
-      type(concrete_state), intent(in) :: now
-      real(wp), intent(in) :: share, c_none, c, f
-      real(wp) :: c_closed, f_closed, c_0, f_0, slope
-
-      call full_closing(self, now, c_closed, f_closed)
-      if (f + self%k*(c_closed - c) < share*f_closed) then
-         c_0 = c_closed
-         f_0 = share*f_closed
-         meeting = c_0
-         ! The path ends where it closes.
-         if (.not. now%c_u > c_0) return
-         slope = (share*now%strength*now%f_u - f_0)/(now%c_u - c_0)
-      else
-         c_0 = c_none
-         f_0 = 0.0_wp
-         slope = 0.0_wp
-         ! Before it the path has no force.
-         if (c_closed > c_0 .and. f < self%k*(c - c_0)) slope = share*f_closed/(c_closed - c_0)
-      end if
-      ! Both lines from c_0 on.
-      meeting = c_0
-      if (self%k*(1.0_wp - 1.0e-9_wp) > slope) meeting = c_0 + (f_0 - f - self%k*(c_0 - c))/(self%k - slope)
-      meeting = max(meeting, now%c_p - now%gap)
-   end function meeting
-
-   !> On the path of closing from the closing c on.
-   subroutine close_on(self, now, c, branch)
-      type(concrete_rule), intent(in) :: self
-      type(concrete_state), intent(inout) :: now
-      real(wp), intent(in) :: c
-      type(segment), intent(out) :: branch
-      real(wp) :: c_closed, f_closed
-
-      call full_closing(self, now, c_closed, f_closed)
-      if (c >= now%c_u) then
-         call follow_envelope(self, now, now%c_u, now%strength*now%f_u, branch)
-      else if (c >= c_closed) then
-         call unload(self, now, branch)
-         branch%hi = -c
-      else
-         now%kind = contact
-         branch = chord(now%c_p - now%gap, 0.0_wp, c_closed, f_closed)
-         branch%hi = -c
-         call set_one_way(branch)
-      end if
-   end subroutine close_on
-
-   !> On the path of opening from the closing c on.
-   subroutine release(self, now, c, branch)
-      type(concrete_rule), intent(in) :: self
-      type(concrete_state), intent(inout) :: now
-      real(wp), intent(in) :: c
-      type(segment), intent(out) :: branch
-      real(wp) :: c_closed, f_closed, left, c_none
-
-      call full_closing(self, now, c_closed, f_closed)
-      left = 1.0_wp - share_of_friction(self, now)
-      c_none = parting_end(self, now)
-      if (c > c_closed) then
-         now%kind = releasing
-         branch = chord(c_closed, left*f_closed, now%c_u, left*now%strength*now%f_u)
-      else if (c > c_none) then
-         now%kind = parting
-         branch = chord(c_none, 0.0_wp, c_closed, left*f_closed)
-      else
-         call open_up(now, c, branch)
-         return
-      end if
-      branch%lo = -c
-      branch%lo_closed = .true.
-      branch%one_way = 1
-   end subroutine release
-
-   !> Where a closing crack is fully closed.
-   pure subroutine full_closing(self, now, c, f)
-      type(concrete_rule), intent(in) :: self
-      type(concrete_state), intent(in) :: now
-      !> Closing [m] and force [N]
-      real(wp), intent(out) :: c, f
-
-      c = now%c_p
-      f = 0.0_wp
-      if (.not. now%gap > 0.0_wp) return
-      c = now%c_p + self%contact*(now%c_u - now%c_p)
-      f = self%contact*now%strength*now%f_u
-   end subroutine full_closing
-
-   !> The line of zero force while the crack opens, from the closing c.
-   subroutine open_up(now, c, branch)
-      type(concrete_state), intent(inout) :: now
-      real(wp), intent(in) :: c
-      type(segment), intent(out) :: branch
-
-      now%kind = opening
-      now%c_opened = c
-      branch = segment(d0=-c, lo=-c, hi=unbounded, lo_closed=.true., one_way=1)
-   end subroutine open_up
-
-   !> The line of zero force while the crack closes, from the closing c until the faces touch.
-   subroutine close_up(self, now, c, branch)
-      type(concrete_rule), intent(in) :: self
-      type(concrete_state), intent(inout) :: now
-      real(wp), intent(in) :: c
-      type(segment), intent(out) :: branch
-
-      now%kind = closing
-      branch = chord(c, 0.0_wp, now%c_p - now%gap, 0.0_wp)
-      ! Openings are added up only if they have an effect.
-      if (self%wear > 0.0_wp) call set_one_way(branch)
-   end subroutine close_up
-
-   !> The crack has opened to a closing c: the wider it was, the earlier its faces touch, and the
-   !> strength falls with the way. There is no force, so neither is felt at once.
-   pure subroutine widen(self, now, c)
-      type(concrete_rule), intent(in) :: self
-      type(concrete_state), intent(inout) :: now
-      real(wp), intent(in) :: c
-      real(wp) :: before, width, inside, openings
-
-      before = now%c_p - now%c_opened
-      width = now%c_p - c
-      now%gap = max(now%gap, self%misfit*width)
-      if (self%wear > 0.0_wp .and. now%c_u > 0.0_wp) then
-         ! The way over the width so far, integrated as the width grows.
-         inside = min(width, now%widest) - min(before, now%widest)
-         openings = inside/(now%widest + self%d_peak)
-         if (width > now%widest) then
-            openings = openings + log((width + self%d_peak)/(max(now%widest, before) + self%d_peak))
-         end if
-         now%strength = now%strength* &
-                         (1.0_wp - self%wear)**(openings*min(1.0_wp, 0.5_wp*now%c_u/self%d_peak))
-      end if
-      now%widest = max(now%widest, width)
-   end subroutine widen
 
    !> Rising curve of Popovics (1973) [N].
    pure real(wp) function curve(self, c)

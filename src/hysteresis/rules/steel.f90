@@ -230,11 +230,11 @@ contains
       logical :: growing, one_slips, slips(elements)
 
       n = self%limited
-      call bring(self, now, branch%end_toward(direction))
+      call bring(branch%end_toward(direction))
       reach = now%highest - now%lowest
       end_of_reach = merge(now%highest, now%lowest, direction > 0)
       growing = direction*(end_of_reach - now%d) <= 0.0_wp
-      call find_limits(self, now, growing, limit, growth, ahead)
+      call find_limits(growing, limit, growth, ahead)
       s = direction*now%s
       do i = 1, n
          slips(i) = s(i) >= limit(i) - near_limit*reach*self%k_element(i) .and. &
@@ -244,7 +244,7 @@ contains
       one_slips = any(slips(:n))
       now%wear_rate = 0.0_wp
       if (self%endurance > 0.0_wp .and. .not. growing .and. one_slips) then
-         call wear(self, now, bowing(self, now, direction), limit, slips, growth, ahead)
+         call wear(bowing(direction), limit, slips, growth, ahead)
       end if
       now%rate(:n) = merge(growth(:n), self%k_element(:n), slips(:n))
       do i = 1, n
@@ -264,105 +264,99 @@ contains
       if (.not. growing .and. direction*(end_of_reach - far) <= 0.0_wp) far = end_of_reach
       branch = segment(d0=now%d, f0=f, k=slope)
       branch = branch%outward(direction, near=now%d, far=far, near_closed=.true., one_way=growing .or. one_slips)
-   end subroutine find_branch
 
-   !> Move along the present branch to its end at d.
-   pure subroutine bring(self, now, d)
-      type(steel_rule), intent(in) :: self
-      type(steel_state), intent(inout) :: now
-      real(wp), intent(in) :: d
-      integer :: n
+   contains
 
-      n = self%limited
-      now%s(:n) = now%s(:n) + now%rate(:n)*(d - now%d)
-      ! Hardening without end is a line through the origin.
-      if (n < elements) now%s(elements) = self%k_post*d
-      now%worn = now%worn + now%wear_rate*abs(d - now%d)
-      now%d = d
-      now%highest = max(now%highest, d)
-      now%lowest = min(now%lowest, d)
-   end subroutine bring
+      !> Move along the present branch to its end at d.
+      subroutine bring(d)
+         real(wp), intent(in) :: d
+         integer :: n
 
-   !> Limits of the elements, their growth with the deformation, and distance to the next row of the table.
-   pure subroutine find_limits(self, now, growing, limit, growth, ahead)
-      type(steel_rule), intent(in) :: self
-      type(steel_state), intent(in) :: now
-      logical, intent(in) :: growing
-      !> (elements) [N], (elements) [N/m]
-      real(wp), intent(out) :: limit(elements), growth(elements)
-      !> [m], `unbounded` if no row follows
-      real(wp), intent(out) :: ahead
-      real(wp) :: q, way, strength
-      integer :: row
+         n = self%limited
+         now%s(:n) = now%s(:n) + now%rate(:n)*(d - now%d)
+         ! Hardening without end is a line through the origin.
+         if (n < elements) now%s(elements) = self%k_post*d
+         now%worn = now%worn + now%wear_rate*abs(d - now%d)
+         now%d = d
+         now%highest = max(now%highest, d)
+         now%lowest = min(now%lowest, d)
+      end subroutine bring
 
-      strength = 1.0_wp
-      if (self%endurance > 0.0_wp) then
-         strength = max(0.0_wp, 1.0_wp - now%worn/(2.0_wp*self%endurance*self%d_y))
-      end if
-      q = (now%highest - now%lowest)/self%d_y - 2.0_wp
-      growth = 0.0_wp
-      ahead = unbounded
-      associate (table => self%table)
-         do row = 1, table%rows - 1
-            if (q < table%q(row + 1) - 1.0e-12_wp*(2.0_wp + q)) exit
-         end do
-         limit = strength*self%d_y*self%k_element*table%y(:, row)
-         if (row == table%rows) return
-         way = table%q(row + 1) - table%q(row)
-         growth = strength*self%k_element*(table%y(:, row + 1) - table%y(:, row))/way
-         limit = limit + growth*(q - table%q(row))*self%d_y
-         ahead = (table%q(row + 1) - q)*self%d_y
-         if (growing) return
+      !> Limits of the elements, their growth with the deformation, and distance to the next row of the table.
+      subroutine find_limits(growing, limit, growth, ahead)
+         logical, intent(in) :: growing
+         !> (elements) [N], (elements) [N/m]
+         real(wp), intent(out) :: limit(elements), growth(elements)
+         !> [m], `unbounded` if no row follows
+         real(wp), intent(out) :: ahead
+         real(wp) :: q, way, strength
+         integer :: row
+
+         strength = 1.0_wp
+         if (self%endurance > 0.0_wp) then
+            strength = max(0.0_wp, 1.0_wp - now%worn/(2.0_wp*self%endurance*self%d_y))
+         end if
+         q = (now%highest - now%lowest)/self%d_y - 2.0_wp
          growth = 0.0_wp
          ahead = unbounded
-      end associate
-   end subroutine find_limits
+         associate (table => self%table)
+            do row = 1, table%rows - 1
+               if (q < table%q(row + 1) - 1.0e-12_wp*(2.0_wp + q)) exit
+            end do
+            limit = strength*self%d_y*self%k_element*table%y(:, row)
+            if (row == table%rows) return
+            way = table%q(row + 1) - table%q(row)
+            growth = strength*self%k_element*(table%y(:, row + 1) - table%y(:, row))/way
+            limit = limit + growth*(q - table%q(row))*self%d_y
+            ahead = (table%q(row + 1) - q)*self%d_y
+            if (growing) return
+            growth = 0.0_wp
+            ahead = unbounded
+         end associate
+      end subroutine find_limits
 
-   !> Factor of the wear: a bar that has been stretched beyond `d_buckle` bows when it is compressed, and what
-   !> is bowed and straightened cracks. The largest elongation is settled where the bar turns back.
-   pure real(wp) function bowing(self, now, direction)
-      type(steel_rule), intent(in) :: self
-      type(steel_state), intent(in) :: now
-      integer, intent(in) :: direction
+      !> Factor of the wear: a bar that has been stretched beyond `d_buckle` bows when it is compressed, and what
+      !> is bowed and straightened cracks. The largest elongation is settled where the bar turns back.
+      real(wp) function bowing(direction)
+         integer, intent(in) :: direction
 
-      bowing = 1.0_wp
-      if (direction > 0 .or. .not. self%buckling > 0.0_wp) return
-      if (now%highest <= self%d_buckle) return
-      bowing = min(1.0_wp + self%buckling*(now%highest/self%d_buckle - 1.0_wp), self%most_wear)
-   end function bowing
+         bowing = 1.0_wp
+         if (direction > 0 .or. .not. self%buckling > 0.0_wp) return
+         if (now%highest <= self%d_buckle) return
+         bowing = min(1.0_wp + self%buckling*(now%highest/self%d_buckle - 1.0_wp), self%most_wear)
+      end function bowing
 
-   !> Wear and force along a branch determine each other: the limits y_i lose e_i for each unit of plastic
-   !> deformation d - f/k, and its share in the deformation follows from the slope that this gives.
-   pure subroutine wear(self, now, times, limit, slips, growth, ahead)
-      type(steel_rule), intent(in) :: self
-      type(steel_state), intent(inout) :: now
-      !> What a unit of plastic deformation counts
-      real(wp), intent(in) :: times
-      real(wp), intent(in) :: limit(elements)
-      logical, intent(in) :: slips(elements)
-      !> (elements) [N/m]
-      real(wp), intent(out) :: growth(elements)
-      !> Distance to the deformation at which no strength is left [m]
-      real(wp), intent(inout) :: ahead
-      real(wp) :: left, loss(elements), slope, slipping
-      integer :: n
+      !> Wear and force along a branch determine each other: the limits y_i lose e_i for each unit of plastic
+      !> deformation d - f/k, and its share in the deformation follows from the slope that this gives.
+      subroutine wear(times, limit, slips, growth, ahead)
+         !> What a unit of plastic deformation counts
+         real(wp), intent(in) :: times
+         real(wp), intent(in) :: limit(elements)
+         logical, intent(in) :: slips(elements)
+         !> (elements) [N/m]
+         real(wp), intent(out) :: growth(elements)
+         !> Distance to the deformation at which no strength is left [m]
+         real(wp), intent(inout) :: ahead
+         real(wp) :: left, loss(elements), slope, slipping
+         integer :: n
 
-      n = self%limited
-      growth = 0.0_wp
-      left = 2.0_wp*self%endurance*self%d_y - now%worn
-      if (left <= near_limit*(now%highest - now%lowest)) then
-         now%worn = 2.0_wp*self%endurance*self%d_y
-         return
-      end if
-      loss(:n) = times*limit(:n)/left
-      slipping = sum(loss(:n), mask=slips(:n))
-      slope = sum(self%k_element(:n), mask=.not. slips(:n)) - slipping
-      if (n < elements) slope = slope + self%k_post
-      slope = slope/(1.0_wp - slipping/self%k)
-      growth(:n) = -loss(:n)*(1.0_wp - slope/self%k)
-      now%wear_rate = times*(1.0_wp - slope/self%k)
-      ahead = min(ahead, left/now%wear_rate)
-   end subroutine wear
+         n = self%limited
+         growth = 0.0_wp
+         left = 2.0_wp*self%endurance*self%d_y - now%worn
+         if (left <= near_limit*(now%highest - now%lowest)) then
+            now%worn = 2.0_wp*self%endurance*self%d_y
+            return
+         end if
+         loss(:n) = times*limit(:n)/left
+         slipping = sum(loss(:n), mask=slips(:n))
+         slope = sum(self%k_element(:n), mask=.not. slips(:n)) - slipping
+         if (n < elements) slope = slope + self%k_post
+         slope = slope/(1.0_wp - slipping/self%k)
+         growth(:n) = -loss(:n)*(1.0_wp - slope/self%k)
+         now%wear_rate = times*(1.0_wp - slope/self%k)
+         ahead = min(ahead, left/now%wear_rate)
+      end subroutine wear
+   end subroutine find_branch
 
    !> The widest limit of an element that has one, over k_i d_y.
    real(wp) function largest_limit(self)

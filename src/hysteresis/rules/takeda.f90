@@ -181,285 +181,251 @@ contains
       select case (now%branch)
       case (uncracked)
          now%cracked(direction) = .true.
-         call follow_backbone(self, now, branch, direction, direction*self%d_c)
+         call follow_backbone(direction, direction*self%d_c)
       case (cracked_backbone, yielded_backbone)
          if (outward) then
-            call follow_backbone(self, now, branch, (now%side), here%d)
+            call follow_backbone((now%side), here%d)
          else
-            call unload_from_peak(self, now, branch, here)
+            call unload_from_peak(here)
          end if
       case (outer_unloading)
          if (outward) then
-            call follow_backbone(self, now, branch, (now%side), here%d)
+            call follow_backbone((now%side), here%d)
          else if (now%cracked(direction)) then
-            call reload_from_outer(self, now, branch, here%d)
+            call reload_from_outer(here%d)
          else
-            call crack_on_reversal(self, now, branch, here%d)
+            call crack_on_reversal(here%d)
          end if
       case (reloading)
          if (outward) then
-            call reach_target(self, now, open, branch)
+            call reach_target()
          else
-            call unload_from_inner_peak(self, now, open, branch, here)
+            call unload_from_inner_peak(here)
          end if
       case (inner_unloading)
          if (outward) then
-            call resume_reloading(now, open, branch, (open%count))
+            call resume_reloading((open%count))
          else
-            call reload_from_inner(self, now, open, branch, direction, here)
+            call reload_from_inner(direction, here)
          end if
       end select
-   end subroutine find_branch
 
-   !> On the backbone of side s from deformation d on.
-   subroutine follow_backbone(self, now, branch, s, d)
-      type(takeda_rule), intent(in) :: self
-      type(takeda_state), intent(inout) :: now
-      type(segment), intent(inout) :: branch
-      integer, intent(in) :: s
-      real(wp), intent(in) :: d
+   contains
 
-      now%side = s
-      if (s*d < self%d_y) then
-         now%branch = cracked_backbone
-         branch = segment(d0=s*self%d_c, f0=s*self%f_c, k=self%k_y)
-         branch = branch%outward(s, near=d, far=s*self%d_y, near_closed=.true., one_way=.true.)
-      else
-         now%branch = yielded_backbone
-         branch = segment(d0=s*self%d_y, f0=s*self%f_y, k=self%k_u)
-         branch = branch%outward(s, near=d, far=s*unbounded, near_closed=.true., one_way=.true.)
-      end if
-   end subroutine follow_backbone
+      !> On the backbone of side s from deformation d on.
+      subroutine follow_backbone(s, d)
+         integer, intent(in) :: s
+         real(wp), intent(in) :: d
 
-   !> Reversal on the backbone: a new peak of this side, unloading with K_r.
-   subroutine unload_from_peak(self, now, branch, peak)
-      type(takeda_rule), intent(in) :: self
-      type(takeda_state), intent(inout) :: now
-      type(segment), intent(inout) :: branch
-      type(point), intent(in) :: peak
-      real(wp) :: near
-      integer :: s
+         now%side = s
+         if (s*d < self%d_y) then
+            now%branch = cracked_backbone
+            branch = segment(d0=s*self%d_c, f0=s*self%f_c, k=self%k_y)
+            branch = branch%outward(s, near=d, far=s*self%d_y, near_closed=.true., one_way=.true.)
+         else
+            now%branch = yielded_backbone
+            branch = segment(d0=s*self%d_y, f0=s*self%f_y, k=self%k_u)
+            branch = branch%outward(s, near=d, far=s*unbounded, near_closed=.true., one_way=.true.)
+         end if
+      end subroutine follow_backbone
 
-      s = now%side
-      now%branch = outer_unloading
-      now%peak(s) = peak
-      now%k_r(s) = outer_stiffness(self, abs(peak%d), abs(peak%f))
-      branch = segment(d0=peak%d, f0=peak%f, k=now%k_r(s))
-      if (now%cracked(-s)) then
-         near = peak%d - peak%f/now%k_r(s)
-      else if (abs(peak%d) <= self%d_y) then
-         near = -s*self%d_c                         ! by definition K_r leads to the cracking point
-      else
-         near = peak%d - (peak%f + s*self%f_c)/now%k_r(s)
-      end if
-      branch = branch%outward(s, near=near, far=peak%d, near_closed=now%cracked(-s), one_way=.false.)
-   end subroutine unload_from_peak
+      !> Reversal on the backbone: a new peak of this side, unloading with K_r.
+      subroutine unload_from_peak(peak)
+         type(point), intent(in) :: peak
+         real(wp) :: near
+         integer :: s
 
-   !> K_r of a peak (eq 7), not below the secant: unloading must not end on the other side of the origin.
-   elemental real(wp) function outer_stiffness(self, d, f) result(k_r)
-      type(takeda_rule), intent(in) :: self
-      !> Peak, both positive
-      real(wp), intent(in) :: d, f
+         s = now%side
+         now%branch = outer_unloading
+         now%peak(s) = peak
+         now%k_r(s) = outer_stiffness(abs(peak%d), abs(peak%f))
+         branch = segment(d0=peak%d, f0=peak%f, k=now%k_r(s))
+         if (now%cracked(-s)) then
+            near = peak%d - peak%f/now%k_r(s)
+         else if (abs(peak%d) <= self%d_y) then
+            near = -s*self%d_c                         ! by definition K_r leads to the cracking point
+         else
+            near = peak%d - (peak%f + s*self%f_c)/now%k_r(s)
+         end if
+         branch = branch%outward(s, near=near, far=peak%d, near_closed=now%cracked(-s), one_way=.false.)
+      end subroutine unload_from_peak
 
-      if (d <= self%d_y) then
-         k_r = (f + self%f_c)/(d + self%d_c)
-      else
-         k_r = (self%f_c + self%f_y)/(self%d_c + self%d_y)*(self%d_y/d)**self%b0
-      end if
-      k_r = max(k_r, f/d)
-   end function outer_stiffness
+      !> K_r of a peak (eq 7), not below the secant: unloading must not end on the other side of the origin.
+      real(wp) function outer_stiffness(d, f) result(k_r)
+         !> Peak, both positive
+         real(wp), intent(in) :: d, f
 
-   !> Outer unloading has reached zero force, and the other side has cracked: reload toward its peak, or
-   !> toward its yield point if it has not yielded and the line to it is steeper.
-   subroutine reload_from_outer(self, now, branch, zero)
-      type(takeda_rule), intent(in) :: self
-      type(takeda_state), intent(inout) :: now
-      type(segment), intent(inout) :: branch
-      real(wp), intent(in) :: zero
-      type(point) :: yield
-      integer :: s
+         if (d <= self%d_y) then
+            k_r = (f + self%f_c)/(d + self%d_c)
+         else
+            k_r = (self%f_c + self%f_y)/(self%d_c + self%d_y)*(self%d_y/d)**self%b0
+         end if
+         k_r = max(k_r, f/d)
+      end function outer_stiffness
 
-      s = -now%side
-      yield = point(s*self%d_y, s*self%f_y)
-      if (s*now%peak(s)%d < self%d_y) then
-         if (yield%f/(yield%d - zero) > now%peak(s)%f/(now%peak(s)%d - zero)) now%peak(s) = yield
-      end if
-      call reload_toward_peak(self, now, branch, s, point(zero, 0.0_wp), zero)
-   end subroutine reload_from_outer
+      !> Outer unloading has reached zero force, and the other side has cracked: reload toward its peak, or
+      !> toward its yield point if it has not yielded and the line to it is steeper.
+      subroutine reload_from_outer(zero)
+         real(wp), intent(in) :: zero
+         type(point) :: yield
+         integer :: s
 
-   !> Outer unloading has continued to the cracking force of the other side, which cracks.
-   subroutine crack_on_reversal(self, now, branch, d)
-      type(takeda_rule), intent(in) :: self
-      type(takeda_state), intent(inout) :: now
-      type(segment), intent(inout) :: branch
-      real(wp), intent(in) :: d
-      real(wp) :: zero, k_r, ahead, d_peak
-      integer :: s
+         s = -now%side
+         yield = point(s*self%d_y, s*self%f_y)
+         if (s*now%peak(s)%d < self%d_y) then
+            if (yield%f/(yield%d - zero) > now%peak(s)%f/(now%peak(s)%d - zero)) now%peak(s) = yield
+         end if
+         call reload_toward_peak(s, point(zero, 0.0_wp), zero)
+      end subroutine reload_from_outer
 
-      s = -now%side
-      now%cracked(s) = .true.
-      associate (left => now%peak(-s))
-         k_r = now%k_r(-s)
-         if (abs(left%d) <= self%d_y) then
-            call follow_backbone(self, now, branch, s, d)
+      !> Outer unloading has continued to the cracking force of the other side, which cracks.
+      subroutine crack_on_reversal(d)
+         real(wp), intent(in) :: d
+         real(wp) :: zero, k_r, ahead, d_peak
+         integer :: s
+
+         s = -now%side
+         now%cracked(s) = .true.
+         associate (left => now%peak(-s))
+            k_r = now%k_r(-s)
+            if (abs(left%d) <= self%d_y) then
+               call follow_backbone(s, d)
+               return
+            end if
+            zero = left%d - left%f/k_r
+         end associate
+         now%peak(s) = point(s*self%d_y, s*self%f_y)
+         ahead = s*(now%peak(s)%d - d)
+         if (self%f_y - self%f_c > k_r*ahead .and. k_r > (1.0_wp + parallel)*self%k_u) then
+            ! The line to the yield point is steeper than K_r or leads back: continue with K_r to the yielded
+            ! backbone.
+            d_peak = (self%f_y - self%k_u*self%d_y - self%f_c + k_r*s*d)/(k_r - self%k_u)
+            now%peak(s) = point(s*d_peak, s*(self%f_y + self%k_u*(d_peak - self%d_y)))
+         end if
+         call reload_toward_peak(s, point(d, s*self%f_c), zero)
+      end subroutine crack_on_reversal
+
+      !> Reloading has reached its target.
+      subroutine reach_target()
+         type(point) :: here
+         integer :: place
+
+         here = now%aim%target
+         place = open%place_of(now%aim%target_serial)
+         if (place > 0) then
+            call resume_reloading(place)
             return
          end if
-         zero = left%d - left%f/k_r
-      end associate
-      now%peak(s) = point(s*self%d_y, s*self%f_y)
-      ahead = s*(now%peak(s)%d - d)
-      if (self%f_y - self%f_c > k_r*ahead .and. k_r > (1.0_wp + parallel)*self%k_u) then
-         ! The line to the yield point is steeper than K_r or leads back: continue with K_r to the yielded
-         ! backbone.
-         d_peak = (self%f_y - self%k_u*self%d_y - self%f_c + k_r*s*d)/(k_r - self%k_u)
-         now%peak(s) = point(s*d_peak, s*(self%f_y + self%k_u*(d_peak - self%d_y)))
-      end if
-      call reload_toward_peak(self, now, branch, s, point(d, s*self%f_c), zero)
-   end subroutine crack_on_reversal
+         open%count = 0
+         if (now%aim%target_serial == 0_int64) then
+            call follow_backbone((now%side), here%d)
+         else
+            ! The inner peak was so old that it has been forgotten: continue to the backbone.
+            call reload_toward_peak((now%side), here, (now%aim%zero))
+         end if
+      end subroutine reach_target
 
-   !> Reloading has reached its target.
-   subroutine reach_target(self, now, open, branch)
-      type(takeda_rule), intent(in) :: self
-      type(takeda_state), intent(inout) :: now
-      type(inner_peaks), intent(inout) :: open
-      type(segment), intent(inout) :: branch
-      type(point) :: here
-      integer :: place
+      !> Reversal on reloading before its target: a new inner peak, from which unloading has slope K_in.
+      subroutine unload_from_inner_peak(here)
+         type(point), intent(in) :: here
+         real(wp) :: k_in
+         integer :: s
 
-      here = now%aim%target
-      place = open%place_of(now%aim%target_serial)
-      if (place > 0) then
-         call resume_reloading(now, open, branch, place)
-         return
-      end if
-      open%count = 0
-      if (now%aim%target_serial == 0_int64) then
-         call follow_backbone(self, now, branch, (now%side), here%d)
-      else
-         ! The inner peak was so old that it has been forgotten: continue to the backbone.
-         call reload_toward_peak(self, now, branch, (now%side), here, (now%aim%zero))
-      end if
-   end subroutine reach_target
+         s = now%side
+         if (abs(here%f) <= no_force*self%f_y) then
+            call reload_from_inner(-s, here)
+            return
+         end if
+         now%aim%line = branch
+         call open%push(s, here, now%aim)
+         now%branch = inner_unloading
+         k_in = inner_stiffness(here)
+         branch = segment(d0=here%d, f0=here%f, k=k_in)
+         branch = branch%outward(s, near=here%d - here%f/k_in, far=here%d, near_closed=.true., &
+                                  one_way=.false.)
+      end subroutine unload_from_inner_peak
 
-   !> Reversal on reloading before its target: a new inner peak, from which unloading has slope K_in.
-   subroutine unload_from_inner_peak(self, now, open, branch, here)
-      type(takeda_rule), intent(in) :: self
-      type(takeda_state), intent(inout) :: now
-      type(inner_peaks), intent(inout) :: open
-      type(segment), intent(inout) :: branch
-      type(point), intent(in) :: here
-      real(wp) :: k_in
-      integer :: s
+      !> K_in of an inner peak within its bounds, of which the lower one has priority.
+      real(wp) function inner_stiffness(peak) result(k_in)
+         type(point), intent(in) :: peak
+         real(wp) :: k_r, way
 
-      s = now%side
-      if (abs(here%f) <= no_force*self%f_y) then
-         call reload_from_inner(self, now, open, branch, -s, here)
-         return
-      end if
-      now%aim%line = branch
-      call open%push(s, here, now%aim)
-      now%branch = inner_unloading
-      k_in = inner_stiffness(self, now, here)
-      branch = segment(d0=here%d, f0=here%f, k=k_in)
-      branch = branch%outward(s, near=here%d - here%f/k_in, far=here%d, near_closed=.true., &
-                               one_way=.false.)
-   end subroutine unload_from_inner_peak
+         k_r = now%k_r(now%side)
+         if (.not. k_r > 0.0_wp) k_r = now%k_r(-now%side)
+         select case (self%inner)
+         case (of_uncracked)
+            k_in = self%b1*self%k_c
+         case (of_outer)
+            k_in = self%b1*k_r
+         case default
+            k_in = k_r
+         end select
+         k_in = min(k_in, k_r)
+         ! At ductilities of 1e16 round-off leaves no distance from the zero crossing.
+         way = now%side*(peak%d - now%aim%zero)
+         if (way > 0.0_wp) k_in = max(k_in, now%side*peak%f/way)
+      end function inner_stiffness
 
-   !> K_in of an inner peak within its bounds, of which the lower one has priority.
-   pure real(wp) function inner_stiffness(self, now, peak) result(k_in)
-      type(takeda_rule), intent(in) :: self
-      type(takeda_state), intent(in) :: now
-      type(point), intent(in) :: peak
-      real(wp) :: k_r, way
+      !> Continue on the reloading branch that was left at an inner peak; it and all newer peaks are closed.
+      subroutine resume_reloading(place)
+         integer, intent(in) :: place
 
-      k_r = now%k_r(now%side)
-      if (.not. k_r > 0.0_wp) k_r = now%k_r(-now%side)
-      select case (self%inner)
-      case (of_uncracked)
-         k_in = self%b1*self%k_c
-      case (of_outer)
-         k_in = self%b1*k_r
-      case default
-         k_in = k_r
-      end select
-      k_in = min(k_in, k_r)
-      ! At ductilities of 1e16 round-off leaves no distance from the zero crossing.
-      way = now%side*(peak%d - now%aim%zero)
-      if (way > 0.0_wp) k_in = max(k_in, now%side*peak%f/way)
-   end function inner_stiffness
+         associate (peak => open%peak(place))
+            now%branch = reloading
+            now%side = peak%side
+            now%aim = peak%left
+            branch = now%aim%line%outward(peak%side, near=peak%at%d, far=now%aim%target%d, &
+                                            near_closed=.true., one_way=.true.)
+         end associate
+         open%count = place - 1
+      end subroutine resume_reloading
 
-   !> Continue on the reloading branch that was left at an inner peak; it and all newer peaks are closed.
-   subroutine resume_reloading(now, open, branch, place)
-      type(takeda_state), intent(inout) :: now
-      type(inner_peaks), intent(inout) :: open
-      type(segment), intent(inout) :: branch
-      integer, intent(in) :: place
+      !> Inner unloading has reached zero force: reload toward the newest open peak of side s, else toward its
+      !> backbone peak. If the target were the yield point instead, inner loops would not close.
+      subroutine reload_from_inner(s, from)
+         integer, intent(in) :: s
+         type(point), intent(in) :: from
+         integer :: place
 
-      associate (peak => open%peak(place))
+         place = open%newest_of_side(s)
+         if (place == 0) then
+            call reload_toward_peak(s, from, from%d)
+         else
+            now%aim = reloading_line(target=open%peak(place)%at, &
+                                     target_serial=open%peak(place)%serial, zero=from%d)
+            call reload(s, from)
+         end if
+      end subroutine reload_from_inner
+
+      !> Reload toward the backbone peak of side s.
+      subroutine reload_toward_peak(s, from, zero)
+         integer, intent(in) :: s
+         type(point), intent(in) :: from
+         real(wp), intent(in) :: zero
+
+         now%aim = reloading_line(target=now%peak(s), zero=zero)
+         call reload(s, from)
+      end subroutine reload_toward_peak
+
+      !> The straight line to the target. The target is its anchor, so that a peak is met exactly.
+      subroutine reload(s, from)
+         integer, intent(in) :: s
+         type(point), intent(in) :: from
+         real(wp) :: way, k
+
          now%branch = reloading
-         now%side = peak%side
-         now%aim = peak%left
-         branch = now%aim%line%outward(peak%side, near=peak%at%d, far=now%aim%target%d, &
-                                         near_closed=.true., one_way=.true.)
-      end associate
-      open%count = place - 1
-   end subroutine resume_reloading
-
-   !> Inner unloading has reached zero force: reload toward the newest open peak of side s, else toward its
-   !> backbone peak. If the target were the yield point instead, inner loops would not close.
-   subroutine reload_from_inner(self, now, open, branch, s, from)
-      type(takeda_rule), intent(in) :: self
-      type(takeda_state), intent(inout) :: now
-      type(inner_peaks), intent(inout) :: open
-      type(segment), intent(inout) :: branch
-      integer, intent(in) :: s
-      type(point), intent(in) :: from
-      integer :: place
-
-      place = open%newest_of_side(s)
-      if (place == 0) then
-         call reload_toward_peak(self, now, branch, s, from, from%d)
-      else
-         now%aim = reloading_line(target=open%peak(place)%at, &
-                                  target_serial=open%peak(place)%serial, zero=from%d)
-         call reload(self, now, branch, s, from)
-      end if
-   end subroutine reload_from_inner
-
-   !> Reload toward the backbone peak of side s.
-   subroutine reload_toward_peak(self, now, branch, s, from, zero)
-      type(takeda_rule), intent(in) :: self
-      type(takeda_state), intent(inout) :: now
-      type(segment), intent(inout) :: branch
-      integer, intent(in) :: s
-      type(point), intent(in) :: from
-      real(wp), intent(in) :: zero
-
-      now%aim = reloading_line(target=now%peak(s), zero=zero)
-      call reload(self, now, branch, s, from)
-   end subroutine reload_toward_peak
-
-   !> The straight line to the target. The target is its anchor, so that a peak is met exactly.
-   subroutine reload(self, now, branch, s, from)
-      type(takeda_rule), intent(in) :: self
-      type(takeda_state), intent(inout) :: now
-      type(segment), intent(inout) :: branch
-      integer, intent(in) :: s
-      type(point), intent(in) :: from
-      real(wp) :: way, k
-
-      now%branch = reloading
-      now%side = s
-      associate (target => now%aim%target)
-         way = target%d - from%d
-         ! If round-off leaves no distance, the target is met at once.
-         k = self%k_c
-         if (s*way > 0.0_wp) k = (target%f - from%f)/way
-         branch = segment(d0=target%d, f0=target%f, k=k)
-         branch = branch%outward(s, near=from%d, far=s*max(s*target%d, s*from%d), near_closed=.true., &
-                               one_way=.true.)
-      end associate
-   end subroutine reload
+         now%side = s
+         associate (target => now%aim%target)
+            way = target%d - from%d
+            ! If round-off leaves no distance, the target is met at once.
+            k = self%k_c
+            if (s*way > 0.0_wp) k = (target%f - from%f)/way
+            branch = segment(d0=target%d, f0=target%f, k=k)
+            branch = branch%outward(s, near=from%d, far=s*max(s*target%d, s*from%d), near_closed=.true., &
+                                  one_way=.true.)
+         end associate
+      end subroutine reload
+   end subroutine find_branch
 
    pure subroutine copy(self, other)
       class(takeda_memory), intent(inout) :: self
