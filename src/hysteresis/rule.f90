@@ -33,11 +33,12 @@ module rbs_hysteresis_rule
 
    !> The parameters of a spring. They do not change once they are set.
    type, abstract :: rule_type
+      !> Stiffness of the virgin spring, of the stiffer side if they differ [N/m or N m/rad]
+      real(wp) :: initial_stiffness = 0.0_wp
       !> Whether the spring decays with the work of the flexural spring of its joint
       logical :: uses_flexural_work = .false.
    contains
       procedure(set_interface), deferred :: set
-      procedure(stiffness_interface), deferred :: initial_stiffness
       procedure :: check
       procedure :: prepare
       procedure(start_interface), deferred :: start
@@ -71,13 +72,6 @@ module rbs_hysteresis_rule
          real(wp), intent(in) :: value(:)
       end subroutine set_interface
 
-      !> Stiffness of the virgin spring, of the stiffer side if they differ [N/m or N m/rad].
-      pure real(wp) function stiffness_interface(self)
-         import :: rule_type, wp
-         implicit none
-         class(rule_type), intent(in) :: self
-      end function stiffness_interface
-
       !> The memory of a virgin spring, and its branch.
       subroutine start_interface(self, memory, branch)
          import :: rule_type, rule_memory, segment
@@ -110,7 +104,7 @@ contains
       integer :: i
 
       do i = 1, size(of_rule)
-         of_rule(i) = self%list(i)%rule%initial_stiffness()
+         of_rule(i) = self%list(i)%rule%initial_stiffness
       end do
       k = of_rule(self%of)
    end function stiffness_of_springs
@@ -152,7 +146,7 @@ contains
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
 
-      if (.false.) call messages%add(name//to_text(self%initial_stiffness()))
+      if (.false.) call messages%add(name//to_text(self%initial_stiffness))
    end subroutine check
 
    !> Compute what follows from the parameters alone, once they have been checked.

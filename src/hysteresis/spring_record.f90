@@ -273,11 +273,11 @@ contains
       call new_rule(self%rule, rule, keys)
       call whole_values(self, keys, value)
       call rule%set(value)
-      call rule%prepare()
       select type (rule)
       type is (layered_rule)
          call make_layers(self, rule)
       end select
+      call rule%prepare()
    end subroutine make
 
    !> The layers of a joint. Equal springs share a rule; those at one place, as bars in a row, are one layer that
@@ -325,7 +325,7 @@ contains
       class(rule_type), allocatable :: rule
 
       call self%make(rule)
-      initial_stiffness = rule%initial_stiffness()
+      initial_stiffness = rule%initial_stiffness
    end function initial_stiffness
 
    !> The rules of springs; neighbours that are equal share one.

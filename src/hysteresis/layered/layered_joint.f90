@@ -26,7 +26,7 @@ module rbs_hysteresis_layered_joint
       integer, allocatable :: rule_of(:)
    contains
       procedure :: set
-      procedure :: initial_stiffness
+      procedure :: prepare
       procedure :: start
       procedure :: next
    end type layered_rule
@@ -41,19 +41,19 @@ contains
       self%uses_flexural_work = size(value) < 0
    end subroutine set
 
-   !> Rotational stiffness with all layers uncracked [N m/rad].
-   pure real(wp) function initial_stiffness(self)
-      class(layered_rule), intent(in) :: self
+   !> The rotational stiffness with all layers uncracked.
+   pure subroutine prepare(self)
+      class(layered_rule), intent(inout) :: self
       real(wp) :: k(size(self%y))
       integer :: i
 
       do i = 1, size(k)
-         k(i) = self%rule(self%rule_of(i))%rule%initial_stiffness()*self%weight(i)
+         k(i) = self%rule(self%rule_of(i))%rule%initial_stiffness*self%weight(i)
       end do
       associate (y => self%y)
-         initial_stiffness = sum(k*(y - sum(k*y)/sum(k))**2)
+         self%initial_stiffness = sum(k*(y - sum(k*y)/sum(k))**2)
       end associate
-   end function initial_stiffness
+   end subroutine prepare
 
    subroutine start(self, memory, branch)
       class(layered_rule), intent(in) :: self

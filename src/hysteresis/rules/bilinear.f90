@@ -32,7 +32,6 @@ module rbs_hysteresis_rules_bilinear
       real(wp) :: k_post = 0.0_wp
    contains
       procedure :: set
-      procedure :: initial_stiffness
       procedure :: check
       procedure :: start
       procedure :: next
@@ -45,15 +44,10 @@ contains
       real(wp), intent(in) :: value(:)
 
       self%k = value(1)
+      self%initial_stiffness = self%k
       self%d_y = value(2)
       self%k_post = value(3)
    end subroutine set
-
-   pure real(wp) function initial_stiffness(self)
-      class(bilinear_rule), intent(in) :: self
-
-      initial_stiffness = self%k
-   end function initial_stiffness
 
    subroutine check(self, name, messages)
       class(bilinear_rule), intent(in) :: self

@@ -24,7 +24,6 @@ module rbs_hysteresis_rules_compression
       real(wp) :: gap = 0.0_wp
    contains
       procedure :: set
-      procedure :: initial_stiffness
       procedure :: start
       procedure :: next
    end type compression_rule
@@ -36,14 +35,9 @@ contains
       real(wp), intent(in) :: value(:)
 
       self%k = value(1)
+      self%initial_stiffness = self%k
       self%gap = value(2)
    end subroutine set
-
-   pure real(wp) function initial_stiffness(self)
-      class(compression_rule), intent(in) :: self
-
-      initial_stiffness = self%k
-   end function initial_stiffness
 
    !> The joint is closed at zero opening, or with a gap at minus that; openings are positive.
    subroutine start(self, memory, branch)

@@ -104,7 +104,6 @@ module rbs_hysteresis_rules_concrete
       logical, private :: rubs = .false.
    contains
       procedure :: set
-      procedure :: initial_stiffness
       procedure :: check
       procedure :: start
       procedure :: next
@@ -117,6 +116,7 @@ contains
       real(wp), intent(in) :: value(:)
 
       self%k = value(1)
+      self%initial_stiffness = self%k
       self%f_peak = value(2)
       self%d_peak = value(3)
       self%k_soft = value(4)
@@ -129,12 +129,6 @@ contains
       self%seating = value(11)
       self%rubs = self%friction > 0.0_wp .or. self%seating > 0.0_wp
    end subroutine set
-
-   pure real(wp) function initial_stiffness(self)
-      class(concrete_rule), intent(in) :: self
-
-      initial_stiffness = self%k
-   end function initial_stiffness
 
    subroutine check(self, name, messages)
       class(concrete_rule), intent(in) :: self

@@ -18,7 +18,6 @@ module rbs_hysteresis_rules_elastic
       real(wp) :: k = 0.0_wp
    contains
       procedure :: set
-      procedure :: initial_stiffness
       procedure :: start
       procedure :: next
    end type elastic_rule
@@ -30,13 +29,8 @@ contains
       real(wp), intent(in) :: value(:)
 
       self%k = value(1)
+      self%initial_stiffness = self%k
    end subroutine set
-
-   pure real(wp) function initial_stiffness(self)
-      class(elastic_rule), intent(in) :: self
-
-      initial_stiffness = self%k
-   end function initial_stiffness
 
    subroutine start(self, memory, branch)
       class(elastic_rule), intent(in) :: self

@@ -49,17 +49,23 @@ module rbs_hysteresis_rules_peak_oriented
    type(key_type), parameter :: capped_keys(*) = [backbone_keys, shared_keys, other_side_keys]
 
    type, extends(rule_type) :: peak_oriented_rule
-      type(capped_part) :: part
+      !> The peak-oriented part and, in the rule `pinching`, the one that slips; how many there are, and the share
+      !> of the first in the force
+      type(capped_part) :: part(2)
+      integer :: parts = 1
+      real(wp) :: share = 1.0_wp
    contains
       procedure :: set
-      procedure :: initial_stiffness
       procedure :: check
       procedure :: start
       procedure :: next
    end type peak_oriented_rule
 
    type, extends(rule_memory) :: peak_oriented_memory
-      type(capped_memory) :: part
+      integer :: parts = 1
+      !> Of each part, its memory and, where there are two, its present branch
+      type(capped_memory) :: part(2)
+      type(segment) :: branch(2)
    contains
       procedure :: copy
       procedure :: serialize
@@ -71,7 +77,7 @@ contains
       class(peak_oriented_rule), intent(inout) :: self
       real(wp), intent(in) :: value(:)
 
-      associate (part => self%part, positive => value(:sides), &
+      associate (part => self%part(1), positive => value(:sides), &
                  negative => value(sides + shared + 1:2*sides + shared), lambda => value(sides + 2:sides + 5))
          part%given(1) = from_values(positive)
          part%given(-1) = from_values(merge(negative, positive, is_given(negative)))
@@ -83,6 +89,7 @@ contains
             part%s_min = value(sides + 8)
          end associate
          part%k_0 = max(part%given(1)%stiffness(), part%given(-1)%stiffness())
+         self%initial_stiffness = part%k_0
          self%uses_flexural_work = part%hinge_work > 0.0_wp
       end associate
    end subroutine set
@@ -94,12 +101,6 @@ contains
       energy_of = 0.5_wp*(part%given(1)%f_y*part%given(1)%d_y + part%given(-1)%f_y*part%given(-1)%d_y)
    end function energy_of
 
-   pure real(wp) function initial_stiffness(self)
-      class(peak_oriented_rule), intent(in) :: self
-
-      initial_stiffness = self%part%k_0
-   end function initial_stiffness
-
    subroutine check(self, name, messages)
       class(peak_oriented_rule), intent(in) :: self
       character(len=*), intent(in) :: name
@@ -107,11 +108,11 @@ contains
       integer :: known
 
       known = messages%count
-      call self%part%given(1)%check(name, '', messages)
+      call self%part(1)%given(1)%check(name, '', messages)
       ! Otherwise errors of the positive side would be reported twice.
-      if (messages%count == known) call self%part%given(-1)%check(name, '_neg', messages)
+      if (messages%count == known) call self%part(1)%given(-1)%check(name, '_neg', messages)
       if (messages%count > known) return
-      associate (law => self%part%deterioration)
+      associate (law => self%part(1)%deterioration)
          call check_capacity(law%strength, 'lambda_s')
          call check_capacity(law%softening, 'lambda_c')
          call check_capacity(law%unloading, 'lambda_k')
@@ -126,9 +127,9 @@ contains
          character(len=*), intent(in) :: key
          real(wp) :: least, unit
 
-         least = max(fastest(self%part%given(1)), fastest(self%part%given(-1)))/self%initial_stiffness()
+         least = max(fastest(self%part(1)%given(1)), fastest(self%part(1)%given(-1)))/self%initial_stiffness
          if (.not. capacity > 0.0_wp .or. capacity >= least*(1.0_wp - round_off)) return
-         unit = energy_of(self%part)
+         unit = energy_of(self%part(1))
          call messages%add(name//': '//key//' = '//to_text(capacity/unit)//' must be 0 (it is off) '// &
                            'or at least f_cap**2 (1 + d_cap/d_pc)/(k f_y d_y) = '//to_text(least/unit)// &
                            ' (the force would fall faster than the spring is stiff)')
@@ -146,11 +147,17 @@ contains
       class(peak_oriented_rule), intent(in) :: self
       class(rule_memory), allocatable, intent(out) :: memory
       type(segment), intent(out) :: branch
+      integer :: i
 
       allocate (peak_oriented_memory :: memory)
       select type (memory)
       type is (peak_oriented_memory)
-         call self%part%start(memory%part, branch)
+         memory%parts = self%parts
+         do i = 1, self%parts
+            call self%part(i)%start(memory%part(i), memory%branch(i))
+         end do
+         branch = memory%branch(1)
+         if (self%parts == 2) branch = sum_of(memory%branch(1), memory%branch(2), self%share, 0.0_wp)
       end select
    end subroutine start
 
@@ -159,29 +166,88 @@ contains
       class(rule_memory), intent(inout) :: memory
       type(segment), intent(inout) :: branch
       integer, intent(in) :: direction
+      real(wp) :: here
+      integer :: i
 
       select type (memory)
       type is (peak_oriented_memory)
-         memory%part%now%flexural_work = memory%flexural_work
-         call self%part%next(memory%part, branch, direction)
+         if (self%parts == 1) then
+            memory%part(1)%now%flexural_work = memory%flexural_work
+            call self%part(1)%next(memory%part(1), branch, direction)
+         else
+            here = branch%end_toward(direction)
+            do i = 1, 2
+               memory%part(i)%now%flexural_work = memory%flexural_work
+               call follow(self%part(i), memory%part(i), memory%branch(i), here, direction)
+            end do
+            branch = sum_of(memory%branch(1), memory%branch(2), self%share, here)
+         end if
       end select
    end subroutine next
+
+   !> A part goes on to its next branch if the present one ends here, or if it unloads on a reversal.
+   subroutine follow(part, memory, branch, here, direction)
+      type(capped_part), intent(in) :: part
+      type(capped_memory), intent(inout) :: memory
+      type(segment), intent(inout) :: branch
+      real(wp), intent(in) :: here
+      integer, intent(in) :: direction
+
+      if (branch%one_way == -direction) then
+         if (direction > 0) then
+            branch%hi = here
+         else
+            branch%lo = here
+         end if
+      else if (direction*(branch%end_toward(direction) - here) > 0.0_wp) then
+         return
+      end if
+      call part%next(memory, branch, direction)
+   end subroutine follow
+
+   !> The branch of two parts together from a deformation on.
+   pure type(segment) function sum_of(a, b, share, here) result(branch)
+      type(segment), intent(in) :: a, b
+      !> Of a in the force
+      real(wp), intent(in) :: share, here
+
+      branch%d0 = here
+      ! Equal lines give the same line to the last bit.
+      branch%f0 = b%force(here) + share*(a%force(here) - b%force(here))
+      branch%k = b%k + share*(a%k - b%k)
+      branch%lo = max(a%lo, b%lo)
+      branch%hi = min(a%hi, b%hi)
+      branch%lo_closed = (a%lo_closed .or. a%lo < branch%lo) .and. (b%lo_closed .or. b%lo < branch%lo)
+      branch%hi_closed = (a%hi_closed .or. a%hi > branch%hi) .and. (b%hi_closed .or. b%hi > branch%hi)
+      branch%one_way = a%one_way
+      if (a%one_way == 0) branch%one_way = b%one_way
+   end function sum_of
 
    pure subroutine copy(self, other)
       class(peak_oriented_memory), intent(inout) :: self
       class(rule_memory), intent(in) :: other
+      integer :: i
 
       select type (other)
       type is (peak_oriented_memory)
-         call self%part%copy(other%part)
+         self%branch = other%branch
+         do i = 1, self%parts
+            call self%part(i)%copy(other%part(i))
+         end do
       end select
    end subroutine copy
 
    pure subroutine serialize(self, stream)
       class(peak_oriented_memory), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
+      integer :: i
 
-      call self%part%serialize(stream)
+      do i = 1, self%parts
+         call self%part(i)%serialize(stream)
+      end do
+      if (self%parts == 1) return
+      call self%branch(1)%serialize(stream)
+      call self%branch(2)%serialize(stream)
    end subroutine serialize
 
 end module rbs_hysteresis_rules_peak_oriented

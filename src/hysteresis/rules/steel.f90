@@ -114,7 +114,6 @@ module rbs_hysteresis_rules_steel
       real(wp), private :: k_element(elements) = 0.0_wp
    contains
       procedure :: set
-      procedure :: initial_stiffness
       procedure :: check
       procedure :: prepare
       procedure :: start
@@ -128,6 +127,7 @@ contains
       real(wp), intent(in) :: value(:)
 
       self%k = value(1)
+      self%initial_stiffness = self%k
       self%f_y = value(2)
       self%k_post = value(3)
       self%r0 = value(4)
@@ -141,12 +141,6 @@ contains
       self%d_buckle = value(12)
       self%buckling = value(13)
    end subroutine set
-
-   pure real(wp) function initial_stiffness(self)
-      class(steel_rule), intent(in) :: self
-
-      initial_stiffness = self%k
-   end function initial_stiffness
 
    subroutine check(self, name, messages)
       class(steel_rule), intent(in) :: self

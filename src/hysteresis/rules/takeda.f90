@@ -93,7 +93,6 @@ module rbs_hysteresis_rules_takeda
       real(wp), private :: f_c = 0.0_wp, f_y = 0.0_wp
    contains
       procedure :: set
-      procedure :: initial_stiffness
       procedure :: check
       procedure :: start
       procedure :: next
@@ -106,6 +105,7 @@ contains
       real(wp), intent(in) :: value(:)
 
       self%k_c = value(1)
+      self%initial_stiffness = self%k_c
       self%d_c = value(2)
       self%k_y = value(3)
       self%d_y = value(4)
@@ -116,12 +116,6 @@ contains
       self%f_c = self%k_c*self%d_c
       self%f_y = self%f_c + self%k_y*(self%d_y - self%d_c)
    end subroutine set
-
-   pure real(wp) function initial_stiffness(self)
-      class(takeda_rule), intent(in) :: self
-
-      initial_stiffness = self%k_c
-   end function initial_stiffness
 
    subroutine check(self, name, messages)
       class(takeda_rule), intent(in) :: self
