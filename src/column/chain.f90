@@ -17,7 +17,7 @@ module rbs_column_chain
    implicit none
    private
 
-   public :: deformations, displacements, body_forces, add_axial_shear, add_axial_torque
+   public :: deformations, displacements, body_forces, second_order_forces, chain_accelerations
    public :: add_joint_stiffness, add_axial_stiffness
 
 contains
@@ -71,7 +71,8 @@ contains
       end do
    end subroutine displacements
 
-   !> Forces and moments about the centroids from the forces of the joints and those at the top, -B' f + p.
+   !> Forces and moments about the centroids from the forces of the joints and those at the top, -B' f + p; the
+   !> moments are added to.
    pure subroutine body_forces(n, opens, lower, upper, f, lateral, axial_load, weight, g)
       integer, intent(in) :: n
       logical, intent(in) :: opens
@@ -86,10 +87,10 @@ contains
 
       do i = 1, n - 1
          g(2*i - 1) = f(i + 1) - f(i)
-         g(2*i) = (f(n + i + 1) - f(n + i)) + (lower(i)*f(i) + upper(i)*f(i + 1))
+         g(2*i) = ((f(n + i + 1) - f(n + i)) + (lower(i)*f(i) + upper(i)*f(i + 1))) + g(2*i)
       end do
       g(2*n - 1) = lateral - f(n)
-      g(2*n) = (lower(n)*f(n) + upper(n)*lateral) - f(2*n)
+      g(2*n) = ((lower(n)*f(n) + upper(n)*lateral) - f(2*n)) + g(2*n)
       if (.not. opens) return
       do i = 1, n - 1
          g(2*n + i) = (f(2*n + i + 1) - f(2*n + i)) - weight(i)
@@ -97,42 +98,60 @@ contains
       g(3*n) = -axial_load - f(3*n) - weight(n)
    end subroutine body_forces
 
-   !> Add to the shear forces of the joints the part in u of the second-order forces of axial forces, those of
-   !> the potential -sum a_k l_k th_k^2/2 - sum b_k u_k th_{k-1}.
-   pure subroutine add_axial_shear(n, axial, d, shear)
+   !> Accelerations of the joints at once, B M^-1 (p - B' f), where joints do not open.
+   pure subroutine chain_accelerations(n, lower, upper, inverse_mass, inverse_inertia, f, moment, lateral, &
+                                       ground, along, turning, a)
       integer, intent(in) :: n
-      !> a, then b, compression positive (2 n) [N]
-      real(wp), intent(in) :: axial(2*n)
-      !> Slips [m] and relative rotations [rad] of the joints (2 n)
-      real(wp), intent(in) :: d(2*n)
-      !> (n) [N]
-      real(wp), intent(inout) :: shear(n)
-      real(wp) :: rotation
+      real(wp), intent(in) :: lower(n), upper(n)
+      !> One over mass and rotary inertia of the bodies, forces of the joints, and second-order
+      !> moments on the bodies
+      real(wp), intent(in) :: inverse_mass(n), inverse_inertia(n), f(2*n), moment(n)
+      !> Force at the top [N] and acceleration of the ground [m/s2]
+      real(wp), intent(in) :: lateral, ground
+      !> Accelerations of the bodies relative to the ground, along x and in rotation, and of the joints
+      real(wp), intent(out) :: along(n), turning(n), a(2*n)
       integer :: i
 
-      rotation = 0.0_wp
-      do i = 1, n
-         shear(i) = shear(i) - axial(n + i)*rotation
-         rotation = rotation + d(n + i)
+      do i = 1, n - 1
+         along(i) = (f(i + 1) - f(i))*inverse_mass(i) - ground
+         turning(i) = (((f(n + i + 1) - f(n + i)) + (lower(i)*f(i) + upper(i)*f(i + 1))) + moment(i)) &
+                      *inverse_inertia(i)
       end do
-   end subroutine add_axial_shear
+      along(n) = (lateral - f(n))*inverse_mass(n) - ground
+      turning(n) = (((lower(n)*f(n) + upper(n)*lateral) - f(2*n)) + moment(n))*inverse_inertia(n)
+      a(1) = along(1) - lower(1)*turning(1)
+      a(n + 1) = turning(1)
+      do i = 2, n
+         a(i) = (along(i) - along(i - 1)) - (lower(i)*turning(i) + upper(i - 1)*turning(i - 1))
+         a(n + i) = turning(i) - turning(i - 1)
+      end do
+   end subroutine chain_accelerations
 
-   !> Add to the forces on the bodies their part in th.
-   pure subroutine add_axial_torque(n, length, axial, d, g)
+   !> Second-order forces of axial forces, those of the potential -sum a_k l_k th_k^2/2 - sum b_k u_k th_{k-1}:
+   !> on the joints their part in u, on the bodies that in th.
+   pure subroutine second_order_forces(n, length, axial, d, shear, step, moment)
       integer, intent(in) :: n
-      real(wp), intent(in) :: length(n), axial(2*n), d(2*n)
-      !> (2 n)
-      real(wp), intent(inout) :: g(2*n)
+      !> a, then b, compression positive (2 n) [N]
+      real(wp), intent(in) :: length(n), axial(2*n)
+      !> Slips [m] and relative rotations [rad] of the joints (2 n)
+      real(wp), intent(in) :: d(2*n)
+      !> Forces of the joints (n) [N], to which their share is added
+      real(wp), intent(inout) :: shear(n)
+      !> Moments on the bodies, at every so many places (step n) [N m]
+      integer, intent(in) :: step
+      real(wp), intent(inout) :: moment(step*n)
       real(wp) :: rotation
       integer :: i
 
       rotation = 0.0_wp
       do i = 1, n - 1
+         shear(i) = shear(i) - axial(n + i)*rotation
          rotation = rotation + d(n + i)
-         g(2*i) = g(2*i) + (axial(i)*length(i)*rotation + axial(n + i + 1)*d(i + 1))
+         moment(step*i) = axial(i)*length(i)*rotation + axial(n + i + 1)*d(i + 1)
       end do
-      g(2*n) = g(2*n) + axial(n)*length(n)*(rotation + d(2*n))
-   end subroutine add_axial_torque
+      shear(n) = shear(n) - axial(2*n)*rotation
+      moment(step*n) = axial(n)*length(n)*(rotation + d(2*n))
+   end subroutine second_order_forces
 
    !> Add B' diag(k) B of the springs.
    pure subroutine add_joint_stiffness(n, opens, lower, upper, k, band)
@@ -174,7 +193,7 @@ contains
       end do
    end subroutine add_joint_stiffness
 
-   !> Add the second derivatives of the potential of the axial forces, see `add_axial_shear`.
+   !> Add the second derivatives of the potential of the axial forces, see `second_order_forces`.
    pure subroutine add_axial_stiffness(n, length, lower, upper, axial, band)
       integer, intent(in) :: n
       real(wp), intent(in) :: length(n), lower(n), upper(n), axial(2*n)

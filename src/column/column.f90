@@ -13,8 +13,8 @@
 module rbs_column_column
    use rbs_base_constants, only: unset
    use rbs_base_kinds, only: wp
-   use rbs_column_chain, only: deformations, displacements, body_forces, add_axial_shear, &
-                               add_axial_torque, add_joint_stiffness, add_axial_stiffness
+   use rbs_column_chain, only: deformations, displacements, body_forces, second_order_forces, &
+                               add_joint_stiffness, add_axial_stiffness
    use rbs_column_column_record, only: column_record
    use rbs_hysteresis_rule, only: spring_rules
    use rbs_hysteresis_spring_record, only: spring_record, make_rules
@@ -375,10 +375,13 @@ contains
       real(wp), intent(inout), contiguous :: f(:)
       real(wp), intent(out), contiguous :: g(:)
 
-      if (size(axial) > 0) call add_axial_shear(self%n, axial, d, f)
+      if (size(axial) > 0) then
+         call second_order_forces(self%n, self%length, axial, d, f, 2, g)
+      else
+         g = 0.0_wp
+      end if
       call body_forces(self%n, self%opens, self%lower, self%upper, f, load(lateral), &
                        self%axial_load + load(top_axial), self%weight, g)
-      if (size(axial) > 0) call add_axial_torque(self%n, self%length, axial, d, g)
    end subroutine forces
 
    !> Axial forces for the rotations of the bodies, then across the slips of the joints (2 n).

@@ -50,8 +50,8 @@ contains
          do j = 1, n
             b%lower(i, j) = column%lower(j)
             b%upper(i, j) = column%upper(j)
-            b%inverse_mass(i, j) = motion%inverse(2*j - 1)
-            b%inverse_inertia(i, j) = motion%inverse(2*j)
+            b%inverse_mass(i, j) = motion%inverse_mass(j)
+            b%inverse_inertia(i, j) = motion%inverse_inertia(j)
             b%mass(i, 2*j - 1) = column%mass(j)
             b%mass(i, 2*j) = column%inertia(j)
             b%along(i, j) = 0.0_wp

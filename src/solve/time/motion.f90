@@ -11,6 +11,7 @@ module rbs_solve_time_motion
    use rbs_base_error, only: error_type
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
+   use rbs_column_chain, only: chain_accelerations, second_order_forces
    use rbs_column_column, only: column_type, small, finite
    use rbs_column_energy, only: kinetic_energy, power_of_lifts
    use rbs_column_finite, only: finite_work, finite_acceleration, finite_power
@@ -35,6 +36,10 @@ module rbs_solve_time_motion
       !> Small rotations: forces on the unknowns of the structure, without the inertia of the moving ground and
       !> without mass damping, and their accelerations relative to the ground (unknowns)
       real(wp), allocatable :: force(:), x(:)
+      !> The latter where joints do not open, along x and in rotation (n)
+      real(wp), allocatable :: along(:), turning(:)
+      !> Second-order moments on the bodies (n)
+      real(wp), allocatable, private :: moment(:)
       !> Axial forces that do second-order work at the time, in the order of the structure [N]
       real(wp), allocatable :: axial(:)
       !> Cosine of the rotation, where the equation is the paper's eq 4
@@ -62,8 +67,9 @@ module rbs_solve_time_motion
       logical :: single = .false.
       !> Whether it is the column of the paper's eq 4: one body, finite rotation, dead loads
       logical :: equation_4 = .false.
-      !> One over the mass or rotary inertia of each unknown, 0 for what is held (unknowns)
-      real(wp), allocatable :: inverse(:)
+      !> One over the mass or rotary inertia of each unknown, 0 for what is held (unknowns); the same of the
+      !> bodies, by kind (n)
+      real(wp), allocatable :: inverse(:), inverse_mass(:), inverse_inertia(:)
    contains
       procedure :: create
       procedure :: acceleration
@@ -86,7 +92,7 @@ contains
       type(column_type), intent(in) :: column
 
       allocate (self%a(column%unknowns), self%f(column%unknowns), self%force(column%unknowns), &
-                self%x(column%unknowns), source=0.0_wp)
+                self%x(column%unknowns), self%along(column%n), self%turning(column%n), self%moment(column%n), source=0.0_wp)
       self%axial = [column%axial_body, column%axial_slip]
       if (column%kinematics == finite) call self%work%create(column%n)
    end subroutine create_result
@@ -115,6 +121,8 @@ contains
                         .not. (acts(vertical) .or. acts(axial) .or. column%axial_follows .or. &
                                column%force_follows)
       self%inverse = merge(0.0_wp, 1.0_wp/column%inertias, column%is_held)
+      self%inverse_mass = self%inverse(1:2*column%n:2)
+      self%inverse_inertia = self%inverse(2:2*column%n:2)
    end subroutine create
 
    !> Accelerations of the joints at a state, and what they follow from.
@@ -136,16 +144,27 @@ contains
          end if
          return
       end if
-      if (self%plain .and. .not. (self%second_order .or. self%column%opens)) then
-         call plain_accelerations(self%column%n, self%column%lower, self%column%upper, self%inverse, &
-                                  springs%d0, springs%f0, springs%k, q, load(lateral), load(horizontal), &
-                                  result%f, result%x, result%a)
-         return
+      if (self%column%opens) then
+         call self%forces_on_bodies(springs, q, v, load, result)
+         call divide(size(q), 2*self%column%n, self%inverse, load(horizontal), load(vertical), result%force, &
+                     result%x)
+         call self%structure%spring_rates(result%x, result%a)
+         result%along(self%column%n) = result%x(2*self%column%n - 1)
+         result%turning(self%column%n) = result%x(2*self%column%n)
+      else
+         if (self%plain) then
+            call on_lines(self%column%unknowns, springs%d0, springs%f0, springs%k, q, result%f)
+         else
+            call joint_forces(self, springs, q, v, load, result%f)
+         end if
+         if (self%second_order) then
+            if (self%acts(vertical) .or. self%acts(axial)) call self%column%axial_forces(load, result%axial)
+            call second_order_forces(self%column%n, self%column%length, result%axial, q, result%f, 1, result%moment)
+         end if
+         call chain_accelerations(self%column%n, self%column%lower, self%column%upper, self%inverse_mass, &
+                                  self%inverse_inertia, result%f, result%moment, load(lateral), &
+                                  load(horizontal), result%along, result%turning, result%a)
       end if
-      call self%forces_on_bodies(springs, q, v, load, result)
-      call divide(size(q), 2*self%column%n, self%inverse, load(horizontal), load(vertical), result%force, &
-                  result%x)
-      call self%structure%spring_rates(result%x, result%a)
       if (self%column%mass_damping > 0.0_wp) result%a = result%a - self%column%mass_damping*v
    end subroutine acceleration
 
@@ -241,35 +260,6 @@ contains
       f = f0 + k*(q - d0)
    end subroutine on_lines
 
-   !> The whole acceleration in three loops, for the chain with small rotations, without damping and axial
-   !> forces.
-   pure subroutine plain_accelerations(n, lower, upper, inverse, d0, f0, k, q, lateral_force, ground, f, x, a)
-      integer, intent(in) :: n
-      real(wp), intent(in) :: lower(n), upper(n), inverse(2*n)
-      !> Lines of the springs, and deformations
-      real(wp), intent(in) :: d0(2*n), f0(2*n), k(2*n), q(2*n)
-      real(wp), intent(in) :: lateral_force, ground
-      !> Forces of the joints, accelerations of the bodies and of the joints
-      real(wp), intent(out) :: f(2*n), x(2*n), a(2*n)
-      integer :: i
-
-      do i = 1, 2*n
-         f(i) = f0(i) + k(i)*(q(i) - d0(i))
-      end do
-      do i = 1, n - 1
-         x(2*i - 1) = (f(i + 1) - f(i))*inverse(2*i - 1) - ground
-         x(2*i) = ((f(n + i + 1) - f(n + i)) + (lower(i)*f(i) + upper(i)*f(i + 1)))*inverse(2*i)
-      end do
-      x(2*n - 1) = (lateral_force - f(n))*inverse(2*n - 1) - ground
-      x(2*n) = ((lower(n)*f(n) + upper(n)*lateral_force) - f(2*n))*inverse(2*n)
-      a(1) = x(1) - lower(1)*x(2)
-      a(n + 1) = x(2)
-      do i = 2, n
-         a(i) = (x(2*i - 1) - x(2*i - 3)) - (lower(i)*x(2*i) + upper(i - 1)*x(2*i - 2))
-         a(n + i) = x(2*i) - x(2*i - 2)
-      end do
-   end subroutine plain_accelerations
-
    !> Accelerations of the bodies from their forces.
    pure subroutine divide(m, last, inverse, ground, upward, force, x)
       !> Number of unknowns, and the last that is a displacement along x or a rotation
@@ -277,10 +267,15 @@ contains
       !> Accelerations of the ground
       real(wp), intent(in) :: inverse(m), ground, upward, force(m)
       real(wp), intent(out) :: x(m)
+      integer :: i
 
-      x = force*inverse
-      x(1:last:2) = x(1:last:2) - ground
-      x(last + 1:) = x(last + 1:) - upward
+      do i = 1, last, 2
+         x(i) = force(i)*inverse(i) - ground
+         x(i + 1) = force(i + 1)*inverse(i + 1)
+      end do
+      do i = last + 1, m
+         x(i) = force(i)*inverse(i) - upward
+      end do
    end subroutine divide
 
    !> One body, finite rotation: the paper's eq 4, corrected, with axial load and weight; s is the distance of

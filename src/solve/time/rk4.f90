@@ -100,8 +100,8 @@ contains
                   self%of_loads = self%of_loads + h*weight(stage)*(speed(1)*now(lateral) &
                                                                    - speed(2)*now(horizontal))
                   ! Velocity of the top and momentum are linear in v: they step as it does.
-                  speed(1) = top + h*reach(stage)*(result%x(2*n - 1) &
-                                                     + motion%column%upper(n)*result%x(2*n))
+                  speed(1) = top + h*reach(stage)*(result%along(n) &
+                                                     + motion%column%upper(n)*result%turning(n))
                   speed(2) = momentum + h*reach(stage)*(now(lateral) - result%f(1) &
                                                         - motion%column%mass_above(1)*now(horizontal))
                else
