@@ -1,9 +1,9 @@
 !> Exact rotations by an independent method: positions of the bodies' masses and of the lumped mass as in
 !> theory.md section 2, their derivatives by Taylor arithmetic, and the dense M = sum J' diag(m, m, I) J.
 module exact
+   use dense, only: solve_general
    use rbs_base_constants, only: pi
    use rbs_base_kinds, only: wp
-   use rbs_base_small_systems, only: solve_general
    use rbs_column_column, only: column_type
    use rbs_column_column_record, only: column_record
    use samples, only: chain, elastic, random_type

@@ -1,10 +1,11 @@
 !> Equation of motion of the chain with small rotations: the O(n) forms against dense matrices from the
 !> equations of theory.md, and against the energies.
 module test_chain
+   use dense, only: solve_positive
    use check, only: unit_test, check_close, check_same, check_true
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_base_small_systems, only: factor_positive, solve_positive
+   use rbs_base_small_systems, only: factor_positive
    use rbs_base_text, only: to_text
    use rbs_column_chain, only: body_forces
    use rbs_column_column, only: column_type

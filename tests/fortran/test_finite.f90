@@ -1,10 +1,10 @@
 !> Exact rotations, body by body: against the dense method of module `exact`, eq 4, and invariants.
 module test_finite
+   use dense, only: solve_general
    use check, only: unit_test, check_close, check_same, check_true
    use rbs_base_constants, only: pi
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_base_small_systems, only: solve_general
    use rbs_base_text, only: to_text
    use rbs_column_axial, only: geometric_forces, axial_energy
    use rbs_column_column, only: column_type

@@ -1,12 +1,14 @@
 !> The static path, event to event: against springs in series, bracketing, closed forms, and other runs.
 module test_static
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+   use dense, only: solve_general, solve_positive
    use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_true
    use rbs_base_constants, only: unset_integer
    use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_axial, only: geometric_forces
+   use rbs_base_small_systems, only: factor_positive
+   use rbs_column_axial, only: geometric_stiffness, geometric_forces
    use rbs_column_column, only: column_type
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_output_channels, only: new_channels
@@ -616,7 +618,7 @@ contains
    !> Random stiffness on both sides of the loss of stability, residuals, gap; few bodies.
    subroutine bands(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(equilibrium_type) :: full, band
+      type(equilibrium_type) :: band
       type(random_type) :: random
       type(column_type) :: column
       type(column_record) :: spec
@@ -633,19 +635,18 @@ contains
          do j = 1, 20
             spec%axial_load = random%uniform(-4.0e7_wp, 4.0e7_wp)/n
             column = made(spec)
-            call full%create(column, full=.true.)
-            call band%create(column, full=.false.)
+            call band%create(column)
             k = column%initial_stiffness*[(10.0_wp**random%uniform(-3.0_wp, 0.0_wp), i=1, 2*n)]
             r = [(random%uniform(-1.0_wp, 1.0_wp), i=1, 2*n)]
             gap = random%uniform(-1.0e-6_wp, 1.0e-6_wp)
             allocate (rate(2*n), correction(2*n), rate_band(2*n), correction_band(2*n))
-            call full%follow_displacement(k, r, gap, rate, force(1), correction, force(2), regular)
+            call follow_displacement()
             call band%follow_displacement(k, r, gap, rate_band, force_band(1), correction_band, &
                                           force_band(2), regular_band)
             call check_true(error, regular .and. regular_band, 'both have an answer')
             call compare('displacement')
             call check_close(error, force_band(1), force(1), 1.0e-8_wp, 1.0e-12_wp*s_k, 'rate of the force')
-            call full%follow_force(k, r, rate, correction, weakest)
+            call follow_force()
             call band%follow_force(k, r, rate_band, correction_band, weakest_band)
             call check_equal(error, weakest_band, weakest, 'weakest spring')
             call compare('force')
@@ -657,6 +658,49 @@ contains
       call check_true(error, stable > 40 .and. unstable > 40, 'stable and unstable columns')
 
    contains
+
+      !> The tangent as a full matrix.
+      subroutine fill(a)
+         real(wp), intent(out) :: a(2*n, 2*n)
+
+         call geometric_stiffness(column, a)
+         do i = 1, 2*n
+            a(i, i) = a(i, i) + k(i)
+         end do
+      end subroutine fill
+
+      subroutine follow_displacement()
+         real(wp) :: a(2*n + 1, 2*n + 1), b(2*n + 1, 2)
+
+         a = 0.0_wp
+         call fill(a(:2*n, :2*n))
+         a(:2*n, 2*n + 1) = -column%arm
+         a(2*n + 1, :2*n) = column%arm
+         b(:, 1) = 0.0_wp
+         b(:2*n, 2) = r
+         b(2*n + 1, :) = [1.0_wp, gap]
+         call solve_general(a, b, regular)
+         rate = b(:2*n, 1)
+         correction = b(:2*n, 2)
+         force = b(2*n + 1, :)
+      end subroutine follow_displacement
+
+      subroutine follow_force()
+         real(wp) :: a(2*n, 2*n)
+         logical :: positive
+
+         call fill(a)
+         call factor_positive(a, positive)
+         weakest = minloc(k/column%initial_stiffness, dim=1)
+         rate = 0.0_wp
+         correction = 0.0_wp
+         if (.not. positive) return
+         weakest = 0
+         rate = column%arm
+         correction = r
+         call solve_positive(a, rate)
+         call solve_positive(a, correction)
+      end subroutine follow_force
 
       !> Slips and rotations relative to the largest, as the residual has entries of different size.
       subroutine compare(drive)

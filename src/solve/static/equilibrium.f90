@@ -5,15 +5,14 @@
 !>
 !>     K q - a F = r,   a q = x        K = diag(k) + K_G,  a = arms of the lateral force F
 !>
-!> A few bodies are solved in (slip, relative rotation) with full matrices. More are solved in (slip,
-!> absolute rotation), where K is a band of two diagonals beside the main one: k_M couples neighbouring
-!> rotations, the axial load only the slip of a joint and the rotation below it. A held top is solved there
-!> too: its rotation is the last unknown, and is left out.
+!> A few bodies driven by the displacement are solved in (slip, relative rotation) with full matrices. Others
+!> are solved in (slip, absolute rotation), where K is a band of two diagonals beside the main one: k_M couples
+!> neighbouring rotations, the axial load only the slip of a joint and the rotation below it. A held top is
+!> solved there too: its rotation is the last unknown, and is left out.
 module rbs_solve_static_equilibrium
    use rbs_base_band_matrix, only: band_matrix
    use rbs_base_constants, only: no_stiffness
    use rbs_base_kinds, only: wp
-   use rbs_base_small_systems, only: factor_positive, solve_positive, solve_general
    use rbs_column_axial, only: geometric_stiffness, geometric_forces
    use rbs_column_column, only: column_type
    use rbs_column_dead_loads, only: to_joints
@@ -28,7 +27,7 @@ module rbs_solve_static_equilibrium
    !> recovered: the residual is taken in the deformations of the joints and solved for again.
    integer, parameter :: refinements = 1
 
-   !> Most bodies for which full matrices are faster than bands.
+   !> Most bodies for which full matrices are faster than bands, driven by the displacement.
    integer, parameter :: few_are = 2
 
    type :: equilibrium_type
@@ -41,11 +40,9 @@ module rbs_solve_static_equilibrium
       logical :: coupled = .false.
       !> Initial stiffness (2 n): shares the motion between joints that have none left
       real(wp), allocatable :: initial_stiffness(:)
-      !> Full matrices: geometric stiffness with the border of the arms (2 n + 1, 2 n + 1)
-      real(wp), allocatable, private :: geometric(:, :)
+      !> Few bodies, driven by the displacement
       type(few_bodies) :: few
-      !> Many bodies: the tangent, and the arms joint by joint (2 n)
-      logical, private :: banded = .false.
+      !> The tangent, and the arms joint by joint (2 n)
       type(band_matrix), private :: tangent
       real(wp), allocatable, private :: lever(:)
       !> Work arrays, one column for the rate and one for the correction (2 n, 2)
@@ -61,47 +58,41 @@ module rbs_solve_static_equilibrium
 
 contains
 
-   subroutine create(self, column, full)
+   subroutine create(self, column)
       class(equilibrium_type), intent(out) :: self
       type(column_type), intent(in) :: column
-      !> Whether to use full matrices whatever the number of bodies, or never; to compare them
-      logical, intent(in), optional :: full
+      integer :: m
 
-      self%unknowns = 2*column%n
+      m = 2*column%n
+      self%unknowns = m
       self%column = column
-      self%arm = column%arm(:self%unknowns)
-      self%initial_stiffness = column%initial_stiffness(:self%unknowns)
+      self%arm = column%arm(:m)
+      self%initial_stiffness = column%initial_stiffness(:m)
       self%coupled = column%axially_loaded .or. column%held
       if (.not. self%coupled) return
       if (.not. column%axially_loaded) then
          self%column%axial_body = 0.0_wp
          self%column%axial_slip = 0.0_wp
       end if
-      allocate (self%wanted(self%unknowns, 2), self%found(self%unknowns, 2), &
-                self%missing(self%unknowns, 2), self%along(self%unknowns, 2), self%more(self%unknowns, 2), &
-                self%g(self%unknowns))
-      self%banded = column%n > few_are
-      if (present(full)) self%banded = .not. full
-      self%banded = self%banded .or. column%held
-      if (self%banded) then
-         call create_band(self, column)
-      else
-         call create_full(self, column)
-      end if
+      allocate (self%wanted(m, 2), self%found(m, 2), self%missing(m, 2), self%along(m, 2), self%more(m, 2), &
+                self%g(m))
+      call create_band(self, column)
+      if (column%n <= few_are .and. .not. column%held) call create_few(self, column)
    end subroutine create
 
-   subroutine create_full(self, column)
+   subroutine create_few(self, column)
       type(equilibrium_type), intent(inout) :: self
       type(column_type), intent(in) :: column
-      integer :: m
+      real(wp) :: geometric(2*column%n + 1, 2*column%n + 1)
 
-      m = self%unknowns
-      allocate (self%geometric(m + 1, m + 1), source=0.0_wp)
-      call geometric_stiffness(column, self%geometric(:m, :m))
-      self%geometric(:m, m + 1) = -self%arm
-      self%geometric(m + 1, :m) = self%arm
-      call self%few%create(self%geometric)
-   end subroutine create_full
+      associate (m => self%unknowns)
+         geometric = 0.0_wp
+         call geometric_stiffness(column, geometric(:m, :m))
+         geometric(:m, m + 1) = -self%arm
+         geometric(m + 1, :m) = self%arm
+      end associate
+      call self%few%create(geometric)
+   end subroutine create_few
 
    subroutine create_band(self, column)
       type(equilibrium_type), intent(inout) :: self
@@ -155,10 +146,8 @@ contains
       integer, intent(out) :: weakest
       logical :: positive
 
-      if (self%banded) then
+      if (self%coupled) then
          call follow_force_banded(self, k, r, rate, correction, positive)
-      else if (self%coupled) then
-         call follow_force_full(self, k, r, rate, correction, positive)
       else
          positive = all(k > no_stiffness*self%initial_stiffness)
          if (positive) then
@@ -172,27 +161,6 @@ contains
       rate = 0.0_wp
       correction = 0.0_wp
    end subroutine follow_force
-
-   subroutine follow_force_full(self, k, r, rate, correction, positive)
-      type(equilibrium_type), intent(in) :: self
-      real(wp), intent(in) :: k(:), r(:)
-      real(wp), intent(out), contiguous :: rate(:), correction(:)
-      logical, intent(out) :: positive
-      real(wp) :: a(self%unknowns, self%unknowns)
-      integer :: i
-
-      call fill_full(self, k, a)
-      call factor_positive(a, positive)
-      if (.not. positive) return
-      do i = 1, self%unknowns
-         positive = positive .and. a(i, i)**2 > no_stiffness*self%initial_stiffness(i)
-      end do
-      if (.not. positive) return
-      rate = self%arm
-      correction = r
-      call solve_positive(a, rate)
-      call solve_positive(a, correction)
-   end subroutine follow_force_full
 
    subroutine follow_force_banded(self, k, r, rate, correction, positive)
       type(equilibrium_type), intent(inout) :: self
@@ -237,8 +205,8 @@ contains
       logical, intent(out) :: regular
       real(wp) :: g(2), y(2)
 
-      if (self%coupled .and. .not. self%banded) then
-         call solve_full(self, k, r, gap, rate, force_rate, correction, force_correction, regular)
+      if (self%few%fits) then
+         call self%few%solve(k, r, gap, rate, force_rate, correction, force_correction, regular)
       else if (self%coupled) then
          g = [1.0_wp, gap]
          self%wanted(:, 1) = 0.0_wp
@@ -254,35 +222,6 @@ contains
                               force_correction, regular)
       end if
    end subroutine follow_displacement
-
-   !> The whole system with its border, for the rate and the correction.
-   subroutine solve_full(self, k, r, gap, rate, force_rate, correction, force_correction, regular)
-      type(equilibrium_type), intent(inout) :: self
-      real(wp), intent(in) :: k(:), r(:), gap
-      real(wp), intent(out), contiguous :: rate(:), correction(:)
-      real(wp), intent(out) :: force_rate, force_correction
-      logical, intent(out) :: regular
-      real(wp), allocatable :: a(:, :), b(:, :)
-      integer :: i, m
-
-      m = self%unknowns
-      if (self%few%fits) then
-         call self%few%solve(k, r, gap, rate, force_rate, correction, force_correction, regular)
-         return
-      end if
-      a = self%geometric
-      allocate (b(m + 1, 2), source=0.0_wp)
-      do i = 1, m
-         a(i, i) = a(i, i) + k(i)
-      end do
-      b(:m, 2) = r
-      b(m + 1, :) = [1.0_wp, gap]
-      call solve_general(a, b, regular)
-      rate = b(:m, 1)
-      correction = b(:m, 2)
-      force_rate = b(m + 1, 1)
-      force_correction = b(m + 1, 2)
-   end subroutine solve_full
 
    !> The same system as a band with its border.
    subroutine solve_banded(self, k, g, y, regular)
@@ -327,19 +266,6 @@ contains
          q(:, j) = q(:, j) + change
       end do
    end subroutine add_joints
-
-   !> Tangent stiffness diag(k) + K_G.
-   pure subroutine fill_full(self, k, a)
-      type(equilibrium_type), intent(in) :: self
-      real(wp), intent(in) :: k(:)
-      real(wp), intent(out) :: a(:, :)
-      integer :: i
-
-      a = self%geometric(:self%unknowns, :self%unknowns)
-      do i = 1, self%unknowns
-         a(i, i) = a(i, i) + k(i)
-      end do
-   end subroutine fill_full
 
    !> The same in (slip, absolute rotation), joint by joint, as a band.
    subroutine fill_tangent(self, k)

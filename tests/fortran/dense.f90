@@ -1,0 +1,97 @@
+!> Dense systems that tests compare with.
+module dense
+   use rbs_base_kinds, only: wp
+   implicit none
+   private
+
+   public :: solve_positive, solve_general
+
+contains
+
+   !> Solve with the factor of `factor_positive`.
+   pure subroutine solve_positive(factor, b)
+      !> Factor (n, n)
+      real(wp), intent(in) :: factor(:, :)
+      !> Right-hand side (n), replaced by the solution
+      real(wp), intent(inout) :: b(:)
+      integer :: i, k
+
+      do k = 1, size(b)
+         b(k) = b(k)/factor(k, k)
+         do i = k + 1, size(b)
+            b(i) = b(i) - factor(i, k)*b(k)
+         end do
+      end do
+      do k = size(b), 1, -1
+         do i = k + 1, size(b)
+            b(k) = b(k) - factor(i, k)*b(i)
+         end do
+         b(k) = b(k)/factor(k, k)
+      end do
+   end subroutine solve_positive
+
+   !> Solve a general system by elimination with partial pivoting.
+   pure subroutine solve_general(a, b, regular)
+      !> Matrix (n, n), overwritten
+      real(wp), intent(inout) :: a(:, :)
+      !> Right-hand sides (n, m), replaced by the solutions
+      real(wp), intent(inout) :: b(:, :)
+      !> Whether the matrix has an inverse
+      logical, intent(out) :: regular
+
+      call eliminate(size(a, 1), size(b, 2), a, b, regular)
+   end subroutine solve_general
+
+   !> The same with arrays of known shape: column by column, as they stand in memory.
+   pure subroutine eliminate(n, m, a, b, regular)
+      integer, intent(in) :: n, m
+      real(wp), intent(inout) :: a(n, n), b(n, m)
+      logical, intent(out) :: regular
+      real(wp) :: swap
+      integer :: i, j, k, p
+
+      regular = .false.
+      do k = 1, n
+         p = k
+         do i = k + 1, n
+            if (abs(a(i, k)) > abs(a(p, k))) p = i
+         end do
+         if (.not. abs(a(p, k)) > 0.0_wp) return
+         if (p /= k) then
+            do j = k, n
+               swap = a(k, j)
+               a(k, j) = a(p, j)
+               a(p, j) = swap
+            end do
+            do j = 1, m
+               swap = b(k, j)
+               b(k, j) = b(p, j)
+               b(p, j) = swap
+            end do
+         end if
+         do i = k + 1, n
+            a(i, k) = a(i, k)/a(k, k)
+         end do
+         do j = k + 1, n
+            do i = k + 1, n
+               a(i, j) = a(i, j) - a(i, k)*a(k, j)
+            end do
+         end do
+         do j = 1, m
+            do i = k + 1, n
+               b(i, j) = b(i, j) - a(i, k)*b(k, j)
+            end do
+         end do
+      end do
+      do j = 1, m
+         do i = n, 1, -1
+            do k = i + 1, n
+               b(i, j) = b(i, j) - a(i, k)*b(k, j)
+            end do
+            b(i, j) = b(i, j)/a(i, i)
+         end do
+      end do
+      regular = .true.
+   end subroutine eliminate
+
+end module dense
