@@ -8,7 +8,7 @@ module rbs_hysteresis_layer_events
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_layered_fibre_section, only: fibre_section
    use rbs_hysteresis_line_exit, only: line_exit, find_exit
-   use rbs_hysteresis_spring_planes, only: spring_planes
+   use rbs_hysteresis_springs, only: spring_array
    implicit none
    private
 
@@ -18,7 +18,7 @@ contains
 
    !> Deformation and velocity of a layer at a point of the present plane of its joint.
    pure subroutine layer_motion(springs, i, layer, rotation, axial_load, turn, press, d, v)
-      class(spring_planes), intent(in) :: springs
+      type(spring_array), intent(in) :: springs
       !> The joint, and its layer
       integer, intent(in) :: i, layer
       !> Rotation of the joint and axial load, and their rates
@@ -36,7 +36,7 @@ contains
 
    !> The end of the line of a layer in a direction, and what the last digits leave undecided there [m].
    pure subroutine layer_end(springs, i, layer, way, finish, digits)
-      class(spring_planes), intent(in) :: springs
+      type(spring_array), intent(in) :: springs
       integer, intent(in) :: i, layer, way
       real(wp), intent(out) :: finish, digits
 
@@ -51,7 +51,7 @@ contains
 
    !> The first layer of a joint that leaves its line on the way to a point of the plane.
    pure subroutine first_layer_exit(springs, i, rotation, axial_load, turn, press, h, layer, exit)
-      class(spring_planes), intent(in) :: springs
+      type(spring_array), intent(in) :: springs
       integer, intent(in) :: i
       !> Rotation and axial load at the end of the step
       real(wp), intent(in) :: rotation, axial_load
@@ -95,7 +95,7 @@ contains
    !> A layer whose motion has come to a stand goes back from its one-way line. Its joint chooses its lines
    !> afterwards.
    subroutine turn_layer(springs, i, layer, way)
-      class(spring_planes), intent(inout) :: springs
+      type(spring_array), intent(inout) :: springs
       integer, intent(in) :: i, layer
       !> The direction in which it goes on
       integer, intent(in) :: way

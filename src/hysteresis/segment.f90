@@ -1,12 +1,13 @@
 !> The basis of all rules: at any moment a spring is on a straight line with two ends.
 module rbs_hysteresis_segment
+   use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unbounded
    use rbs_base_stream, only: stream_type
    implicit none
    private
 
-   public :: segment
+   public :: segment, first_on, last_on, upper_end, lower_end
 
    !> The line f = f0 + k (d - d0) and the deformations between which it holds.
    !>
@@ -92,5 +93,52 @@ contains
       call stream%item(self%hi_closed)
       call stream%item(self%one_way)
    end subroutine serialize
+
+   !> The first and the last deformation that belong to a line. At an open end it is the number next to it.
+   pure real(wp) function first_on(line)
+      type(segment), intent(in) :: line
+
+      first_on = line%lo
+      if (.not. line%lo_closed .and. line%lo > -unbounded) first_on = next_above(line%lo)
+   end function first_on
+
+   pure real(wp) function last_on(line)
+      type(segment), intent(in) :: line
+
+      last_on = line%hi
+      if (.not. line%hi_closed .and. line%hi < unbounded) last_on = -next_above(-line%hi)
+   end function last_on
+
+   !> The upper end of a line from the last deformation that belongs to it.
+   elemental real(wp) function upper_end(last, closed)
+      real(wp), intent(in) :: last
+      logical, intent(in) :: closed
+
+      upper_end = last
+      if (.not. closed .and. last < unbounded) upper_end = next_above(last)
+   end function upper_end
+
+   !> The lower end of a line from the first deformation that belongs to it.
+   elemental real(wp) function lower_end(first, closed)
+      real(wp), intent(in) :: first
+      logical, intent(in) :: closed
+
+      lower_end = first
+      if (.not. closed .and. first > -unbounded) lower_end = -next_above(-first)
+   end function lower_end
+
+   !> The next larger number, as `nearest(x, 1.0)` for finite numbers. The latter is a call of the C library,
+   !> and an event needs up to five of them.
+   elemental real(wp) function next_above(x)
+      real(wp), intent(in) :: x
+
+      if (x > 0.0_wp) then
+         next_above = transfer(transfer(x, 0_int64) + 1_int64, x)
+      else if (x < 0.0_wp) then
+         next_above = transfer(transfer(x, 0_int64) - 1_int64, x)
+      else
+         next_above = transfer(1_int64, x)
+      end if
+   end function next_above
 
 end module rbs_hysteresis_segment

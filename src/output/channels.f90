@@ -5,6 +5,7 @@ module rbs_output_channels
    use rbs_base_text, only: to_text
    use rbs_base_units, only: unit_system
    use rbs_column_column, only: column_type
+   use rbs_hysteresis_interaction_joints, only: fill_openings
    use rbs_hysteresis_springs, only: spring_array
    implicit none
    private
@@ -129,7 +130,7 @@ contains
          row(head + m + 1:head + 2*m) = springs%f0 + springs%k*(deformation - springs%d0)
          if (first(base) > 0) row(first(base):first(base) + 1) = r%base
          if (first(top_motion) > 0) row(first(top_motion):first(top_motion) + 2) = r%motion
-         if (first(openings) > 0) call springs%fill_openings(self%joints, row(first(openings):))
+         if (first(openings) > 0) call fill_openings(springs, self%joints, row(first(openings):))
       end associate
    end subroutine fill
 

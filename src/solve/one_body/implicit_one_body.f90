@@ -11,9 +11,8 @@ module rbs_solve_one_body_implicit_one_body
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_journal, only: save_memory, return_memory
    use rbs_hysteresis_rule, only: memory_slot
-   use rbs_hysteresis_segment, only: segment
-   use rbs_hysteresis_spring_lines, only: spring_lines, first_on, last_on, most_lines
-   use rbs_hysteresis_springs, only: spring_array
+   use rbs_hysteresis_segment, only: segment, first_on, last_on
+   use rbs_hysteresis_springs, only: spring_array, most_lines
    implicit none
    private
 
@@ -203,7 +202,7 @@ contains
    subroutine solve(self, springs, taken)
       class(one_body_step), intent(inout) :: self
       !> Of which rules and memories are used
-      class(spring_lines), intent(inout) :: springs
+      class(spring_array), intent(inout) :: springs
       logical, intent(out) :: taken
       type(body_spring) :: start(2)
       real(wp) :: slope
@@ -279,7 +278,7 @@ contains
    subroutine cut_correction(self, start, springs, slope)
       type(one_body_step), intent(inout) :: self
       type(body_spring), intent(inout) :: start(2)
-      class(spring_lines), intent(inout) :: springs
+      class(spring_array), intent(inout) :: springs
       !> Work of the residual on the correction at its end
       real(wp), intent(inout) :: slope
       real(wp) :: low, high, at_low, at_high, share, now
@@ -313,7 +312,7 @@ contains
    subroutine look(self, start, springs, slope)
       type(one_body_step), intent(inout) :: self
       type(body_spring), intent(inout) :: start(2)
-      class(spring_lines), intent(inout) :: springs
+      class(spring_array), intent(inout) :: springs
       !> `huge`: out of bounds, or the springs go round in lines
       real(wp), intent(out) :: slope
 
@@ -348,7 +347,7 @@ contains
       integer, intent(in) :: i
       !> Where it was, once it has left its line
       type(body_spring), intent(inout) :: start
-      class(spring_lines), intent(inout) :: springs
+      class(spring_array), intent(inout) :: springs
       integer :: lines, way
 
       associate (spring => self%spring(i))
@@ -375,7 +374,7 @@ contains
    subroutine put_back(self, start, springs)
       type(one_body_step), intent(inout) :: self
       type(body_spring), intent(in) :: start(2)
-      class(spring_lines), intent(inout) :: springs
+      class(spring_array), intent(inout) :: springs
       integer :: i
 
       self%events = 0
@@ -425,7 +424,7 @@ contains
    subroutine move_spring(spring, springs, i, d, flexural_work, events, stuck)
       type(body_spring), intent(inout) :: spring
       !> The springs, and which it is
-      class(spring_lines), intent(inout) :: springs
+      class(spring_array), intent(inout) :: springs
       integer, intent(in) :: i
       !> New deformation [m or rad]
       real(wp), intent(in) :: d
@@ -466,7 +465,7 @@ contains
    !> one-way line ends at the present deformation.
    subroutine change_line(spring, springs, i, way, flexural_work)
       type(body_spring), intent(inout) :: spring
-      class(spring_lines), intent(inout) :: springs
+      class(spring_array), intent(inout) :: springs
       integer, intent(in) :: i
       !> +1: by the upper end, -1: by the lower end
       integer, intent(in) :: way

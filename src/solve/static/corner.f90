@@ -6,6 +6,7 @@ module rbs_solve_static_corner
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
+   use rbs_hysteresis_interaction_joints, only: choose_lines
    use rbs_column_axial, only: critical_factor
    use rbs_solve_static_path, only: static_path, describe_state, name_spring
    implicit none
@@ -86,7 +87,7 @@ contains
       do j = 1, size(path%springs%layered)
          i = path%springs%layered(j)
          before = [path%springs%k(i), path%springs%centre(i)]
-         call path%springs%choose_lines(i, path%rate(i), path%axial_rate)
+         call choose_lines(path%springs, i, path%rate(i), path%axial_rate)
          if (any(abs(before - [path%springs%k(i), path%springs%centre(i)]) > 0.0_wp)) count = count + 1
       end do
    end subroutine choose_planes

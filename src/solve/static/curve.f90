@@ -4,6 +4,7 @@ module rbs_solve_static_curve
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
    use rbs_column_top, only: largest_turn
+   use rbs_hysteresis_interaction_joints, only: least_forward_rate, nearest_layer
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_static_curved_equilibrium, only: path_point
    use rbs_solve_static_path, only: on_the_end
@@ -147,7 +148,7 @@ contains
       if (.not. springs%pressed) return
       do j = 1, size(springs%layered)
          i = springs%layered(j)
-         least = min(least, same_rate + springs%least_forward_rate(i, &
+         least = min(least, same_rate + least_forward_rate(springs, i, &
                      [point%rate(i), self%near%rate(i), self%far%rate(i)], &
                      [point%axial_rate, self%near%axial_rate, self%far%axial_rate], 30.0_wp/same_rate))
       end do
@@ -223,11 +224,11 @@ contains
       call middle(self%near%axial_load, self%far%axial_load, self%near%axial_rate, self%far%axial_rate, &
                   load, load_rate)
       call middle(self%near%q, self%far%q, self%near%rate, self%far%rate, q, rate)
-      call springs%nearest_layer(q, load + above, rate, load_rate, way, spring, layer)
+      call nearest_layer(springs, q, load + above, rate, load_rate, way, spring, layer)
       passes = way < -no_overshoot*self%length
       do j = 1, size(springs%layered)
          associate (i => springs%layered(j))
-            if (.not. passes) passes = springs%least_forward_rate(i, &
+            if (.not. passes) passes = least_forward_rate(springs, i, &
                 [rate(i), self%near%rate(i), self%far%rate(i)], &
                 [load_rate, self%near%axial_rate, self%far%axial_rate], 30.0_wp/same_rate) < -same_rate
          end associate

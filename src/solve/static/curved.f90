@@ -13,6 +13,7 @@ module rbs_solve_static_curved
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
+   use rbs_hysteresis_interaction_joints, only: moment_on_plane, nearest_layer, put_on_plane
    use rbs_column_column, only: column_type, finite
    use rbs_column_energy, only: potential_energy
    use rbs_column_top, only: largest_turn, top_displacement
@@ -268,7 +269,7 @@ contains
             end associate
          end do
          if (springs%pressed) then
-            call springs%nearest_layer(there%q, there%axial_load + self%equilibrium%above, there%rate, &
+            call nearest_layer(springs, there%q, there%axial_load + self%equilibrium%above, there%rate, &
                                        there%axial_rate, way, spring, layer)
             if (way < room) then
                room = way
@@ -428,7 +429,7 @@ contains
 
       associate (springs => self%springs, here => self%here, there => self%there)
          work = sum(self%curve%work( &
-                    springs%moment_on_plane(i, [here%q(i), there%q(i)], &
+                    moment_on_plane(springs, i, [here%q(i), there%q(i)], &
                                             [here%axial_load, there%axial_load] + self%equilibrium%above(i)), &
                     [here%q(i), there%q(i)], &
                     springs%k(i)*[here%rate(i), there%rate(i)] &
@@ -508,7 +509,7 @@ contains
          do j = 1, size(springs%layered)
             i = springs%layered(j)
             work = work_of_joint(self, i)
-            call springs%put_on_plane(i, there%q(i), there%axial_load + self%equilibrium%above(i), &
+            call put_on_plane(springs, i, there%q(i), there%axial_load + self%equilibrium%above(i), &
                                       there%rate(i), there%axial_rate, merge(self%layer, 0, i == self%spring))
             springs%work(i) = springs%work(i) + work
          end do

@@ -9,6 +9,7 @@ module rbs_solve_static_path
    use rbs_column_column, only: column_type, finite
    use rbs_column_energy, only: potential_energy
    use rbs_column_top, only: largest_turn, top_displacement, top_position
+   use rbs_hysteresis_interaction_joints, only: fall_of, vary_axial_loads
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_channels, only: response_type
    use rbs_solve_static_row_check, only: row_check
@@ -175,7 +176,7 @@ contains
       call self%prepare(column, by_force, moving)
       if (column%opens) call self%compress(error)
       if (allocated(error)) return
-      if (varies) call self%springs%vary_axial_loads()
+      if (varies) call vary_axial_loads(self%springs)
       self%load_now = column%axial_load
       self%at_begin = sum(self%springs%work) + self%axial_work()
    end subroutine begin
@@ -258,7 +259,7 @@ contains
          end if
          task%summary%lost_joint = max(self%springs%lost_joint() - self%column%n, 0)
          if (task%summary%lost_joint > 0) then
-            call self%springs%fall_of(self%column%n + task%summary%lost_joint, task%summary%fall)
+            call fall_of(self%springs, self%column%n + task%summary%lost_joint, task%summary%fall)
          end if
          ! Where a joint has lost its axial load, that is what ends the path.
          if (task%summary%lost_joint > 0 .and. allocated(failure)) deallocate (failure)

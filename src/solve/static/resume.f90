@@ -3,6 +3,7 @@ module rbs_solve_static_resume
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
+   use rbs_hysteresis_interaction_joints, only: go_under, vary_axial_loads
    use rbs_column_column, only: column_type
    use rbs_column_top, only: top_displacement
    use rbs_solve_end_state, only: end_state, standing_type, static_state
@@ -58,11 +59,11 @@ contains
 
       call before%take_up(path%column, standing, path%springs, error)
       if (allocated(error)) return
-      if (varies) call path%springs%vary_axial_loads()
+      if (varies) call vary_axial_loads(path%springs)
       press = path%column%compression
       if (varies) press = standing%press
       goes_on = standing%kind == static_state .and. all(abs(press - standing%press) <= 0.0_wp)
-      call path%springs%go_under(press, standing%pressed)
+      call go_under(path%springs, press, standing%pressed)
       joint = path%springs%lost_joint() - path%column%n
       if (joint > 0) then
          call fatal_error(error, analysis_failed, 'initial: the layers of '// &

@@ -8,6 +8,7 @@ module rbs_solve_time_located
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_column_energy, only: kinetic_of
+   use rbs_hysteresis_interaction_joints, only: choose_lines, put_on_plane
    use rbs_hysteresis_layer_events, only: turn_layer
    use rbs_solve_time_event, only: event_type, find_event, same_event, distance_to, standing_rotation, &
                                    round_off_of, felt
@@ -162,7 +163,7 @@ contains
             end if
             turn = felt(self%now%a(i), round_off_of(state, i))
          end if
-         if (abs(turn) + abs(press) > 0.0_wp) call state%springs%choose_lines(i, turn, press)
+         if (abs(turn) + abs(press) > 0.0_wp) call choose_lines(state%springs, i, turn, press)
       end do
       self%scheme%begun = .false.
    end subroutine choose_planes
@@ -229,7 +230,7 @@ contains
             turned = state%q(i) - springs%d(i)
             before = springs%force(i)
             centre = springs%centre(i)
-            call springs%put_on_plane(i, state%q(i), springs%press_to(i), state%v(i), press, layer)
+            call put_on_plane(springs, i, state%q(i), springs%press_to(i), state%v(i), press, layer)
             springs%work(i) = springs%work(i) + 0.5_wp*(before + springs%force(i))*turned &
                               + centre*press*h**2/12.0_wp*(self%v_start(i) - state%v(i))
          end do

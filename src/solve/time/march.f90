@@ -4,6 +4,7 @@ module rbs_solve_time_march
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
+   use rbs_hysteresis_interaction_joints, only: fall_of
    use rbs_column_column, only: column_type
    use rbs_column_energy, only: kinetic_energy, potential_energy
    use rbs_column_top, only: top_motion, top_position
@@ -145,7 +146,7 @@ contains
             call state%see(state%clock)
             ends = ends .or. state%sight%collapsed
             if (summary%lost_joint > 0) then
-               call state%springs%fall_of(lost, summary%fall)
+               call fall_of(state%springs, lost, summary%fall)
             end if
             if (ends .or. part == parts) call balance(state, response%energy, summary)
             if (ends .or. step == next_row .or. (every == unset_integer .and. part == parts)) then

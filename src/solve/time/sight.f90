@@ -5,6 +5,7 @@ module rbs_solve_time_sight
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type, finite
    use rbs_column_top, only: top_motion, top_displacement, largest_turn
+   use rbs_hysteresis_interaction_joints, only: fill_openings, opening_of
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_summary, only: peaks_type
    use rbs_solve_time_cubic, only: cubic_type, cubic_through
@@ -102,7 +103,7 @@ contains
       self%q = q
       self%clock = clock
       self%displacement = top_displacement(motion%column, q)
-      call springs%fill_openings(self%column%n, self%openings)
+      call fill_openings(springs, self%column%n, self%openings)
       self%openings_now = self%openings
       call self%see(motion, springs, q, v, load, clock)
    end subroutine begin
@@ -162,7 +163,7 @@ contains
       !> Of the top [m]
       real(wp), intent(in) :: displacement, clock
 
-      if (self%opens) call springs%fill_openings(self%column%n, self%openings_now)
+      if (self%opens) call fill_openings(springs, self%column%n, self%openings_now)
       if (self%opens .or. are_beyond(size(q), self%lowest, self%highest, q, q)) then
          call look_closely(self, q, displacement, clock)
       end if
@@ -355,12 +356,12 @@ contains
       type(spring_array), intent(in) :: springs
       integer :: i, j, at
 
-      call springs%fill_openings(self%column%n, self%openings_now)
+      call fill_openings(springs, self%column%n, self%openings_now)
       do j = 1, 4
          self%inner_openings(:, j) = self%openings_now
          do i = 1, self%column%n
             at = self%column%at(flexure, i)
-            self%inner_openings(i, j) = springs%opening(at, self%inner_q(at, j), (j - 1)/3.0_wp)
+            self%inner_openings(i, j) = opening_of(springs, at, self%inner_q(at, j), (j - 1)/3.0_wp)
          end do
       end do
    end subroutine fill_inner_openings

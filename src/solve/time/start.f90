@@ -4,6 +4,7 @@ module rbs_solve_time_start
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
+   use rbs_hysteresis_interaction_joints, only: go_under, vary_axial_loads
    use rbs_column_column, only: column_type
    use rbs_column_energy, only: kinetic_energy, potential_energy
    use rbs_column_top, only: top_displacement
@@ -60,7 +61,7 @@ contains
       do i = 1, column%n
          press(i) = column%axial_force(i, state%load)
       end do
-      call state%springs%go_under(press, standing%pressed)
+      call go_under(state%springs, press, standing%pressed)
       lost = state%springs%lost_joint()
       if (lost > 0) then
          call fatal_error(error, analysis_failed, 'initial: the layers of '// &
@@ -220,7 +221,7 @@ contains
          axial_load(column%at(flexure, i)) = column%axial_force(i, state%load)
       end do
       call state%springs%create(column%rules, column%place%heard, axial_load)
-      call state%springs%vary_axial_loads()
+      call vary_axial_loads(state%springs)
       call state%motion%press(state%springs, state%load)
    end subroutine create_springs
 
