@@ -125,6 +125,9 @@ class Answer(NamedTuple):
     status: int
 
 
+_FLOAT = np.dtype(float).str
+
+
 class _Rows:
     """Rows that Fortran keeps, as numpy takes them; the last array that shows them releases them."""
 
@@ -132,7 +135,7 @@ class _Rows:
         self.answer = answer
         self.__array_interface__ = {
             "shape": shape,
-            "typestr": np.dtype(float).str,
+            "typestr": _FLOAT,
             "data": (int(address.view(np.intp)[0]), False),
             "version": 3,
         }
@@ -141,6 +144,7 @@ class _Rows:
         release(self.answer)
 
 
+_NOTHING = np.empty(0)
 _NO_CONTROL = np.zeros(2, np.int32)
 
 
@@ -152,27 +156,25 @@ def _ask(
 ) -> Answer:
     """Return an answer of the Fortran part, whose module `rbs_bindings_evaluate` lists what there is.
 
-    Numbers, switches and arrays go under their names; None and empty arrays are left out.
+    Numbers, switches and arrays go under their names; None is left out.
     """
     text, numbers = statement if isinstance(statement, Statement) else (statement, [])
-    given = [(k, np.ravel(v)) for k, v in arrays.items() if v is not None]
-    answer, address, (status, length, count, width, rows) = _rbsdem.rbs_evaluate(
+    given = {k: np.asarray(v, float).ravel() for k, v in arrays.items() if v is not None}
+    pieces = list(given.values())
+    answer, address, sizes = _rbsdem.rbs_evaluate(
         what,
         # As bytes: f2py takes no characters beyond ASCII.
         text.encode("utf-8", "replace"),
         numbers,
-        " ".join(f"{name}:{values.size}" for name, values in given),
-        np.concatenate([values for _, values in given]) if given else (),
+        " ".join([f"{name}:{piece.size}" for name, piece in given.items()]),
+        np.concatenate(pieces) if len(pieces) > 1 else pieces[0] if pieces else _NOTHING,
         control,
     )
-    holder = _Rows(answer, address, (int(rows), int(width)))
-    raw, values = _rbsdem.rbs_read(answer, max(1, length), count)
-    return Answer(
-        raw[:length].decode("utf-8", errors="replace"),
-        values,
-        np.asarray(holder) if rows else np.empty((0, int(width))),
-        int(status),
-    )
+    status, length, count, width, kept = sizes.tolist()
+    rows = np.asarray(_Rows(answer, address, (kept, width))) if kept else np.empty((0, width))
+    # An answer without rows is released when it has been read, an empty one at once.
+    raw, values = _rbsdem.rbs_read(answer, length, count) if answer.any() else (b"", _NOTHING)
+    return Answer(raw[:length].decode("utf-8", "replace"), values, rows, status)
 
 
 def _evaluate(what: str, statement: Statement | str = "", **given: Any) -> Answer:

@@ -3,8 +3,8 @@
 ! f2py would treat real(wp) as a C float without a warning, so only c_double and c_int appear here.
 
 subroutine rbs_evaluate(what, statement, nn, number, names, m, input, control, answer, address, sizes)
-   ! Answer a request (see `request_type`). `answer` is a pointer, for `rbs_read` and `rbs_release`, `address`
-   ! that of its rows. `sizes`: status (0 success, 1 the analysis failed, 2 bad input, 3 a long run that waits
+   ! Answer a request (see `request_type`). `answer` is a pointer, for `rbs_read` and `rbs_release`, and zero if
+   ! there is nothing to read; `address` is that of its rows. `sizes`: status (0 success, 1 the analysis failed, 2 bad input, 3 a long run that waits
    ! to be told), characters of the text, numbers of the values, values of a row, and rows. Another thread may
    ! read and set `control`.
    use iso_c_binding, only: c_double, c_int
@@ -21,12 +21,12 @@ subroutine rbs_evaluate(what, statement, nn, number, names, m, input, control, a
 end subroutine rbs_evaluate
 
 subroutine rbs_read(answer, length, count, text, values)
-   ! Text and values of an answer, of the lengths that it has; the text is of one blank at least.
+   ! Text and values of an answer, of the lengths that it has. One without rows is released.
    use iso_c_binding, only: c_double, c_int
    use rbs_bindings_doors, only: read_answer
    implicit none
    integer(c_int), intent(in) :: answer(2), length, count
-   character(len=length), intent(out) :: text
+   character(len=length + 1), intent(out) :: text
    real(c_double), intent(out) :: values(count)
    !f2py threadsafe
 
@@ -34,7 +34,7 @@ subroutine rbs_read(answer, length, count, text, values)
 end subroutine rbs_read
 
 subroutine rbs_release(answer)
-   ! An answer is no longer needed.
+   ! The rows of an answer are no longer needed.
    use iso_c_binding, only: c_int
    use rbs_bindings_doors, only: release_answer
    implicit none

@@ -38,9 +38,18 @@ contains
       end if
       if (allocated(answer%text)) sizes(2) = len(answer%text)
       if (allocated(answer%value)) sizes(3) = size(answer%value)
-      if (answer%kept == 0 .or. .not. allocated(answer%rows)) return
-      sizes(4:) = [size(answer%rows, 1), answer%kept]
-      address = transfer(c_loc(answer%rows), address)
+      if (allocated(answer%rows)) then
+         if (answer%kept < 0) answer%kept = size(answer%rows, 2)
+         sizes(4:) = [size(answer%rows, 1), answer%kept]
+      else
+         answer%kept = 0
+      end if
+      if (answer%kept > 0) then
+         address = transfer(c_loc(answer%rows), address)
+      else if (all(sizes(2:3) == 0)) then
+         call release_answer(handle)
+         handle = 0
+      end if
    end subroutine open_door
 
    !> See `rbs_read`.
@@ -54,6 +63,7 @@ contains
       text = ''
       if (allocated(answer%text)) text = answer%text
       if (allocated(answer%value)) values = answer%value
+      if (answer%kept == 0) call release_answer(handle)
    end subroutine read_answer
 
    !> See `rbs_release`.

@@ -34,16 +34,16 @@ contains
       type(ensemble_motion), allocatable :: motion(:)
       type(error_type), allocatable :: error
       type(text_buffer) :: text
-      integer :: i, at(4), motions
+      integer :: i, at(4), motions, columns
       logical, allocatable :: in_lanes(:)
 
       call take_motions(request, motion)
       motions = size(motion)
-      answer%kept = size(request%array('counts'))/3
+      columns = size(request%array('counts'))/3
       allocate (column(1), in_lanes(motions))
-      allocate (answer%rows(2*motions, answer%kept), source=0.0_wp)
+      allocate (answer%rows(2*motions, columns), source=0.0_wp)
       at = 1
-      do i = 1, answer%kept
+      do i = 1, columns
          call next_column(request, i, at, motion(1), column(1), error)
          if (.not. allocated(error)) then
             call plan_column(column(1), motion, answer%rows(:motions, i), in_lanes, error)
@@ -87,7 +87,6 @@ contains
          end do
       end associate
       call run_block(column, motion, run, request%whole('level'), outcome, control)
-      answer%kept = size(run)
       allocate (answer%rows(measure_count + states, size(run)), source=ieee_value(1.0_wp, ieee_quiet_nan))
       do i = 1, size(run)
          answer%rows(1, i) = outcome(i)%fate

@@ -128,9 +128,8 @@ contains
          if (allocated(answer%error)) return
          answer%text = trim(modes%warning)
          answer%value = [modes%stable_step, modes%omega]
-         call answer%set_rows(modes%shapes)
+         answer%rows = modes%shapes
       case default
-         answer%kept = column%unknowns
          allocate (answer%rows(column%unknowns, column%unknowns))
          if (request%wants('paper')) then
             call paper_mass(column, answer%rows)
@@ -183,8 +182,7 @@ contains
       real(c_double), intent(in) :: acceleration(:), dt(:), period(:), damping(:)
       type(answer_type), intent(inout) :: answer
 
-      answer%kept = size(period)
-      allocate (answer%rows(3, answer%kept))
+      allocate (answer%rows(3, size(period)))
       call response_spectrum(acceleration, dt(1), period, damping(1), answer%rows)
    end subroutine find_spectrum
 

@@ -28,11 +28,9 @@ module rbs_bindings_exchange
       type(error_type), allocatable :: error
       character(len=:), allocatable :: text
       real(c_double), allocatable :: value(:)
-      !> A row of Python a column; those behind `kept` are room that is left
+      !> A row of Python a column; if not all of them count, how many do
       real(c_double), allocatable :: rows(:, :)
-      integer :: kept = 0
-   contains
-      procedure :: set_rows
+      integer :: kept = -1
    end type answer_type
 
 contains
@@ -77,13 +75,5 @@ contains
 
       wants = any(abs(self%array(name)) > 0.0_c_double)
    end function wants
-
-   subroutine set_rows(self, rows)
-      class(answer_type), intent(inout) :: self
-      real(c_double), intent(in) :: rows(:, :)
-
-      self%rows = rows
-      self%kept = size(rows, 2)
-   end subroutine set_rows
 
 end module rbs_bindings_exchange

@@ -38,7 +38,6 @@ contains
       if (allocated(answer%error)) return
       m = size(history%time)
       allocate (answer%rows(1 + m, 0:drives), source=0.0_c_double)
-      answer%kept = 1 + drives
       associate (rows => answer%rows)
          rows(2:, 0) = history%time
          if (case%loadings == 0) then
@@ -119,7 +118,6 @@ contains
                            layout_type(nint(layout(3)), achar(nint(layout(1))), achar(nint(layout(2)))))
          end if
       end associate
-      answer%kept = 2
    end subroutine test_from_file
 
 end module rbs_bindings_files

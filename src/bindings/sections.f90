@@ -106,7 +106,6 @@ contains
             ! Curvatures of one sign and increasing magnitude; moments, then strains.
             curvature => request%array('curvature')
             allocate (answer%rows(size(curvature), 2), source=0.0_c_double)
-            answer%kept = 2
             call follow(section, laws, given%axial_load, curvature, answer%rows(:, 1), answer%rows(:, 2), &
                         answer%error)
          case default
@@ -116,9 +115,9 @@ contains
             call find_events(section, laws, given%axial_load, given%rule(), events, answer%error)
             if (allocated(answer%error)) return
             answer%value = [merge(1.0_wp, 0.0_wp, events%lost)]
-            call answer%set_rows(reshape([values_of_point(events%cracking), values_of_point(events%yield), &
-                                          values_of_point(events%peak), values_of_point(events%ultimate), &
-                                          values_of_point(events%last)], [4, 5]))
+            answer%rows = reshape([values_of_point(events%cracking), values_of_point(events%yield), &
+                                   values_of_point(events%peak), values_of_point(events%ultimate), &
+                                   values_of_point(events%last)], [4, 5])
          end select
       end associate
    end subroutine bend_section
@@ -136,8 +135,8 @@ contains
       if (.not. allocated(answer%error)) call fit_flexural_spring(section, hinge, spring, answer%error)
       if (allocated(answer%error)) return
       answer%value = spring%as_array()
-      call answer%set_rows(reshape([values_of_point(spring%cracking), values_of_point(spring%yield), &
-                                    values_of_point(spring%peak), values_of_point(spring%ultimate)], [4, 4]))
+      answer%rows = reshape([values_of_point(spring%cracking), values_of_point(spring%yield), &
+                             values_of_point(spring%peak), values_of_point(spring%ultimate)], [4, 4])
    end subroutine fit_spring
 
    !> Points of a shear diagram; then its knee and its last point. Values: whether the knee is found, a layer
@@ -163,7 +162,6 @@ contains
       if (allocated(answer%error)) return
       count = size(diagram%points)
       allocate (answer%rows(4, count + 2))
-      answer%kept = count + 2
       do i = 1, count
          answer%rows(:, i) = values_of_shear_point(diagram%points(i))
       end do
@@ -204,9 +202,8 @@ contains
       layer%concrete%tension = tension_place(reader%layer%tension)
       layer%rho_z = reader%layer%rho_z
       layer%stirrup = reader%case%drawing%section%steels(1)%law()
-      answer%kept = size(path)/2
-      allocate (answer%rows(6, answer%kept))
-      do i = 1, answer%kept
+      allocate (answer%rows(6, size(path)/2))
+      do i = 1, size(answer%rows, 2)
          call solve_layer(layer, path(2*i - 1), path(2*i), state, found)
          answer%rows(:, i) = [values_of_layer(state, stress_of_state(layer, state)), merge(1.0_wp, 0.0_wp, found)]
       end do
@@ -224,7 +221,6 @@ contains
       call outline_core(reader%case%drawing%section, round_core, inside)
       call cut_strips(reader%case%drawing%section%shape, inside, number, strips)
       allocate (answer%rows(4, number))
-      answer%kept = number
       call strip_centroids(reader%case%drawing%section%shape, inside, strips, answer%rows(1, :), answer%rows(3, :))
       answer%rows(2, :) = strips%core_area
       answer%rows(4, :) = strips%area - strips%core_area
