@@ -10,7 +10,7 @@ module rbs_base_check
    implicit none
    private
 
-   public :: is_given, check_positive, check_not_negative, check_finite, check_name
+   public :: is_given, check_positive, check_finite, check_name
 
 contains
 
@@ -42,25 +42,6 @@ contains
       end if
       if (present(ok)) ok = passed
    end subroutine check_positive
-
-   !> The number must be given, finite and not below zero.
-   subroutine check_not_negative(x, name, unit, messages, ok)
-      real(wp), intent(in) :: x
-      character(len=*), intent(in) :: name
-      character(len=*), intent(in) :: unit
-      type(message_list), intent(inout) :: messages
-      logical, intent(out), optional :: ok
-      logical :: passed
-
-      call check_finite(x, name, unit, messages, passed)
-      if (passed) then
-         passed = x >= 0.0_wp
-         if (.not. passed) then
-            call messages%add(trim(name//' = '//to_text(x)//' '//unit)//' must not be negative')
-         end if
-      end if
-      if (present(ok)) ok = passed
-   end subroutine check_not_negative
 
    !> The number must be given and finite.
    subroutine check_finite(x, name, unit, messages, ok)

@@ -5,7 +5,8 @@ module rbs_base_units
    implicit none
    private
 
-   public :: unit_type, unit_system, length_units, force_units, mass_units, acceleration_units, to_si, from_si
+   public :: unit_type, unit_system, length_units, force_units, mass_units, acceleration_units, to_si, &
+             unit_named
 
    !> A unit by name.
    type :: unit_type
@@ -40,30 +41,40 @@ module rbs_base_units
 
 contains
 
-   !> A value in SI. Values in small units, such as millimetres, are divided by a whole number, which
-   !> rounds once; a factor of 0.001 would itself be rounded.
+   !> The unit of a name; the first one, that of SI, if the name is blank or another.
+   pure type(unit_type) function unit_named(units, name) result(unit)
+      type(unit_type), intent(in) :: units(:)
+      character(len=*), intent(in) :: name
+
+      unit = units(max(1, findloc(units%name == name, .true., dim=1)))
+   end function unit_named
+
+   !> A value in SI.
    elemental real(wp) function to_si(value, unit)
       real(wp), intent(in) :: value
       type(unit_type), intent(in) :: unit
 
-      if (unit%factor < 1.0_wp .and. abs(nint(1.0_wp/unit%factor)*unit%factor - 1.0_wp) < 1.0e-15_wp) then
-         to_si = value/nint(1.0_wp/unit%factor)
-      else
-         to_si = value*unit%factor
-      end if
+      to_si = scaled(value, unit, 1)
    end function to_si
 
-   !> A value in a unit, from SI; the inverse of `to_si`.
-   elemental real(wp) function from_si(value, unit)
+   !> A value times the factor of a unit, or divided by it. Values in small units, such as millimetres, are
+   !> divided by a whole number, which rounds once; a factor of 0.001 would itself be rounded.
+   elemental real(wp) function scaled(value, unit, power)
       real(wp), intent(in) :: value
       type(unit_type), intent(in) :: unit
+      !> +1: to SI, -1: from SI
+      integer, intent(in) :: power
+      real(wp) :: whole
 
-      if (unit%factor < 1.0_wp .and. abs(nint(1.0_wp/unit%factor)*unit%factor - 1.0_wp) < 1.0e-15_wp) then
-         from_si = value*nint(1.0_wp/unit%factor)
+      whole = nint(1.0_wp/unit%factor)
+      if (unit%factor < 1.0_wp .and. abs(whole*unit%factor - 1.0_wp) < 1.0e-15_wp) then
+         if (power > 0) scaled = value/whole
+         if (power < 0) scaled = value*whole
       else
-         from_si = value/unit%factor
+         if (power > 0) scaled = value*unit%factor
+         if (power < 0) scaled = value/unit%factor
       end if
-   end function from_si
+   end function scaled
 
    !> Whether the units are those of SI, so that nothing is converted.
    pure logical function is_si(self)
@@ -109,9 +120,9 @@ contains
          if (unit(i:i) == '/') power = -direction
          call unit_of_letter(self, unit, i, one, found)
          if (.not. found) cycle
-         converted = applied(converted, one, power)
+         converted = scaled(converted, one, power)
          if (i == len(unit)) cycle
-         if (unit(i + 1:i + 1) == '2') converted = applied(converted, one, power)
+         if (unit(i + 1:i + 1) == '2') converted = scaled(converted, one, power)
       end do
    end function converted
 
@@ -137,18 +148,6 @@ contains
          found = .false.
       end select
    end subroutine unit_of_letter
-
-   elemental real(wp) function applied(value, unit, power)
-      real(wp), intent(in) :: value
-      type(unit_type), intent(in) :: unit
-      integer, intent(in) :: power
-
-      if (power > 0) then
-         applied = to_si(value, unit)
-      else
-         applied = from_si(value, unit)
-      end if
-   end function applied
 
    !> The name of an SI unit in the units of the user: 'kN/mm' for 'N/m'.
    pure function name_of(self, unit) result(name)

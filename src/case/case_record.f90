@@ -2,7 +2,7 @@
 module rbs_case_case_record
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor, visited_record
-   use rbs_base_units, only: unit_system, unit_type, length_units, force_units, mass_units
+   use rbs_base_units, only: unit_system, unit_named, length_units, force_units, mass_units
    use rbs_case_analysis_record, only: analysis_record, output_record
    use rbs_case_drawing_record, only: drawing_groups, drawing_record
    use rbs_column_column_record, only: column_record
@@ -110,17 +110,10 @@ contains
    pure type(unit_system) function system(self)
       class(units_record), intent(in) :: self
 
-      system%force = named(force_units, self%force)
-      system%length = named(length_units, self%length)
-      system%mass = named(mass_units, self%mass)
+      system%force = unit_named(force_units, self%force)
+      system%length = unit_named(length_units, self%length)
+      system%mass = unit_named(mass_units, self%mass)
    end function system
-
-   pure type(unit_type) function named(units, name)
-      type(unit_type), intent(in) :: units(:)
-      character(len=*), intent(in) :: name
-
-      named = units(max(1, findloc(units%name == name, .true., dim=1)))
-   end function named
 
    !> Set what follows from other input: sources and units of the loadings, the method.
    subroutine settle(self)

@@ -54,42 +54,38 @@ contains
       call buffer%append('{"groups": {')
       do i = 1, size(group_names)
          call group_keys(group_names(i), .false., keys)
-         if (i > 1) call buffer%append(',')
-         call buffer%append(new_line('a')//'  "'//trim(group_names(i))//'": [')
-         call append_keys(buffer, keys)
-         call buffer%append(']')
+         call append_list(group_names(i), '[', keys, ']')
       end do
       call buffer%append(new_line('a')//'}, "rules": {')
       do i = 1, size(rule_names)
          call keys_of(rule_names(i), keys)
-         if (i > 1) call buffer%append(',')
-         call buffer%append(new_line('a')//'  "'//trim(rule_names(i))//'": {"places": "'// &
-                            trim(places_of(rule_names(i)))//'", "keys": [')
-         call append_keys(buffer, keys)
-         call buffer%append(']}')
+         call append_list(rule_names(i), '{"places": "'//trim(places_of(rule_names(i)))//'", "keys": [', keys, ']}')
       end do
       call buffer%append(new_line('a')//'}, "section": {')
       do i = 1, size(section_parts)
          call group_keys(section_parts(i), .true., keys)
-         if (i > 1) call buffer%append(',')
-         call buffer%append(new_line('a')//'  "'//trim(section_parts(i))//'": [')
-         call append_keys(buffer, keys)
-         call buffer%append(']')
+         call append_list(section_parts(i), '[', keys, ']')
       end do
       call buffer%append(new_line('a')//'}}'//new_line('a'))
-   end subroutine keys_as_json
 
-   subroutine append_keys(buffer, keys)
-      type(text_buffer), intent(inout) :: buffer
-      type(key_type), intent(in) :: keys(:)
-      integer :: i
+   contains
 
-      do i = 1, size(keys)
+      !> A name and its list of keys, each on a line.
+      subroutine append_list(name, before, keys, after)
+         character(len=*), intent(in) :: name, before, after
+         type(key_type), intent(in) :: keys(:)
+         integer :: k
+
          if (i > 1) call buffer%append(',')
-         call buffer%append(new_line('a')//'    ')
-         call append_key(buffer, keys(i))
-      end do
-   end subroutine append_keys
+         call buffer%append(new_line('a')//'  "'//trim(name)//'": '//before)
+         do k = 1, size(keys)
+            if (k > 1) call buffer%append(',')
+            call buffer%append(new_line('a')//'    ')
+            call append_key(buffer, keys(k))
+         end do
+         call buffer%append(after)
+      end subroutine append_list
+   end subroutine keys_as_json
 
    !> One key as JSON; bounds, choices and defaults that it does not have are left out.
    subroutine append_key(buffer, key)

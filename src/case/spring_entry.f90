@@ -122,23 +122,123 @@ contains
       type(entry_list), intent(in) :: list
       type(column_record), intent(inout) :: column
       type(message_list), intent(inout) :: messages
-      type(entry_list) :: whole
+      !> Numbers of the lowest and the uppermost joint, and the same for messages
+      integer :: first, last, known
       character(len=40) :: range
-      integer :: first, known
+      logical :: numbered
 
-      whole = list
       column%footing = any_beneath(list)
-      if (list%count > 0) then
-         known = messages%count
-         call check_ids(list, messages)
-         if (messages%count == known) call fill_layers(whole, last_joint(column), messages)
-      end if
       first = merge(0, 1, column%footing)
-      range = to_text(first)//' to '//trim(merge('n + 1', 'n    ', column%top == 'fixed'))//' = '// &
-              to_text(last_joint(column))
-      call place_group(whole, 'shear', first, last_joint(column), range, column%shear, messages)
-      call place_group(whole, 'flexure', first, last_joint(column), range, column%flexure, messages)
-      call place_group(whole, 'axial_spring', first, last_joint(column), range, column%axial_spring, messages)
+      last = column%joint_number(column%joints())
+      range = to_text(first)//' to '//trim(merge('n + 1', 'n    ', column%top == 'fixed'))//' = '//to_text(last)
+      known = messages%count
+      call check_ids(list, messages)
+      numbered = messages%count == known
+      call place_group('shear', column%shear)
+      call place_group('flexure', column%flexure)
+      if (numbered .and. allocated(column%flexure)) call place_layers(column%flexure)
+      call place_group('axial_spring', column%axial_spring)
+
+   contains
+
+      !> Find the entry of a group for each joint: the one that names it, or the one without joints.
+      subroutine assign(group, of_joint, rest)
+         character(len=*), intent(in) :: group
+         !> Entries that name the joints, 0: none
+         integer, intent(out) :: of_joint(first:)
+         !> The entry for all others, 0: none
+         integer, intent(out) :: rest
+         integer :: i, j
+
+         of_joint = 0
+         rest = 0
+         do i = 1, list%count
+            associate (entry => list%entry(i))
+               if (entry%group /= group) cycle
+               if (.not. allocated(entry%joint)) then
+                  if (rest > 0) call twice(entry, list%entry(rest), group, messages)
+                  rest = i
+                  cycle
+               end if
+               do j = 1, size(entry%joint)
+                  if (entry%joint(j) < first .or. entry%joint(j) > last) then
+                     call messages%add_at(entry%where, '&'//group//' has joint = '// &
+                                          to_text(entry%joint(j))//'; joints are '//trim(range))
+                  else if (of_joint(entry%joint(j)) > 0) then
+                     call twice(entry, list%entry(of_joint(entry%joint(j))), group, messages, entry%joint(j))
+                  else
+                     of_joint(entry%joint(j)) = i
+                  end if
+               end do
+            end associate
+         end do
+      end subroutine assign
+
+      !> Give springs of one kind to the joints: one for all joints, or one for each.
+      subroutine place_group(group, springs)
+         character(len=*), intent(in) :: group
+         type(spring_record), allocatable, intent(out) :: springs(:)
+         integer :: of_joint(first:max(last, 1)), i, rest, before
+
+         before = messages%count
+         call assign(group, of_joint, rest)
+         if (messages%count > before .or. (all(of_joint == 0) .and. rest == 0)) return
+         if (all(of_joint == 0) .and. first > 0) then
+            springs = [list%entry(rest)%spring]
+            return
+         end if
+         i = findloc(of_joint, 0, dim=1) + first - 1
+         if (i == 0 .and. first == 0) then
+            call messages%add('the column stands on a footing, but there is no &'//group// &
+                              ' with joint = 0; give the footing one')
+         else if (i >= first .and. rest == 0) then
+            call messages%add('joint '//to_text(i)//' has no &'//group// &
+                              '; give it one, or one without joint, which is for all others')
+         else
+            allocate (springs(last - first + 1))
+            do i = first, last
+               springs(i - first + 1) = list%entry(merge(of_joint(i), rest, of_joint(i) > 0))%spring
+            end do
+         end if
+      end subroutine place_group
+
+      !> Give the layers to the layered springs of flexure.
+      subroutine place_layers(springs)
+         type(spring_record), allocatable, intent(inout) :: springs(:)
+         type(spring_record) :: one
+         integer :: of_joint(first:max(last, 1)), i, k, rest, made, line
+
+         known = messages%count
+         call assign('layers', of_joint, rest)
+         if (messages%count > known) return
+         if (any(of_joint > 0) .and. size(springs) == 1) then
+            one = springs(1)
+            deallocate (springs)
+            allocate (springs(last - first + 1))
+            do i = 1, size(springs)
+               springs(i) = one
+            end do
+         end if
+         where (of_joint == 0) of_joint = rest
+         do k = 1, list%count
+            if (list%entry(k)%group /= 'layers') cycle
+            made = 0
+            do i = 1, size(springs)
+               if (of_joint(first + i - 1) /= k .or. springs(i)%rule /= 'layered') cycle
+               if (made == 0) then
+                  made = i
+                  call set_layers(list, springs(i), list%entry(k), messages)
+               else
+                  line = springs(i)%line
+                  springs(i) = springs(made)
+                  springs(i)%line = line
+               end if
+            end do
+            if (made > 0) cycle
+            call messages%add_at(list%entry(k)%where, '&layers belong to no flexural spring with '// &
+                                 "rule = 'layered'; remove them, or choose that rule for the spring")
+         end do
+      end subroutine place_layers
    end subroutine place_springs
 
    !> Whether a spring is given for joint 0, beneath a footing.
@@ -152,13 +252,6 @@ contains
          any_beneath = any_beneath .or. any(list%entry(i)%joint == 0)
       end do
    end function any_beneath
-
-   !> Number of the uppermost joint: that of the last body, or that of a fixed top.
-   pure integer function last_joint(column)
-      class(column_record), intent(in) :: column
-
-      last_joint = column%joint_number(column%joints())
-   end function last_joint
 
    !> Check the springs of layers: each number must belong to one spring, which must have a rule.
    subroutine check_ids(list, messages)
@@ -187,64 +280,6 @@ contains
       end do
    end subroutine check_ids
 
-   !> Give springs of one kind to the joints: one for all joints, or one for each.
-   subroutine place_group(list, group, first, last, range, springs, messages)
-      type(entry_list), intent(in) :: list
-      character(len=*), intent(in) :: group
-      !> Numbers of the joints, and the same for messages
-      integer, intent(in) :: first, last
-      character(len=*), intent(in) :: range
-      type(spring_record), allocatable, intent(out) :: springs(:)
-      type(message_list), intent(inout) :: messages
-      integer :: of_joint(first:max(last, 1)), i, j, rest, known
-
-      if (list%count == 0) return
-      if (.not. any(list%entry(:list%count)%group == group)) return
-      of_joint = 0
-      rest = 0
-      known = messages%count
-      do i = 1, list%count
-         associate (entry => list%entry(i))
-            if (entry%group /= group) cycle
-            if (.not. allocated(entry%joint)) then
-               if (rest > 0) call twice(entry, list%entry(rest), group, messages)
-               rest = i
-               cycle
-            end if
-            do j = 1, size(entry%joint)
-               if (entry%joint(j) < first .or. entry%joint(j) > last) then
-                  call messages%add_at(entry%where, '&'//group//' has joint = '// &
-                                       to_text(entry%joint(j))//'; joints are '//trim(range))
-               else if (of_joint(entry%joint(j)) > 0) then
-                  call twice(entry, list%entry(of_joint(entry%joint(j))), group, messages, entry%joint(j))
-               else
-                  of_joint(entry%joint(j)) = i
-               end if
-            end do
-         end associate
-      end do
-      if (messages%count > known) return
-      if (all(of_joint == 0) .and. first > 0) then
-         springs = [list%entry(rest)%spring]
-         return
-      end if
-      if (of_joint(first) == 0 .and. first == 0) then
-         call messages%add('the column stands on a footing, but there is no &'//group// &
-                           ' with joint = 0; give the footing one')
-         return
-      end if
-      i = findloc(of_joint, 0, dim=1) + first - 1
-      if (i >= first .and. rest == 0) then
-         call messages%add('joint '//to_text(i)//' has no &'//group// &
-                           '; give it one, or one without joint, which is for all others')
-         return
-      end if
-      allocate (springs(last - first + 1))
-      do i = first, last
-         springs(i - first + 1) = list%entry(merge(of_joint(i), rest, of_joint(i) > 0))%spring
-      end do
-   end subroutine place_group
-
    !> Report two springs for one joint.
    subroutine twice(entry, first, group, messages, joint)
       type(spring_entry), intent(in) :: entry, first
@@ -263,84 +298,6 @@ contains
       if (first%where /= '') text = text//', first at '//first%where(:len_trim(first%where) - 1)
       call messages%add_at(entry%where, text//'; remove one')
    end subroutine twice
-
-   !> Give the layers to the layered springs of flexure.
-   subroutine fill_layers(list, n, messages)
-      type(entry_list), intent(inout) :: list
-      integer, intent(in) :: n
-      type(message_list), intent(inout) :: messages
-      type(entry_list) :: made
-      integer, allocatable :: named(:), order(:)
-      integer :: i, j, k
-
-      if (.not. any(list%entry(:list%count)%group == 'layers')) return
-      ! Layers that name their joints before those for the rest.
-      order = [pack([(i, i=1, list%count)], [(allocated(list%entry(i)%joint), i=1, list%count)]), &
-               pack([(i, i=1, list%count)], [(.not. allocated(list%entry(i)%joint), i=1, list%count)])]
-      do k = 1, size(order)
-         i = order(k)
-         if (list%entry(i)%group /= 'layers') cycle
-         made = entry_list()
-         call joints_named(list, named)
-         do j = 1, list%count
-            if (list%entry(j)%group /= 'flexure' .or. list%entry(j)%spring%rule /= 'layered') cycle
-            call share_joints(list%entry(j), list%entry(i), n, named, made)
-         end do
-         if (made%count == 0) then
-            call messages%add_at(list%entry(i)%where, '&layers belong to no flexural spring with '// &
-                                 "rule = 'layered'; remove them, or choose that rule for the spring")
-            cycle
-         end if
-         do j = 1, made%count
-            call set_layers(list, made%entry(j)%spring, list%entry(i), messages)
-            call list%add('flexure', made%entry(j)%where)
-            list%entry(list%count) = made%entry(j)
-         end do
-      end do
-   end subroutine fill_layers
-
-   !> The joints that flexural springs name.
-   subroutine joints_named(list, named)
-      type(entry_list), intent(in) :: list
-      integer, allocatable, intent(out) :: named(:)
-      integer :: i
-
-      allocate (named(0))
-      do i = 1, list%count
-         if (list%entry(i)%group /= 'flexure' .or. .not. allocated(list%entry(i)%joint)) cycle
-         named = [named, list%entry(i)%joint]
-      end do
-   end subroutine joints_named
-
-   !> Give the joints of a &layers group a copy of their spring, separate from the other joints.
-   subroutine share_joints(entry, layers, n, named, made)
-      type(spring_entry), intent(inout) :: entry
-      type(spring_entry), intent(in) :: layers
-      integer, intent(in) :: n
-      !> Joints that flexural springs name
-      integer, intent(in) :: named(:)
-      type(entry_list), intent(inout) :: made
-      integer :: i
-
-      if (allocated(entry%spring%y)) return         ! it has its layers already
-      call made%add('flexure', entry%where)
-      made%entry(made%count) = entry
-      if (.not. allocated(layers%joint)) then
-         entry%group = 'taken'
-      else if (.not. allocated(entry%joint)) then
-         ! It is for the joints that no other spring names; what is left of them stays with it.
-         made%entry(made%count)%joint = pack(layers%joint, [(all(named /= layers%joint(i)), &
-                                                             i=1, size(layers%joint))])
-         if (size(made%entry(made%count)%joint) == 0) made%count = made%count - 1
-         if (all([(any(named == i) .or. any(layers%joint == i), i=1, n)])) entry%group = 'taken'
-      else
-         made%entry(made%count)%joint = pack(entry%joint, [(any(layers%joint == entry%joint(i)), &
-                                                            i=1, size(entry%joint))])
-         entry%joint = pack(entry%joint, [(all(layers%joint /= entry%joint(i)), i=1, size(entry%joint))])
-         if (size(entry%joint) == 0) entry%group = 'taken'
-         if (size(made%entry(made%count)%joint) == 0) made%count = made%count - 1
-      end if
-   end subroutine share_joints
 
    !> Copy the layers into a spring.
    subroutine set_layers(list, spring, layers, messages)

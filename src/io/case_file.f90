@@ -6,7 +6,6 @@ module rbs_io_case_file
    use rbs_base_text, only: to_text
    use rbs_io_loading_file, only: loading_values
    use rbs_io_namelist, only: read_case
-   use rbs_loading_inline_values, only: inline_values
    use rbs_loading_protocol, only: protocol_values
    use rbs_loading_signal, only: signal_type
    use rbs_solve_check_values, only: check_values
@@ -82,7 +81,7 @@ contains
                if (case%column%height <= 0.0_wp) cycle
                call protocol_values(spec, case%column%height, time, value, fault)
             case ('values')
-               call inline_values(spec, time, value)
+               call spec%inline_values(time, value)
             case default
                call loading_values(spec, folder, case%analysis%dynamic(), .not. case%analysis%named, time, &
                                    value, fault)

@@ -7,7 +7,7 @@ module rbs_loading_loading_record
    use rbs_base_check, only: is_given, check_name
    use rbs_base_key_visitor, only: key_visitor, visited_record
    use rbs_base_keys, only: any_number, any_value, above_zero, not_negative, one_or_more
-   use rbs_base_units, only: unit_type, length_units, force_units, acceleration_units
+   use rbs_base_units, only: unit_type, unit_named, to_si, length_units, force_units, acceleration_units
    use rbs_loading_named_protocols, only: protocol_names, counted_in_drift
    implicit none
    private
@@ -50,6 +50,7 @@ module rbs_loading_loading_record
       procedure :: settle
       procedure :: has_time
       procedure :: validate
+      procedure :: inline_values
    end type loading_record
 
 contains
@@ -126,6 +127,23 @@ contains
          units = acceleration_units
       end select
    end function units_of
+
+   !> Times and values that are given in the case itself, of a validated loading.
+   subroutine inline_values(self, time, value)
+      class(loading_record), intent(in) :: self
+      !> Times (m) [s]; if none are given, the number of each point
+      real(wp), allocatable, intent(out) :: time(:)
+      !> Values (m) [m, N or m/s2]
+      real(wp), allocatable, intent(out) :: value(:)
+      integer :: i
+
+      value = to_si(self%values*self%scale, unit_named(units_of(self%drive), self%unit))
+      if (allocated(self%time)) then
+         time = self%time
+      else
+         time = [((i - 1)*merge(self%interval, 1.0_wp, is_given(self%interval)), i=1, size(value))]
+      end if
+   end subroutine inline_values
 
    !> Add a message for every error of the loading.
    subroutine validate(self, dynamic, messages)

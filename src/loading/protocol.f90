@@ -5,7 +5,7 @@ module rbs_loading_protocol
    use rbs_base_text, only: to_text
    use rbs_loading_loading_record, only: loading_record, units_of
    use rbs_loading_named_protocols, only: named_protocol
-   use rbs_base_units, only: unit_type, to_si
+   use rbs_base_units, only: to_si, unit_named
    implicit none
    private
 
@@ -78,18 +78,13 @@ contains
    real(wp) function si_amplitude(spec, amplitude, height) result(si)
       type(loading_record), intent(in) :: spec
       real(wp), intent(in) :: amplitude, height
-      type(unit_type), allocatable :: units(:)
-      integer :: i
 
       si = amplitude*spec%scale
       if (spec%drive == 'displacement' .and. (spec%unit == '' .or. spec%unit == 'drift')) then
          si = si*height
-         return
+      else
+         si = to_si(si, unit_named(units_of(spec%drive), spec%unit))
       end if
-      units = units_of(spec%drive)
-      do i = 1, size(units)
-         if (spec%unit == units(i)%name) si = to_si(si, units(i))
-      end do
    end function si_amplitude
 
    !> The triangle wave of unit amplitude after j parts of a cycle; exact at its peaks and zeros.
