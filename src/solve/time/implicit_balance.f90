@@ -149,22 +149,38 @@ contains
       real(wp), intent(in), contiguous :: a(:), f(:)
       real(wp), intent(in) :: load(signals)
       real(wp), intent(out) :: scale(:)
-      real(wp) :: largest
-      integer :: i, j
+      integer :: j
 
       do j = 1, size(structure%group)
          associate (group => structure%group(j))
-            largest = abs(load(lateral))*group%lateral_arm
-            do i = group%first_spring, group%last_spring
-               largest = max(largest, abs(f(i)))
-            end do
-            do i = group%first, group%last, group%step
-               largest = max(largest, abs(structure%inertias(i)*a(i)))
-            end do
-            scale(j) = largest
+            scale(j) = abs(load(lateral))*group%lateral_arm
+            call find_largest(group%first_spring, group%last_spring, 1, f, scale(j))
+            call find_largest(group%first, group%last, group%step, structure%inertias, scale(j), a)
          end associate
       end do
    end subroutine find_scale
+
+   !> The largest of some numbers, in size, or of their products with others; and of what there is.
+   pure subroutine find_largest(first, last, step, x, largest, y)
+      integer, intent(in) :: first, last, step
+      real(wp), intent(in) :: x(last)
+      real(wp), intent(inout) :: largest
+      real(wp), intent(in), optional :: y(last)
+      real(wp) :: most
+      integer :: i
+
+      most = largest
+      if (present(y)) then
+         do i = first, last, step
+            most = max(most, abs(x(i)*y(i)))
+         end do
+      else
+         do i = first, last, step
+            most = max(most, abs(x(i)))
+         end do
+      end if
+      largest = most
+   end subroutine find_largest
 
    !> Largest residual over the largest force of its group, at the most 1.
    pure real(wp) function size_of(structure, r, scale, largest) result(relative)
@@ -172,15 +188,13 @@ contains
       real(wp), intent(in), contiguous :: r(:)
       real(wp), intent(in) :: scale(:), largest(:)
       real(wp) :: rest
-      integer :: i, j
+      integer :: j
 
       relative = 0.0_wp
       do j = 1, size(structure%group)
          rest = 0.0_wp
          associate (group => structure%group(j))
-            do i = group%first, group%last, group%step
-               rest = max(rest, abs(r(i)))
-            end do
+            call find_largest(group%first, group%last, group%step, r, rest)
          end associate
          relative = max(relative, rest/max(scale(j), largest(j), rest, tiny(1.0_wp)))
       end do
