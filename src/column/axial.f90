@@ -4,6 +4,7 @@ module rbs_column_axial
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
+   use rbs_structure_spring_place, only: shear, flexure
    implicit none
    private
 
@@ -43,25 +44,24 @@ contains
    pure subroutine geometric_forces(column, q, g)
       type(column_type), intent(in) :: column
       !> Deformations (unknowns)
-      real(wp), intent(in) :: q(:)
-      !> Forces (unknowns) [N, N m]
-      real(wp), intent(out) :: g(:)
+      real(wp), intent(in) :: q(column%n, *)
+      !> Forces of slips and rotations; those of openings are not touched (unknowns) [N, N m]
+      real(wp), intent(inout) :: g(column%n, *)
       real(wp) :: rotation, above
       integer :: i, n
 
       n = column%n
-      if (column%opens) g(2*n + 1:) = 0.0_wp
       rotation = 0.0_wp
       do i = 1, n
-         g(i) = -column%axial_slip(i)*rotation
-         rotation = rotation + q(n + i)
-         g(n + i) = -column%axial_body(i)*column%length(i)*rotation
-         if (i < n) g(n + i) = g(n + i) - column%axial_slip(i + 1)*q(i + 1)
+         g(i, shear) = -column%axial_slip(i)*rotation
+         rotation = rotation + q(i, flexure)
+         g(i, flexure) = -column%axial_body(i)*column%length(i)*rotation
+         if (i < n) g(i, flexure) = g(i, flexure) - column%axial_slip(i + 1)*q(i + 1, shear)
       end do
       above = 0.0_wp
       do i = n, 1, -1
-         above = above + g(n + i)
-         g(n + i) = above
+         above = above + g(i, flexure)
+         g(i, flexure) = above
       end do
    end subroutine geometric_forces
 
@@ -69,15 +69,15 @@ contains
    pure real(wp) function axial_energy(column, q) result(energy)
       type(column_type), intent(in) :: column
       !> Deformations (2 n)
-      real(wp), intent(in) :: q(:)
+      real(wp), intent(in) :: q(column%n, *)
       real(wp) :: rotation
       integer :: i
 
       energy = 0.0_wp
       rotation = 0.0_wp
       do i = 1, column%n
-         energy = energy - column%axial_slip(i)*q(i)*rotation
-         rotation = rotation + q(column%n + i)
+         energy = energy - column%axial_slip(i)*q(i, shear)*rotation
+         rotation = rotation + q(i, flexure)
          energy = energy - 0.5_wp*column%axial_body(i)*column%length(i)*rotation**2
       end do
    end function axial_energy

@@ -35,6 +35,9 @@ module rbs_column_column
    type, extends(structure_type) :: column_type
       !> Number of bodies; the unknowns, as many as springs, are 2 n or, with axial springs, 3 n
       integer :: n = 0
+      !> Kinds of deformations of a joint: slip, rotation and, with axial springs, opening. Deformations are
+      !> kept by kind, (n, kinds)
+      integer :: kinds = 2
       !> `small`, `pdelta` or `finite`
       integer :: kinematics = small
       !> Whether joints have axial springs and open
@@ -120,7 +123,8 @@ contains
       first = merge(2, 1, column%footing)
       last = first + spec%n - 1
       column%opens = allocated(spec%axial_spring)
-      column%unknowns = merge(3, 2, column%opens)*n
+      column%kinds = merge(3, 2, column%opens)
+      column%unknowns = column%kinds*n
       select case (spec%kinematics)
       case ('pdelta')
          column%kinematics = pdelta

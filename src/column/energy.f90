@@ -4,6 +4,7 @@ module rbs_column_energy
    use rbs_base_kinds, only: wp
    use rbs_column_axial, only: axial_energy
    use rbs_column_column, only: column_type, small, finite
+   use rbs_structure_spring_place, only: shear, flexure, axial
    use rbs_column_finite, only: finite_kinetic, finite_potential
    use rbs_structure_structure, only: vertical, top_axial
    implicit none
@@ -17,7 +18,7 @@ contains
    pure real(wp) function kinetic_energy(column, q, v) result(energy)
       type(column_type), intent(in) :: column
       !> Deformations and their velocities (unknowns)
-      real(wp), intent(in), contiguous :: q(:), v(:)
+      real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds)
 
       if (column%kinematics == finite) then
          energy = finite_kinetic(column, q, v)
@@ -30,7 +31,7 @@ contains
    pure real(wp) function potential_energy(column, q) result(energy)
       type(column_type), intent(in) :: column
       !> Deformations (unknowns)
-      real(wp), intent(in), contiguous :: q(:)
+      real(wp), intent(in) :: q(column%n, column%kinds)
       integer :: n
 
       n = column%n
@@ -40,13 +41,13 @@ contains
       end if
       energy = 0.0_wp
       if (column%axially_loaded) energy = axial_energy(column, q)
-      if (column%opens) energy = energy + inner_product(n, column%axial_joint, q(2*n + 1:))
+      if (column%opens) energy = energy + inner_product(n, column%axial_joint, q(:, axial))
    end function potential_energy
 
    !> Kinetic energy of velocities of the joints with small rotations, relative to the ground [J].
    pure real(wp) function kinetic_of(column, v) result(energy)
       type(column_type), intent(in) :: column
-      real(wp), intent(in) :: v(:)
+      real(wp), intent(in) :: v(column%n, column%kinds)
       real(wp) :: top, turning, centroid, height
       integer :: i, n
 
@@ -55,15 +56,15 @@ contains
       turning = 0.0_wp
       energy = 0.0_wp
       do i = 1, n
-         turning = turning + v(n + i)
-         centroid = top + v(i) + column%lower(i)*turning
+         turning = turning + v(i, flexure)
+         centroid = top + v(i, shear) + column%lower(i)*turning
          top = centroid + column%upper(i)*turning
          energy = energy + 0.5_wp*(column%mass(i)*centroid**2 + column%inertia(i)*turning**2)
       end do
       if (.not. column%opens) return
       height = 0.0_wp
       do i = 1, n
-         height = height + v(2*n + i)
+         height = height + v(i, axial)
          energy = energy + 0.5_wp*column%mass(i)*height**2
       end do
    end function kinetic_of
@@ -72,7 +73,7 @@ contains
    pure real(wp) function power_of_lifts(column, q, v, load) result(watt)
       type(column_type), intent(in) :: column
       !> Deformations and their velocities (unknowns)
-      real(wp), intent(in), contiguous :: q(:), v(:)
+      real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds)
       !> Signals of the loads
       real(wp), intent(in) :: load(4)
       real(wp) :: rotation, turning, rising, body, joint
@@ -87,12 +88,12 @@ contains
          body = load(top_axial)*column%axial_lever + load(vertical)*column%lifted_body(i)
          joint = load(top_axial)*column%axial_lever + load(vertical)*column%lifted_joint(i)
          if (i == n .and. column%held) joint = 0.0_wp
-         if (column%kinematics /= small) watt = watt + joint*(v(i)*rotation + q(i)*turning)
-         rotation = rotation + q(n + i)
-         turning = turning + v(n + i)
+         if (column%kinematics /= small) watt = watt + joint*(v(i, shear)*rotation + q(i, shear)*turning)
+         rotation = rotation + q(i, flexure)
+         turning = turning + v(i, flexure)
          if (column%kinematics /= small) watt = watt + body*column%length(i)*rotation*turning
          if (column%opens) then
-            rising = rising + v(2*n + i)
+            rising = rising + v(i, axial)
             watt = watt - column%mass(i)*load(vertical)*rising
          end if
       end do

@@ -21,6 +21,7 @@ module rbs_column_finite
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: solve_tridiagonal
    use rbs_column_column, only: column_type
+   use rbs_structure_spring_place, only: shear, flexure, axial
    use rbs_column_finite_mass, only: finite_mass
    implicit none
    private
@@ -69,12 +70,12 @@ contains
       type(finite_work), intent(inout) :: work
       !> Unknowns, their velocities, and the forces of the joints conjugate to them, springs and damping
       !> (unknowns)
-      real(wp), intent(in), contiguous :: q(:), v(:), f(:)
+      real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds), f(column%n, column%kinds)
       !> Lateral force at the top [N], acceleration of the ground in x and in y [m/s2], axial load that is
       !> added to that of the column, compression positive [N]
       real(wp), intent(in) :: load(4)
       !> Accelerations (unknowns)
-      real(wp), intent(out), contiguous :: a(:)
+      real(wp), intent(out) :: a(column%n, column%kinds)
       logical :: positive
       integer :: n
 
@@ -86,7 +87,7 @@ contains
          else
             call solve_tridiagonal(work%diagonal, work%beside, work%axial, positive)
             ! Only numbers beyond all meaning get here; the caller sees that the state is not finite.
-            if (.not. positive) work%axial = ieee_value(a(1), ieee_quiet_nan)
+            if (.not. positive) work%axial = ieee_value(a(1, shear), ieee_quiet_nan)
          end if
          call add_reactions(column, work, q, a)
       end if
@@ -99,32 +100,32 @@ contains
    subroutine accelerate(column, work, q, v, f, load, a)
       type(column_type), intent(in) :: column
       type(finite_work), intent(inout) :: work
-      real(wp), intent(in), contiguous :: q(:), v(:), f(:)
+      real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds), f(column%n, column%kinds)
       real(wp), intent(in) :: load(4)
-      real(wp), intent(out), contiguous :: a(:)
+      real(wp), intent(out) :: a(column%n, column%kinds)
       !> Joint below and above the body: forces, slip and opening
-      real(wp) :: shear, axial, moment, slip, opening
-      real(wp) :: shear_above, axial_above, moment_above, slip_above, opening_above
+      real(wp) :: transverse, tension, moment, slip, opening
+      real(wp) :: transverse_above, tension_above, moment_above, slip_above, opening_above
       !> The body: rates of rotation, and those of the body below
       real(wp) :: spin, turn, spin_below, turn_below
       !> Acceleration of the bottom of the body, along t and e of the body below, and of the top of that
       real(wp) :: bottom(2), below(2)
       real(wp) :: per_mass, per_inertia, s, c, separation, flexibility, rotation
-      !> Sine and cosine of the last joint where the top is held, and its shear
+      !> Sine and cosine of the last joint where the top is held, and its transverse
       real(wp) :: held(2), along
       integer :: i, n
 
       n = column%n
-      shear = f(1)
-      moment = f(n + 1)
-      slip = q(1)
-      axial = 0.0_wp
+      transverse = f(1, shear)
+      moment = f(1, flexure)
+      slip = q(1, shear)
+      tension = 0.0_wp
       opening = 0.0_wp
       opening_above = 0.0_wp
-      axial_above = 0.0_wp
+      tension_above = 0.0_wp
       if (column%opens) then
-         axial = f(2*n + 1)
-         opening = q(2*n + 1)
+         tension = f(1, axial)
+         opening = q(1, axial)
       end if
       rotation = 0.0_wp
       spin_below = 0.0_wp
@@ -134,53 +135,53 @@ contains
       ! Seen from a frame that falls, the ground is what accelerates, upwards by the weight.
       below = [load(2), load(3) + column%gravity]
       do i = 1, n
-         s = sin(q(n + i))
-         c = cos(q(n + i))
-         rotation = rotation + q(n + i)
+         s = sin(q(i, flexure))
+         c = cos(q(i, flexure))
+         rotation = rotation + q(i, flexure)
          if (i < n) then
-            shear_above = f(i + 1)
-            moment_above = f(n + i + 1)
-            slip_above = q(i + 1)
+            transverse_above = f(i + 1, shear)
+            moment_above = f(i + 1, flexure)
+            slip_above = q(i + 1, shear)
             if (column%opens) then
-               axial_above = f(2*n + i + 1)
-               opening_above = q(2*n + i + 1)
+               tension_above = f(i + 1, axial)
+               opening_above = q(i + 1, axial)
             end if
             if (i == n - 1 .and. column%held) then
                ! The last joint acts at the top of the body, along fixed directions.
                held = [-sin(rotation), cos(rotation)]
                slip_above = 0.0_wp
                opening_above = 0.0_wp
-               along = shear_above
-               shear_above = along*held(2) + axial_above*held(1)
-               axial_above = axial_above*held(2) - along*held(1)
+               along = transverse_above
+               transverse_above = along*held(2) + tension_above*held(1)
+               tension_above = tension_above*held(2) - along*held(1)
             end if
          else
             moment_above = 0.0_wp
             slip_above = 0.0_wp
             opening_above = 0.0_wp
             if (n == 1) then
-               call force_at_top(column, load, s, c, shear_above, axial_above)
+               call force_at_top(column, load, s, c, transverse_above, tension_above)
             else
-               call force_at_top(column, load, sin(rotation), cos(rotation), shear_above, axial_above)
+               call force_at_top(column, load, sin(rotation), cos(rotation), transverse_above, tension_above)
             end if
          end if
          per_mass = 1.0_wp/column%mass(i)
          per_inertia = 1.0_wp/column%inertia(i)
          if (i == n .and. column%held) per_inertia = 0.0_wp
-         spin = spin_below + v(n + i)
+         spin = spin_below + v(i, flexure)
          associate (lower => column%lower(i), upper => column%upper(i))
             ! Moments about the centroid, of joint i at its bottom and of joint i + 1.
-            turn = (lower*(shear*c - axial*s) - moment &
-                    + shear_above*(upper + opening_above) - axial_above*slip_above + moment_above)*per_inertia
+            turn = (lower*(transverse*c - tension*s) - moment &
+                    + transverse_above*(upper + opening_above) - tension_above*slip_above + moment_above)*per_inertia
             ! b'' = c'' - lower (om' t - om^2 e), along t and e of the body below.
-            bottom(1) = (shear_above*c + axial_above*s - shear)*per_mass + lower*(spin**2*s - turn*c)
-            bottom(2) = (axial_above*c - shear_above*s - axial)*per_mass + lower*(spin**2*c + turn*s)
-            a(i) = bottom(1) - below(1) + slip*spin_below**2
-            a(n + i) = turn - turn_below
-            separation = bottom(2) - below(2) + 2.0_wp*v(i)*spin_below + slip*turn_below
+            bottom(1) = (transverse_above*c + tension_above*s - transverse)*per_mass + lower*(spin**2*s - turn*c)
+            bottom(2) = (tension_above*c - transverse_above*s - tension)*per_mass + lower*(spin**2*c + turn*s)
+            a(i, shear) = bottom(1) - below(1) + slip*spin_below**2
+            a(i, flexure) = turn - turn_below
+            separation = bottom(2) - below(2) + 2.0_wp*v(i, shear)*spin_below + slip*turn_below
             if (column%opens) then
-               a(i) = a(i) - 2.0_wp*v(2*n + i)*spin_below - opening*turn_below
-               a(2*n + i) = separation + opening*spin_below**2
+               a(i, shear) = a(i, shear) - 2.0_wp*v(i, axial)*spin_below - opening*turn_below
+               a(i, axial) = separation + opening*spin_below**2
             else
                work%sine(i) = s
                work%cosine(i) = c
@@ -195,19 +196,19 @@ contains
             end if
             if (i == n .and. column%held) then
                bottom = bottom - below
-               a(i) = c*bottom(1) - s*bottom(2)
+               a(i, shear) = c*bottom(1) - s*bottom(2)
                if (column%opens) then
-                  a(2*n + i) = s*bottom(1) + c*bottom(2)
+                  a(i, axial) = s*bottom(1) + c*bottom(2)
                else
                   work%axial(i) = s*bottom(1) + c*bottom(2)
                end if
             end if
             ! T'' = c'' + upper (om' t - om^2 e), along its own t and e.
-            below(1) = (shear_above - shear*c + axial*s)*per_mass + upper*turn
-            below(2) = (axial_above - shear*s - axial*c)*per_mass - upper*spin**2
+            below(1) = (transverse_above - transverse*c + tension*s)*per_mass + upper*turn
+            below(2) = (tension_above - transverse*s - tension*c)*per_mass - upper*spin**2
          end associate
-         shear = shear_above
-         axial = axial_above
+         transverse = transverse_above
+         tension = tension_above
          moment = moment_above
          slip = slip_above
          opening = opening_above
@@ -245,8 +246,8 @@ contains
    subroutine add_reactions(column, work, q, a)
       type(column_type), intent(in) :: column
       type(finite_work), intent(in) :: work
-      real(wp), intent(in), contiguous :: q(:)
-      real(wp), intent(inout), contiguous :: a(:)
+      real(wp), intent(in) :: q(column%n, column%kinds)
+      real(wp), intent(inout) :: a(column%n, column%kinds)
       real(wp) :: turn, turn_below, below, above, along
       integer :: i, n
 
@@ -262,12 +263,12 @@ contains
          above = 0.0_wp
          if (i < n) then
             above = work%axial(i + 1)
-            turn = turn + q(i + 1)*above
+            turn = turn + q(i + 1, shear)*above
          end if
          turn = -turn/column%inertia(i)
          along = work%sine(i)/column%mass(i)
-         a(i) = a(i) + above*along - column%lower(i)*work%cosine(i)*turn - below
-         a(n + i) = a(n + i) + turn - turn_below
+         a(i, shear) = a(i, shear) + above*along - column%lower(i)*work%cosine(i)*turn - below
+         a(i, flexure) = a(i, flexure) + turn - turn_below
          below = work%axial(i)*along + column%upper(i)*turn
          turn_below = turn
       end do
@@ -282,7 +283,7 @@ contains
       integer, intent(in) :: i
       !> Acceleration of the body below in rotation, and of its top along its normal, from the reactions
       real(wp), intent(inout) :: turn_below, below
-      real(wp), intent(inout), contiguous :: a(:)
+      real(wp), intent(inout) :: a(column%n, column%kinds)
       real(wp) :: turn, along
       integer :: n
 
@@ -290,14 +291,14 @@ contains
       associate (s => work%sine, c => work%cosine, force => work%axial)
          if (i < n) then
             turn = (column%upper(i)*s(n)*force(n) - column%lower(i)*s(i)*force(i))/column%inertia(i)
-            a(i) = a(i) + force(n)*(c(i)*s(n) + s(i)*c(n))/column%mass(i) - column%lower(i)*c(i)*turn - below
-            a(n + i) = a(n + i) + turn - turn_below
+            a(i, shear) = a(i, shear) + force(n)*(c(i)*s(n) + s(i)*c(n))/column%mass(i) - column%lower(i)*c(i)*turn - below
+            a(i, flexure) = a(i, flexure) + turn - turn_below
             below = (force(i)*s(i) + force(n)*s(n))/column%mass(i) + column%upper(i)*turn
             turn_below = turn
          else
             along = (force(n)*c(n) - force(n - 1)*c(n - 1))/column%mass(n - 1)
-            a(n) = a(n) - c(n)*below + s(n)*along
-            a(2*n) = a(2*n) - turn_below
+            a(n, shear) = a(n, shear) - c(n)*below + s(n)*along
+            a(n, flexure) = a(n, flexure) - turn_below
          end if
       end associate
    end subroutine add_last_reaction
@@ -305,7 +306,7 @@ contains
    !> Go up by one body: rotation and velocities of body i from those of body i - 1.
    pure subroutine climb(column, q, v, i, body)
       type(column_type), intent(in) :: column
-      real(wp), intent(in), contiguous :: q(:), v(:)
+      real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds)
       integer, intent(in) :: i
       type(moving_body), intent(inout) :: body
       real(wp) :: along_t, along_e, bottom(2)
@@ -313,17 +314,17 @@ contains
 
       n = column%n
       if (i == n .and. column%held) call stand_upright(body)
-      along_t = v(i)
-      along_e = -q(i)*body%spin
+      along_t = v(i, shear)
+      along_e = -q(i, shear)*body%spin
       if (column%opens) then
-         along_t = along_t + q(2*n + i)*body%spin
-         along_e = along_e + v(2*n + i)
+         along_t = along_t + q(i, axial)*body%spin
+         along_e = along_e + v(i, axial)
       end if
       bottom(1) = body%top(1) + along_t*body%c + along_e*body%s
       bottom(2) = body%top(2) - along_t*body%s + along_e*body%c
       if (.not. (i == n .and. column%held)) then
-         body%rotation = body%rotation + q(n + i)
-         body%spin = body%spin + v(n + i)
+         body%rotation = body%rotation + q(i, flexure)
+         body%spin = body%spin + v(i, flexure)
       end if
       body%s = sin(body%rotation)
       body%c = cos(body%rotation)
@@ -349,7 +350,7 @@ contains
    pure real(wp) function finite_kinetic(column, q, v) result(energy)
       type(column_type), intent(in) :: column
       !> Unknowns and their velocities (unknowns)
-      real(wp), intent(in), contiguous :: q(:), v(:)
+      real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds)
       type(moving_body) :: body
       integer :: i
 
@@ -367,7 +368,7 @@ contains
    pure real(wp) function finite_potential(column, q) result(energy)
       type(column_type), intent(in) :: column
       !> Unknowns (unknowns)
-      real(wp), intent(in), contiguous :: q(:)
+      real(wp), intent(in) :: q(column%n, column%kinds)
       real(wp) :: rotation, half(2), drop, rise, s, c
       integer :: i, n
 
@@ -382,9 +383,9 @@ contains
             s = 0.0_wp
             c = 1.0_wp
          end if
-         rise = rise - q(i)*s
-         if (column%opens) rise = rise + q(2*n + i)*c
-         rotation = rotation + q(n + i)
+         rise = rise - q(i, shear)*s
+         if (column%opens) rise = rise + q(i, axial)*c
+         rotation = rotation + q(i, flexure)
          ! 1 - cos without cancellation
          half = [sin(0.5_wp*rotation), cos(0.5_wp*rotation)]
          drop = column%length(i)*2.0_wp*half(1)**2
@@ -401,7 +402,7 @@ contains
    pure real(wp) function finite_power(column, q, v, load) result(power)
       type(column_type), intent(in) :: column
       !> Unknowns and their velocities (unknowns)
-      real(wp), intent(in), contiguous :: q(:), v(:)
+      real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds)
       !> As for `finite_acceleration`
       real(wp), intent(in) :: load(4)
       type(moving_body) :: body
@@ -428,7 +429,7 @@ contains
    pure function finite_top(column, q) result(top)
       type(column_type), intent(in) :: column
       !> Unknowns (unknowns)
-      real(wp), intent(in), contiguous :: q(:)
+      real(wp), intent(in) :: q(column%n, column%kinds)
       !> x and y
       real(wp) :: top(2)
       real(wp) :: rotation, s, c
@@ -444,9 +445,9 @@ contains
             s = 0.0_wp
             c = 1.0_wp
          end if
-         top = top + q(i)*[c, -s]
-         if (column%opens) top = top + q(2*n + i)*[s, c]
-         rotation = rotation + q(n + i)
+         top = top + q(i, shear)*[c, -s]
+         if (column%opens) top = top + q(i, axial)*[s, c]
+         rotation = rotation + q(i, flexure)
          s = sin(rotation)
          c = cos(rotation)
          top = top + column%length(i)*[s, c]

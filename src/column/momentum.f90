@@ -2,6 +2,7 @@
 module rbs_column_momentum
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type, finite
+   use rbs_structure_spring_place, only: shear, flexure, axial
    implicit none
    private
 
@@ -14,7 +15,7 @@ contains
    pure function momentum_at_foot(column, q, v) result(momentum)
       type(column_type), intent(in) :: column
       !> Deformations and their velocities (unknowns)
-      real(wp), intent(in), contiguous :: q(:), v(:)
+      real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds)
       real(wp) :: momentum(2)
 
       if (column%kinematics == finite) then
@@ -27,7 +28,7 @@ contains
    !> With small rotations: the centroids move along x at their heights.
    pure function of_upright_bodies(column, v) result(momentum)
       type(column_type), intent(in) :: column
-      real(wp), intent(in), contiguous :: v(:)
+      real(wp), intent(in) :: v(column%n, column%kinds)
       real(wp) :: momentum(2)
       real(wp) :: top, turning, centroid
       integer :: i
@@ -36,8 +37,8 @@ contains
       top = 0.0_wp
       turning = 0.0_wp
       do i = 1, column%n
-         turning = turning + v(column%n + i)
-         centroid = top + v(i) + column%lower(i)*turning
+         turning = turning + v(i, flexure)
+         centroid = top + v(i, shear) + column%lower(i)*turning
          top = centroid + column%upper(i)*turning
          momentum(1) = momentum(1) + column%mass(i)*centroid
          momentum(2) = momentum(2) + column%mass(i)*centroid*(column%joint_height(i) + column%lower(i)) &
@@ -48,7 +49,7 @@ contains
    !> With exact rotations: places and velocities of the centroids, from the ground up.
    pure function of_turned_bodies(column, q, v) result(momentum)
       type(column_type), intent(in) :: column
-      real(wp), intent(in), contiguous :: q(:), v(:)
+      real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds)
       real(wp) :: momentum(2)
       !> Top of the body below, its velocity, its axis and normal; rotation and its rate
       real(wp) :: place(2), velocity(2), axis(2), normal(2), rotation, spin
@@ -74,17 +75,17 @@ contains
             normal = [1.0_wp, 0.0_wp]
             spin = 0.0_wp
          end if
-         slip = q(i)
-         slipping = v(i)
+         slip = q(i, shear)
+         slipping = v(i, shear)
          if (column%opens) then
-            opening = q(2*n + i)
-            rising = v(2*n + i)
+            opening = q(i, axial)
+            rising = v(i, axial)
          end if
          place = place + slip*normal + opening*axis
          velocity = velocity + (slipping + opening*spin)*normal + (rising - slip*spin)*axis
          if (i == 1) foot = place
-         rotation = rotation + q(n + i)
-         if (.not. (i == n .and. column%held)) spin = spin + v(n + i)
+         rotation = rotation + q(i, flexure)
+         if (.not. (i == n .and. column%held)) spin = spin + v(i, flexure)
          axis = [sin(rotation), cos(rotation)]
          normal = [axis(2), -axis(1)]
          lever = place + column%lower(i)*axis - foot

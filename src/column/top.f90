@@ -3,6 +3,7 @@ module rbs_column_top
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type, small, finite
+   use rbs_structure_spring_place, only: shear, flexure, axial
    use rbs_column_finite, only: finite_top
    implicit none
    private
@@ -15,7 +16,7 @@ contains
    pure function top_position(column, q) result(top)
       type(column_type), intent(in) :: column
       !> Deformations (unknowns)
-      real(wp), intent(in), contiguous :: q(:)
+      real(wp), intent(in) :: q(column%n, column%kinds)
       real(wp) :: top(2)
       real(wp) :: rotation
       integer :: i, n
@@ -31,19 +32,19 @@ contains
          ! To second order: this is the way on which the axial load does its work.
          rotation = 0.0_wp
          do i = 1, n
-            if (i < n .or. .not. column%held) top(2) = top(2) - q(i)*rotation
-            rotation = rotation + q(n + i)
+            if (i < n .or. .not. column%held) top(2) = top(2) - q(i, shear)*rotation
+            rotation = rotation + q(i, flexure)
             top(2) = top(2) - 0.5_wp*column%length(i)*rotation**2
          end do
       end if
-      if (column%opens) top(2) = top(2) + sum(q(2*n + 1:))
+      if (column%opens) top(2) = top(2) + sum(q(:, axial))
    end function top_position
 
    !> Velocity and acceleration of the top along x, relative to the ground [m/s, m/s2].
    pure subroutine top_motion(column, q, v, a, velocity, acceleration)
       type(column_type), intent(in) :: column
       !> Deformations and their first and second derivatives (unknowns)
-      real(wp), intent(in), contiguous :: q(:), v(:), a(:)
+      real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds), a(column%n, column%kinds)
       real(wp), intent(out) :: velocity, acceleration
       real(wp) :: rotation, spin, turn, s, c, opening, opens, lifts
       integer :: i, n
@@ -66,16 +67,16 @@ contains
          s = sin(rotation)
          c = cos(rotation)
          if (column%opens) then
-            opening = q(2*n + i)
-            opens = v(2*n + i)
-            lifts = a(2*n + i)
+            opening = q(i, axial)
+            opens = v(i, axial)
+            lifts = a(i, axial)
          end if
-         velocity = velocity + (v(i) + opening*spin)*c + (opens - q(i)*spin)*s
-         acceleration = acceleration + (a(i) + 2.0_wp*opens*spin + opening*turn - q(i)*spin**2)*c &
-                        + (lifts - 2.0_wp*v(i)*spin - q(i)*turn - opening*spin**2)*s
-         rotation = rotation + q(n + i)
-         spin = spin + v(n + i)
-         turn = turn + a(n + i)
+         velocity = velocity + (v(i, shear) + opening*spin)*c + (opens - q(i, shear)*spin)*s
+         acceleration = acceleration + (a(i, shear) + 2.0_wp*opens*spin + opening*turn - q(i, shear)*spin**2)*c &
+                        + (lifts - 2.0_wp*v(i, shear)*spin - q(i, shear)*turn - opening*spin**2)*s
+         rotation = rotation + q(i, flexure)
+         spin = spin + v(i, flexure)
+         turn = turn + a(i, flexure)
          velocity = velocity + column%length(i)*cos(rotation)*spin
          acceleration = acceleration + column%length(i)*(cos(rotation)*turn - sin(rotation)*spin**2)
       end do
@@ -85,18 +86,18 @@ contains
    pure real(wp) function top_displacement(column, q) result(x)
       type(column_type), intent(in) :: column
       !> Deformations (unknowns)
-      real(wp), intent(in), contiguous :: q(:)
+      real(wp), intent(in) :: q(column%n, column%kinds)
       real(wp) :: top(2)
 
       if (column%kinematics == finite) then
          if (column%unknowns == 2) then
-            x = q(1) + column%length(1)*sin(q(2))
+            x = q(1, shear) + column%length(1)*sin(q(1, flexure))
          else
             top = finite_top(column, q)
             x = top(1)
          end if
       else if (column%unknowns == 2) then
-         x = q(1) + column%length(1)*q(2)
+         x = q(1, shear) + column%length(1)*q(1, flexure)
       else
          x = inner_product(size(q), column%arm, q)
       end if
@@ -105,14 +106,14 @@ contains
    !> Largest absolute rotation of a body in deformations, or in a change of them, in size [rad].
    pure real(wp) function largest_turn(column, change) result(largest)
       type(column_type), intent(in) :: column
-      real(wp), intent(in) :: change(:)
+      real(wp), intent(in) :: change(column%n, *)
       real(wp) :: rotation
       integer :: i
 
       largest = 0.0_wp
       rotation = 0.0_wp
-      do i = column%n + 1, 2*column%n
-         rotation = rotation + change(i)
+      do i = 1, column%n
+         rotation = rotation + change(i, flexure)
          largest = max(largest, abs(rotation))
       end do
    end function largest_turn

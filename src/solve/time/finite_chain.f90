@@ -7,6 +7,7 @@ module rbs_solve_time_finite_chain
    use rbs_solve_time_finite_joint, only: turned_body, turn_body, body_at, joint_type, joint_change, &
                                           joint_at, joint_rates
    use rbs_solve_time_state, only: state_type
+   use rbs_structure_spring_place, only: flexure, axial
    implicit none
    private
 
@@ -65,14 +66,16 @@ contains
       integer :: i, n
 
       n = state%motion%column%n
-      rotation = 0.0_wp
-      do i = 1, n
-         rotation = rotation + state%q(n + i)
-         self%from(i) = rotation
-      end do
-      self%moved = 0.0_wp
-      self%q1 = state%q
-      self%change = 0.0_wp
+      associate (at => state%motion%column%at)
+         rotation = 0.0_wp
+         do i = 1, n
+            rotation = rotation + state%q(at(flexure, i))
+            self%from(i) = rotation
+         end do
+         self%moved = 0.0_wp
+         self%q1 = state%q
+         self%change = 0.0_wp
+      end associate
    end subroutine place
 
    !> Velocities of the centroids from those of the joints.
@@ -84,28 +87,30 @@ contains
       integer :: i, n
 
       n = state%motion%column%n
-      top = 0.0_wp
-      spin = 0.0_wp
-      opening = 0.0_wp
-      opens = 0.0_wp
-      do i = 1, n
-         spin_below = spin
-         spin = spin + state%v(n + i)
-         if (state%motion%column%opens) then
-            opening = state%q(2*n + i)
-            opens = state%v(2*n + i)
-         end if
-         call body_at(self%from(i), body)
-         if (i == n .and. state%motion%column%held) then
+      associate (at => state%motion%column%at)
+         top = 0.0_wp
+         spin = 0.0_wp
+         opening = 0.0_wp
+         opens = 0.0_wp
+         do i = 1, n
+            spin_below = spin
+            spin = spin + state%v(at(flexure, i))
+            if (state%motion%column%opens) then
+               opening = state%q(at(axial, i))
+               opens = state%v(at(axial, i))
+            end if
+            call body_at(self%from(i), body)
+            if (i == n .and. state%motion%column%held) then
+               below = body
+               spin_below = 0.0_wp
+            end if
+            top = top + (state%v(i) + opening*spin_below)*below%t1 + (opens - state%q(i)*spin_below)*below%e1
+            top = top + (state%motion%column%lower(i)*spin)*body%t1
+            self%v0(:, i) = [top(1), top(2), spin]
+            top = top + (state%motion%column%upper(i)*spin)*body%t1
             below = body
-            spin_below = 0.0_wp
-         end if
-         top = top + (state%v(i) + opening*spin_below)*below%t1 + (opens - state%q(i)*spin_below)*below%e1
-         top = top + (state%motion%column%lower(i)*spin)*body%t1
-         self%v0(:, i) = [top(1), top(2), spin]
-         top = top + (state%motion%column%upper(i)*spin)*body%t1
-         below = body
-      end do
+         end do
+      end associate
    end subroutine body_velocities
 
    !> The deformations that follow from what the bodies have moved.
@@ -117,37 +122,39 @@ contains
       integer :: i, n
 
       n = state%motion%column%n
-      moved_below = 0.0_wp
-      opening = 0.0_wp
-      do i = 1, n
-         call turn_body(self%from(i), self%moved(3, i), self%turned(i))
-         if (i > 1) then
-            call body_at(self%from(i - 1), body)
-         else
-            body = self%turned(0)
-         end if
-         if (state%motion%column%opens) opening = state%q(2*n + i)
-         if (i == n .and. state%motion%column%held) then
-            call body_at(self%from(n), body)
-            call joint_at(body, -state%q(n), -opening, self%joint(n))
-            call joint_change(self%turned(n), self%turned(n - 1), self%moved(:, n), moved_below, &
-                              self%joint(n), change)
-            change = -change
-         else
-            call joint_at(body, state%q(i), opening, self%joint(i))
-            call joint_change(self%turned(i - 1), self%turned(i), moved_below, self%moved(:, i), &
-                              self%joint(i), change)
-         end if
-         self%change(i) = change(1)
-         self%change(n + i) = self%moved(3, i) - moved_below(3)
-         if (state%motion%column%opens) then
-            self%change(2*n + i) = change(2)
-         else
-            self%gap(i) = change(2)
-         end if
-         moved_below = self%moved(:, i)
-      end do
-      self%q1(:) = state%q + self%change
+      associate (at => state%motion%column%at)
+         moved_below = 0.0_wp
+         opening = 0.0_wp
+         do i = 1, n
+            call turn_body(self%from(i), self%moved(3, i), self%turned(i))
+            if (i > 1) then
+               call body_at(self%from(i - 1), body)
+            else
+               body = self%turned(0)
+            end if
+            if (state%motion%column%opens) opening = state%q(at(axial, i))
+            if (i == n .and. state%motion%column%held) then
+               call body_at(self%from(n), body)
+               call joint_at(body, -state%q(n), -opening, self%joint(n))
+               call joint_change(self%turned(n), self%turned(n - 1), self%moved(:, n), moved_below, &
+                                 self%joint(n), change)
+               change = -change
+            else
+               call joint_at(body, state%q(i), opening, self%joint(i))
+               call joint_change(self%turned(i - 1), self%turned(i), moved_below, self%moved(:, i), &
+                                 self%joint(i), change)
+            end if
+            self%change(i) = change(1)
+            self%change(at(flexure, i)) = self%moved(3, i) - moved_below(3)
+            if (state%motion%column%opens) then
+               self%change(at(axial, i)) = change(2)
+            else
+               self%gap(i) = change(2)
+            end if
+            moved_below = self%moved(:, i)
+         end do
+         self%q1(:) = state%q + self%change
+      end associate
    end subroutine go
 
    !> Bodies and joints at the end of the step, and the velocities of the joints.
@@ -159,27 +166,29 @@ contains
       integer :: i, n
 
       n = column%n
-      rotation = 0.0_wp
-      opening = 0.0_wp
-      below = 0.0_wp
-      call body_at(0.0_wp, self%seen(0))
-      do i = 1, n
-         rotation = rotation + q(n + i)
-         call body_at(rotation, self%seen(i))
-         if (column%opens) opening = q(2*n + i)
-         if (i == n .and. column%held) then
-            call joint_at(self%seen(n), -q(n), -opening, self%joint(n))
-            call joint_rates(self%seen(n), self%seen(n - 1), self%v1(:, n), below, self%joint(n), rates)
-            rates = -rates
-         else
-            call joint_at(self%seen(i - 1), q(i), opening, self%joint(i))
-            call joint_rates(self%seen(i - 1), self%seen(i), below, self%v1(:, i), self%joint(i), rates)
-         end if
-         self%w1(i) = rates(1)
-         self%w1(n + i) = self%v1(3, i) - below(3)
-         if (column%opens) self%w1(2*n + i) = rates(2)
-         below = self%v1(:, i)
-      end do
+      associate (at => column%at)
+         rotation = 0.0_wp
+         opening = 0.0_wp
+         below = 0.0_wp
+         call body_at(0.0_wp, self%seen(0))
+         do i = 1, n
+            rotation = rotation + q(at(flexure, i))
+            call body_at(rotation, self%seen(i))
+            if (column%opens) opening = q(at(axial, i))
+            if (i == n .and. column%held) then
+               call joint_at(self%seen(n), -q(n), -opening, self%joint(n))
+               call joint_rates(self%seen(n), self%seen(n - 1), self%v1(:, n), below, self%joint(n), rates)
+               rates = -rates
+            else
+               call joint_at(self%seen(i - 1), q(i), opening, self%joint(i))
+               call joint_rates(self%seen(i - 1), self%seen(i), below, self%v1(:, i), self%joint(i), rates)
+            end if
+            self%w1(i) = rates(1)
+            self%w1(at(flexure, i)) = self%v1(3, i) - below(3)
+            if (column%opens) self%w1(at(axial, i)) = rates(2)
+            below = self%v1(:, i)
+         end do
+      end associate
    end subroutine see_end
 
 end module rbs_solve_time_finite_chain

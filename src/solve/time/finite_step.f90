@@ -21,6 +21,7 @@ module rbs_solve_time_finite_step
    use rbs_loading_loads, only: lateral, horizontal, vertical, axial
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_state, only: state_type
+   use rbs_structure_spring_place, only: shear, flexure, tension => axial
    implicit none
    private
 
@@ -258,8 +259,8 @@ contains
       integer, intent(in) :: i
       real(wp) :: f(3)
 
-      f = [self%f(i), self%f(column%n + i), self%tension(i)]
-      if (column%opens) f(3) = self%f(2*column%n + i)
+      f = [self%f(column%at(shear, i)), self%f(column%at(flexure, i)), self%tension(i)]
+      if (column%opens) f(3) = self%f(column%at(tension, i))
    end function forces_of
 
    !> Add the loads at the top to the forces on the last body. The weight of a mass lumped there is in the
@@ -323,8 +324,8 @@ contains
          first = 2*beside + 1
          do i = 1, n
             f = forces_of(self, column, i)
-            k = [self%k(i), self%k(n + i), 0.0_wp]
-            if (column%opens) k(3) = self%k(2*n + i)
+            k = [self%k(column%at(shear, i)), self%k(column%at(flexure, i)), 0.0_wp]
+            if (column%opens) k(3) = self%k(column%at(tension, i))
             if (i == n .and. column%held) then
                call joint_tangent(self%seen(n), self%seen(n - 1), self%joint(n), half, -f, k, &
                                   .not. column%opens, tangent)
