@@ -164,15 +164,8 @@ contains
       !> Whether the value may be missing
       logical, intent(in), optional :: optional
 
-      select case (self%mode)
-      case (putting)
-         if (name == self%wanted) x = self%number(1)
-      case (listing)
-         if (is_given(x)) call add_entry(self, name, [x])
-      case default
-         call meet(self, key_type(name=name, unit=unit, bound=bound, default=x, meaning=meaning, &
-                                  optional=is_true(optional)), x)
-      end select
+      call one_number(self, key_type(name=name, unit=unit, bound=bound, default=x, meaning=meaning, &
+                                     optional=is_true(optional)), x)
    end subroutine real_key
 
    subroutine integer_key(self, name, i, unit, bound, meaning, optional)
@@ -186,15 +179,9 @@ contains
 
       x = unset
       if (i /= unset_integer) x = i
-      select case (self%mode)
-      case (putting)
-         if (name == self%wanted) i = nint(self%number(1))
-      case (listing)
-         if (is_given(x)) call add_entry(self, name, [x])
-      case default
-         call meet(self, key_type(name=name, kind=integer_kind, unit=unit, bound=bound, default=x, &
-                                  meaning=meaning, optional=is_true(optional)), x)
-      end select
+      call one_number(self, key_type(name=name, kind=integer_kind, unit=unit, bound=bound, default=x, &
+                                     meaning=meaning, optional=is_true(optional)), x)
+      if (is_given(x)) i = nint(x)
    end subroutine integer_key
 
    subroutine logical_key(self, name, l, meaning)
@@ -205,58 +192,40 @@ contains
       real(wp) :: x
 
       x = merge(1.0_wp, 0.0_wp, l)
-      select case (self%mode)
-      case (putting)
-         if (name == self%wanted) l = abs(self%number(1)) > 0.0_wp
-      case (listing)
-         call add_entry(self, name, [x])
-      case default
-         call meet(self, key_type(name=name, kind=logical_kind, default=x, meaning=meaning))
-      end select
+      call one_number(self, key_type(name=name, kind=logical_kind, default=x, meaning=meaning), x)
+      l = abs(x) > 0.0_wp
    end subroutine logical_key
 
-   !> A word or a text of limited length. Without choices it is free; an empty text means: not given.
-   subroutine text_key(self, name, text, meaning, choices, required)
+   !> The parameters of a rule, a value for each of its keys; a word is its place among the choices. The rule
+   !> checks them.
+   subroutine parameters(self, keys, value)
       class(key_visitor), intent(inout) :: self
-      character(len=*), intent(in) :: name
-      character(len=*), intent(inout) :: text
-      character(len=*), intent(in) :: meaning
-      character(len=*), intent(in), optional :: choices
-      logical, intent(in), optional :: required
+      type(key_type), intent(in) :: keys(:)
+      real(wp), intent(inout) :: value(:)
+      integer :: i
+
+      if (self%mode == checking) return
+      do i = 1, size(keys)
+         call one_number(self, keys(i), value(i))
+      end do
+   end subroutine parameters
+
+   subroutine one_number(self, key, x)
+      type(key_visitor), intent(inout) :: self
+      type(key_type), intent(in) :: key
+      real(wp), intent(inout) :: x
 
       select case (self%mode)
+      case (collecting)
+         call append(self, key)
       case (putting)
-         if (name /= self%wanted) return
-         if (len_trim(self%text) > len(text)) then
-            call self%messages%add(trim(self%group)//': '//name//" = '"//self%text(:min(40, &
-                                   len(self%text)))// &
-                                   "' has "//to_text(len_trim(self%text))//' characters; at most '// &
-                                   to_text(len(text))//' are allowed')
-         end if
-         text = self%text
+         if (key%name == self%wanted) x = self%number(1)
+      case (checking)
+         call check_number(x, trim(self%group), key, self%messages, self%sound)
       case (listing)
-         call add_text(self, name, trim(text))
-      case default
-         call meet_text(self, name, text, meaning, choices, required)
+         if (is_given(x)) call list_numbers(self, key%name, [x])
       end select
-   end subroutine text_key
-
-   !> A text of any length.
-   subroutine long_text_key(self, name, text, meaning)
-      class(key_visitor), intent(inout) :: self
-      character(len=*), intent(in) :: name
-      character(len=:), allocatable, intent(inout) :: text
-      character(len=*), intent(in) :: meaning
-
-      select case (self%mode)
-      case (putting)
-         if (name == self%wanted) text = trim(self%text)
-      case (listing)
-         if (allocated(text)) call add_text(self, name, text)
-      case default
-         call meet_text(self, name, '', meaning)
-      end select
-   end subroutine long_text_key
+   end subroutine one_number
 
    !> A list of numbers; not allocated: not given.
    subroutine real_list_key(self, name, x, unit, bound, meaning, most, required)
@@ -271,19 +240,20 @@ contains
       type(key_type) :: key
       integer :: i
 
+      key = key_type(name=name, unit=unit, bound=bound, optional=.not. is_true(required), most=most, &
+                     meaning=meaning)
       select case (self%mode)
+      case (collecting)
+         call append(self, key)
       case (putting)
          if (name == self%wanted) x = self%number
       case (listing)
-         if (allocated(x)) call add_entry(self, name, x)
-      case default
-         key = key_type(name=name, unit=unit, bound=bound, optional=.not. is_true(required), most=most, &
-                        meaning=meaning)
-         if (self%mode == collecting) call append(self, key)
-         if (self%mode == collecting .or. .not. allocated(x)) return
+         if (allocated(x)) call list_numbers(self, name, x)
+      case (checking)
+         if (.not. allocated(x)) return
+         key%optional = .false.
          do i = 1, size(x)
             if (size(x) > 1) key%name = name//'('//to_text(i)//')'
-            key%optional = .false.
             call check_number(x(i), trim(self%group), key, self%messages, self%sound)
          end do
       end select
@@ -300,60 +270,33 @@ contains
       type(key_type) :: key
       integer :: worst
 
+      key = key_type(name=name, kind=integer_kind, unit=unit, bound=bound, &
+                     optional=.not. is_true(required), most=most, meaning=meaning)
       select case (self%mode)
+      case (collecting)
+         call append(self, key)
       case (putting)
          if (name == self%wanted) i = nint(self%number)
       case (listing)
-         if (allocated(i)) call add_entry(self, name, real(i, wp))
-      case default
-         key = key_type(name=name, kind=integer_kind, unit=unit, bound=bound, &
-                        optional=.not. is_true(required), most=most, meaning=meaning)
-         if (self%mode == collecting) call append(self, key)
-         if (self%mode == collecting .or. .not. allocated(i)) return
+         if (allocated(i)) call list_numbers(self, name, real(i, wp))
+      case (checking)
+         if (.not. allocated(i)) return
          worst = minval(i)
          if (real(worst, wp) >= bound%least) worst = maxval(i)
          call check_number(real(worst, wp), trim(self%group), key, self%messages, self%sound)
       end select
    end subroutine integer_list_key
 
-   !> The parameters of a rule, a value for each of its keys; a word is its place among the choices.
-   subroutine parameters(self, keys, value)
+   !> A word or a text of limited length. Without choices it is free; an empty text means: not given.
+   subroutine text_key(self, name, text, meaning, choices, required)
       class(key_visitor), intent(inout) :: self
-      type(key_type), intent(in) :: keys(:)
-      real(wp), intent(inout) :: value(:)
-      integer :: i
-
-      do i = 1, size(keys)
-         select case (self%mode)
-         case (collecting)
-            call append(self, keys(i))
-         case (putting)
-            if (keys(i)%name == self%wanted) value(i) = self%number(1)
-         case (listing)
-            if (is_given(value(i))) call add_entry(self, keys(i)%name, value(i:i))
-         end select
-      end do
-   end subroutine parameters
-
-   !> Collect a key, or check its value.
-   subroutine meet(self, key, x)
-      class(key_visitor), intent(inout) :: self
-      type(key_type), intent(in) :: key
-      real(wp), intent(in), optional :: x
-
-      if (self%mode == collecting) then
-         call append(self, key)
-      else if (present(x)) then
-         call check_number(x, trim(self%group), key, self%messages, self%sound)
-      end if
-   end subroutine meet
-
-   subroutine meet_text(self, name, text, meaning, choices, required)
-      class(key_visitor), intent(inout) :: self
-      character(len=*), intent(in) :: name, text, meaning
+      character(len=*), intent(in) :: name
+      character(len=*), intent(inout) :: text
+      character(len=*), intent(in) :: meaning
       character(len=*), intent(in), optional :: choices
       logical, intent(in), optional :: required
       type(key_type) :: key
+      character(len=:), allocatable :: value
 
       key = key_type(name=name, kind=text_kind, default_text=text, optional=.not. is_true(required), &
                      meaning=meaning)
@@ -361,16 +304,49 @@ contains
          key%kind = word_kind
          key%choices = choices
       end if
-      if (self%mode == collecting) then
-         call append(self, key)
-      else if (present(choices) .and. text /= '') then
-         call check_word(self, key, text)
+      value = trim(text)
+      call one_text(self, key, value)
+      if (len(value) > len(text)) then
+         call self%messages%add(trim(self%group)//': '//name//" = '"//value(:min(40, len(value)))//"' has "// &
+                                to_text(len(value))//' characters; at most '//to_text(len(text))// &
+                                ' are allowed')
       end if
-   end subroutine meet_text
+      text = value
+   end subroutine text_key
+
+   !> A text of any length; not allocated: not given.
+   subroutine long_text_key(self, name, text, meaning)
+      class(key_visitor), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      character(len=:), allocatable, intent(inout) :: text
+      character(len=*), intent(in) :: meaning
+
+      call one_text(self, key_type(name=name, kind=text_kind, optional=.true., meaning=meaning), text)
+   end subroutine long_text_key
+
+   subroutine one_text(self, key, text)
+      type(key_visitor), intent(inout) :: self
+      type(key_type), intent(in) :: key
+      character(len=:), allocatable, intent(inout) :: text
+
+      select case (self%mode)
+      case (collecting)
+         call append(self, key)
+      case (putting)
+         if (key%name == self%wanted) text = trim(self%text)
+      case (checking)
+         if (key%kind == word_kind .and. text /= '') call check_word(self, key, text)
+      case (listing)
+         if (.not. allocated(text)) return
+         if (text == self%keys(find_key(self%keys(:self%count), key%name))%default_text) return
+         self%listed = self%listed + 1
+         self%entry(self%listed) = entry_type(key%name, text_kind, text=text)
+      end select
+   end subroutine one_text
 
    !> A word must be one of the choices.
    subroutine check_word(self, key, word)
-      class(key_visitor), intent(inout) :: self
+      type(key_visitor), intent(inout) :: self
       type(key_type), intent(in) :: key
       character(len=*), intent(in) :: word
       character(len=len(key%choices)) :: name(16)
@@ -392,7 +368,7 @@ contains
    end function is_true
 
    subroutine append(self, key)
-      class(key_visitor), intent(inout) :: self
+      type(key_visitor), intent(inout) :: self
       type(key_type), intent(in) :: key
       type(key_type), allocatable :: longer(:)
 
@@ -406,39 +382,22 @@ contains
    end subroutine append
 
    !> List numbers, unless they are the default.
-   subroutine add_entry(self, name, number)
-      class(key_visitor), intent(inout) :: self
+   subroutine list_numbers(self, name, number)
+      type(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name
       real(wp), intent(in) :: number(:)
-      integer :: place
 
-      place = find_key(self%keys(:self%count), name)
-      if (self%keys(place)%most == 1) then
-         if (is_given(self%keys(place)%default)) then
-            if (.not. abs(number(1) - self%keys(place)%default) > 0.0_wp) return
+      associate (key => self%keys(find_key(self%keys(:self%count), name)))
+         if (key%most == 1 .and. is_given(key%default)) then
+            if (.not. abs(number(1) - key%default) > 0.0_wp) return
          end if
-      end if
-      self%listed = self%listed + 1
-      self%entry(self%listed)%name = name
-      self%entry(self%listed)%kind = self%keys(place)%kind
-      if (self%keys(place)%kind == word_kind) then
-         self%entry(self%listed)%text = trim(choice_name(self%keys(place), nint(number(1))))
-      else
-         self%entry(self%listed)%number = number
-      end if
-   end subroutine add_entry
-
-   subroutine add_text(self, name, text)
-      class(key_visitor), intent(inout) :: self
-      character(len=*), intent(in) :: name, text
-      integer :: place
-
-      place = find_key(self%keys(:self%count), name)
-      if (text == self%keys(place)%default_text) return
-      self%listed = self%listed + 1
-      self%entry(self%listed)%name = name
-      self%entry(self%listed)%kind = text_kind
-      self%entry(self%listed)%text = text
-   end subroutine add_text
+         self%listed = self%listed + 1
+         if (key%kind == word_kind) then
+            self%entry(self%listed) = entry_type(name, text_kind, text=trim(choice_name(key, nint(number(1)))))
+         else
+            self%entry(self%listed) = entry_type(name, key%kind, number=number)
+         end if
+      end associate
+   end subroutine list_numbers
 
 end module rbs_base_key_visitor

@@ -164,7 +164,7 @@ def test_fault_of_the_spring_of_a_layer_is_told(run_cli, case_text, tmp_path, na
         ({"layers": "y = 0, 1, spring = 1, 3"}, "there is no &layer_spring with id = 3"),
         ({"layers": "y = 'top', spring = 1"}, "y = 'top'"),
         ({"layers": "joint = 2, " + LAYERS}, "joint = 2; joints are 1 to n = 1"),
-        ({"layers": [LAYERS, LAYERS]}, "belong to no flexural spring"),
+        ({"layers": [LAYERS, LAYERS]}, "&layers without joint appears twice"),
         ({"flexure": "rule = 'elastic', k = 1e8"}, "flexural spring"),
         ({"column": TWO.replace("7e5", "5e6")}, "cannot carry the axial load of 5e+06 N"),
         ({"column": TWO.replace("7e5", "-2e6")}, "cannot carry the axial load of -2e+06 N"),
