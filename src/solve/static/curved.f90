@@ -52,7 +52,7 @@ module rbs_solve_static_curved
    !> What the slopes may correct of the work of a stride under a constant axial load, and what may be missing
    !> from its works under one that varies, with exact rotations and without; as shares of the largest energy
    !> so far.
-   real(wp), parameter :: most_correction = 1.0e-5_wp, most_missing(2) = [1.0e-9_wp, 1.0e-12_wp]
+   real(wp), parameter :: most_correction = 1.0e-5_wp, most_missing(2) = [1.0e-12_wp, 1.0e-13_wp]
 
    type, extends(static_path) :: curved_path
       type(curved_equilibrium) :: equilibrium
