@@ -6,7 +6,7 @@ module rbs_solve_static_run_static
    use rbs_column_column, only: column_type, small, finite
    use rbs_solve_check_values, only: check_values
    use rbs_solve_static_curved, only: trace_curved
-   use rbs_solve_static_trace, only: trace
+   use rbs_solve_static_straight, only: trace_straight
    use rbs_solve_task, only: task_type
    implicit none
    private
@@ -59,7 +59,7 @@ contains
       if (varies .or. column%kinematics == finite) then
          call trace_curved(loaded, by_force, target, pack(load, varies), task, error)
       else
-         call trace(loaded, by_force, target, task, error)
+         call trace_straight(loaded, by_force, target, task, error)
       end if
       ! Without inertia the ground holds what drives the column.
       task%summary%peak_base_shear = task%summary%peak_force

@@ -1,7 +1,7 @@
 !> Static path for small rotations, event to event: the column goes along its line to the target or to the
 !> next end of a spring's line, whichever comes first. Exact for `small` and `pdelta`; no tolerance, no
 !> increments.
-module rbs_solve_static_trace
+module rbs_solve_static_straight
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
@@ -16,7 +16,7 @@ module rbs_solve_static_trace
    implicit none
    private
 
-   public :: trace
+   public :: trace_straight
 
    !> Farther from its ends than this, relative to them, a spring need not be asked whether it is on one.
    real(wp), parameter :: nearly = 2.0_wp*on_the_end
@@ -46,7 +46,7 @@ module rbs_solve_static_trace
 contains
 
    !> Follow the targets one after the other.
-   subroutine trace(column, by_force, target, task, error)
+   subroutine trace_straight(column, by_force, target, task, error)
       type(column_type), intent(in) :: column
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
@@ -66,7 +66,7 @@ contains
       call path%follow(target, task, error)
       if (allocated(error) .or. .not. task%keeps_end) return
       if (task%summary%lost_joint == 0) call end_path(path, .false., task%after)
-   end subroutine trace
+   end subroutine trace_straight
 
    !> Go on to a target.
    subroutine advance(self, target, error)
@@ -271,4 +271,4 @@ contains
       call self%equilibrium%few%serialize(stream)
    end subroutine serialize
 
-end module rbs_solve_static_trace
+end module rbs_solve_static_straight
