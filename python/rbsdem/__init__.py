@@ -6,7 +6,7 @@ SI units throughout: N, m, kg, s, rad. Axial load is positive in compression.
 from rbsdem import codes, comparison, motions, peer, plot
 from rbsdem._core import version as _version
 from rbsdem.accuracy import Trade, trade
-from rbsdem.analysis import Modes, cyclic, mass_matrix, modes, time_history
+from rbsdem.analysis import Matrices, Modes, cyclic, matrices, modes, time_history
 from rbsdem.calibration import Calibration, Parameter, calibrate
 from rbsdem.case import Case, read_case
 from rbsdem.column import Column
@@ -87,6 +87,7 @@ __all__ = [
     "LimitState",
     "LimitStates",
     "LongRunWarning",
+    "Matrices",
     "Modes",
     "Parameter",
     "PeakOriented",
@@ -115,7 +116,7 @@ __all__ = [
     "envelope",
     "ida",
     "load",
-    "mass_matrix",
+    "matrices",
     "modes",
     "motions",
     "paper_columns",

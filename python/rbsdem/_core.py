@@ -294,15 +294,17 @@ def to_namelist(statement: Statement) -> str:
     return _evaluate("to_namelist", statement).text
 
 
-def modes(column: Statement) -> tuple[Array, Array, float, str]:
+def modes(column: Statement, count: int | None) -> tuple[Array, Array, float, str]:
     """Return circular frequencies, shapes (one in each column), the stable step of RK4, a note."""
-    note, values, shapes, _ = _evaluate("modes", column)
+    note, values, shapes, _ = _evaluate("modes", column, count=count)
     return values[1:], shapes.T, float(values[0]), note
 
 
-def mass_matrix(column: Statement, paper: bool) -> Array:
-    """Return the mass matrix in the paper's or in the symmetric form."""
-    return _evaluate("mass_matrix", column, paper=paper).rows.T
+def matrices(column: Statement, paper: bool) -> tuple[tuple[str, ...], Array]:
+    """Return the unknowns; mass, stiffness, geometric stiffness and damping, one after the other."""
+    names, _, rows, _ = _evaluate("matrices", column, paper=paper)
+    unknowns = tuple(names.split())
+    return unknowns, rows.reshape(4, len(unknowns), len(unknowns))
 
 
 def cyclic(

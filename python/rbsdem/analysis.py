@@ -42,9 +42,9 @@ class Modes:
 
     Attributes
     ----------
-    omega, frequency : ndarray, shape (2n,), or (3n,) where the joints open
+    omega, frequency : ndarray, shape (count,)
         Circular frequencies [rad/s] and frequencies [Hz], ascending.
-    shapes : ndarray, shape (2n, 2n) or (3n, 3n)
+    shapes : ndarray, shape (2n, count), or (3n, count) where the joints open
         Shapes in (slip 1..n, relative rotation 1..n, opening 1..n), one in each column, with
         shape' M shape = 1.
     stable_step : float
@@ -57,13 +57,38 @@ class Modes:
     stable_step: float
 
 
-def modes(column: Column) -> Modes:
+@dataclass(frozen=True)
+class Matrices:
+    """Matrices of the uncracked column for small rotations, M q'' + C q' + (K + K_G) q = p.
+
+    Attributes
+    ----------
+    unknowns : tuple of str
+        Order of the unknowns: slip_1, ..., rotation_1, ... (relative to the body below), and
+        opening_1, ... where the joints open. In the paper's form theta_1, ... are absolute
+        rotations. The last rotation is no unknown where the top is fixed.
+    mass, stiffness, geometric, damping : ndarray, shape (unknowns, unknowns)
+        In N, m, kg, s and rad. `geometric` holds the second-order work of the axial forces, zero
+        with kinematics "small".
+    """
+
+    unknowns: tuple[str, ...]
+    mass: Array
+    stiffness: Array
+    geometric: Array
+    damping: Array
+
+
+def modes(column: Column, count: int | None = None) -> Modes:
     """Return natural frequencies, mode shapes and the stable step of RK4.
 
     Parameters
     ----------
     column : Column
-        Up to 500 bodies. The axial load takes part with `kinematics` "pdelta" and "finite".
+        The axial load takes part with `kinematics` "pdelta" and "finite".
+    count : int, optional
+        How many modes, the lowest first; each takes a time in proportion to the number of bodies.
+        Without it all of them, for up to 500 bodies.
 
     Raises
     ------
@@ -76,25 +101,29 @@ def modes(column: Column) -> Modes:
         If the axial load is so close to the critical one that low frequencies depend on its last
         digits.
     """
-    omega, shapes, stable_step, note = _core.modes(_checked(column)._statement)
+    if count is not None:
+        count = _arguments.whole(count, "count")
+    omega, shapes, stable_step, note = _core.modes(_checked(column)._statement, count)
     if note:
         warnings.warn(note, AccuracyWarning, stacklevel=2)
     return Modes(omega, omega / (2 * np.pi), shapes, stable_step)
 
 
-def mass_matrix(column: Column, form: Literal["symmetric", "paper"] = "symmetric") -> Array:
-    """Return the mass matrix for small rotations, shape (2n, 2n), or (3n, 3n) with openings.
+def matrices(column: Column, form: Literal["symmetric", "paper"] = "symmetric") -> Matrices:
+    """Return the matrices of mass, stiffness, geometric stiffness and damping, in full.
 
     Parameters
     ----------
     column : Column
         The column.
     form : {"symmetric", "paper"}
-        In (slip, relative rotation), or the paper's [A B; C D] of eq 3 in (slip, absolute rotation)
-        with its misprints corrected. M_symmetric = M_paper T with theta = cumulative sum of phi.
+        In (slip, relative rotation), or in the paper's (slip, absolute rotation) with the rows of
+        its eqs 1 and 2 and the mass matrix [A B; C D] of eq 3, its misprints corrected.
+        M_symmetric = M_paper T with theta = cumulative sum of phi, and so for the others.
     """
     _arguments.choice(form, "form", ("symmetric", "paper"))
-    return _core.mass_matrix(_checked(column)._statement, form == "paper")
+    unknowns, found = _core.matrices(_checked(column)._statement, form == "paper")
+    return Matrices(unknowns, *(matrix.copy() for matrix in found))
 
 
 def cyclic(

@@ -8,8 +8,8 @@ module rbs_app_command_line
    public :: command_type, read_command_line
 
    character(len=9), parameter :: commands(4) = ['run  ', 'check', 'modes', 'keys ']
-   character(len=9), parameter :: options(5) = ['--output ', '--quiet  ', '--json   ', '--help   ', &
-             '--version']
+   character(len=10), parameter :: options(7) = ['--output  ', '--quiet   ', '--json    ', '--count   ', &
+              '--matrices', '--help    ', '--version ']
 
    type :: command_type
       !> run, check, modes, keys, help or version
@@ -23,6 +23,9 @@ module rbs_app_command_line
       logical :: quiet = .false.
       !> keys: as JSON, else as a table
       logical :: as_json = .false.
+      !> modes: how many, the lowest first (0: all), and whether the matrices are printed too
+      integer :: count = 0
+      logical :: matrices = .false.
    end type command_type
 
 contains
@@ -58,7 +61,8 @@ contains
       !> Number of the argument; advanced by one if the next argument is the value of an option
       integer, intent(inout) :: i
       type(error_type), allocatable, intent(out) :: error
-      integer :: mark
+      character(len=:), allocatable :: value
+      integer :: mark, status
 
       mark = index(word//'=', '=')
       select case (word(:mark - 1))
@@ -71,15 +75,25 @@ contains
          command%quiet = .true.
       case ('--json')
          command%as_json = .true.
-      case ('-o', '--output')
+      case ('--matrices')
+         command%matrices = .true.
+      case ('--count', '-o', '--output')
          if (mark < len(word)) then
-            command%output = word(mark + 1:)
+            value = word(mark + 1:)
          else if (mark > len(word) .and. i < command_argument_count()) then
             i = i + 1
-            command%output = argument(i)
-         else
-            call complain(word(:mark - 1)//' needs the path of a file after it', error)
+            value = argument(i)
          end if
+         if (word(:mark - 1) /= '--count') then
+            if (allocated(value)) command%output = value
+            if (.not. allocated(value)) call complain(word(:mark - 1)//' needs the path of a file after it', error)
+            return
+         end if
+         status = 1
+         if (allocated(value)) then
+            if (verify(value, '0123456789') == 0 .and. len(value) < 9) read (value, *, iostat=status) command%count
+         end if
+         if (status /= 0 .or. command%count < 1) call complain('--count needs a number of modes above zero', error)
          return
       case default
          call complain("the option '"//word(:mark - 1)//"' is not known; did you mean '"// &
@@ -137,6 +151,8 @@ contains
          return
       else if (command%as_json .and. command%name /= 'keys') then
          call complain('--json is for keys only', error)
+      else if ((command%count > 0 .or. command%matrices) .and. command%name /= 'modes') then
+         call complain(trim(merge('--count   ', '--matrices', command%count > 0))//' is for modes only', error)
       else if (command%name == 'keys') then
          if (allocated(command%case)) then
             call complain("one argument too many: '"//command%case//"'", error)

@@ -22,6 +22,7 @@ module rbs_app_commands
    use rbs_output_summary, only: summary_type, summary_names, summary_units
    use rbs_solve_end_state, only: end_state
    use rbs_solve_make_column, only: make_column
+   use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_solve_static_run_static, only: run_static
    use rbs_solve_task, only: task_type
@@ -156,13 +157,17 @@ contains
       if (text /= '') call say('note: '//text, error)
    end subroutine check_case
 
-   !> rbsdem modes: frequencies, mode shapes if the joints are few, stable step.
-   subroutine show_modes(path, error)
+   !> rbsdem modes: frequencies, stable step, and the matrices if they are asked for.
+   subroutine show_modes(path, count, with_matrices, error)
       character(len=*), intent(in) :: path
+      !> How many modes; 0: all
+      integer, intent(in) :: count
+      logical, intent(in) :: with_matrices
       type(error_type), allocatable, intent(out) :: error
       type(case_record) :: case
       type(column_type) :: column
       type(modes_type) :: modes
+      type(matrices_type) :: matrices
       type(message_list) :: messages
       logical :: understood
       character(len=96) :: line
@@ -174,10 +179,15 @@ contains
       if (allocated(error)) return
       call make_column(case%column, column, error)
       if (allocated(error)) return
-      call find_modes(column, modes, error)
+      if (count > 0) then
+         call find_modes(column, modes, error, count)
+      else
+         call find_modes(column, modes, error)
+      end if
+      if (.not. allocated(error) .and. with_matrices) call assemble_matrices(column, .false., matrices, error)
       if (allocated(error)) return
       call say('mode,frequency_Hz,period_s,omega_rad/s', error)
-      do i = 1, column%unknowns
+      do i = 1, size(modes%omega)
          ! A column with negligible stiffness has frequency zero and no period.
          period = 0.0_wp
          if (modes%omega(i) > tiny(1.0_wp)*1.0e3_wp) period = 2.0_wp*pi/modes%omega(i)
@@ -188,7 +198,36 @@ contains
       if (modes%warning /= '') call say('# note: '//trim(modes%warning), error)
       write (line, '(a, es23.16e2)') '# stable step of rk4 [s]:', modes%stable_step
       call say(trim(line), error)
+      if (.not. with_matrices) return
+      call print_matrix('mass', matrices%unknown, matrices%mass, error)
+      call print_matrix('stiffness', matrices%unknown, matrices%stiffness, error)
+      call print_matrix('geometric', matrices%unknown, matrices%geometric, error)
+      call print_matrix('damping', matrices%unknown, matrices%damping, error)
    end subroutine show_modes
+
+   !> A matrix as csv, in N, m, kg, s and rad.
+   subroutine print_matrix(name, unknown, a, error)
+      character(len=*), intent(in) :: name, unknown(:)
+      real(wp), intent(in) :: a(:, :)
+      type(error_type), allocatable, intent(inout) :: error
+      character(len=:), allocatable :: line
+      character(len=24) :: number
+      integer :: i, j
+
+      line = name
+      do j = 1, size(unknown)
+         line = line//','//trim(unknown(j))
+      end do
+      call say(line, error)
+      do i = 1, size(unknown)
+         line = trim(unknown(i))
+         do j = 1, size(unknown)
+            write (number, '(es23.16e3)') a(i, j)
+            line = line//','//trim(adjustl(number))
+         end do
+         call say(line, error)
+      end do
+   end subroutine print_matrix
 
    !> rbsdem keys: the keys of a case.
    subroutine show_keys(name, as_json, error)

@@ -32,7 +32,7 @@ program rbsdem
       case ('check')
          call check_case(command%case, command%quiet, error)
       case ('modes')
-         call show_modes(command%case, error)
+         call show_modes(command%case, command%count, command%matrices, error)
       case ('keys')
          call show_keys(command%topic, command%as_json, error)
       case ('version')
@@ -78,7 +78,7 @@ contains
          'usage:', &
          '  rbsdem run CASE.nml [--output FILE] [--quiet]   solve a case, write a csv', &
          '  rbsdem check CASE.nml [--quiet]                 find all errors of the input', &
-         '  rbsdem modes CASE.nml                           natural frequencies, stable step', &
+         '  rbsdem modes CASE.nml [--count N] [--matrices]  natural frequencies, stable step', &
          '  rbsdem keys [NAME] [--json]                     keys of a group or rule, or all', &
          '  rbsdem --help | --version', &
          '', &
@@ -143,10 +143,14 @@ contains
          call say('', error)
          call say('Exit code: 0 no errors, 2 the input is wrong.', error)
       case ('modes')
-         call say('usage: rbsdem modes CASE.nml', error)
+         call say('usage: rbsdem modes CASE.nml [--count N] [--matrices]', error)
          call say('', error)
          call say('Prints frequency, period and circular frequency of the modes of the uncracked', error)
-         call say('column as csv, then the longest step for which rk4 is stable. Up to 500 bodies.', error)
+         call say('column as csv, then the longest step for which rk4 is stable.', error)
+         call say('', error)
+         call say('  --count N           the first N modes; without it all, for up to 500 bodies', error)
+         call say('  --matrices          and the matrices of mass, stiffness, geometric stiffness and', error)
+         call say('                      damping, in slips, relative rotations and openings', error)
          call say('', error)
          call say('Exit code: 0 all went well, 1 there are no modes, 2 the input is wrong.', error)
       case default

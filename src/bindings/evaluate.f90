@@ -14,7 +14,6 @@ module rbs_bindings_evaluate
    use rbs_case_methods, only: method_rows
    use rbs_case_text_buffer, only: text_buffer
    use rbs_column_column, only: column_type
-   use rbs_column_mass, only: paper_mass, symmetric_mass
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: follow_path
    use rbs_loading_loading_record, only: loading_record
@@ -28,6 +27,7 @@ module rbs_bindings_evaluate
    use rbs_section_section_figures, only: layer_values, point_values, profile_values, section_figures, &
                                           shear_values
    use rbs_solve_ensemble_outcome, only: measure_names
+   use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_version, only: version
    implicit none
@@ -56,7 +56,7 @@ contains
          call name_quantities(answer)
       case ('check_spring', 'spring_response')
          call evaluate_spring(request, answer)
-      case ('check_column', 'modes', 'mass_matrix')
+      case ('check_column', 'modes', 'matrices')
          call evaluate_column(request, answer)
       case ('cyclic', 'time_history')
          call run_analysis(request, answer)
@@ -108,7 +108,7 @@ contains
       call follow_path(spring, path, answer%value)
    end subroutine evaluate_spring
 
-   !> Notes on a column that is allowed, a line each; its modes; or its mass matrix.
+   !> Notes on a column that is allowed, a line each; its modes; or its matrices.
    subroutine evaluate_column(request, answer)
       type(request_type), intent(in) :: request
       type(answer_type), intent(inout) :: answer
@@ -116,6 +116,8 @@ contains
       type(column_type) :: column
       type(message_list) :: notes
       type(modes_type) :: modes
+      type(matrices_type) :: matrices
+      integer :: i
 
       call column_from_statements(request%statement, request%number, column, case, answer%error)
       if (allocated(answer%error)) return
@@ -124,18 +126,25 @@ contains
          call column_notes(case%column, notes)
          if (notes%count > 0) answer%text = notes%text
       case ('modes')
-         call find_modes(column, modes, answer%error)
+         if (size(request%array('count')) > 0) then
+            call find_modes(column, modes, answer%error, request%whole('count'))
+         else
+            call find_modes(column, modes, answer%error)
+         end if
          if (allocated(answer%error)) return
          answer%text = trim(modes%warning)
          answer%value = [modes%stable_step, modes%omega]
          answer%rows = modes%shapes
       case default
-         allocate (answer%rows(column%unknowns, column%unknowns))
-         if (request%wants('paper')) then
-            call paper_mass(column, answer%rows)
-         else
-            call symmetric_mass(column, answer%rows)
-         end if
+         call assemble_matrices(column, request%wants('paper'), matrices, answer%error)
+         if (allocated(answer%error)) return
+         answer%text = trim(matrices%unknown(1))
+         do i = 2, size(matrices%unknown)
+            answer%text = answer%text//' '//trim(matrices%unknown(i))
+         end do
+         answer%rows = reshape([transpose(matrices%mass), transpose(matrices%stiffness), &
+                                transpose(matrices%geometric), transpose(matrices%damping)], &
+                               [size(matrices%unknown), 4*size(matrices%unknown)])
       end select
    end subroutine evaluate_column
 

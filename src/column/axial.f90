@@ -4,6 +4,7 @@ module rbs_column_axial
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_column_column, only: column_type
+   use rbs_column_sturm, only: sturm_chain, lateral_chain
    use rbs_structure_spring_place, only: shear, flexure
    implicit none
    private
@@ -20,23 +21,19 @@ contains
    !> alone it is P times the height of the top; slips above a joint belong to the lever arm too.
    subroutine geometric_stiffness(column, stiffness)
       type(column_type), intent(in) :: column
-      !> Matrix (unknowns, unknowns) in (slip, relative rotation [, opening]) [N/m, N, N m]
-      real(wp), intent(out) :: stiffness(:, :)
-      real(wp) :: above(column%n + 1)
-      integer :: i, j, n
+      !> Matrix (2 n or unknowns, as many) in (slip, relative rotation [, opening]) [N/m, N, N m]
+      real(wp), intent(out), contiguous :: stiffness(:, :)
+      real(wp) :: q(size(stiffness, 1))
+      integer :: j
 
-      n = column%n
-      above(n + 1) = 0.0_wp
-      do i = n, 1, -1
-         above(i) = above(i + 1) + column%axial_body(i)*column%length(i)
-      end do
+      q = 0.0_wp
       stiffness = 0.0_wp
-      do j = 1, n
-         do i = 1, n
-            stiffness(n + i, n + j) = -above(max(i, j))
-            stiffness(i, n + j) = merge(-column%axial_slip(i), 0.0_wp, j < i)
-            stiffness(n + j, i) = stiffness(i, n + j)
-         end do
+      do j = 1, size(q)
+         q(j) = 1.0_wp
+         call geometric_forces(column, q, stiffness(:, j))
+         ! No negative zeros
+         stiffness(:, j) = stiffness(:, j) + 0.0_wp
+         q(j) = 0.0_wp
       end do
    end subroutine geometric_stiffness
 
@@ -87,103 +84,63 @@ contains
    !> against rotation.
    !>
    !> The multiples that the column carries are an interval from zero, so it is bisected; whether it carries
-   !> one is asked in O(n) operations, from the top down, and to the last digit.
-   subroutine critical_factor(column, factor, error)
+   !> one is asked in O(n) operations, and to the last digit.
+   subroutine critical_factor(column, factor)
       type(column_type), intent(in) :: column
       real(wp), intent(out) :: factor
-      !> Never allocated: no column is beyond this method
-      type(error_type), allocatable, intent(out) :: error
       !> Beyond 2**200 times the scale of the problem nothing buckles.
       integer, parameter :: most_doublings = 200
-      real(wp), allocatable :: turning(:), sliding(:), stiffer(:)
-      real(wp) :: scale, below, above, between
-      integer :: i, n
+      type(sturm_chain) :: chain
+      real(wp) :: scale, below, between
+      integer :: i
 
       factor = huge(1.0_wp)
       if (.not. column%axially_loaded) return
-      n = column%n
-      allocate (turning(n), sliding(n), stiffer(n))
-      turning(n) = column%axial_body(n)*column%length(n)/column%initial_stiffness(2*n)
-      sliding(n) = 0.0_wp
-      stiffer(n) = 0.0_wp
-      do i = 1, n - 1
-         associate (shear => column%initial_stiffness(i + 1), flexure => column%initial_stiffness(n + i))
-            turning(i) = column%axial_body(i)*column%length(i)/flexure
-            sliding(i) = abs(column%axial_slip(i + 1))/sqrt(shear)/sqrt(flexure)
-            stiffer(i) = column%initial_stiffness(n + i + 1)/flexure
-         end associate
-      end do
-      ! A held top takes the stiffness of its joint away from what turns the body below.
-      if (column%held) stiffer(n - 1) = -stiffer(n - 1)
-      scale = max(maxval(abs(turning)), maxval(sliding))
+      chain = lateral_chain(column, .true.)
+      scale = max(maxval(abs(chain%turning)/chain%k(2, :)), &
+                  maxval(abs(chain%sliding(2:))/sqrt(chain%k(1, 2:))/sqrt(chain%k(2, :column%n - 1))))
       if (.not. scale > 0.0_wp) return
-      turning = turning/scale
-      sliding = (sliding/scale)**2
-
       below = 1.0_wp
-      if (carries(below, turning, sliding, stiffer)) then
+      if (carries(below)) then
          do i = 1, most_doublings
-            if (.not. carries(2.0_wp*below, turning, sliding, stiffer)) exit
+            if (.not. carries(2.0_wp*below)) exit
             below = 2.0_wp*below
          end do
          if (i > most_doublings) return
       else
          do i = 1, most_doublings
             below = 0.5_wp*below
-            if (carries(below, turning, sliding, stiffer)) exit
+            if (carries(below)) exit
          end do
       end if
-      above = 2.0_wp*below
+      between = below
       do i = 1, digits(1.0_wp)
-         between = 0.5_wp*(below + above)
-         if (carries(between, turning, sliding, stiffer)) then
-            below = between
-         else
-            above = between
-         end if
+         between = 0.5_wp*between
+         if (carries(below + between)) below = below + between
       end do
       factor = below/scale
+
+   contains
+
+      logical function carries(multiple)
+         real(wp), intent(in) :: multiple
+
+         carries = chain%factor(0.0_wp, multiple/scale) == 0
+      end function carries
+
    end subroutine critical_factor
-
-   !> Whether the column is stable under a multiple of its axial forces: whether K + multiple K_G is
-   !> positive definite.
-   !>
-   !> All bodies above joint i, in equilibrium on it, push over the one below it with a negative rotational
-   !> stiffness -t_i. A body adds a l; a flexural spring in series makes of t the stiffness t k_M/(k_M - t)
-   !> and must be stiffer than t; the slip of the joint adds b^2/k_V. With compression all terms have one
-   !> sign: nothing cancels. Here as tau_i = t_i/k_Mi. What is held is infinitely stiff: t k_M/(k_M - t) tends
-   !> to -k_M.
-   pure logical function carries(multiple, turning, sliding, stiffer)
-      real(wp), intent(in) :: multiple
-      !> a_i l_i/k_Mi, b_{i+1}^2/(k_V,i+1 k_Mi) and k_M,i+1/k_Mi
-      real(wp), intent(in), contiguous :: turning(:), sliding(:), stiffer(:)
-      real(wp) :: tau
-      integer :: i, n
-
-      n = size(turning)
-      carries = .false.
-      tau = multiple*turning(n)
-      if (n > 1) then
-         if (stiffer(n - 1) < 0.0_wp) then
-            n = n - 1
-            tau = multiple*turning(n) + multiple**2*sliding(n) + stiffer(n)
-         end if
-      end if
-      do i = n - 1, 1, -1
-         if (.not. tau < 1.0_wp) return
-         tau = multiple*turning(i) + multiple**2*sliding(i) + stiffer(i)*tau/(1.0_wp - tau)
-      end do
-      carries = tau < 1.0_wp
-   end function carries
 
    !> Refuse an axial load that the unloaded column cannot carry.
    subroutine check_stable(column, error)
       type(column_type), intent(in) :: column
       type(error_type), allocatable, intent(out) :: error
+      type(sturm_chain) :: chain
       real(wp) :: factor
 
-      call critical_factor(column, factor, error)
-      if (allocated(error) .or. factor > 1.0_wp) return
+      if (.not. column%axially_loaded) return
+      chain = lateral_chain(column, .true.)
+      if (chain%factor(0.0_wp) == 0) return
+      call critical_factor(column, factor)
       call fatal_error(error, bad_input, 'column: the axial load of '// &
                        to_text(column%axial_joint(1))//' N at the base is beyond the critical load of '// &
                        to_text(factor*column%axial_joint(1))//' N; the column buckles by itself. '// &

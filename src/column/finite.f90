@@ -22,12 +22,11 @@ module rbs_column_finite
    use rbs_base_linalg, only: solve_tridiagonal
    use rbs_column_column, only: column_type
    use rbs_structure_spring_place, only: shear, flexure, axial
-   use rbs_column_finite_mass, only: finite_mass
    implicit none
    private
 
    public :: finite_work, finite_acceleration
-   public :: finite_kinetic, finite_potential, finite_power, finite_top, finite_mass
+   public :: finite_kinetic, finite_potential, finite_power, finite_top
 
    !> Arrays of `finite_acceleration`, allocated once.
    type :: finite_work

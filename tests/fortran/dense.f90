@@ -1,10 +1,22 @@
-!> Dense systems that tests compare with.
+!> Dense systems, and the dense eigenproblem by LAPACK, that tests compare with.
 module dense
    use rbs_base_kinds, only: wp
    implicit none
    private
 
-   public :: solve_positive, solve_general
+   public :: solve_positive, solve_general, solve_eigen
+
+   interface
+      subroutine dsygv(itype, jobz, uplo, n, a, lda, b, ldb, w, work, lwork, info)
+         import :: wp
+         implicit none
+         integer, intent(in) :: itype, n, lda, ldb, lwork
+         character(len=1), intent(in) :: jobz, uplo
+         real(wp), intent(inout) :: a(lda, *), b(ldb, *)
+         real(wp), intent(out) :: w(*), work(*)
+         integer, intent(out) :: info
+      end subroutine dsygv
+   end interface
 
 contains
 
@@ -93,5 +105,20 @@ contains
       end do
       regular = .true.
    end subroutine eliminate
+
+   !> Eigenvalues of `a x = w b x`, ascending, with vectors that satisfy x' b x = 1.
+   subroutine solve_eigen(a, b, w)
+      !> Symmetric matrix (n, n), replaced by the vectors, one per column
+      real(wp), intent(inout) :: a(:, :)
+      !> Symmetric positive definite matrix (n, n), overwritten
+      real(wp), intent(inout) :: b(:, :)
+      !> Eigenvalues (n)
+      real(wp), intent(out) :: w(:)
+      real(wp) :: work(40*size(w))
+      integer :: info
+
+      call dsygv(1, 'V', 'L', size(w), a, size(w), b, size(w), w, work, size(work), info)
+      if (info /= 0) error stop 'dense: LAPACK dsygv did not converge'
+   end subroutine solve_eigen
 
 end module dense

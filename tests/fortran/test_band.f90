@@ -2,9 +2,9 @@
 !> load against the dense eigenproblem.
 module test_band
    use check, only: unit_test, check_close, check_passed, check_true
+   use dense, only: solve_eigen
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_base_linalg, only: solve_eigen
    use rbs_column_axial, only: geometric_stiffness, critical_factor
    use rbs_column_band, only: add_spring_band, add_geometric_band, opening_band, to_joints
    use rbs_column_column, only: column_type
@@ -193,7 +193,6 @@ contains
    subroutine critical(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 5
-      type(error_type), allocatable :: outcome
       type(column_record) :: spec
       type(column_type) :: column
       type(random_type) :: random
@@ -217,10 +216,8 @@ contains
          do i = 1, 2*n
             stiffness(i, i) = column%initial_stiffness(i)
          end do
-         call solve_eigen(softening, stiffness, w, outcome)
-         call check_passed(error, outcome, 'solve_eigen')
-         call critical_factor(column, factor, outcome)
-         call check_passed(error, outcome, 'critical_factor')
+         call solve_eigen(softening, stiffness, w)
+         call critical_factor(column, factor)
          call check_close(error, factor*w(2*n), 1.0_wp, 1.0e-10_wp, 0.0_wp, 'critical factor')
       end do
    end subroutine critical
@@ -232,7 +229,6 @@ contains
    !> spring, and the highest one represents two bodies.
    subroutine critical_long(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
       type(column_record) :: spec
       integer, parameter :: bodies(3) = [200, 1000, 10000]
       real(wp), parameter :: height = 2.0_wp, ei = 1.0e6_wp, ga = 3.0e6_wp
@@ -250,8 +246,7 @@ contains
          spec%flexure(:) = elastic(ei*n/height)
          spec%flexure(1) = elastic(2.0_wp*ei*n/height)
          spec%axial_load = euler
-         call critical_factor(made(spec), factor, outcome)
-         call check_passed(error, outcome, 'critical_factor')
+         call critical_factor(made(spec), factor)
          wrong(i) = factor*euler/haringx - 1.0_wp
       end do
       call check_close(error, log(abs(wrong(1)/wrong(2)))/log(5.0_wp), 2.0_wp, 0.0_wp, 0.05_wp, 'order')

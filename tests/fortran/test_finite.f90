@@ -9,7 +9,7 @@ module test_finite
    use rbs_column_axial, only: geometric_forces, axial_energy
    use rbs_column_column, only: column_type
    use rbs_column_finite, only: finite_work, finite_acceleration, finite_kinetic, finite_potential, &
-                                finite_power, finite_top, finite_mass
+                                finite_power, finite_top
    use rbs_column_mass, only: symmetric_mass
    use rbs_column_column_record, only: column_record
    use exact, only: point, variant, state, sample, variant_of, random_state, place, dense_mass, &
@@ -27,7 +27,6 @@ contains
 
       tests = [unit_test('accelerations against M = sum J'' diag(m, m, I) J', accelerations), &
                unit_test('the same for 40 bodies', many_bodies), &
-               unit_test('mass matrix against sum J'' diag(m, m, I) J', mass_definition), &
                unit_test('mass matrix of the straight column', mass_straight), &
                unit_test('one body: corrected eq 4 with axial load, weight and ground', one_body), &
                unit_test('closed joints are open ones held by their reactions', reactions), &
@@ -100,40 +99,15 @@ contains
       end do
    end subroutine many_bodies
 
-   subroutine mass_definition(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(column_record) :: spec
-      type(column_type) :: column
-      type(state) :: now
-      real(wp), allocatable :: mass(:, :), expected(:, :)
-      integer :: i, n
-
-      do n = 1, 5
-         do i = 8, 9
-            spec = sample(n, variant_of(i))
-            column = made(spec)
-            now = random_state(column, random)
-            if (allocated(mass)) deallocate (mass, expected)
-            allocate (mass(column%unknowns, column%unknowns), expected(column%unknowns, column%unknowns))
-            call finite_mass(column, now%q, mass)
-            call dense_mass(spec, now%q, expected)
-            call check_close(error, pack(mass, .true.), pack(expected, .true.), 1.0e-13_wp, &
-                             1.0e-14_wp*maxval(expected), 'n = '//to_text(n))
-            call check_same(error, pack(mass, .true.), pack(transpose(mass), .true.), 'symmetry')
-         end do
-      end do
-   end subroutine mass_definition
-
    subroutine mass_straight(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_type) :: column
+      type(column_record) :: spec
       real(wp) :: q(15), mass(15, 15), expected(15, 15)
 
-      column = made(sample(5, variant(opens=.true., lumped=.true.)))
+      spec = sample(5, variant(opens=.true., lumped=.true.))
       q = 0.0_wp
-      call finite_mass(column, q, mass)
-      call symmetric_mass(column, expected)
+      call dense_mass(spec, q, mass)
+      call symmetric_mass(made(spec), expected)
       call check_close(error, pack(mass, .true.), pack(expected, .true.), 1.0e-14_wp, 0.0_wp, 'entry')
    end subroutine mass_straight
 
@@ -262,7 +236,7 @@ contains
          now = random_state(column, random)
          if (allocated(mass)) deallocate (mass)
          allocate (mass(column%unknowns, column%unknowns))
-         call finite_mass(column, now%q, mass)
+         call dense_mass(spec, now%q, mass)
          call check_close(error, finite_kinetic(column, now%q, now%v), &
                           0.5_wp*dot_product(now%v, matmul(mass, now%v)), 1.0e-13_wp, 0.0_wp, 'v M v/2')
          call place(spec, now%q, now%v, now%v, points)
@@ -317,18 +291,20 @@ contains
    subroutine potential_force(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
+      type(column_record) :: spec
       type(column_type) :: column
       type(state) :: now
       real(wp), parameter :: h = 0.01_wp
       real(wp) :: mass(15, 15), slope(15), at(-3:3)
       integer :: i, k
 
-      column = made(sample(5, variant(opens=.true., lumped=.true.)))
+      spec = sample(5, variant(opens=.true., lumped=.true.))
+      column = made(spec)
       now = random_state(column, random)
       now%v = 0.0_wp
       now%f = 0.0_wp
       now%load = 0.0_wp
-      call finite_mass(column, now%q, mass)
+      call dense_mass(spec, now%q, mass)
       do i = 1, 15
          do k = -3, 3
             at(k) = finite_potential(column, moved(now%q, i, k*h))

@@ -2,11 +2,10 @@
 module test_linalg
    use dense, only: solve_general, solve_positive
    use check, only: unit_test, check_close, check_failed, check_passed, check_true
-   use rbs_base_error, only: error_type, analysis_failed
+   use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_base_band_matrix, only: band_matrix
-   use rbs_base_linalg, only: solve_eigen, solve_tridiagonal, solve_general_band, singular_values, solve_upper, &
-                              is_dominated
+   use rbs_base_linalg, only: solve_tridiagonal, solve_general_band, solve_dense
    use rbs_base_small_systems, only: factor_positive, solve_rows, row_length
    implicit none
    private
@@ -28,16 +27,11 @@ contains
                unit_test('elimination with pivots, two right-hand sides', general), &
                unit_test('elimination equation by equation', rows), &
                unit_test('elimination refuses a singular matrix', singular), &
-               unit_test('eigenvalues ascend, vectors have unit mass', eigen), &
-               unit_test('eigenproblem names a mass matrix that is not positive', bad_mass), &
                unit_test('band: L D L'' solves and counts negative eigenvalues, narrow and wide', band), &
                unit_test('band with a border, also where the band has no inverse', bordered), &
-               unit_test('band: shift*diag - A positive definite above the largest eigenvalue', dominated), &
                unit_test('tridiagonal system, and one that is not positive', tridiagonal), &
                unit_test('general band needs pivots, two right-hand sides', general_band), &
-               unit_test('singular values 1e150 to 1e-150 keep their digits', graded), &
-               unit_test('left vectors of a singular value problem', left_vectors), &
-               unit_test('the transposed Cholesky factor', upper)]
+               unit_test('dense system by LAPACK, and a singular one', dense_system)]
    end subroutine collect_linalg
 
    subroutine positive(error)
@@ -143,34 +137,6 @@ contains
       call check_true(error, .not. regular, 'two equal rows')
    end subroutine singular
 
-   subroutine eigen(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      real(wp) :: a(2, 2), b(2, 2), w(2)
-
-      ! K = [6 -2; -2 4], M = diag(2, 1): w^2 - 7 w + 10 = 0.
-      a = reshape([6.0_wp, -2.0_wp, 99.0_wp, 4.0_wp], [2, 2])
-      b = reshape([2.0_wp, 0.0_wp, 99.0_wp, 1.0_wp], [2, 2])
-      call solve_eigen(a, b, w, outcome)
-      call check_passed(error, outcome, 'eigenproblem')
-      call check_close(error, w, [2.0_wp, 5.0_wp], 1.0e-14_wp, 0.0_wp, 'eigenvalues')
-      call check_close(error, a(1, :)/a(2, :), [1.0_wp, -0.5_wp], 1.0e-14_wp, 0.0_wp, 'shapes')
-      call check_close(error, 2.0_wp*a(1, :)**2 + a(2, :)**2, [1.0_wp, 1.0_wp], 1.0e-14_wp, 0.0_wp, &
-                       'modal masses')
-   end subroutine eigen
-
-   subroutine bad_mass(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      real(wp) :: a(2, 2), b(2, 2), w(2)
-
-      a = two_by_two
-      b = reshape([1.0_wp, 0.0_wp, 0.0_wp, -1.0_wp], [2, 2])
-      call solve_eigen(a, b, w, outcome)
-      call check_failed(error, outcome, analysis_failed, 'mass matrix is not positive')
-      call check_failed(error, outcome, analysis_failed, 'leading minor 2')
-   end subroutine bad_mass
-
    !> T T of the second differences T, (1, -4, 6, -4, 1) with 5 in place of 6 at the ends, as a lower band
    !> of half-width 3; its eigenvalues are (2 - 2 cos(j pi/(n + 1)))^2.
    pure function bending(n) result(a)
@@ -235,27 +201,6 @@ contains
       call check_close(error, [x(:, 1), y], [3.0_wp, 7.0_wp, 5.0_wp], 1.0e-12_wp, 0.0_wp, 'solution')
    end subroutine bordered
 
-   subroutine dominated(error)
-      type(error_type), allocatable, intent(inout) :: error
-      integer, parameter :: n = 7
-      real(wp) :: d(n), largest
-      real(wp) :: full(4, 2), mass(2)
-
-      largest = (2.0_wp - 2.0_wp*cos(n*acos(-1.0_wp)/(n + 1)))**2
-      d = 1.0_wp
-      call check_true(error, is_dominated(bending(n), d, largest*(1.0_wp + 1.0e-14_wp)), 'just above')
-      call check_true(error, .not. is_dominated(bending(n), d, largest*(1.0_wp - 1.0e-14_wp)), 'just below')
-      ! Two by two, as elements beyond the matrix are not read: 3 is the largest eigenvalue of (2 1; 1 2);
-      ! with masses 1, 2 it is the larger root of 2 w^2 - 6 w + 3.
-      full = 7.0_wp
-      full(1, :) = 2.0_wp
-      full(2, 1) = 1.0_wp
-      mass = [1.0_wp, 2.0_wp]
-      largest = 0.5_wp*(3.0_wp + sqrt(3.0_wp))
-      call check_true(error, is_dominated(full, mass, largest*(1.0_wp + 1.0e-15_wp)), 'just above')
-      call check_true(error, .not. is_dominated(full, mass, largest*(1.0_wp - 1.0e-15_wp)), 'just below')
-   end subroutine dominated
-
    subroutine tridiagonal(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 5
@@ -280,7 +225,7 @@ contains
    subroutine general_band(error)
       type(error_type), allocatable, intent(inout) :: error
       real(wp) :: a(4, 4), b(4, 2)
-      integer :: j
+      integer :: j, pivot(4)
       logical :: regular
 
       a = 0.0_wp
@@ -290,70 +235,28 @@ contains
       end do
       b(:, 1) = [1.0_wp, 2.0_wp, 3.0_wp, 4.0_wp]
       b(:, 2) = -b(:, 1)
-      call solve_general_band(a, 1, 1, b, regular)
+      call solve_general_band(a, 1, 1, b, regular, pivot)
       call check_true(error, regular, 'regular')
       call check_close(error, b(:, 1), [1.0_wp, 0.5_wp, 2.0_wp, 1.5_wp], 1.0e-15_wp, 0.0_wp, 'first')
       call check_close(error, b(:, 2), -b(:, 1), 0.0_wp, 0.0_wp, 'second')
       a = 0.0_wp
-      call solve_general_band(a, 1, 1, b, regular)
+      call solve_general_band(a, 1, 1, b, regular, pivot)
       call check_true(error, .not. regular, 'singular')
    end subroutine general_band
 
-   !> diag(d) (1 1/2; 0 1), d = 1e150, 1e-150: the values are d_1 sqrt(5)/2 and d_2 2/sqrt(5), to 1e-300.
-   subroutine graded(error)
+   subroutine dense_system(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      real(wp) :: a(2, 2), w(2), u(2, 2), one(1, 1), single(1)
+      real(wp) :: a(2, 2), b(2)
+      logical :: regular
 
-      a = reshape([1.0e150_wp, 0.0_wp, 0.5e150_wp, 1.0e-150_wp], [2, 2])
-      call singular_values(a, w, u, outcome)
-      call check_passed(error, outcome, 'singular values')
-      call check_close(error, w, [0.5e150_wp*sqrt(5.0_wp), 2.0e-150_wp/sqrt(5.0_wp)], 1.0e-14_wp, 0.0_wp, &
-                       'values')
-      one = -3.0_wp
-      call singular_values(one, single, u(:1, :1), outcome)
-      call check_passed(error, outcome, 'one by one')
-      call check_close(error, single(1), 3.0_wp, 1.0e-15_wp, 0.0_wp, 'one value')
-      call check_close(error, abs(u(1, 1)), 1.0_wp, 1.0e-15_wp, 0.0_wp, 'one vector')
-   end subroutine graded
-
-   !> The rows of u' a are orthogonal and have the lengths w.
-   subroutine left_vectors(error)
-      type(error_type), allocatable, intent(inout) :: error
-      integer, parameter :: n = 6
-      type(error_type), allocatable :: outcome
-      real(wp) :: a(n, n), copy(n, n), w(n), u(n, n)
-      integer :: i, j
-
-      do j = 1, n
-         do i = 1, n
-            a(i, j) = sin(1.0_wp*i*j) + merge(3.0_wp, 0.0_wp, i == j)
-         end do
-      end do
-      copy = a
-      call singular_values(copy, w, u, outcome)
-      call check_passed(error, outcome, 'singular values')
-      call check_true(error, all(w(:n - 1) >= w(2:)), 'descending')
-      a = matmul(transpose(u), a)
-      a = matmul(a, transpose(a))
-      do i = 1, n
-         call check_close(error, a(i, i), w(i)**2, 1.0e-13_wp, 0.0_wp, 'length')
-         a(i, i) = 0.0_wp
-      end do
-      call check_true(error, maxval(abs(a)) < 1.0e-13_wp*w(1)**2, 'right angles')
-   end subroutine left_vectors
-
-   !> (2 1; 1 2) = L L', L = (sqrt 2, 0; 1/sqrt 2, sqrt 1.5).
-   subroutine upper(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: a(2, 2), b(2, 1)
-      logical :: is_positive
-
-      a = two_by_two
-      call factor_positive(a, is_positive)
-      b(:, 1) = [sqrt(2.0_wp) + 1.0_wp/sqrt(2.0_wp), sqrt(1.5_wp)]
-      call solve_upper(a, b)
-      call check_close(error, b(:, 1), [1.0_wp, 1.0_wp], 1.0e-15_wp, 0.0_wp, 'solution')
-   end subroutine upper
+      a = reshape([0.0_wp, 1.0_wp, 2.0_wp, 3.0_wp], [2, 2])
+      b = matmul(a, [5.0_wp, 7.0_wp])
+      call solve_dense(a, b, regular)
+      call check_true(error, regular, 'regular')
+      call check_close(error, b, [5.0_wp, 7.0_wp], 1.0e-15_wp, 0.0_wp, 'solution')
+      a = 0.0_wp
+      call solve_dense(a, b, regular)
+      call check_true(error, .not. regular, 'singular')
+   end subroutine dense_system
 
 end module test_linalg

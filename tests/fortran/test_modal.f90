@@ -317,7 +317,7 @@ contains
          end if
          if (mod(trial, 3) /= 0) then
             spec%axial_load = sign(1.0e-3_wp, random%uniform(-1.0_wp, 1.0_wp))
-            call critical_factor(made(spec), factor, outcome)
+            call critical_factor(made(spec), factor)
             spec%axial_load = random%uniform(0.1_wp, 0.99_wp)*spec%axial_load*min(factor, 1.0e12_wp)
          end if
          column = made(spec)

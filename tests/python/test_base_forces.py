@@ -59,7 +59,7 @@ def test_base_forces_hold_the_bodies_with_small_rotations(kinematics, damping):
     load = 1500.0 if kinematics == "pdelta" else 0.0
     column = chain(kinematics, DAMPINGS[damping], axial_load=load)
     given = column.damping or rbsdem.Damping()
-    mass = rbsdem.mass_matrix(column)
+    mass = rbsdem.matrices(column).mass
     stiffness = np.concatenate([K_V, K_M])
     viscous = given.mass * mass + given.stiffness * np.diag(stiffness)
     if given.modal is not None:

@@ -865,7 +865,7 @@ def test_double_precision_survives_the_door():
     assert rbsdem.Elastic(1.0).response([value])[0] == value
     assert rbsdem.Elastic(value).response([1.0])[0] == value
     column = rbsdem.Column(value, value, rbsdem.Elastic(1.0), rbsdem.Elastic(1.0))
-    assert rbsdem.mass_matrix(column)[0, 0] == value
+    assert rbsdem.matrices(column).mass[0, 0] == value
     with pytest.warns(rbsdem.AccuracyWarning, match="half of the height"):
         assert rbsdem.cyclic(column, force=[value]).shear[0, 0] == value
     run = rbsdem.time_history(column, [0, 1e-3], initial={"slip": [value]}, method="rk4")

@@ -385,7 +385,7 @@ def follower_growth(n: int, load: float) -> tuple[rbsdem.Column, float]:
         [length] * n, [mass] * n, [k_v] * n, [k_m] * n, kinematics="finite", axial_load=load,
         axial_follows=True,
     )  # fmt: skip
-    m = rbsdem.mass_matrix(column)
+    m = rbsdem.matrices(column).mass
     absolute = np.hstack([np.zeros((n, n)), np.tril(np.ones((n, n)))])
     below = np.vstack([np.zeros(2 * n), absolute[:-1]])
     slip = np.eye(2 * n)[:n]

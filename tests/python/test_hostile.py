@@ -145,7 +145,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "cyclic by force": (rbsdem.cyclic, {"column": COLUMN, "force": PATH}),
     "time_history": (rbsdem.time_history, {"column": COLUMN} | HISTORY),
     "modes": (rbsdem.modes, {"column": COLUMN}),
-    "mass_matrix": (rbsdem.mass_matrix, {"column": COLUMN}),
+    "matrices": (rbsdem.matrices, {"column": COLUMN}),
     "protocol": (rbsdem.protocol, {"amplitudes": [0.01, 0.02], "cycles": 2}),
     "read_case": (rbsdem.read_case, {"path": "x"}),
     "read_peer": (rbsdem.read_peer, {"path": "x"}),

@@ -28,7 +28,7 @@ TEST = ([0.0, 0.01, -0.01], [0.0, 1e5, -1e5])
         lambda thing: rbsdem.cyclic(thing, displacement=[0, 0.01]),
         lambda thing: rbsdem.time_history(thing, [0, 0.1], ground_acceleration=[0, 1]),
         rbsdem.modes,
-        rbsdem.mass_matrix,
+        rbsdem.matrices,
         lambda thing: rbsdem.trade(thing, displacement=[0, 0.01]),
         lambda thing: rbsdem.calibrate(thing, TEST, free=["flexure.k_u"]),
     ],

@@ -21,7 +21,7 @@ import rbsdem
 
 # The names that independent checks use.
 PROMISED = {
-    "Bilinear", "Takeda", "Elastic", "Column", "modes", "mass_matrix", "cyclic", "time_history",
+    "Bilinear", "Takeda", "Elastic", "Column", "modes", "matrices", "cyclic", "time_history",
     "read_peer", "paper_columns", "paper_sections", "InputError", "SolveError", "Result",
     "AccuracyWarning", "Case", "Compression", "Damping", "read_case",
 }  # fmt: skip
@@ -137,7 +137,7 @@ def test_signatures_of_the_analyses_are_the_promised_ones():
         "vertical_acceleration", "axial_load", "events", "tolerance", "rho_infinity",
         "collapse_drift", "allow_unstable", "max_seconds", "every", "openings", "motion",
     ]  # fmt: skip
-    assert names(rbsdem.mass_matrix) == ["column", "form"]
+    assert names(rbsdem.matrices) == ["column", "form"]
     assert names(rbsdem.modes) == ["column"]
 
 
@@ -281,7 +281,7 @@ def test_errors_have_one_base_and_are_also_the_builtin_kind():
         lambda: rbsdem.read_case("not there"),
         lambda: rbsdem.read_case(""),
         lambda: rbsdem.read_case("a\0b"),
-        lambda: rbsdem.mass_matrix(COLUMN, "none"),
+        lambda: rbsdem.matrices(COLUMN, "none"),
         lambda: rbsdem.modes(None),
         lambda: rbsdem.protocol([]),
         lambda: rbsdem.protocol([1.0], cycles=0),

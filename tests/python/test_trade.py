@@ -111,7 +111,7 @@ def test_times_have_units(seconds, text):
 def free_vibration(time: np.ndarray) -> np.ndarray:
     """Top displacement of the elastic column that is let go from 1 mm slip, by its modes."""
     modes = rbsdem.modes(ELASTIC)
-    amplitude = modes.shapes.T @ rbsdem.mass_matrix(ELASTIC) @ [1e-3, 0.0]
+    amplitude = modes.shapes.T @ rbsdem.matrices(ELASTIC).mass @ [1e-3, 0.0]
     q = modes.shapes @ (amplitude[:, None] * np.cos(np.outer(modes.omega, time)))
     return q[0] + LENGTH * q[1]
 

@@ -49,7 +49,7 @@ forced = rbsdem.time_history(
 )
 located = rbsdem.time_history(pier, time, force=motion, method="rk4", events="located", every=2)
 print(shaken.summary["method"], forced.top[-1, 0], located.time.size, shaken == forced)
-print(rbsdem.modes(pier).frequency[0], rbsdem.mass_matrix(pier)[0, 0])
+print(rbsdem.modes(pier).frequency[0], rbsdem.matrices(pier).mass[0, 0])
 
 layers = rbsdem.Layered([(-0.1, rbsdem.SteelSpring(8e8, 7e5, 8e6)), (0.1, rbsdem.Elastic(1e8))])
 print(layers.response([0.001, -0.001], axial_load=1e4)[-1], layers.split(2), shear.split(2).k)
@@ -97,7 +97,7 @@ SLIPS = [
     ('c.joints("bending")', "arg-type"),
     ("rbsdem.Column(1.6, 1.0, s, s, axial=s)", "call-arg"),
     ("rbsdem.cyclic(c, displacement=[0.1]).forces", "attr-defined"),
-    ('rbsdem.mass_matrix(c, "papers")', "arg-type"),
+    ('rbsdem.matrices(c, "papers")', "arg-type"),
     ('rbsdem.ida(c, rbsdem.motions.synthetic(), intensity="sa")', "arg-type"),
 ]
 

@@ -1,20 +1,18 @@
 !> Natural frequencies, mode shapes and the stable step of RK4.
 module rbs_solve_modal_modes
-   use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
+   use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_base_linalg, only: singular_values, solve_upper
-   use rbs_base_small_systems, only: factor_positive
    use rbs_base_text, only: to_text
-   use rbs_column_axial, only: geometric_stiffness, critical_factor, check_stable
-   use rbs_column_band, only: to_joints
+   use rbs_column_axial, only: critical_factor, check_stable
    use rbs_column_column, only: column_type
    use rbs_column_ends, only: check_inertia_of_ends
-   use rbs_column_frequency, only: frequency_range
    use rbs_column_column_record, only: most_dense
+   use rbs_column_sturm, only: lateral_chain, opening_chain
+   use rbs_solve_modal_mode_search, only: mode_search
    implicit none
    private
 
-   public :: modes_type, find_modes, frequency_bounds, stability_limit
+   public :: modes_type, find_modes, frequency_bounds, stability_limit, most_numbers
 
    !> The stability region of RK4 ends here on the negative real axis: z = -2.785293563...
    real(wp), parameter :: real_limit = 2.785293563405282_wp
@@ -28,11 +26,14 @@ module rbs_solve_modal_modes
    !> Above this condition the modes come with a warning.
    real(wp), parameter :: worst_condition = 1.0e4_wp
 
+   !> Most numbers in a matrix, or in the shapes of the modes: 400 MB.
+   real(wp), parameter :: most_numbers = 5.0e7_wp
+
    type :: modes_type
-      !> Circular frequencies, ascending (unknowns) [rad/s]
+      !> Circular frequencies, ascending (modes) [rad/s]
       real(wp), allocatable :: omega(:)
       !> Shapes in (slip, relative rotation [, opening]), one a column, with shape' M shape = 1 and the
-      !> top going to +x or up (unknowns, unknowns)
+      !> top going to +x or up (unknowns, modes)
       real(wp), allocatable :: shapes(:, :)
       !> Longest step for which RK4 is stable [s]
       real(wp) :: stable_step = 0.0_wp
@@ -45,27 +46,37 @@ module rbs_solve_modal_modes
 
 contains
 
-   !> Modes of the uncracked column; the axial forces count where the kinematics let them.
-   !>
-   !> An eigenproblem of K and M would lose the low frequencies of stiff joints and small masses. Here
-   !> omega are the singular values of
-   !>
-   !>     R diag(sqrt k) B diag(1/sqrt m),  R' R = diag(1/sqrt k) (diag k + K_G) diag(1/sqrt k)
-   !>
-   !> (B from the bodies' motions to the joints' deformations, m the bodies' masses, R = 1 without axial
-   !> forces), a product of extreme diagonals and harmless matrices, and keep their relative accuracy.
-   subroutine find_modes(column, modes, error)
+   !> Modes of the uncracked column; the axial forces count where the kinematics let them. Openings are
+   !> modes of their own.
+   subroutine find_modes(column, modes, error, count)
       type(column_type), intent(in) :: column
       type(modes_type), intent(out) :: modes
       type(error_type), allocatable, intent(out) :: error
-      real(wp), allocatable :: a(:, :), root(:, :), scale(:)
-      integer :: i, m, n
-      logical :: positive
+      !> How many, the lowest first; without it all
+      integer, intent(in), optional :: count
+      type(mode_search) :: search(2)
+      real(wp), allocatable :: squares(:, :), shapes(:, :, :, :)
+      real(wp) :: lowest(2), top
+      integer :: b, blocks, i, n, next(2), wanted
 
       n = column%n
-      if (n > most_dense) then
+      blocks = merge(2, 1, column%opens)
+      wanted = column%unknowns - merge(1, 0, column%held)
+      if (present(count)) then
+         wanted = min(wanted, count)
+         if (count < 1) then
+            call fatal_error(error, bad_input, 'modes: count = '//to_text(count)//' must be above zero')
+            return
+         end if
+         if (real(wanted, wp)*column%unknowns > most_numbers) then
+            call fatal_error(error, bad_input, 'modes: the shapes of '//to_text(wanted)//' modes of n = '// &
+                             to_text(n)//' bodies take too much memory; ask for '// &
+                             to_text(int(most_numbers/column%unknowns))//' at the most')
+            return
+         end if
+      else if (n > most_dense) then
          call fatal_error(error, bad_input, 'modes: all modes are found for up to '//to_text(most_dense)// &
-                          ' bodies, not for n = '//to_text(n)//'; take a coarser chain for the modes. '// &
+                          ' bodies, not for n = '//to_text(n)//'; ask for the first ones by count. '// &
                           'A dynamic analysis does not need them, it finds its stable step for any n')
          return
       end if
@@ -74,176 +85,47 @@ contains
       if (allocated(error)) return
       call set_condition(column, modes)
 
-      ! Where the top is held, the relative rotation of the last joint follows from the others.
-      m = 2*n
-      if (column%held) m = m - 1
-      call weighted_joints(column, a)
-      allocate (modes%omega(size(a, 2)))
-      allocate (modes%shapes(column%unknowns, size(a, 2)), source=0.0_wp)
-      if (column%axially_loaded .or. column%held) then
-         call factor_loaded(column, m, root, scale, positive)
-         if (.not. positive) then
-            call fatal_error(error, analysis_failed, 'modes: the axial load is the critical one within '// &
-                             'round-off, there is no lowest frequency; reduce axial_load')
-            return
-         end if
-         call block_modes(a(:m, :m), scale, modes%omega(:m), modes%shapes(:m, :m), error, root)
-      else
-         call block_modes(a(:m, :m), sqrt(column%initial_stiffness(:m)), modes%omega(:m), &
-                          modes%shapes(:m, :m), error)
-      end if
-      if (allocated(error)) return
-      do i = n + 1, merge(m, 0, column%held)
-         modes%shapes(2*n, :m) = modes%shapes(2*n, :m) - modes%shapes(i, :m)
+      allocate (squares(wanted, blocks), shapes(2, n, wanted, blocks))
+      call search(1)%start(lateral_chain(column, column%axially_loaded))
+      if (column%opens) call search(2)%start(opening_chain(column))
+      lowest = huge(1.0_wp)
+      do b = 1, blocks
+         next(b) = 1
+         call search(b)%find(1, 1, squares(:, b), shapes(:, :, :, b))
+         lowest(b) = squares(1, b)
       end do
-      if (column%opens) then
-         call block_modes(a(2*n + 1:, m + 1:), sqrt(column%initial_stiffness(2*n + 1:)), &
-                          modes%omega(m + 1:), modes%shapes(2*n + 1:, m + 1:), error)
-         if (allocated(error)) return
-      end if
-      call arrange(column, m, modes)
-   end subroutine find_modes
-
-   !> Deformations of the joints per motion of the bodies, divided by the roots of their masses:
-   !> B diag(1/sqrt m) (unknowns, unknowns; one column less where a rotation is held).
-   subroutine weighted_joints(column, a)
-      type(column_type), intent(in) :: column
-      real(wp), allocatable, intent(out) :: a(:, :)
-      real(wp) :: x(column%unknowns), mass(column%unknowns)
-      integer :: at, j, n
-
-      n = column%n
-      mass(1:2*n:2) = column%mass
-      mass(2:2*n:2) = column%inertia
-      if (column%opens) mass(2*n + 1:) = column%mass
-      allocate (a(column%unknowns, column%unknowns - merge(1, 0, column%held)))
-      x = 0.0_wp
-      at = 0
-      do j = 1, column%unknowns
-         if (column%held .and. j == 2*n) cycle
-         at = at + 1
-         x(j) = 1.0_wp
-         call to_joints(column, x, a(:, at))
-         x(j) = 0.0_wp
-         a(:, at) = a(:, at)/sqrt(mass(j))
-      end do
-   end subroutine weighted_joints
-
-   !> Cholesky factor of the stiffness with axial forces, scaled to a diagonal of ones:
-   !> diag(k) + K_G = diag(scale) root root' diag(scale).
-   subroutine factor_loaded(column, m, root, scale, positive)
-      type(column_type), intent(in) :: column
-      !> 2 n, or 2 n - 1 where the top is held: the last rotation is then minus the sum of the others
-      integer, intent(in) :: m
-      !> Lower triangle (m, m), zeros above
-      real(wp), allocatable, intent(out) :: root(:, :)
-      !> (m)
-      real(wp), allocatable, intent(out) :: scale(:)
-      logical, intent(out) :: positive
-      real(wp), allocatable :: stiffness(:, :)
-      integer :: i, j, n
-
-      n = column%n
-      allocate (stiffness(column%unknowns, column%unknowns), source=0.0_wp)
-      if (column%axially_loaded) call geometric_stiffness(column, stiffness)
-      do i = 1, 2*n
-         stiffness(i, i) = stiffness(i, i) + column%initial_stiffness(i)
-      end do
-      if (m < 2*n) then
-         do j = 1, m
-            if (j > n) stiffness(:2*n, j) = stiffness(:2*n, j) - stiffness(:2*n, 2*n)
-            stiffness(n + 1:m, j) = stiffness(n + 1:m, j) - stiffness(2*n, j)
-         end do
-      end if
-      allocate (root(m, m))
-      allocate (scale(m))
-      root = stiffness(:m, :m)
-      do i = 1, m
-         scale(i) = sqrt(max(root(i, i), tiny(1.0_wp)))
-      end do
-      do i = 1, m
-         root(:, i) = root(:, i)/scale/scale(i)
-      end do
-      call factor_positive(root, positive)
-      do i = 2, m
-         root(:i - 1, i) = 0.0_wp
-      end do
-   end subroutine factor_loaded
-
-   !> Frequencies, descending, and shapes of one block of unknowns: the left vectors v of root' diag(scale) a
-   !> give the shapes omega diag(scale)^-1 root'^-1 v.
-   subroutine block_modes(a, scale, omega, shapes, error, root)
-      !> (m, m) and (m)
-      real(wp), intent(in) :: a(:, :), scale(:)
-      !> (m) and (m, m)
-      real(wp), intent(out) :: omega(:), shapes(:, :)
-      type(error_type), allocatable, intent(out) :: error
-      !> (m, m); the identity if it is absent
-      real(wp), intent(in), contiguous, optional :: root(:, :)
-      real(wp), allocatable :: scaled(:, :), left(:, :), values(:)
-      integer :: i, m
-
-      m = size(scale)
-      allocate (scaled(m, m), left(m, m), values(m))
-      do i = 1, m
-         scaled(:, i) = scale*a(:, i)
-      end do
-      if (present(root)) scaled = matmul(transpose(root), scaled)
-      call singular_values(scaled, values, left, error)
-      if (allocated(error)) return
-      if (present(root)) call solve_upper(root, left)
-      omega = values
-      do i = 1, m
-         shapes(:, i) = values(i)*(left(:, i)/scale)
-      end do
-   end subroutine block_modes
-
-   !> Put the modes in ascending order, the top going to +x or, if it only goes along the column, up.
-   subroutine arrange(column, laterals, modes)
-      type(column_type), intent(in) :: column
-      !> Number of modes of slips and rotations, which come first
-      integer, intent(in) :: laterals
-      type(modes_type), intent(inout) :: modes
-      real(wp), allocatable :: omega(:), shapes(:, :)
-      real(wp) :: top
-      integer :: i, lateral, m, n, opening, taken
-
-      m = size(modes%omega)
-      n = column%n
-      allocate (omega, source=modes%omega)
-      allocate (shapes, source=modes%shapes)
-      ! Two descending lists, taken from their ends.
-      lateral = laterals
-      opening = m
-      do i = 1, m
-         taken = lateral
-         if (opening > laterals) then
-            if (lateral == 0) then
-               taken = opening
-            else if (omega(opening) < omega(lateral)) then
-               taken = opening
+      allocate (modes%omega(wanted))
+      allocate (modes%shapes(column%unknowns, wanted), source=0.0_wp)
+      do i = 1, wanted
+         b = minloc(lowest, 1)
+         associate (shape => modes%shapes(:, i), found => shapes(:, :, next(b), b))
+            modes%omega(i) = sqrt(lowest(b))
+            if (b == 2) then
+               shape(2*n + 1:) = found(1, :)
+            else
+               shape(:n) = found(1, :)
+               shape(n + 1:2*n) = found(2, :)
             end if
-         end if
-         if (taken > laterals) then
-            opening = opening - 1
-         else
-            lateral = lateral - 1
-         end if
-         modes%omega(i) = omega(taken)
-         top = dot_product(column%arm, shapes(:, taken)) + sum(shapes(2*n + 1:, taken))
-         modes%shapes(:, i) = sign(1.0_wp, top)*shapes(:, taken)
+            ! The top goes to +x or, if it only goes along the column, up.
+            top = dot_product(column%arm, shape) + sum(shape(2*n + 1:))
+            shape = sign(1.0_wp, top)*shape
+         end associate
+         next(b) = next(b) + 1
+         lowest(b) = huge(1.0_wp)
+         if (next(b) > min(wanted, search(b)%chain%modes) .or. i == wanted) cycle
+         call search(b)%find(next(b), next(b), squares(:, b), shapes(:, :, :, b))
+         lowest(b) = squares(next(b), b)
       end do
-   end subroutine arrange
+   end subroutine find_modes
 
    !> Condition of the modes under axial load.
    subroutine set_condition(column, modes)
       type(column_type), intent(in) :: column
       type(modes_type), intent(inout) :: modes
-      type(error_type), allocatable :: ignored
       real(wp) :: factor, share
 
       if (.not. column%axially_loaded) return
-      call critical_factor(column, factor, ignored)
+      call critical_factor(column, factor)
       share = 1.0_wp/factor
       modes%condition = (1.0_wp + share)/max(1.0_wp - share, epsilon(1.0_wp))
       if (modes%condition < worst_condition) return
@@ -265,6 +147,22 @@ contains
       if (.not. allocated(error)) call check_stable(column, error)
       if (.not. allocated(error)) call frequency_range(column, column%axially_loaded, lowest, highest)
    end subroutine frequency_bounds
+
+   subroutine frequency_range(column, axial, lowest, highest)
+      type(column_type), intent(in) :: column
+      !> Whether the axial forces count
+      logical, intent(in) :: axial
+      real(wp), intent(out) :: lowest, highest
+      type(mode_search) :: search
+
+      call search%start(lateral_chain(column, axial))
+      lowest = search%frequency(1)
+      highest = search%frequency(search%chain%modes)
+      if (.not. column%opens) return
+      call search%start(opening_chain(column))
+      lowest = min(lowest, search%frequency(1))
+      highest = max(highest, search%frequency(search%chain%modes))
+   end subroutine frequency_range
 
    !> Longest step for which RK4 is stable [s], for any number of bodies in O(n).
    !>

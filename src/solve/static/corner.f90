@@ -213,7 +213,6 @@ contains
       class(static_path), intent(in) :: path
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
-      type(error_type), allocatable :: ignored
       character(len=:), allocatable :: spring, state, remark
       real(wp) :: factor
 
@@ -221,7 +220,7 @@ contains
       remark = ''
       if (path%column%axially_loaded) remark = ' above what the axial load takes away'
       call name_spring(path, spring)
-      call critical_factor(path%column, factor, ignored)
+      call critical_factor(path%column, factor)
       if (.not. path%by_force) then
          call fatal_error(error, analysis_failed, 'the equilibrium is not unique at the displacement '// &
                           to_text(target)//' m at '//state//': '//spring// &

@@ -17,7 +17,7 @@ module rbs_solve_time_motion
    use rbs_column_finite, only: finite_work, finite_acceleration, finite_power
    use rbs_column_momentum, only: momentum_at_foot
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_solve_modal_damping, only: modal_damping
+   use rbs_solve_modal_matrices, only: modal_damping
    use rbs_loading_loads, only: lateral, horizontal, vertical, axial
    use rbs_structure_spring_place, only: shear, flexure
    use rbs_structure_structure, only: structure_type

@@ -1,0 +1,262 @@
+!> The dynamic stiffness K - s M of the chain, by elimination from the top down: the number of its negative
+!> pivots is that of the squared frequencies below s (a Sturm sequence), and it is solved with the same pivots.
+!>
+!> The bodies above joint i, each joint between them in equilibrium, answer the motion (x, th) of its upper
+!> side like the negative stiffness -T, a 2 by 2 matrix. A body adds its inertia and its axial force to T, a
+!> rigid arm shifts it, and a joint k in series makes of it
+!>
+!>     T + C' (k - T)^-1 C,  C = T + b e_1 e_2'
+!>
+!> with the pivots of k - T. Below the lowest frequency and without tension all terms have one sign, so
+!> stiffnesses and masses have no more than relative errors of round-off: the assembled band of K - s M would
+!> lose the low frequencies of a long chain, which are differences of large numbers in it.
+!>
+!> Openings, which nothing couples to slips and rotations, are a chain of their own that does not rotate.
+module rbs_column_sturm
+   use rbs_base_kinds, only: wp
+   use rbs_column_column, only: column_type
+   implicit none
+   private
+
+   public :: sturm_chain, lateral_chain, opening_chain
+
+   type :: sturm_chain
+      !> Number of bodies, and of modes
+      integer :: n = 0, modes = 0
+      !> Whether the last body is held against rotation
+      logical :: held = .false.
+      !> Stiffness of the joints, translation and rotation; masses and rotary inertias of the bodies (2, n)
+      real(wp), allocatable :: k(:, :), mass(:, :)
+      !> Distance of the centroid from the bottom and from the top of the body (n)
+      real(wp), allocatable :: lower(:), upper(:)
+      !> Axial force times length of each body, axial force across the slip of each joint (n)
+      real(wp), allocatable :: turning(:), sliding(:)
+      !> Pivots, T and C of the joints at the last shift (7, n)
+      real(wp), allocatable, private :: joint(:, :)
+   contains
+      procedure :: factor
+      procedure :: solve
+      procedure :: body_motion
+      procedure :: stiffness_of
+      procedure :: mass_product
+      procedure :: sum_of_squares
+   end type sturm_chain
+
+contains
+
+   !> Slips and rotations on the initial stiffness.
+   type(sturm_chain) function lateral_chain(column, axial) result(self)
+      type(column_type), intent(in) :: column
+      !> Whether the axial forces count
+      logical, intent(in) :: axial
+      integer :: n
+
+      n = column%n
+      self%n = n
+      self%held = column%held
+      self%modes = merge(2*n - 1, 2*n, column%held)
+      allocate (self%k(2, n), self%mass(2, n), self%joint(7, n))
+      self%k(1, :) = column%initial_stiffness(:n)
+      self%k(2, :) = column%initial_stiffness(n + 1:2*n)
+      self%mass(1, :) = column%mass
+      self%mass(2, :) = column%inertia
+      self%lower = column%lower
+      self%upper = column%upper
+      self%turning = column%axial_body*column%length
+      self%sliding = column%axial_slip
+      if (axial) return
+      self%turning = 0.0_wp
+      self%sliding = 0.0_wp
+   end function lateral_chain
+
+   !> Openings on the initial stiffness.
+   type(sturm_chain) function opening_chain(column) result(self)
+      type(column_type), intent(in) :: column
+      integer :: n
+
+      n = column%n
+      self%n = n
+      self%modes = n
+      allocate (self%k(2, n), self%joint(7, n), source=1.0_wp)
+      allocate (self%mass(2, n), self%lower(n), self%upper(n), self%turning(n), self%sliding(n), source=0.0_wp)
+      self%k(1, :) = column%initial_stiffness(2*n + 1:)
+      self%mass(1, :) = column%mass
+   end function opening_chain
+
+   !> Number of squared frequencies below s, under a multiple of the axial forces.
+   integer function factor(self, s, multiple) result(below)
+      class(sturm_chain), intent(inout) :: self
+      !> Square of a circular frequency [1/s2]
+      real(wp), intent(in) :: s
+      real(wp), intent(in), optional :: multiple
+      real(wp) :: axial
+
+      axial = 1.0_wp
+      if (present(multiple)) axial = multiple
+      call eliminate(self%n, self%held, self%k, self%mass, self%lower, self%upper, self%turning, self%sliding, &
+                     s, axial, self%joint, below)
+   end function factor
+
+   pure subroutine eliminate(n, held, k, mass, lower, upper, turning, sliding, s, axial, joint, below)
+      integer, intent(in) :: n
+      logical, intent(in) :: held
+      real(wp), intent(in) :: k(2, n), mass(2, n), lower(n), upper(n), turning(n), sliding(n), s, axial
+      real(wp), intent(out) :: joint(7, n)
+      integer, intent(out) :: below
+      real(wp) :: t11, t12, t22, c12, c21, c22, arm, b, p1, p2, stiffer
+      integer :: i
+
+      below = 0
+      t11 = 0.0_wp
+      t12 = 0.0_wp
+      t22 = 0.0_wp
+      do i = n, 1, -1
+         arm = upper(i)
+         t22 = t22 + arm*(2.0_wp*t12 + arm*t11)
+         t12 = t12 + arm*t11
+         t11 = t11 + s*mass(1, i)
+         t22 = t22 + s*mass(2, i)
+         t22 = t22 + axial*turning(i)
+         arm = lower(i)
+         t22 = t22 + arm*(2.0_wp*t12 + arm*t11)
+         t12 = t12 + arm*t11
+
+         p1 = k(1, i) - t11
+         ! A small pivot in place of zero changes nothing but round-off.
+         if (.not. abs(p1) > 0.0_wp) p1 = epsilon(1.0_wp)*k(1, i)
+         if (p1 < 0.0_wp) below = below + 1
+         p1 = 1.0_wp/p1
+         if (held .and. i == n) then
+            ! What is held against rotation moves along only; its joint turns by minus what is below.
+            joint(:, i) = [p1, 0.0_wp, t11, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
+            t12 = 0.0_wp
+            t22 = -k(2, n)
+            t11 = t11*(k(1, i)*p1)
+            cycle
+         end if
+         ! T and C after elimination of the slip
+         t22 = t22 + t12*(t12*p1)
+         b = axial*sliding(i)*p1
+         c12 = t12 + axial*sliding(i)
+         c21 = t12*(k(1, i)*p1)
+         c22 = t22 + t12*b
+         p2 = k(2, i) - t22
+         if (.not. abs(p2) > 0.0_wp) p2 = epsilon(1.0_wp)*k(2, i)
+         if (p2 < 0.0_wp) below = below + 1
+         p2 = 1.0_wp/p2
+         joint(:, i) = [p1, p2, t11, t12, c12, c21, c22]
+         ! Products in place of sums, which may have two signs above the lowest frequency
+         stiffer = k(2, i)*p2
+         t22 = (t22 + 2.0_wp*t12*b)*stiffer + axial*sliding(i)*b + (t12*b)*(t12*b*p2)
+         t12 = c21*stiffer + b*(t11 + c21*(t12*p2))
+         t11 = t11*(k(1, i)*p1) + c21*(c21*p2)
+      end do
+   end subroutine eliminate
+
+   !> Solve (K - s M) d = (inertia forces of x), with the pivots of `factor`.
+   subroutine solve(self, x, d)
+      class(sturm_chain), intent(in) :: self
+      !> Displacements and rotations of the bodies (2, n)
+      real(wp), intent(in), contiguous :: x(:, :)
+      !> Slips and relative rotations of the joints (2, n)
+      real(wp), intent(out), contiguous :: d(:, :)
+      real(wp) :: force, moment, half, top, turned
+      integer :: i
+
+      force = 0.0_wp
+      moment = 0.0_wp
+      do i = self%n, 1, -1
+         associate (p1 => self%joint(1, i), p2 => self%joint(2, i), t12 => self%joint(4, i), &
+                    c12 => self%joint(5, i), c21 => self%joint(6, i), c22 => self%joint(7, i))
+            moment = moment + self%upper(i)*force
+            force = force + self%mass(1, i)*x(1, i)
+            moment = moment + self%mass(2, i)*x(2, i) + self%lower(i)*force
+            d(1, i) = force*p1
+            half = moment + t12*d(1, i)
+            d(2, i) = half*p2
+            force = force*(self%k(1, i)*p1) + c21*d(2, i)
+            moment = moment + c12*d(1, i) + c22*d(2, i)
+            if (self%held .and. i == self%n) moment = 0.0_wp
+         end associate
+      end do
+      top = 0.0_wp
+      turned = 0.0_wp
+      do i = 1, self%n
+         associate (p1 => self%joint(1, i), p2 => self%joint(2, i), t11 => self%joint(3, i), &
+                    t12 => self%joint(4, i), c12 => self%joint(5, i), c21 => self%joint(6, i), &
+                    c22 => self%joint(7, i))
+            d(2, i) = d(2, i) + (c21*top + c22*turned)*p2
+            d(1, i) = d(1, i) + (t11*top + c12*turned + t12*d(2, i))*p1
+            if (self%held .and. i == self%n) d(2, i) = -turned
+            turned = turned + d(2, i)
+            top = top + d(1, i) + (self%lower(i) + self%upper(i))*turned
+         end associate
+      end do
+   end subroutine solve
+
+   !> Motion of the bodies from that of the joints.
+   pure subroutine body_motion(self, d, x)
+      class(sturm_chain), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:, :)
+      real(wp), intent(out), contiguous :: x(:, :)
+      real(wp) :: top, turned
+      integer :: i
+
+      top = 0.0_wp
+      turned = 0.0_wp
+      do i = 1, self%n
+         turned = turned + d(2, i)
+         x(2, i) = turned
+         x(1, i) = top + d(1, i) + self%lower(i)*turned
+         top = x(1, i) + self%upper(i)*turned
+      end do
+      if (self%held) x(2, self%n) = 0.0_wp
+   end subroutine body_motion
+
+   !> d' K d.
+   pure real(wp) function stiffness_of(self, d, x) result(total)
+      class(sturm_chain), intent(in) :: self
+      !> Motion of the joints, and of the bodies (2, n)
+      real(wp), intent(in), contiguous :: d(:, :), x(:, :)
+      integer :: i
+
+      total = 0.0_wp
+      do i = 1, self%n
+         total = total + (self%k(1, i)*d(1, i)**2 + self%k(2, i)*d(2, i)**2)
+      end do
+      total = total - sum(self%turning*x(2, :)**2)
+      do i = 2, self%n
+         total = total - 2.0_wp*self%sliding(i)*d(1, i)*x(2, i - 1)
+      end do
+   end function stiffness_of
+
+   !> x' M y.
+   pure real(wp) function mass_product(self, x, y) result(total)
+      class(sturm_chain), intent(in) :: self
+      real(wp), intent(in), contiguous :: x(:, :), y(:, :)
+      integer :: i
+
+      total = 0.0_wp
+      do i = 1, self%n
+         total = total + (self%mass(1, i)*x(1, i)*y(1, i) + self%mass(2, i)*x(2, i)*y(2, i))
+      end do
+   end function mass_product
+
+   !> A bound of the sum of all squared frequencies, which is the trace of M^-1 K.
+   pure real(wp) function sum_of_squares(self) result(total)
+      class(sturm_chain), intent(in) :: self
+      real(wp) :: turned
+      integer :: i, n
+
+      n = self%n
+      total = sum((self%k(1, :) + [self%k(1, 2:), 0.0_wp])/self%mass(1, :))
+      do i = 1, n
+         if (self%held .and. i == n .or. .not. self%mass(2, i) > 0.0_wp) cycle
+         turned = self%k(1, i)*self%lower(i)**2 + self%k(2, i) + abs(self%turning(i))
+         if (i < n) turned = turned + self%k(1, i + 1)*self%upper(i)**2 + self%k(2, i + 1) &
+                             + 2.0_wp*abs(self%sliding(i + 1))*self%upper(i)
+         total = total + turned/self%mass(2, i)
+      end do
+   end function sum_of_squares
+
+end module rbs_column_sturm

@@ -1,0 +1,160 @@
+!> The matrices of the uncracked column for small rotations, in full: mass, stiffness of the joints, geometric
+!> stiffness of the axial forces, and damping. The solvers do without them, and the tests hold their recursions
+!> equal to these.
+!>
+!>     M q'' + C q' + (K + K_G) q = p
+module rbs_solve_modal_matrices
+   use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
+   use rbs_base_kinds, only: wp
+   use rbs_base_linalg, only: solve_dense
+   use rbs_base_text, only: to_text
+   use rbs_column_axial, only: geometric_stiffness
+   use rbs_column_column, only: column_type
+   use rbs_column_mass, only: symmetric_mass, paper_mass
+   use rbs_solve_modal_modes, only: modes_type, find_modes, most_numbers
+   implicit none
+   private
+
+   public :: matrices_type, assemble_matrices, modal_damping
+
+   type :: matrices_type
+      !> Name of each unknown: slip_1, ..., rotation_1, ... [, opening_1, ...], rotations relative to the body
+      !> below, or in the paper's form slip_1, ..., theta_1, ... with absolute rotations. The last rotation is
+      !> no unknown where the top is held
+      character(len=16), allocatable :: unknown(:)
+      !> (unknowns, unknowns) [N, m, kg, s, rad]
+      real(wp), allocatable :: mass(:, :), stiffness(:, :), geometric(:, :), damping(:, :)
+   contains
+      procedure :: accelerations
+   end type matrices_type
+
+contains
+
+   subroutine assemble_matrices(column, paper, matrices, error)
+      type(column_type), intent(in) :: column
+      !> Whether in the paper's form: unknowns (slip, absolute rotation), rows of its eqs 1 and 2. Else in
+      !> (slip, relative rotation), where all are symmetric
+      logical, intent(in) :: paper
+      type(matrices_type), intent(out) :: matrices
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i, m, n
+
+      n = column%n
+      m = column%unknowns
+      if (real(m, wp)**2 > most_numbers) then
+         call fatal_error(error, bad_input, 'matrices: those of n = '//to_text(n)//' bodies take too much '// &
+                          'memory; take '//to_text(int(sqrt(most_numbers))*n/m)//' at the most')
+         return
+      end if
+      allocate (matrices%mass(m, m))
+      allocate (matrices%stiffness(m, m), matrices%geometric(m, m), matrices%damping(m, m), source=0.0_wp)
+      call symmetric_mass(column, matrices%mass)
+      do i = 1, m
+         matrices%stiffness(i, i) = column%initial_stiffness(i)
+      end do
+      if (column%axially_loaded) call geometric_stiffness(column, matrices%geometric)
+      if (allocated(column%modal_damping)) then
+         call modal_damping(column, matrices%damping, error)
+         if (allocated(error)) return
+      end if
+      matrices%damping = matrices%damping + column%mass_damping*matrices%mass &
+                         + column%stiffness_damping*matrices%stiffness
+      allocate (matrices%unknown(m))
+      do i = 1, n
+         matrices%unknown(i) = 'slip_'//to_text(joint(i))
+         matrices%unknown(n + i) = 'rotation_'//to_text(joint(i))
+         if (paper) matrices%unknown(n + i) = 'theta_'//to_text(joint(i))
+         if (column%opens) matrices%unknown(2*n + i) = 'opening_'//to_text(joint(i))
+      end do
+      call transform(column, paper, matrices%mass)
+      call transform(column, paper, matrices%stiffness)
+      call transform(column, paper, matrices%geometric)
+      call transform(column, paper, matrices%damping)
+      if (column%held) matrices%unknown = [matrices%unknown(:2*n - 1), matrices%unknown(2*n + 1:)]
+      if (paper .and. .not. column%held) call paper_mass(column, matrices%mass(:2*n, :2*n))
+
+   contains
+
+      integer function joint(i)
+         integer, intent(in) :: i
+
+         joint = i - merge(1, 0, column%footing)
+      end function joint
+
+   end subroutine assemble_matrices
+
+   !> Take the rotation of a held top out, which is minus the sum of those below, and pass to absolute
+   !> rotations: a relative one is the difference of two.
+   subroutine transform(column, paper, a)
+      type(column_type), intent(in) :: column
+      logical, intent(in) :: paper
+      real(wp), allocatable, intent(inout) :: a(:, :)
+      integer :: i, last, n
+      integer, allocatable :: kept(:)
+
+      n = column%n
+      last = 2*n
+      if (column%held) then
+         do i = n + 1, last - 1
+            a(:, i) = a(:, i) - a(:, last)
+         end do
+         do i = n + 1, last - 1
+            a(i, :) = a(i, :) - a(last, :)
+         end do
+         kept = [(i, i=1, last - 1), (i, i=last + 1, size(a, 1))]
+         a = a(kept, kept)
+         last = last - 1
+      end if
+      if (.not. paper) return
+      do i = n + 1, last - 1
+         a(:, i) = a(:, i) - a(:, i + 1)
+      end do
+   end subroutine transform
+
+   !> The accelerations that forces give to the column at rest: eqs 1 and 2 of the paper, M q'' = p, solved as
+   !> they stand.
+   subroutine accelerations(self, force, acceleration, error)
+      class(matrices_type), intent(in) :: self
+      !> Forces on the unknowns (unknowns) [N, N m]
+      real(wp), intent(in) :: force(:)
+      !> (unknowns) [m/s2, rad/s2]
+      real(wp), intent(out) :: acceleration(:)
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), allocatable :: a(:, :)
+      logical :: regular
+
+      allocate (a, source=self%mass)
+      acceleration = force
+      call solve_dense(a, acceleration, regular)
+      if (.not. regular) call fatal_error(error, analysis_failed, 'matrices: the mass matrix has no inverse; '// &
+                                          'check the masses')
+   end subroutine accelerations
+
+   !> C = sum_j 2 zeta_j omega_j (M s_j) (M s_j)', the modes s_j of the uncracked column.
+   subroutine modal_damping(column, damping, error)
+      type(column_type), intent(in) :: column
+      !> Matrix (unknowns, unknowns) in slip, relative rotation and opening
+      real(wp), allocatable, intent(out) :: damping(:, :)
+      type(error_type), allocatable, intent(out) :: error
+      type(modes_type) :: modes
+      real(wp), allocatable :: carried(:, :)
+      integer :: given, j, m
+
+      m = column%unknowns
+      given = size(column%modal_damping)
+      if (given == 1) then
+         call find_modes(column, modes, error)
+      else
+         call find_modes(column, modes, error, count=given)
+      end if
+      if (allocated(error)) return
+      allocate (damping(m, m))
+      call symmetric_mass(column, damping)
+      carried = matmul(damping, modes%shapes)
+      do j = 1, size(modes%omega)
+         carried(:, j) = sqrt(2.0_wp*column%modal_damping(min(j, given))*modes%omega(j))*carried(:, j)
+      end do
+      damping = matmul(carried, transpose(carried))
+   end subroutine modal_damping
+
+end module rbs_solve_modal_matrices
