@@ -3,7 +3,7 @@ module rbs_app_commands
    use, intrinsic :: iso_fortran_env, only: error_unit
    use rbs_app_progress, only: terminal_progress
    use rbs_app_say, only: say
-   use rbs_app_signals, only: keep_if_stopped, remove_if_stopped
+   use rbs_app_signals, only: remove_if_stopped
    use rbs_base_constants, only: pi
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_kinds, only: wp
@@ -64,7 +64,7 @@ contains
       call check_output(file, path, case, error)
       if (allocated(error)) return
       call solve(case, column, history, path, file, recorder, summary, quiet, error)
-      call keep_if_stopped()
+      call remove_if_stopped('')
       call recorder%close(.not. allocated(error), closing)
       if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
       if (allocated(error)) then

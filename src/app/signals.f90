@@ -9,7 +9,7 @@ module rbs_app_signals
    implicit none
    private
 
-   public :: prepare_process, remove_if_stopped, keep_if_stopped, remove_unfinished
+   public :: prepare_process, remove_if_stopped, remove_unfinished
 
    !> Numbers of signals: hangup, interrupt, broken pipe, end, file too large.
    integer(c_int), parameter :: hangup = 1, interrupt = 2, broken_pipe = 13, termination = 15, too_large = 25
@@ -66,22 +66,18 @@ contains
       end do
    end subroutine prepare_process
 
-   !> Remove a file if the process is stopped from now on.
+   !> Remove a file if the process is stopped from now on; no file if the path is empty.
    subroutine remove_if_stopped(path)
       character(len=*), intent(in) :: path
       integer :: i
 
-      call keep_if_stopped()
+      doomed(1) = c_null_char
       if (len(path) == 0 .or. len(path) >= longest) return
       doomed(len(path) + 1) = c_null_char
       do i = len(path), 1, -1
          doomed(i) = path(i:i)
       end do
    end subroutine remove_if_stopped
-
-   subroutine keep_if_stopped()
-      doomed(1) = c_null_char
-   end subroutine keep_if_stopped
 
    !> Remove the unfinished file and end as the signal asks for.
    subroutine on_signal(number) bind(c)

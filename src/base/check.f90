@@ -4,7 +4,7 @@ module rbs_base_check
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_kinds, only: wp
-   use rbs_base_constants, only: unset, beyond_meaning
+   use rbs_base_constants, only: unset, unset_integer, beyond_meaning
    use rbs_base_error, only: message_list
    use rbs_base_text, only: to_text, nearest_name, list_of
    implicit none
@@ -12,14 +12,25 @@ module rbs_base_check
 
    public :: is_given, check_positive, check_finite, check_name
 
+   !> Whether the user has given a number. Lists and texts that are not given are not allocated.
+   interface is_given
+      module procedure :: real_is_given, integer_is_given
+   end interface is_given
+
 contains
 
-   !> Whether the user has given this number.
-   elemental logical function is_given(x)
+   elemental logical function real_is_given(x)
       real(wp), intent(in) :: x
 
-      is_given = transfer(x, 0_int64) /= transfer(unset, 0_int64)
-   end function is_given
+      ! By its bits: a NaN is given, and comparing it would trap.
+      real_is_given = transfer(x, 0_int64) /= transfer(unset, 0_int64)
+   end function real_is_given
+
+   elemental logical function integer_is_given(i)
+      integer, intent(in) :: i
+
+      integer_is_given = i /= unset_integer
+   end function integer_is_given
 
    !> The number must be given, finite and above zero.
    subroutine check_positive(x, name, unit, messages, ok)

@@ -7,7 +7,7 @@
 !>     list      lists the values that differ from the defaults, for the writer
 module rbs_base_key_visitor
    use rbs_base_check, only: is_given
-   use rbs_base_constants, only: unset, unset_integer
+   use rbs_base_constants, only: unset
    use rbs_base_error, only: message_list
    use rbs_base_keys, only: key_type, bound_type, check_number, find_key, choice_place, choice_name, &
                             choice_list, real_kind, integer_kind, logical_kind, word_kind, text_kind, &
@@ -178,7 +178,7 @@ contains
       real(wp) :: x
 
       x = unset
-      if (i /= unset_integer) x = i
+      if (is_given(i)) x = i
       call one_number(self, key_type(name=name, kind=integer_kind, unit=unit, bound=bound, default=x, &
                                      meaning=meaning, optional=is_true(optional)), x)
       if (is_given(x)) i = nint(x)

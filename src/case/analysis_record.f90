@@ -5,8 +5,7 @@ module rbs_case_analysis_record
    use rbs_base_error, only: message_list
    use rbs_base_text, only: to_text
    use rbs_base_check, only: is_given
-   use rbs_case_methods, only: method_type, methods, method_named, method_choices, methods_taking, &
-                               quoted_names
+   use rbs_case_methods, only: method_type, methods, method_named, method_choices, takes, quoted_names
    use rbs_base_key_visitor, only: key_visitor, visited_record
    use rbs_base_keys, only: bound_type, above_zero, one_or_more
    implicit none
@@ -159,25 +158,23 @@ contains
       method = method_named(self%method)
       ! A name that is not known has been reported already.
       if (method%name == '') return
-      call refuse(is_given(self%dt) .and. .not. method%dt, 'dt')
-      call refuse(is_given(self%duration) .and. .not. method%in_time, 'duration')
-      call refuse(is_given(self%max_seconds) .and. .not. method%in_time, 'max_seconds')
-      call refuse(self%events /= '' .and. .not. method%events, 'events')
-      call refuse(is_given(self%tolerance) .and. .not. method%tolerance, 'tolerance')
-      call refuse(is_given(self%rho_infinity) .and. .not. method%rho_infinity, 'rho_infinity')
-      call refuse(self%allow_unstable .and. .not. method%allow_unstable, 'allow_unstable')
+      call refuse('dt', is_given(self%dt))
+      call refuse('duration', is_given(self%duration))
+      call refuse('max_seconds', is_given(self%max_seconds))
+      call refuse('events', self%events /= '')
+      call refuse('tolerance', is_given(self%tolerance))
+      call refuse('rho_infinity', is_given(self%rho_infinity))
+      call refuse('allow_unstable', self%allow_unstable)
 
    contains
 
-      subroutine refuse(unused, key)
-         logical, intent(in) :: unused
+      subroutine refuse(key, given)
          character(len=*), intent(in) :: key
+         logical, intent(in) :: given
          character(len=:), allocatable :: names
-         logical :: takes(size(methods))
 
-         if (.not. unused) return
-         takes = methods_taking(key)
-         call quoted_names(takes, names)
+         if (.not. given .or. takes(method, key)) return
+         call quoted_names(takes(methods, key), names)
          call messages%add('analysis: '//key//" has no meaning for method = '"//trim(method%name)// &
                            "'; remove it or set method = "//names)
       end subroutine refuse

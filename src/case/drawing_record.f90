@@ -1,6 +1,7 @@
 !> The drawing that the springs of a case were made from: a section, and what the model was told. The springs
 !> stand in the case as well, and the solver takes them; with the drawing the case also says what they are of.
 module rbs_case_drawing_record
+   use rbs_base_check, only: is_given
    use rbs_base_constants, only: unset, unset_integer
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor, visited_record
@@ -208,7 +209,7 @@ contains
       if (find_steel(section, layout%steel) == 0) then
          call messages%add(name//': steel is not one of the steels of the section')
       end if
-      if (layout%between_steel == unset_integer) return
+      if (.not. is_given(layout%between_steel)) return
       if (find_steel(section, layout%between_steel) == 0) then
          call messages%add(name//': between_steel is not one of the steels of the section')
       end if

@@ -6,7 +6,7 @@ module rbs_case_methods
    implicit none
    private
 
-   public :: method_type, methods, method_named, method_choices, methods_taking, quoted_names, method_rows
+   public :: method_type, methods, method_named, method_choices, takes, quoted_names, method_rows
    public :: usual_tolerance, usual_rho_infinity, methods_columns, responses_tried
 
    !> What is usual: error of a step of rk45, spectral radius at infinite frequency.
@@ -90,26 +90,26 @@ contains
       end do
    end function method_choices
 
-   !> For each method, whether it uses a setting of the analysis.
-   pure function methods_taking(key) result(takes)
+   !> Whether a method uses a setting of the analysis.
+   elemental logical function takes(method, key)
+      type(method_type), intent(in) :: method
       character(len=*), intent(in) :: key
-      logical :: takes(size(methods))
 
       select case (key)
       case ('dt')
-         takes = methods%dt
+         takes = method%dt
       case ('duration', 'max_seconds')
-         takes = methods%in_time
+         takes = method%in_time
       case ('events')
-         takes = methods%events
+         takes = method%events
       case ('tolerance')
-         takes = methods%tolerance
+         takes = method%tolerance
       case ('rho_infinity')
-         takes = methods%rho_infinity
+         takes = method%rho_infinity
       case default
-         takes = methods%allow_unstable
+         takes = method%allow_unstable
       end select
-   end function methods_taking
+   end function takes
 
    !> Some of the methods by their quoted names: "'rk4' or 'rk45'".
    subroutine quoted_names(wanted, text)
@@ -134,7 +134,8 @@ contains
       character(len=:), allocatable, intent(out) :: text
       type(method_type) :: method
       character(len=8) :: kind
-      integer :: i
+      character(len=4) :: facts(6)
+      integer :: i, k
 
       text = methods_columns
       do i = 1, size(methods)
@@ -143,27 +144,16 @@ contains
          if (method%explicit) kind = 'explicit'
          if (method%implicit) kind = 'implicit'
          if (.not. method%in_time) kind = 'static'
-         text = text//new_line('a')//trim(method%name)//' '//to_text(method%order)//' '//trim(kind)// &
-                yes_or_no(method%adaptive)//yes_or_no(method%dt)//yes_or_no(method%events)// &
-                yes_or_no(method%tolerance)//yes_or_no(method%rho_infinity)// &
-                yes_or_no(method%allow_unstable)//' '// &
-                to_text(method%limit_share)//' '//to_text(method%period_share)//' '// &
+         facts = merge(' yes', ' no ', [method%adaptive, method%dt, method%events, method%tolerance, &
+                                        method%rho_infinity, method%allow_unstable])
+         text = text//new_line('a')//trim(method%name)//' '//to_text(method%order)//' '//kind
+         do k = 1, size(facts)
+            text = trim(text)//facts(k)
+         end do
+         text = trim(text)//' '//to_text(method%limit_share)//' '//to_text(method%period_share)//' '// &
                 to_text(method%usual_error)//' '//to_text(method%largest_error)//' '// &
                 to_text(merge(responses_tried, 0, method%largest_error > 0.0_wp))
       end do
    end subroutine method_rows
-
-   pure function yes_or_no(fact) result(text)
-      logical, intent(in) :: fact
-      character(len=answer_length(fact)) :: text
-
-      text = merge(' yes', ' no ', fact)
-   end function yes_or_no
-
-   pure integer function answer_length(fact)
-      logical, intent(in) :: fact
-
-      answer_length = merge(4, 3, fact)
-   end function answer_length
 
 end module rbs_case_methods

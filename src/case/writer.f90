@@ -258,21 +258,14 @@ contains
    pure subroutine quote(text, quoted)
       character(len=*), intent(in) :: text
       character(len=:), allocatable, intent(out) :: quoted
-      character(len=2*len(text) + 2) :: full
-      integer :: i, at
+      integer :: i
 
-      at = 1
-      full(1:1) = ''''
+      quoted = ''''
       do i = 1, len(text)
-         at = at + 1
-         full(at:at) = text(i:i)
-         if (text(i:i) /= '''') cycle
-         at = at + 1
-         full(at:at) = ''''
+         quoted = quoted//text(i:i)
+         if (text(i:i) == '''') quoted = quoted//''''
       end do
-      at = at + 1
-      full(at:at) = ''''
-      quoted = full(:at)
+      quoted = quoted//''''
    end subroutine quote
 
    pure function value_text(kind, x) result(text)

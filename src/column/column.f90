@@ -11,7 +11,7 @@
 !> is the lowest one turned about the middle of the column: it slips and opens along the directions of the
 !> body above it, which are fixed.
 module rbs_column_column
-   use rbs_base_constants, only: unset
+   use rbs_base_check, only: is_given
    use rbs_base_kinds, only: wp
    use rbs_column_chain, only: deformations, displacements, body_forces, second_order_forces, &
                                add_joint_stiffness, add_axial_stiffness
@@ -197,7 +197,7 @@ contains
       n = column%n
       column%axial_load = spec%axial_load
       column%axial_force_ratio = spec%axial_force_ratio
-      if (spec%axial_height > unset) column%axial_lever = spec%axial_height/spec%height
+      if (is_given(spec%axial_height)) column%axial_lever = spec%axial_height/spec%height
       dead = merge(0.0_wp, column%axial_load*column%axial_lever, column%axial_follows)
       if (spec%self_weight) column%gravity = spec%gravity
       above(n + 1) = 0.0_wp

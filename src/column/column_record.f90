@@ -1,6 +1,7 @@
 !> What the user asked of the column: geometry, mass, joints, axial load, damping.
 module rbs_column_column_record
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use rbs_base_check, only: is_given
    use rbs_base_constants, only: unset, standard_gravity
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor, visited_record
@@ -232,7 +233,7 @@ contains
       type(message_list), intent(inout) :: messages
 
       if (.not. ieee_is_finite(self%axial_height)) return
-      if (.not. self%axial_height > unset) return
+      if (.not. is_given(self%axial_height)) return
       if (self%footing .or. self%top == 'fixed') then
          call messages%add('column: axial_height is the lever of the load on a cantilever; remove it, or '// &
                            'the footing and the fixed top')

@@ -37,16 +37,18 @@ contains
 
    !> Cut a line into at most `most_columns` + 1 fields. If the separator is a blank, any run of blanks and
    !> tabs separates two fields.
-   subroutine split(line, separator, fields)
+   subroutine split(line, first, separator, fields)
       character(len=*), intent(in) :: line
+      !> Where the line begins in the text, which ends with it
+      integer, intent(in) :: first
       character(len=1), intent(in) :: separator
       type(field_list), intent(out) :: fields
       integer :: at, last, stop_at
 
-      at = 1
+      at = first
       last = len(line)
       ! Spreadsheets may write separators at the end of every line.
-      do while (last > 0)
+      do while (last >= first)
          if (scan(line(last:last), ' '//tab) == 0) exit
          last = last - 1
       end do

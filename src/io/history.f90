@@ -97,23 +97,23 @@ contains
       is_peer = .false.
       call file%next_line(first, last, found)
       if (.not. found) return
-      call split(file%text(first:last), ' ', fields)
+      call split(file%text(:last), first, ' ', fields)
       if (fields%count == 0) return
       ! The name of a test may be a number, but a line with as many numbers as a row is itself a row.
       numbers = 0
       do i = 1, fields%count
-         call read_real(file%text(first + fields%first(i) - 1:first + fields%last(i) - 1), value, status)
+         call read_real(file%text(fields%first(i):fields%last(i)), value, status)
          if (status == number_ok) numbers = numbers + 1
       end do
       if (numbers < fields%count) numbers = 0
       call file%next_line(first, last, found)
       if (.not. found) return
       ! A csv separated by blanks may have the row `0 0` there.
-      call split(file%text(first:last), ' ', fields)
+      call split(file%text(:last), first, ' ', fields)
       if (count_of(file%text(first:last)) < merge(0, 1, fields%count == 1)) return
       call file%next_line(first, last, found)
       if (.not. found) return
-      call split(file%text(first:last), ' ', fields)
+      call split(file%text(:last), first, ' ', fields)
       is_peer = fields%count >= 2 .and. numbers /= fields%count
    end function is_peer
 
@@ -161,7 +161,7 @@ contains
       do i = 1, len(head)
          if (scan(head(i:i), '=,') == 1) head(i:i) = ' '
       end do
-      call split(head, ' ', fields)
+      call split(head, 1, ' ', fields)
       count = 0
       do i = 1, fields%count
          call read_real(head(fields%first(i):fields%last(i)), value, status)
@@ -182,9 +182,9 @@ contains
       do
          call file%next_line(first, last, found)
          if (.not. found) exit
-         call split(file%text(first:last), ' ', fields)
+         call split(file%text(:last), first, ' ', fields)
          do i = 1, fields%count
-            associate (word => file%text(first + fields%first(i) - 1:first + fields%last(i) - 1))
+            associate (word => file%text(fields%first(i):fields%last(i)))
                call read_real(word, value, status)
                if (status /= number_ok) then
                   call report_number(path, file%line, i, word, status, error)
@@ -212,7 +212,7 @@ contains
       type(field_list) :: fields
 
       count_of = -1
-      call split(line, ' ', fields)
+      call split(line, 1, ' ', fields)
       if (fields%count < 1 .or. fields%count > 2) return
       if (fields%count == 2) then
          if (line(fields%first(2):fields%last(2)) /= '0') return
@@ -286,7 +286,7 @@ contains
          return
       end if
       separator = separator_of(file%text(first:last))
-      call split(file%text(first:last), separator, fields)
+      call split(file%text(:last), first, separator, fields)
       named = .true.
       worded = .false.
       do i = 1, fields%count
@@ -301,7 +301,7 @@ contains
       history%labels = ''
       if (named) then
          do i = 1, fields%count
-            history%labels(i) = plain(file%text(first + fields%first(i) - 1:first + fields%last(i) - 1))
+            history%labels(i) = plain(file%text(fields%first(i):fields%last(i)))
          end do
       else
          call file%go_back(begin)
@@ -346,7 +346,7 @@ contains
          call file%next_line(first, last, found)
          if (.not. found) exit
          if (is_blank(file%text(first:last))) cycle
-         call split(file%text(first:last), separator, fields)
+         call split(file%text(:last), first, separator, fields)
          if (fields%count > most_columns) then
             call fatal_error(error, bad_input, path//' line '//to_text(file%line)//': has more than '// &
                              to_text(most_columns)//' columns; is it a history?')
@@ -372,7 +372,7 @@ contains
             end do
          end if
          do i = 1, fields%count
-            associate (word => file%text(first + fields%first(i) - 1:first + fields%last(i) - 1))
+            associate (word => file%text(fields%first(i):fields%last(i)))
                call read_real(word, history%values(i, history%rows), status)
                if (status /= number_ok) then
                   call report_number(path, file%line, i, word, status, error)

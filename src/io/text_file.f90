@@ -55,7 +55,7 @@ contains
       integer(c_int) :: descriptor, status
 
       if (is_folder(path)) then
-         call fatal_error(error, bad_input, path//': is a folder; give the path of a file')
+         call refuse(path, 'is a folder; give the path of a file', error)
          return
       end if
       if (path == '-') then
@@ -74,7 +74,7 @@ contains
          if (file%text(:3) == char(239)//char(187)//char(191)) file%text = file%text(4:)
       end if
       if (index(file%text, achar(0)) > 0) then
-         call fatal_error(error, bad_input, path//': is not a text file (it has a zero byte)')
+         call refuse(path, 'is not a text file (it has a zero byte)', error)
       end if
    end subroutine load_text
 
@@ -96,31 +96,20 @@ contains
       if (path /= '-') inquire (file=path, size=size)
       limit = most
       if (size < 1_int64) limit = min(most, most_of_pipe)
-      if (size > int(limit, int64)) then
-         call report_size(path, real(size, wp), limit, error)
-         return
-      end if
-      room = int(size)
+      room = int(min(size, int(limit, int64)))
       if (size < 1_int64) room = first_of_pipe
       allocate (character(len=room) :: file%text, stat=status)
       length = 0
-      do while (status == 0)
+      count = 0_c_size_t
+      do while (status == 0 .and. max(size, int(length, int64)) <= int(limit, int64))
          if (length < room) then
             count = read_some(descriptor, file%text(length + 1:room), length == 0)
          else
             count = read_some(descriptor, one, .false.)
          end if
-         if (count < 0_c_size_t) then
-            call report_read(path, count, error)
-            return
-         end if
-         if (count == 0_c_size_t) exit
+         if (count <= 0_c_size_t) exit
          length = length + int(count)
-         if (length > limit) then
-            call report_size(path, real(length, wp), limit, error)
-            return
-         end if
-         if (length <= room) cycle
+         if (length <= room .or. length > limit) cycle
          room = int(min(2*int(room, int64), int(limit, int64)))
          allocate (character(len=room) :: longer, stat=status)
          if (status /= 0) exit
@@ -128,11 +117,20 @@ contains
          longer(length:length) = one
          call move_alloc(longer, file%text)
       end do
+      size = max(size, int(length, int64))
       if (status /= 0) then
-         call fatal_error(error, bad_input, path//': there is not enough memory to read it; raise the '// &
-                          'limit of the process or make the file shorter')
+         call refuse(path, 'there is not enough memory to read it; raise the limit of the process or make '// &
+                     'the file shorter', error)
+      else if (size > int(limit, int64)) then
+         call refuse(path, 'has '//to_text(real(size, wp))//' bytes, more than the '//to_text(limit)// &
+                     ' that are read; is it the right file?', error)
+      else if (count == nobody_writes) then
+         call refuse(path, 'is a pipe that nobody writes to; start its writer first, or give the path of a '// &
+                     'file', error)
+      else if (count < 0_c_size_t) then
+         call refuse(path, 'cannot be read; check the path and the permissions', error)
       else if (length == 0) then
-         call fatal_error(error, bad_input, path//': is empty')
+         call refuse(path, 'is empty', error)
       else if (length < room) then
          file%text = file%text(:length)
       end if
@@ -172,6 +170,7 @@ contains
       end do
    end function read_some
 
+   !> Why a path cannot be opened.
    subroutine report_open(path, error)
       character(len=*), intent(in) :: path
       type(error_type), allocatable, intent(inout) :: error
@@ -186,33 +185,16 @@ contains
          open (newunit=unit, file=path, action='read', status='old', iostat=status, iomsg=message)
          if (status == 0) close (unit)
       end if
-      call fatal_error(error, bad_input, path//': cannot be opened ('//trim(message)// &
-                       '); check the path and the permissions')
+      call refuse(path, 'cannot be opened ('//trim(message)//'); check the path and the permissions', error)
    end subroutine report_open
 
-   subroutine report_size(path, size, most, error)
-      character(len=*), intent(in) :: path
-      real(wp), intent(in) :: size
-      integer, intent(in) :: most
+   !> Report why a file is not read.
+   subroutine refuse(path, reason, error)
+      character(len=*), intent(in) :: path, reason
       type(error_type), allocatable, intent(inout) :: error
 
-      call fatal_error(error, bad_input, path//': has '//to_text(size)//' bytes, more than the '// &
-                       to_text(most)//' that are read; is it the right file?')
-   end subroutine report_size
-
-   subroutine report_read(path, fault, error)
-      character(len=*), intent(in) :: path
-      !> `nobody_writes` or `cannot_read`
-      integer(c_size_t), intent(in) :: fault
-      type(error_type), allocatable, intent(inout) :: error
-
-      if (fault == nobody_writes) then
-         call fatal_error(error, bad_input, path//': is a pipe that nobody writes to; start its writer '// &
-                          'first, or give the path of a file')
-      else
-         call fatal_error(error, bad_input, path//': cannot be read; check the path and the permissions')
-      end if
-   end subroutine report_read
+      call fatal_error(error, bad_input, path//': '//reason)
+   end subroutine refuse
 
    !> First and last character of the next line in `text`; lines end with LF, CR or both. `found` is false
    !> after the last line.

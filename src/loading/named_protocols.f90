@@ -145,7 +145,7 @@ contains
       integer, allocatable, intent(out) :: cycles(:)
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: amplitude, most, top
-      integer :: step, last, trailing
+      integer :: step, last, count, trailing
 
       last = size(ladder%amplitude)
       top = ladder%amplitude(last)
@@ -168,23 +168,19 @@ contains
       step = 0
       do
          step = step + 1
+         if (step > last .and. .not. ladder%rise > 0.0_wp) exit
+         amplitude = top + (step - last)*ladder%rise
+         count = ladder%further_cycles
+         trailing = ladder%further_trailing
          if (step <= last) then
             amplitude = ladder%amplitude(step)
-         else if (.not. ladder%rise > 0.0_wp) then
-            exit
-         else
-            amplitude = top + (step - last)*ladder%rise
+            count = ladder%cycles(step)
+            trailing = 0
+            if (allocated(ladder%trailing)) trailing = ladder%trailing(step)
          end if
          if (amplitude > most) exit
          amplitudes = [amplitudes, amplitude]
-         trailing = 0
-         if (step <= last) then
-            cycles = [cycles, ladder%cycles(step)]
-            if (allocated(ladder%trailing)) trailing = ladder%trailing(step)
-         else
-            cycles = [cycles, ladder%further_cycles]
-            trailing = ladder%further_trailing
-         end if
+         cycles = [cycles, count]
          if (trailing == 0) cycle
          amplitudes = [amplitudes, ladder%trailing_factor*amplitude]
          cycles = [cycles, trailing]

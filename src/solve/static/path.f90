@@ -1,7 +1,7 @@
 !> What the static paths have in common, whatever the kinematics: the springs, what is driven, the way from
 !> target to target, and the rows.
 module rbs_solve_static_path
-   use rbs_base_constants, only: unset, unset_integer
+   use rbs_base_check, only: is_given
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
@@ -139,7 +139,7 @@ contains
       integer, intent(in) :: m, every
 
       kept_rows = 0
-      if (every == unset_integer) then
+      if (.not. is_given(every)) then
          kept_rows = m
       else if (m > 0) then
          kept_rows = (m - 1)/every + 1 + merge(0, 1, mod(m - 1, every) == 0)
@@ -234,8 +234,8 @@ contains
       integer :: i, n
 
       n = task%every
-      if (n == unset_integer) n = 1
-      may_collapse = task%collapse_drift > unset
+      if (.not. is_given(n)) n = 1
+      may_collapse = is_given(task%collapse_drift)
       self%task => task
       call check%begin(self%column, missing_work(self))
       ! A path that goes on has forces and works from before, and the round-off of theirs.

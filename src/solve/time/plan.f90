@@ -1,7 +1,7 @@
 !> Which steps are taken from which time to which, and after which of them a row is kept.
 module rbs_solve_time_plan
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use rbs_base_constants, only: beyond_meaning, unset_integer
+   use rbs_base_constants, only: beyond_meaning
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -168,7 +168,7 @@ contains
       !> Every n-th step is kept, and the last; `unset_integer`: every interval
       integer, intent(in) :: every
 
-      if (every == unset_integer) then
+      if (.not. is_given(every)) then
          rows = 1 + self%intervals
       else
          rows = 1 + self%steps/every + merge(0, 1, mod(self%steps, every) == 0)
