@@ -10,6 +10,7 @@
 module rbs_column_dead_loads
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type, finite
+   use rbs_structure_spring_place, only: shear, flexure, axial
    implicit none
    private
 
@@ -28,7 +29,7 @@ contains
    pure subroutine dead_loads(column, q, force, load, arm, band, top)
       type(column_type), intent(in) :: column
       !> Deformations of the joints (unknowns)
-      real(wp), intent(in), contiguous :: q(:)
+      real(wp), intent(in) :: q(column%n, *)
       !> Lateral force F [N]
       real(wp), intent(in) :: force
       !> Loads [N, N, N m] and arms [1, 1, m] (unknowns, joint by joint)
@@ -59,22 +60,22 @@ contains
          across = force*c + column%axial_slip(i)*s
          along = exact*force*s - column%axial_slip(i)*c
          j = per*(i - 1)
-         if (column%opens) opening = q(2*n + i)
+         if (column%opens) opening = q(i, axial)
          load(j + 1) = across
          arm(j + 1) = c
-         top = top + q(i)*c + exact*opening*s
+         top = top + q(i, shear)*c + exact*opening*s
          if (column%opens) then
             load(j + 2) = exact*force*s - column%axial_joint(i)*c
             arm(j + 2) = exact*s
          end if
          if (i > 1 .and. .not. (i == n .and. column%held)) then
-            load(j) = load(j) - q(i)*along + exact*opening*across
-            arm(j) = arm(j) - exact*(q(i)*s - opening*c)
-            band(1, j) = band(1, j) + exact*(q(i)*across + opening*along)
+            load(j) = load(j) - q(i, shear)*along + exact*opening*across
+            arm(j) = arm(j) - exact*(q(i, shear)*s - opening*c)
+            band(1, j) = band(1, j) + exact*(q(i, shear)*across + opening*along)
             band(2, j) = along
             if (column%opens) band(3, j) = -exact*across
          end if
-         rotation = rotation + q(n + i)
+         rotation = rotation + q(i, flexure)
          if (exact > 0.0_wp) then
             s = sin(rotation)
             c = cos(rotation)
@@ -93,7 +94,7 @@ contains
    pure subroutine add_springs(column, f, k, load, band)
       type(column_type), intent(in) :: column
       !> Forces and stiffness of the springs (unknowns)
-      real(wp), intent(in), contiguous :: f(:), k(:)
+      real(wp), intent(in) :: f(column%n, *), k(column%n, *)
       real(wp), intent(inout), contiguous :: load(:), band(:, :)
       integer :: i, j, n, per
 
@@ -101,18 +102,18 @@ contains
       per = per_joint(column)
       do i = 1, n
          j = per*(i - 1)
-         load(j + 1) = load(j + 1) - f(i)
-         band(1, j + 1) = band(1, j + 1) + k(i)
+         load(j + 1) = load(j + 1) - f(i, shear)
+         band(1, j + 1) = band(1, j + 1) + k(i, shear)
          if (column%opens) then
-            load(j + 2) = load(j + 2) - f(2*n + i)
-            band(1, j + 2) = band(1, j + 2) + k(2*n + i)
+            load(j + 2) = load(j + 2) - f(i, axial)
+            band(1, j + 2) = band(1, j + 2) + k(i, axial)
          end if
-         load(j + per) = load(j + per) - f(n + i)
-         band(1, j + per) = band(1, j + per) + k(n + i)
+         load(j + per) = load(j + per) - f(i, flexure)
+         band(1, j + per) = band(1, j + per) + k(i, flexure)
          if (i == 1) cycle
-         load(j) = load(j) + f(n + i)
-         band(1, j) = band(1, j) + k(n + i)
-         band(per + 1, j) = band(per + 1, j) - k(n + i)
+         load(j) = load(j) + f(i, flexure)
+         band(1, j) = band(1, j) + k(i, flexure)
+         band(per + 1, j) = band(per + 1, j) - k(i, flexure)
       end do
    end subroutine add_springs
 
@@ -123,17 +124,17 @@ contains
       integer, intent(in) :: per
       real(wp), intent(in), contiguous :: z(:)
       !> (unknowns, or 2 n of them)
-      real(wp), intent(out), contiguous :: q(:)
+      real(wp), intent(out) :: q(column%n, *)
       real(wp) :: below
       integer :: i, n
 
       n = column%n
       below = 0.0_wp
       do i = 1, n
-         q(i) = z(per*(i - 1) + 1)
-         q(n + i) = z(per*i) - below
+         q(i, shear) = z(per*(i - 1) + 1)
+         q(i, flexure) = z(per*i) - below
          below = z(per*i)
-         if (per == 3) q(2*n + i) = z(per*(i - 1) + 2)
+         if (per == 3) q(i, axial) = z(per*(i - 1) + 2)
       end do
    end subroutine to_joints
 
