@@ -102,6 +102,7 @@ module rbs_column_column
       procedure :: forces
       procedure :: axial_forces
       procedure :: axial_force
+      procedure :: index_of
       procedure :: add_stiffness
       procedure :: add_geometric
    end type column_type
@@ -401,6 +402,14 @@ contains
       if (self%held) axial(2*n) = 0.0_wp
    end subroutine axial_forces
 
+   !> Number of a spring's joint from the bottom up, that of a footing included.
+   pure integer function index_of(self, spring) result(i)
+      class(column_type), intent(in) :: self
+      integer, intent(in) :: spring
+
+      i = self%place(spring)%joint + merge(1, 0, self%footing)
+   end function index_of
+
    !> Axial force at a spring from axial load, weight and vertical motion, compression positive [N].
    pure real(wp) function axial_force(self, spring, load)
       class(column_type), intent(in) :: self
@@ -408,7 +417,7 @@ contains
       real(wp), intent(in) :: load(:)
       integer :: i
 
-      i = mod(spring - 1, self%n) + 1
+      i = self%index_of(spring)
       axial_force = self%compression(i) + load(top_axial) + load(vertical)*self%lifted_joint(i)
    end function axial_force
 

@@ -101,7 +101,7 @@ contains
 
       some = .false.
       if (.not. path%by_force) return
-      do i = 1, 2*path%column%n
+      do i = 1, path%moving
          if (path%springs%one_way(i) /= -direction) cycle
          some = .true.
          call path%springs%leave(i, direction)

@@ -8,6 +8,7 @@ module rbs_solve_static_curve
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_static_curved_equilibrium, only: path_point
    use rbs_solve_static_path, only: on_the_end
+   use rbs_structure_spring_place, only: flexure
    implicit none
    private
 
@@ -35,9 +36,9 @@ module rbs_solve_static_curve
       real(wp) :: length = 0.0_wp
       !> Its ends
       type(path_point) :: near, far
-      !> Rates that still count for slips and openings, and for rotations
+      !> Rates that still count for slips and openings, and for rotations, and which springs rotations act on
       real(wp), private :: least(2) = 0.0_wp
-      integer, private :: n = 0
+      logical, allocatable, private :: turns(:)
    contains
       procedure :: set
       procedure :: is_gentle
@@ -54,7 +55,7 @@ contains
       type(column_type), intent(in) :: column
       type(path_point), intent(in) :: near, far
 
-      self%n = column%n
+      if (.not. allocated(self%turns)) self%turns = column%place%kind == flexure
       self%length = far%t - near%t
       self%near = near
       self%far = far
@@ -84,7 +85,7 @@ contains
       least(1) = noise*motion_of(column, point)
       least(2) = least(1)/column%joint_height(column%n + 1)
       do i = 1, column%unknowns
-         rate(i) = merge(point%rate(i), 0.0_wp, abs(point%rate(i)) > least(merge(2, 1, (i - 1)/column%n == 1)))
+         rate(i) = merge(point%rate(i), 0.0_wp, abs(point%rate(i)) > least(merge(2, 1, column%place(i)%kind == flexure)))
       end do
    end function clean
 
@@ -142,7 +143,7 @@ contains
       do i = 1, springs%count
          if (springs%one_way(i) == 0) cycle
          largest = max(abs(self%near%rate(i)), abs(self%far%rate(i)), &
-                       self%least(merge(2, 1, (i - 1)/self%n == 1))/same_rate)
+                       self%least(merge(2, 1, self%turns(i)))/same_rate)
          if (largest > 0.0_wp) least = min(least, springs%one_way(i)*way*point%rate(i)/largest + same_rate)
       end do
       if (.not. springs%pressed) return

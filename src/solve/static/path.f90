@@ -14,7 +14,7 @@ module rbs_solve_static_path
    use rbs_output_channels, only: response_type
    use rbs_solve_static_row_check, only: row_check
    use rbs_solve_task, only: task_type
-   use rbs_structure_spring_place, only: spring_name
+   use rbs_structure_spring_place, only: spring_name, axial, flexure
    implicit none
    private
 
@@ -205,7 +205,7 @@ contains
       integer :: i, joint
 
       do joint = 1, self%column%n
-         i = 2*self%column%n + joint
+         i = self%column%at(axial, joint)
          tension = -self%column%compression(joint)
          call self%springs%load_to(i, tension, found)
          if (found .or. abs(tension - self%springs%force(i)) <= no_force*abs(tension)) cycle
@@ -231,7 +231,7 @@ contains
       type(row_check) :: check
       type(response_type) :: response
       logical :: may_collapse
-      integer :: i, n
+      integer :: i, n, lost
 
       n = task%every
       if (.not. is_given(n)) n = 1
@@ -257,10 +257,9 @@ contains
                return
             end if
          end if
-         task%summary%lost_joint = max(self%springs%lost_joint() - self%column%n, 0)
-         if (task%summary%lost_joint > 0) then
-            call fall_of(self%springs, self%column%n + task%summary%lost_joint, task%summary%fall)
-         end if
+         lost = self%springs%lost_joint()
+         task%summary%lost_joint = findloc(self%column%at(flexure, :), lost, dim=1)
+         if (lost > 0) call fall_of(self%springs, lost, task%summary%fall)
          ! Where a joint has lost its axial load, that is what ends the path.
          if (task%summary%lost_joint > 0 .and. allocated(failure)) deallocate (failure)
          if (allocated(failure)) failure%message = 'row '//to_text(i)//': '//failure%message

@@ -54,7 +54,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(standing_type) :: standing
       real(wp) :: press(path%column%n), missing
-      integer :: joint
+      integer :: lost
       logical :: goes_on
 
       call before%take_up(path%column, standing, path%springs, error)
@@ -64,11 +64,11 @@ contains
       if (varies) press = standing%press
       goes_on = standing%kind == static_state .and. all(abs(press - standing%press) <= 0.0_wp)
       call go_under(path%springs, press, standing%pressed)
-      joint = path%springs%lost_joint() - path%column%n
-      if (joint > 0) then
+      lost = path%springs%lost_joint()
+      if (lost > 0) then
          call fatal_error(error, analysis_failed, 'initial: the layers of '// &
-                          trim(spring_name(path%column%place(path%column%n + joint)))// &
-                          ' cannot carry the axial load of '//to_text(press(joint))//' N in the '// &
+                          trim(spring_name(path%column%place(lost)))// &
+                          ' cannot carry the axial load of '//to_text(press(path%column%index_of(lost)))//' N in the '// &
                           'state that the first analysis ended in; give a smaller axial_load')
          return
       end if
@@ -222,7 +222,7 @@ contains
          if (path%springs%pressed) then
             do i = 1, size(path%springs%layered)
                associate (place => path%springs%layered(i))
-                  standing%press(place - path%column%n) = path%springs%press_at(place)
+                  standing%press(path%column%index_of(place)) = path%springs%press_at(place)
                end associate
             end do
          end if

@@ -7,6 +7,7 @@ module rbs_solve_static_row_check
    use rbs_column_column, only: column_type, finite
    use rbs_column_top, only: top_displacement
    use rbs_hysteresis_springs, only: spring_array
+   use rbs_structure_spring_place, only: shear, flexure, axial
    implicit none
    private
 
@@ -45,12 +46,12 @@ contains
       real(wp), intent(in) :: missing_work
 
       self%at_begin = missing_work
-      associate (n => column%n, k => column%initial_stiffness, &
-                 way => no_way*column%joint_height(column%n + 1))
+      associate (k => column%initial_stiffness, way => no_way*column%joint_height(column%n + 1), &
+                 slips => column%at(shear, :), turns => column%at(flexure, :))
          self%largest_place = no_digits*column%joint_height(column%n + 1)
          self%largest_force = no_digits*maxval(abs(column%compression))
-         self%stiff_force = max(maxval(k(:n))*way, maxval(k(n + 1:2*n))*no_way**2/way)
-         self%stiff_work = sum(k(:n))*way**2 + sum(k(n + 1:2*n))*no_way**2
+         self%stiff_force = max(maxval(k(slips))*way, maxval(k(turns))*no_way**2/way)
+         self%stiff_work = sum(k(slips))*way**2 + sum(k(turns))*no_way**2
       end associate
       if (column%kinematics /= finite) return
       self%place = of_place_on_curve
@@ -71,16 +72,16 @@ contains
       !> What is wrong, for a message; not allocated if nothing is
       character(len=:), allocatable, intent(out) :: fault
       real(wp) :: place, reach, term, stiff_work
-      integer :: i, n
+      integer :: i
 
-      n = column%n
       place = 0.0_wp
       stiff_work = 0.0_wp
       self%largest_force = max(self%largest_force, abs(force))
-      associate (height => column%joint_height(n + 1))
-         do i = 1, 2*n
+      associate (height => column%joint_height(column%n + 1))
+         do i = 1, size(column%place)
+            if (column%place(i)%kind == axial) cycle
             reach = 1.0_wp
-            if (i > n) reach = height
+            if (column%place(i)%kind == flexure) reach = height
             place = place + abs(column%arm(i)*springs%d(i))
             self%largest_force = max(self%largest_force, abs(springs%force(i))/reach)
             term = column%initial_stiffness(i)*abs(springs%d(i))

@@ -8,6 +8,7 @@ module rbs_solve_static_run_static
    use rbs_solve_static_curved, only: trace_curved
    use rbs_solve_static_straight, only: trace_straight
    use rbs_solve_task, only: task_type
+   use rbs_structure_spring_place, only: flexure
    implicit none
    private
 
@@ -81,7 +82,7 @@ contains
          column%axial_slip = column%axial_joint
          if (column%held) column%axial_slip(n) = 0.0_wp
          column%compression = column%compression + more
-         column%spring(n + 1:2*n)%axial_load = column%compression
+         column%spring(column%at(flexure, :))%axial_load = column%compression
          column%axially_loaded = column%kinematics /= small .and. &
                                  (abs(load) > 0.0_wp .or. column%gravity > 0.0_wp)
       end associate

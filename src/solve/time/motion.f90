@@ -234,7 +234,7 @@ contains
       !> Slopes of the loads [per s]
       real(wp), intent(in) :: slope(4)
 
-      press_rate = slope(axial) + slope(vertical)*self%column%lifted_joint(mod(spring - 1, self%column%n) + 1)
+      press_rate = slope(axial) + slope(vertical)*self%column%lifted_joint(self%column%index_of(spring))
    end function press_rate
 
    !> Tell layered joints the axial forces that their next move leads to.
