@@ -1,4 +1,5 @@
-!> Layered joints whose axial loads vary: they follow straight paths in rotation and axial load, and are on planes
+!> Layered joints whose axial loads vary: they follow straight paths in rotation and axial load, and are on
+!> planes
 !> where other springs are on lines.
 module rbs_hysteresis_interaction_joints
    use rbs_base_constants, only: unbounded
@@ -12,7 +13,8 @@ module rbs_hysteresis_interaction_joints
    implicit none
    private
 
-   public :: vary_axial_loads, fall_of, fill_openings, opening_of, choose_lines, nearest_layer, moment_on_plane
+   public :: vary_axial_loads, fall_of, fill_openings, opening_of, choose_lines, nearest_layer, &
+        moment_on_plane
    public :: least_forward_rate, put_on_plane, go_under
 
 contains
@@ -25,7 +27,8 @@ contains
       springs%pressed = size(springs%layered) > 0
       if (.not. springs%pressed) return
       springs%on_plane(springs%layered) = .true.
-      allocate (springs%press_to(springs%count), springs%press_at(springs%count), springs%centre(springs%count), &
+      allocate (springs%press_to(springs%count), springs%press_at(springs%count), &
+                springs%centre(springs%count), &
                 source=0.0_wp)
       call springs%fit_planes()
       springs%press_to(:) = springs%press_at

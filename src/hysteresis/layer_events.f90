@@ -80,11 +80,12 @@ contains
             v = open + section%y(j)*turn
             ! Most layers stay inside their line and do not turn.
             if (d(2) >= section%lo(j) .and. d(2) <= section%hi(j) .and. v(1)*v(2) > 0.0_wp .and. &
-                section%one_way(j)*v(2) >= 0.0_wp) cycle
+                section%unload_on_reversal(j)*v(2) >= 0.0_wp) cycle
             where (abs(v) <= least) v = 0.0_wp
             ! A layer that keeps still does not turn.
             if (.not. any(abs(v) > 0.0_wp)) cycle
-            call find_exit([section%lo(j), section%hi(j)], section%branch(j)%one_way, d, v, h, digits, one)
+            call find_exit([section%lo(j), section%hi(j)], section%branch(j)%unload_on_reversal, d, v, h, &
+                           digits, one)
             if (one%way == 0 .or. one%estimate >= exit%estimate) cycle
             exit = one
             layer = j

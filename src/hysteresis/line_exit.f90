@@ -22,10 +22,10 @@ module rbs_hysteresis_line_exit
 contains
 
    !> The exit from a line within a step.
-   pure subroutine find_exit(ends, one_way, d, v, h, digits, exit)
+   pure subroutine find_exit(ends, unload_on_reversal, d, v, h, digits, exit)
       !> The ends of the line, from below and from above, and whether it is one-way
       real(wp), intent(in) :: ends(2)
-      integer, intent(in) :: one_way
+      integer, intent(in) :: unload_on_reversal
       !> Deformation and velocity at the start of the step and at its end
       real(wp), intent(in) :: d(2), v(2)
       !> Length of the step [s], and what the last digits of a deformation leave undecided
@@ -44,7 +44,7 @@ contains
             far = end_of(way) - d(1)
             exit = line_exit(way, .false., time_to(far, v(1), turning), turning)
             return
-         else if (one_way == way) then
+         else if (unload_on_reversal == way) then
             exit = line_exit(-way, .true., turning, h)
             return
          end if
@@ -55,7 +55,7 @@ contains
       if (is_beyond(d(2), way)) then
          far = end_of(way) - d(1)
          exit = line_exit(way, .false., h*min(max(far/(d(2) - d(1)), 0.0_wp), 1.0_wp), h)
-      else if (one_way == -way) then
+      else if (unload_on_reversal == -way) then
          exit = line_exit(way, .true., 0.5_wp*h, h)
       end if
 
@@ -74,7 +74,7 @@ contains
          integer, intent(in) :: side
 
          is_beyond = .false.
-         if (one_way == -side) return
+         if (unload_on_reversal == -side) return
          if (abs(end_of(side)) > no_end) return
          is_beyond = side*(at - end_of(side)) > 4.0_wp*spacing(max(abs(end_of(side)), abs(d(1)))) + digits
       end function is_beyond

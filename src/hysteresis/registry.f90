@@ -21,12 +21,14 @@ module rbs_hysteresis_registry
       'elastic', 'bilinear', 'takeda', 'compression', 'peak_oriented', 'pinching', 'concrete', 'steel', &
       'layered']
 
-   character(len=*), parameter :: in_joints = in_shear//' '//in_flexure, across_joints = in_axial//' '//in_layer, &
+   character(len=*), parameter :: in_joints = in_shear//' '//in_flexure, &
+        across_joints = in_axial//' '//in_layer, &
                                   anywhere = in_joints//' '//across_joints
 
 contains
 
-   !> A rule without parameters yet, its keys, and where springs of this rule may be used: some of the words of
+   !> A rule without parameters yet, its keys, and where springs of this rule may be used: some of the words
+   !> of
    !> `rbs_hysteresis_rule`, separated by blanks. If the name is not known, no rule, no keys and blanks.
    subroutine new_rule(name, rule, keys, places)
       character(len=*), intent(in) :: name

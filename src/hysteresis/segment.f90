@@ -22,10 +22,10 @@ module rbs_hysteresis_segment
       real(wp) :: lo = -unbounded, hi = unbounded
       !> Whether the point at the end still belongs to this line. An open end belongs to the line that
       !> follows: a spring that arrives there is on that line. Only a crossing of zero force is closed.
-      logical :: lo_closed = .false., hi_closed = .false.
+      logical :: includes_lower_end = .false., includes_upper_end = .false.
       !> A one-way line is left at once when the motion turns back: its rear end moves with the spring.
       !> +1: one-way upward, lo moves; -1: one-way downward, hi moves; 0: both ways.
-      integer :: one_way = 0
+      integer :: unload_on_reversal = 0
    contains
       procedure :: force
       procedure :: end_toward
@@ -52,31 +52,41 @@ contains
       end_toward = merge(self%hi, self%lo, direction > 0)
    end function end_toward
 
-   !> A line through (d0, f0) seen from side s: it leads outward to `far`, and back to `near`.
-   !> Rules are written once, for the positive side; this procedure mirrors their lines.
-   elemental type(segment) function outward(self, s, near, far, near_closed, one_way) result(line)
+   !> A branch through (d0, f0) seen from side s: it leads outward to `far`, and back to `near`.
+   !> Rules are written once, for the positive side; this procedure mirrors their branches.
+   elemental type(segment) function outward(self, s, near, far, unload_on_reversal, includes_near_end) &
+      result(branch)
       !> Anchor and slope are taken from here
       class(segment), intent(in) :: self
       !> Side, +1 or -1
       integer, intent(in) :: s
       !> Ends, `far` further in the direction s than `near`
       real(wp), intent(in) :: near, far
-      !> Whether the near end is closed; that of a one-way line always is, as the spring is on it
-      logical, intent(in) :: near_closed
-      !> Whether the line is left when the motion turns back from s
-      logical, intent(in) :: one_way
+      !> Whether the branch is left when the motion turns back from s, by default yes. The spring is on the near
+      !> end of such a branch
+      logical, intent(in), optional :: unload_on_reversal
+      !> Whether the near end belongs to a branch that leads both ways, by default yes
+      logical, intent(in), optional :: includes_near_end
+      logical :: included
 
-      line = segment(d0=self%d0, f0=self%f0, k=self%k)
-      if (s > 0) then
-         line%lo = near
-         line%hi = far
-         line%lo_closed = near_closed .or. one_way
-      else
-         line%lo = far
-         line%hi = near
-         line%hi_closed = near_closed .or. one_way
+      branch = segment(d0=self%d0, f0=self%f0, k=self%k)
+      branch%unload_on_reversal = s
+      included = .true.
+      if (present(unload_on_reversal)) then
+         if (.not. unload_on_reversal) then
+            branch%unload_on_reversal = 0
+            if (present(includes_near_end)) included = includes_near_end
+         end if
       end if
-      if (one_way) line%one_way = s
+      if (s > 0) then
+         branch%lo = near
+         branch%hi = far
+         branch%includes_lower_end = included
+      else
+         branch%lo = far
+         branch%hi = near
+         branch%includes_upper_end = included
+      end if
    end function outward
 
    !> Save or restore the line.
@@ -89,9 +99,9 @@ contains
       call stream%item(self%k)
       call stream%item(self%lo)
       call stream%item(self%hi)
-      call stream%item(self%lo_closed)
-      call stream%item(self%hi_closed)
-      call stream%item(self%one_way)
+      call stream%item(self%includes_lower_end)
+      call stream%item(self%includes_upper_end)
+      call stream%item(self%unload_on_reversal)
    end subroutine serialize
 
    !> The first and the last deformation that belong to a line. At an open end it is the number next to it.
@@ -99,14 +109,14 @@ contains
       type(segment), intent(in) :: line
 
       first_on = line%lo
-      if (.not. line%lo_closed .and. line%lo > -unbounded) first_on = next_above(line%lo)
+      if (.not. line%includes_lower_end .and. line%lo > -unbounded) first_on = next_above(line%lo)
    end function first_on
 
    pure real(wp) function last_on(line)
       type(segment), intent(in) :: line
 
       last_on = line%hi
-      if (.not. line%hi_closed .and. line%hi < unbounded) last_on = -next_above(-line%hi)
+      if (.not. line%includes_upper_end .and. line%hi < unbounded) last_on = -next_above(-line%hi)
    end function last_on
 
    !> The upper end of a line from the last deformation that belongs to it.

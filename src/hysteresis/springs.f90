@@ -1,4 +1,5 @@
-!> The springs of a structure: rules off the hot path, their present branches as plain arrays on it, and a mark to
+!> The springs of a structure: rules off the hot path, their present branches as plain arrays on it, and a
+!> mark to
 !> return to.
 module rbs_hysteresis_springs
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
@@ -33,9 +34,9 @@ module rbs_hysteresis_springs
       !> belong to it, they are the numbers next to it.
       real(wp), allocatable :: first(:), last(:)
       !> Whether the ends themselves belong to the line (count), see `segment`
-      logical, allocatable :: lo_closed(:), hi_closed(:)
+      logical, allocatable :: includes_lower_end(:), includes_upper_end(:)
       !> One-way lines (count), see `segment`
-      integer, allocatable :: one_way(:)
+      integer, allocatable :: unload_on_reversal(:)
       !> Work done on each spring along its path, exact (count) [J]
       real(wp), allocatable :: work(:)
       !> The flexural spring whose work a spring decays with, 0: none (count)
@@ -70,7 +71,7 @@ module rbs_hysteresis_springs
       procedure :: next_branch
       procedure :: force
       procedure :: end_toward
-      procedure :: move
+      procedure :: advance_to
       procedure :: advance_on_branch
       procedure :: leave
       procedure :: arrive
@@ -106,7 +107,8 @@ contains
       n = size(rules%of)
       self%count = n
       self%rules = rules
-      allocate (self%slot(n), self%one_way(n), self%lo_closed(n), self%hi_closed(n))
+      allocate (self%slot(n), self%unload_on_reversal(n), self%includes_lower_end(n), &
+                self%includes_upper_end(n))
       allocate (self%d(n), self%work(n), self%work_before(n), source=0.0_wp)
       allocate (self%d0(n), self%f0(n), self%k(n), self%first(n), self%last(n))
       allocate (self%heard(n), source=0)
@@ -197,17 +199,17 @@ contains
       class(spring_array), intent(in) :: self
       integer, intent(in) :: i, direction
 
-      if (self%one_way(i) == -direction) then
+      if (self%unload_on_reversal(i) == -direction) then
          end_toward = self%d(i)
       else if (direction > 0) then
-         end_toward = upper_end(self%last(i), self%hi_closed(i))
+         end_toward = upper_end(self%last(i), self%includes_upper_end(i))
       else
-         end_toward = lower_end(self%first(i), self%lo_closed(i))
+         end_toward = lower_end(self%first(i), self%includes_lower_end(i))
       end if
    end function end_toward
 
    !> Move one spring monotonically to a new deformation, over any number of lines.
-   subroutine move(self, i, d)
+   subroutine advance_to(self, i, d)
       class(spring_array), intent(inout) :: self
       integer, intent(in) :: i
       !> New deformation [m or rad]
@@ -225,7 +227,7 @@ contains
          end if
       end do
       self%stuck = .true.
-   end subroutine move
+   end subroutine advance_to
 
    !> Move along the present line to d; the rear end of a one-way line follows.
    pure subroutine advance_on_branch(self, i, d)
@@ -238,9 +240,9 @@ contains
       f_mean = self%f0(i) + self%k(i)*(0.5_wp*(d + self%d(i)) - self%d0(i))
       self%work(i) = self%work(i) + f_mean*(d - self%d(i))
       self%d(i) = d
-      if (self%one_way(i) > 0) then
+      if (self%unload_on_reversal(i) > 0) then
          self%first(i) = d
-      else if (self%one_way(i) < 0) then
+      else if (self%unload_on_reversal(i) < 0) then
          self%last(i) = d
       end if
    end subroutine advance_on_branch
@@ -255,7 +257,8 @@ contains
 
       line = self%line_of(i)
       if (self%journal%open) call self%journal%keep(i, line, self%slot(i))
-      if (self%one_way(i) /= -direction) call advance_on_branch(self, i, merge(line%hi, line%lo, direction > 0))
+      if (self%unload_on_reversal(i) /= -direction) call advance_on_branch(self, i, &
+           merge(line%hi, line%lo, direction > 0))
       flexural_work = 0.0_wp
       associate (j => self%heard(i))
          if (j > 0) flexural_work = self%work_before(j) + self%work(j)
@@ -275,8 +278,8 @@ contains
 
       call change_line(self, i, direction)
       ! A new one-way line starts at the present deformation, to the last bit.
-      if (self%one_way(i) > 0) self%first(i) = self%d(i)
-      if (self%one_way(i) < 0) self%last(i) = self%d(i)
+      if (self%unload_on_reversal(i) > 0) self%first(i) = self%d(i)
+      if (self%unload_on_reversal(i) < 0) self%last(i) = self%d(i)
    end subroutine leave
 
    !> Put a spring exactly on the end of its line in a direction; from an open end it goes to the next line.
@@ -286,7 +289,7 @@ contains
       integer, intent(in) :: direction
       logical :: closed
 
-      closed = merge(self%hi_closed(i), self%lo_closed(i), direction > 0)
+      closed = merge(self%includes_upper_end(i), self%includes_lower_end(i), direction > 0)
       call advance_on_branch(self, i, self%end_toward(i, direction))
       if (.not. closed) call self%leave(i, direction)
    end subroutine arrive
@@ -308,7 +311,7 @@ contains
          way = f - self%force(i)
          if (.not. abs(way) > 0.0_wp) return
          direction = merge(1, -1, way > 0.0_wp)
-         if (self%one_way(i) /= -direction) then
+         if (self%unload_on_reversal(i) /= -direction) then
             associate (d0 => self%d0(i), f0 => self%f0(i), k => self%k(i))
                far = self%end_toward(i, direction)
                is_there = k > 0.0_wp .and. abs(far) >= unbounded
@@ -359,8 +362,8 @@ contains
          end do
          journal%changed = 0
          do i = 1, self%count
-            if (self%one_way(i) > 0) self%first(i) = self%d(i)
-            if (self%one_way(i) < 0) self%last(i) = self%d(i)
+            if (self%unload_on_reversal(i) > 0) self%first(i) = self%d(i)
+            if (self%unload_on_reversal(i) < 0) self%last(i) = self%d(i)
          end do
       end associate
       if (self%pressed) call self%fit_planes()
@@ -379,10 +382,10 @@ contains
       call stream%item(self%first)
       call stream%item(self%last)
       call stream%item(self%work)
-      call stream%item(self%lo_closed)
-      call stream%item(self%hi_closed)
+      call stream%item(self%includes_lower_end)
+      call stream%item(self%includes_upper_end)
       do i = 1, self%count
-         call stream%item(self%one_way(i))
+         call stream%item(self%unload_on_reversal(i))
          call self%slot(i)%memory%serialize(stream)
       end do
       self%version = modulo(self%version + 1, huge(1))
@@ -399,13 +402,13 @@ contains
       line%d0 = self%d0(i)
       line%f0 = self%f0(i)
       line%k = self%k(i)
-      line%lo = lower_end(self%first(i), self%lo_closed(i))
-      line%hi = upper_end(self%last(i), self%hi_closed(i))
-      if (self%one_way(i) > 0) line%lo = self%d(i)
-      if (self%one_way(i) < 0) line%hi = self%d(i)
-      line%lo_closed = self%lo_closed(i)
-      line%hi_closed = self%hi_closed(i)
-      line%one_way = self%one_way(i)
+      line%lo = lower_end(self%first(i), self%includes_lower_end(i))
+      line%hi = upper_end(self%last(i), self%includes_upper_end(i))
+      if (self%unload_on_reversal(i) > 0) line%lo = self%d(i)
+      if (self%unload_on_reversal(i) < 0) line%hi = self%d(i)
+      line%includes_lower_end = self%includes_lower_end(i)
+      line%includes_upper_end = self%includes_upper_end(i)
+      line%unload_on_reversal = self%unload_on_reversal(i)
    end function line_of
 
    !> Store the line of a spring.
@@ -417,9 +420,9 @@ contains
       self%d0(i) = line%d0
       self%f0(i) = line%f0
       self%k(i) = line%k
-      self%lo_closed(i) = line%lo_closed
-      self%hi_closed(i) = line%hi_closed
-      self%one_way(i) = line%one_way
+      self%includes_lower_end(i) = line%includes_lower_end
+      self%includes_upper_end(i) = line%includes_upper_end
+      self%unload_on_reversal(i) = line%unload_on_reversal
       self%first(i) = first_on(line)
       self%last(i) = last_on(line)
    end subroutine put_line
@@ -435,8 +438,8 @@ contains
       call put_line(self, i, line)
       self%d(i) = d
       self%work(i) = work
-      if (line%one_way > 0) self%first(i) = d
-      if (line%one_way < 0) self%last(i) = d
+      if (line%unload_on_reversal > 0) self%first(i) = d
+      if (line%unload_on_reversal < 0) self%last(i) = d
       self%version = modulo(self%version + 1, huge(1))
    end subroutine put
 
@@ -452,19 +455,21 @@ contains
          ! One body: while both springs stay on their lines, neither a loop nor a call is needed.
          if (d(1) <= self%last(1) .and. d(1) >= self%first(1) .and. &
              d(2) <= self%last(2) .and. d(2) >= self%first(2)) then
-            call advance_pair(d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, &
+            call advance_pair(d, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
+                              self%first, &
                            self%last)
             return
          end if
       end if
       if (.not. are_within(self%count, d, self%first, self%last)) then
          do i = 1, self%count
-            if (d(i) > self%last(i) .or. d(i) < self%first(i)) call self%move(i, d(i))
+            if (d(i) > self%last(i) .or. d(i) < self%first(i)) call self%advance_to(i, d(i))
          end do
          if (self%stuck) return
       end if
       ! Springs that have arrived do not move any more.
-      call advance_all(self%count, d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, &
+      call advance_all(self%count, d, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
+                       self%first, &
                     self%last)
    end subroutine move_all
 
@@ -485,10 +490,12 @@ contains
 
       if (self%pressed) call press_joints(self, d)
       if (self%count == 2) then
-         call advance_pair(d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, self%last)
+         call advance_pair(d, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
+                           self%first, self%last)
          return
       end if
-      call advance_all(self%count, d, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, &
+      call advance_all(self%count, d, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
+                       self%first, &
                     self%last)
    end subroutine carry_to
 
@@ -505,8 +512,8 @@ contains
    end function are_within
 
    !> `advance_on_branch` for the two springs of one body.
-   pure subroutine advance_pair(to, d0, f0, k, one_way, d, work, first, last)
-      integer, intent(in) :: one_way(2)
+   pure subroutine advance_pair(to, d0, f0, k, unload_on_reversal, d, work, first, last)
+      integer, intent(in) :: unload_on_reversal(2)
       real(wp), intent(in) :: to(2), d0(2), f0(2), k(2)
       real(wp), intent(inout) :: d(2), work(2), first(2), last(2)
       integer :: i
@@ -514,14 +521,14 @@ contains
       work = work + (f0 + k*(0.5_wp*(to + d) - d0))*(to - d)
       d = to
       do i = 1, 2
-         if (one_way(i) > 0) first(i) = to(i)
-         if (one_way(i) < 0) last(i) = to(i)
+         if (unload_on_reversal(i) > 0) first(i) = to(i)
+         if (unload_on_reversal(i) < 0) last(i) = to(i)
       end do
    end subroutine advance_pair
 
    !> `advance_on_branch` for all springs at once.
-   pure subroutine advance_all(n, to, d0, f0, k, one_way, d, work, first, last)
-      integer, intent(in) :: n, one_way(n)
+   pure subroutine advance_all(n, to, d0, f0, k, unload_on_reversal, d, work, first, last)
+      integer, intent(in) :: n, unload_on_reversal(n)
       real(wp), intent(in) :: to(n), d0(n), f0(n), k(n)
       real(wp), intent(inout) :: d(n), work(n), first(n), last(n)
       integer :: i
@@ -529,8 +536,8 @@ contains
       do i = 1, n
          work(i) = work(i) + (f0(i) + k(i)*(0.5_wp*(to(i) + d(i)) - d0(i)))*(to(i) - d(i))
          d(i) = to(i)
-         first(i) = merge(to(i), first(i), one_way(i) > 0)
-         last(i) = merge(to(i), last(i), one_way(i) < 0)
+         first(i) = merge(to(i), first(i), unload_on_reversal(i) > 0)
+         last(i) = merge(to(i), last(i), unload_on_reversal(i) < 0)
       end do
    end subroutine advance_all
 
@@ -583,7 +590,8 @@ contains
       real(wp) :: to(size(q))
 
       to = min(max(q + rate*way, self%first(:size(q))), self%last(:size(q)))
-      call advance_all(size(q), to, self%d0, self%f0, self%k, self%one_way, self%d, self%work, self%first, self%last)
+      call advance_all(size(q), to, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
+                       self%first, self%last)
    end subroutine go_along
 
    !> The plane that a layered joint is on.
@@ -597,7 +605,7 @@ contains
       end select
       self%first(i) = -unbounded
       self%last(i) = unbounded
-      self%one_way(i) = 0
+      self%unload_on_reversal(i) = 0
       self%version = modulo(self%version + 1, huge(1))
    end subroutine read_plane
 
@@ -660,7 +668,7 @@ contains
 
       call spring%create([spec])
       do j = 1, size(d)
-         call spring%move(1, d(j))
+         call spring%advance_to(1, d(j))
          f(j) = spring%force(1)
          if (spring%stuck .or. spring%lost_joint() > 0) f(j) = ieee_value(f(j), ieee_quiet_nan)
       end do

@@ -244,7 +244,7 @@ contains
       spring = virgin
       do j = 2, size(d), 2
          s = merge(1, -1, d(j) > spring%d(1))
-         call spring%move(1, d(j - 1))
+         call spring%advance_to(1, d(j - 1))
          far = spring%end_toward(1, s)
          choice = random%uniform(0.0_wp, 1.0_wp)
          if (s*(d(j) - far) > 0.0_wp .and. choice > 0.5_wp) then
@@ -252,8 +252,8 @@ contains
             ! Turn there
             if (choice > 0.8_wp) d(j) = far
          end if
-         call spring%move(1, d(j - 1))
-         call spring%move(1, d(j))
+         call spring%advance_to(1, d(j - 1))
+         call spring%advance_to(1, d(j))
       end do
    end subroutine meet_ends
 
@@ -276,7 +276,7 @@ contains
             call spring%advance_on_branch(1, spring%end_toward(1, s))
             call spring%leave(1, s)
          end do
-         call spring%move(1, d(j))
+         call spring%advance_to(1, d(j))
       end do
    end function steepest
 
@@ -306,7 +306,7 @@ contains
          k = steepest(spec, virgin, d(:2*turns))
          spring = virgin
          do j = 1, 2*turns
-            call spring%move(1, d(j))
+            call spring%advance_to(1, d(j))
             f(j) = spring%force(1)
             if (j == at) detour = spring
          end do
@@ -314,10 +314,10 @@ contains
             e = sizes(i)*yield
             length = sign(e, random%uniform(-1.0_wp, 1.0_wp))
             spring = detour
-            call spring%move(1, d(at) + length)
+            call spring%advance_to(1, d(at) + length)
             change = 0.0_wp
             do j = at, 2*turns
-               call spring%move(1, d(j))
+               call spring%advance_to(1, d(j))
                change = max(change, abs(spring%force(1) - f(j)) - 1.0e-13_wp*k*maxval(abs(d(:2*turns))))
             end do
             change = change/(k*e)
@@ -359,7 +359,7 @@ contains
          call random_path(random, yield, d)
          unit = k*maxval(abs(d))**2
          do j = 1, size(d)
-            call spring%move(1, d(j))
+            call spring%advance_to(1, d(j))
             if (spring%work(1)/unit < min(found%virgin, found%closed)) call keep()
             found%virgin = min(found%virgin, spring%work(1)/unit)
          end do
@@ -374,7 +374,7 @@ contains
                end if
                before = [spring%force(1), spring%work(1)]
             end if
-            call spring%move(1, loop(modulo(j - 1, 4) + 1))
+            call spring%advance_to(1, loop(modulo(j - 1, 4) + 1))
          end do
       end do
 

@@ -29,9 +29,9 @@ contains
       begin = 0.0_wp
       do j = 1, size(d)
          do i = 1, parts - 1
-            call spring%move(1, begin + (d(j) - begin)*i/parts)
+            call spring%advance_to(1, begin + (d(j) - begin)*i/parts)
          end do
-         call spring%move(1, d(j))
+         call spring%advance_to(1, d(j))
          call check_same(error, spring%force(1), f(j), 'force')
          begin = d(j)
       end do
@@ -53,13 +53,13 @@ contains
       call spring%create([spec])
       do j = 1, size(d)
          copy = spring
-         call copy%move(1, random%uniform(-reach, reach))
+         call copy%advance_to(1, random%uniform(-reach, reach))
          call spring%mark()
-         call spring%move(1, random%uniform(-reach, reach))
-         call spring%move(1, random%uniform(-reach, reach))
+         call spring%advance_to(1, random%uniform(-reach, reach))
+         call spring%advance_to(1, random%uniform(-reach, reach))
          call spring%restore()
          if (mod(j, 2) == 0) call spring%forget_mark()
-         call spring%move(1, d(j))
+         call spring%advance_to(1, d(j))
          call check_same(error, spring%force(1), f(j), 'force')
       end do
    end subroutine check_copies

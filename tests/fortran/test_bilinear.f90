@@ -100,10 +100,10 @@ contains
 
       call spring%create([bilinear_1()])
       do j = 1, 3
-         call spring%move(1, 5.0_wp*s_d)
+         call spring%advance_to(1, 5.0_wp*s_d)
          if (j == 3) exit
          before = spring%work(1)
-         call spring%move(1, -5.0_wp*s_d)
+         call spring%advance_to(1, -5.0_wp*s_d)
       end do
       ! A parallelogram of height 2 q and width 2 (5 - 1) d_y, the plastic deformation.
       call check_close(error, spring%work(1) - before, 2.0_wp*q*8.0_wp*s_d, 1.0e-12_wp, 0.0_wp, 'work')

@@ -353,7 +353,7 @@ contains
          call random_spring(random, spec, d)
          call spring%create([spec])
          do j = 1, size(d)
-            call spring%move(1, d(j))
+            call spring%advance_to(1, d(j))
             call check_true(error, spring%work(1) >= -1.0e-9_wp, 'work')
          end do
       end do
@@ -383,14 +383,14 @@ contains
       call spec%set('f_res', 0.0_wp)
       call spec%set('lambda_s', 1.8_wp)
       call spring%create([spec])
-      call spring%move(1, 4.0_wp)
+      call spring%advance_to(1, 4.0_wp)
       call check_close(error, spring%force(1), 110.0_wp, 1.0e-14_wp, 0.0_wp, 'at 4')
       do i = 1, 50
-         call spring%move(1, -20.0_wp - i)
+         call spring%advance_to(1, -20.0_wp - i)
          call check_same(error, spring%force(1), 0.0_wp, 'nothing left on the other side')
          call check_close(error, spring%work(1), 324.5_wp, 1.0e-12_wp, 0.0_wp, 'work')
       end do
-      call spring%move(1, 4.0_wp)
+      call spring%advance_to(1, 4.0_wp)
       call check_close(error, spring%force(1), 110.0_wp, 1.0e-12_wp, 0.0_wp, 'by itself')
       call check_true(error, .not. spring%stuck, 'not stuck')
    end subroutine exhausted
@@ -407,7 +407,7 @@ contains
          call random_spring(random, spec, d)
          call spring%create([spec])
          do j = 1, size(d)
-            call spring%move(1, d(j))
+            call spring%advance_to(1, d(j))
             call check_true(error, spring%k(1) <= (1.0_wp + 1.0e-9_wp)*spec%initial_stiffness(), 'slope')
          end do
       end do

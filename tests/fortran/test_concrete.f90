@@ -222,7 +222,7 @@ contains
          do j = 1, size(to)
             direction = merge(1, -1, to(j) > d)
             do lines = 1, 100
-               if (line%one_way == -direction) then
+               if (line%unload_on_reversal == -direction) then
                   if (direction > 0) line%hi = d
                   if (direction < 0) line%lo = d
                end if
@@ -281,7 +281,7 @@ contains
          call random_spring(random, spec, d)
          call spring%create([spec])
          do j = 1, size(d)
-            call spring%move(1, d(j))
+            call spring%advance_to(1, d(j))
             call check_true(error, spring%work(1) >= -1.0e-10_wp, 'work')
          end do
       end do

@@ -796,7 +796,8 @@ contains
                                      [then%d, then%d0, then%f0, then%k, then%first, then%last, then%work], &
                                      'springs')
                      call check_equal(error, now%events, then%events, 'events')
-                     call check_true(error, all(now%one_way == then%one_way), 'one-way lines')
+                     call check_true(error, all(now%unload_on_reversal == then%unload_on_reversal), &
+                                     'one-way lines')
                   end associate
                   stepper%wanted = wanted
                   stepper%acceptable = acceptable

@@ -305,7 +305,7 @@ contains
          target = random%uniform(-2.0e-2_wp, 2.0e-2_wp)
          direction = merge(1, -1, target > rotation)
          do
-            if (line%one_way == -direction) then
+            if (line%unload_on_reversal == -direction) then
                if (direction > 0) line%hi = rotation
                if (direction < 0) line%lo = rotation
             else if (direction*(target - line%end_toward(direction)) < 0.0_wp) then

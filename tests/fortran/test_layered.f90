@@ -120,7 +120,7 @@ contains
       if (.not. abs(rotation - self%rotation) > 0.0_wp) return
       direction = merge(1, -1, rotation > self%rotation)
       do
-         if (self%line%one_way == -direction) then
+         if (self%line%unload_on_reversal == -direction) then
             if (direction > 0) self%line%hi = self%rotation
             if (direction < 0) self%line%lo = self%rotation
          else if (direction*(rotation - self%line%end_toward(direction)) < 0.0_wp) then

@@ -36,7 +36,7 @@ contains
       type(segment) :: line
 
       call check_same(error, [line%lo, line%hi], [-unbounded, unbounded], 'ends')
-      call check_equal(error, line%one_way, 0, 'both ways')
+      call check_equal(error, line%unload_on_reversal, 0, 'both ways')
    end subroutine endless
 
    subroutine outward_up(error)
@@ -44,10 +44,11 @@ contains
       type(segment) :: line
 
       line = segment(d0=1.0_wp, f0=2.0_wp, k=3.0_wp)
-      line = line%outward(1, near=0.5_wp, far=4.0_wp, near_closed=.true., one_way=.true.)
+      line = line%outward(1, near=0.5_wp, far=4.0_wp)
       call check_same(error, [line%lo, line%hi], [0.5_wp, 4.0_wp], 'ends')
-      call check_true(error, line%lo_closed .and. .not. line%hi_closed, 'the near end is closed')
-      call check_equal(error, line%one_way, 1, 'one-way upward')
+      call check_true(error, line%includes_lower_end .and. .not. line%includes_upper_end, &
+                      'the near end is closed')
+      call check_equal(error, line%unload_on_reversal, 1, 'one-way upward')
       call check_same(error, [line%d0, line%f0, line%k], [1.0_wp, 2.0_wp, 3.0_wp], 'the line itself')
    end subroutine outward_up
 
@@ -56,13 +57,15 @@ contains
       type(segment) :: line
 
       line = segment(d0=-1.0_wp, f0=-2.0_wp, k=3.0_wp)
-      line = line%outward(-1, near=-0.5_wp, far=-4.0_wp, near_closed=.true., one_way=.true.)
+      line = line%outward(-1, near=-0.5_wp, far=-4.0_wp)
       call check_same(error, [line%lo, line%hi], [-4.0_wp, -0.5_wp], 'ends')
-      call check_true(error, line%hi_closed .and. .not. line%lo_closed, 'the near end is closed')
-      call check_equal(error, line%one_way, -1, 'one-way downward')
-      line = line%outward(-1, near=-0.5_wp, far=-4.0_wp, near_closed=.false., one_way=.false.)
-      call check_true(error, .not. (line%hi_closed .or. line%lo_closed), 'both ends open')
-      call check_equal(error, line%one_way, 0, 'both ways')
+      call check_true(error, line%includes_upper_end .and. .not. line%includes_lower_end, &
+                      'the near end is closed')
+      call check_equal(error, line%unload_on_reversal, -1, 'one-way downward')
+      line = line%outward(-1, near=-0.5_wp, far=-4.0_wp, includes_near_end=.false., &
+                          unload_on_reversal=.false.)
+      call check_true(error, .not. (line%includes_upper_end .or. line%includes_lower_end), 'both ends open')
+      call check_equal(error, line%unload_on_reversal, 0, 'both ways')
    end subroutine outward_down
 
 end module test_segment

@@ -146,16 +146,16 @@ contains
       real(wp) :: force
 
       call original%create([takeda_1('kc')])
-      call original%move(1, 4.0_wp*d_y)
-      call original%move(1, -4.0_wp*d_y)
-      call original%move(1, 1.5_wp*d_y)
-      call original%move(1, -1.0_wp*d_y)
+      call original%advance_to(1, 4.0_wp*d_y)
+      call original%advance_to(1, -4.0_wp*d_y)
+      call original%advance_to(1, 1.5_wp*d_y)
+      call original%advance_to(1, -1.0_wp*d_y)
       force = original%force(1)
       copy = original
       ! Closes every loop of the copy; the original must still find its inner peak at 1.5 d_y.
-      call copy%move(1, 6.0_wp*d_y)
+      call copy%advance_to(1, 6.0_wp*d_y)
       call check_same(error, original%force(1), force, 'the original has not moved')
-      call original%move(1, 1.5_wp*d_y)
+      call original%advance_to(1, 1.5_wp*d_y)
       call check_close(error, original%force(1), 174899.408_wp, 0.0_wp, 1.0e-3_wp, 'S4, point 11')
    end subroutine deep_copy
 
@@ -251,15 +251,15 @@ contains
       real(wp) :: slope
 
       call springs%create([takeda_1('kc')])
-      call springs%move(1, -4.0_wp*d_y)
-      call springs%move(1, 4.0_wp*d_y)
-      call springs%move(1, 3.9_wp*d_y)
+      call springs%advance_to(1, -4.0_wp*d_y)
+      call springs%advance_to(1, 4.0_wp*d_y)
+      call springs%advance_to(1, 3.9_wp*d_y)
       slope = springs%k(1)
       call springs%arrive(1, -1)
       ! The spring has passed a crossing of zero force only when it is strictly beyond it.
       call check_close(error, springs%force(1), 0.0_wp, 0.0_wp, 1.0e-9_wp*f_y, 'zero force')
       call check_same(error, springs%k(1), slope, 'slope')
-      call springs%move(1, nearest(springs%d(1), -1.0_wp))
+      call springs%advance_to(1, nearest(springs%d(1), -1.0_wp))
       call check_true(error, springs%k(1) < slope, 'reloading beyond it')
    end subroutine arrive_closed
 
@@ -269,11 +269,11 @@ contains
       real(wp) :: force
 
       call springs%create([takeda_1('kc')])
-      call springs%move(1, 2.0_wp*d_y)
+      call springs%advance_to(1, 2.0_wp*d_y)
       force = springs%force(1)
-      call check_equal(error, springs%one_way(1), 1, 'one-way upward')
+      call check_equal(error, springs%unload_on_reversal(1), 1, 'one-way upward')
       call springs%leave(1, -1)
-      call check_equal(error, springs%one_way(1), 0, 'unloading goes both ways')
+      call check_equal(error, springs%unload_on_reversal(1), 0, 'unloading goes both ways')
       call check_close(error, springs%force(1), force, 1.0e-15_wp, 0.0_wp, 'the force stays')
       call check_same(error, springs%d(1), 2.0_wp*d_y, 'the deformation stays')
    end subroutine leave_one_way
@@ -318,8 +318,9 @@ contains
       call check_same(error, [a%d, a%d0, a%f0, a%k, a%first, a%last, a%work], &
                       [b%d, b%d0, b%f0, b%k, b%first, b%last, b%work], what)
       call check_equal(error, a%events, b%events, what//': events')
-      call check_true(error, all(a%one_way == b%one_way), what//': one-way lines')
-      call check_true(error, all((a%lo_closed .eqv. b%lo_closed) .and. (a%hi_closed .eqv. b%hi_closed)), &
+      call check_true(error, all(a%unload_on_reversal == b%unload_on_reversal), what//': one-way lines')
+      call check_true(error, all((a%includes_lower_end .eqv. b%includes_lower_end) .and. &
+                                 (a%includes_upper_end .eqv. b%includes_upper_end)), &
                       what//': closed ends')
       one = a
       other = b
@@ -364,11 +365,11 @@ contains
                call random_move(random, point)
                if (mod(j, 3) == 0) then
                   i = 1 + mod(j + trial, 6)
-                  call springs%move(i, point(i))
+                  call springs%advance_to(i, point(i))
                else if (mod(j, 7) == 0) then
                   ! Turn back on a one-way line.
                   i = 2 + mod(j + round, 4)
-                  if (springs%one_way(i) /= 0) call springs%leave(i, -springs%one_way(i))
+                  if (springs%unload_on_reversal(i) /= 0) call springs%leave(i, -springs%unload_on_reversal(i))
                else
                   call springs%move_all(point)
                end if
@@ -402,21 +403,21 @@ contains
          call springs%create([takeda_1(trim(inner(kind)))])
          d = 4.0_wp*d_y
          do j = 1, depth
-            call springs%move(1, d)
+            call springs%advance_to(1, d)
             d = -0.97_wp*d
          end do
          undisturbed = springs
          do i = 1, 40
             call springs%mark()
             do j = 1, i
-               call springs%move(1, random%uniform(-1.0_wp, 1.0_wp)*4.0_wp*d_y*0.97_wp**(depth - 5*i))
+               call springs%advance_to(1, random%uniform(-1.0_wp, 1.0_wp)*4.0_wp*d_y*0.97_wp**(depth - 5*i))
             end do
-            call springs%move(1, 6.0_wp*d_y)
+            call springs%advance_to(1, 6.0_wp*d_y)
             call springs%restore()
             call check_alike(error, springs, undisturbed, random, inner(kind)//', trip '//to_text(i))
             d = -0.97_wp*d
-            call springs%move(1, d)
-            call undisturbed%move(1, d)
+            call springs%advance_to(1, d)
+            call undisturbed%advance_to(1, d)
             call check_alike(error, springs, undisturbed, random, inner(kind)//', loop '//to_text(depth + i))
             if (allocated(error)) return
          end do
@@ -522,7 +523,7 @@ contains
       do j = 1, 1000
          d = random%uniform(-1.0_wp, 1.0_wp)
          if (mod(j, 10) == 0) d = 0.0_wp
-         call springs%move(1, d)
+         call springs%advance_to(1, d)
          call check_same(error, springs%force(1), 3.0_wp*min(d, 0.0_wp), 'force')
          call check_close(error, springs%work(1), 1.5_wp*min(d, 0.0_wp)**2, 1.0e-12_wp, 1.0e-13_wp, 'work')
       end do
@@ -539,13 +540,13 @@ contains
       call springs%create([compression(2.0_wp)])
       do round = 1, 10
          do i = 1, 5
-            call springs%move(1, steps(i))
+            call springs%advance_to(1, steps(i))
             call check_same(error, springs%force(1), 0.0_wp, 'open')
-            call springs%move(1, -steps(i))
+            call springs%advance_to(1, -steps(i))
             call check_same(error, springs%force(1), -2.0_wp*steps(i), 'closed')
          end do
       end do
-      call springs%move(1, 1.0_wp)
+      call springs%advance_to(1, 1.0_wp)
       call check_close(error, springs%work(1), 0.0_wp, 0.0_wp, 1.0e-15_wp, 'work')
    end subroutine contact_work
 
@@ -586,7 +587,7 @@ contains
       call check_true(error, found, 'there already')
       call check_same(error, springs%d(4), -4.0_wp, 'it stays there')
       ! From an open contact back to pressure.
-      call springs%move(3, 1.0_wp)
+      call springs%advance_to(3, 1.0_wp)
       call springs%load_to(3, -8.0_wp, found)
       call check_true(error, found, 'contact: found from the open side')
       call check_same(error, springs%d(3), -2.0_wp, 'contact: closed again')

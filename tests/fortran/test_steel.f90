@@ -120,14 +120,14 @@ contains
       integer :: i
 
       call spring%create([bank(0.0_wp)])
-      call spring%move(1, 4.2_wp)
+      call spring%advance_to(1, 4.2_wp)
       call spring%leave(1, -1)
       do i = 1, 6
          call spring%arrive(1, -1)
          call check_close(error, spring%d(1), 4.2_wp - 2.0_wp*y_32(i), 0.0_wp, 1.0e-9_wp, 'reach 3.2')
       end do
       ! Back from -4.2 the bank has a reach of 6.4.
-      call spring%move(1, -4.2_wp)
+      call spring%advance_to(1, -4.2_wp)
       call spring%leave(1, 1)
       do i = 1, 6
          call spring%arrive(1, 1)
@@ -201,10 +201,10 @@ contains
       call spec%set('endurance', 50.0_wp)
       call spring%create([spec])
       do i = 1, 40
-         call spring%move(1, 4.0_wp*(-1)**i)
+         call spring%advance_to(1, 4.0_wp*(-1)**i)
       end do
       call check_close(error, spring%force(1), 0.04_wp, 0.0_wp, 1.0e-12_wp, 'worn out')
-      call spring%move(1, -20.0_wp)
+      call spring%advance_to(1, -20.0_wp)
       call check_close(error, spring%force(1), -0.2_wp, 0.0_wp, 1.0e-12_wp, 'further out')
    end subroutine worn_out
 
@@ -422,16 +422,16 @@ contains
          at = int(random%uniform(1.0_wp, 2.0_wp*turns))
          spring = virgin
          do j = 1, 2*turns
-            call spring%move(1, d(j))
+            call spring%advance_to(1, d(j))
             f(j) = spring%force(1)
             if (j == at) detour = spring
          end do
          do i = 1, 3
             e = 10.0_wp**(-3*i)
             spring = detour
-            call spring%move(1, d(at) + sign(e, random%uniform(-1.0_wp, 1.0_wp)))
+            call spring%advance_to(1, d(at) + sign(e, random%uniform(-1.0_wp, 1.0_wp)))
             do j = at, 2*turns
-               call spring%move(1, d(j))
+               call spring%advance_to(1, d(j))
                largest = max(largest, abs(spring%force(1) - f(j))/e)
             end do
          end do
@@ -451,14 +451,14 @@ contains
          call spring%create([spec])
          call random_path(random, d)
          do j = 1, size(d)
-            call spring%move(1, d(j))
+            call spring%advance_to(1, d(j))
             call check_true(error, spring%work(1) >= 0.5_wp*spring%force(1)**2 - 1.0e-12_wp, &
                             'at least the elastic work')
          end do
          loop = random%uniform_array(-6.0_wp, 6.0_wp, 4)
          do j = 1, 8
             if (j == 5) begin = spring%work(1)
-            call spring%move(1, loop(modulo(j - 1, 4) + 1))
+            call spring%advance_to(1, loop(modulo(j - 1, 4) + 1))
          end do
          call check_true(error, spring%work(1) - begin >= -1.0e-12_wp, 'work of a closed loop')
       end do
@@ -502,7 +502,7 @@ contains
          do j = 1, size(to)
             direction = merge(1, -1, to(j) > d)
             do lines = 1, 100
-               if (line%one_way == -direction) then
+               if (line%unload_on_reversal == -direction) then
                   if (direction > 0) line%hi = d
                   if (direction < 0) line%lo = d
                end if
@@ -532,7 +532,7 @@ contains
          call spring%create([bank(0.01_wp)])
          do j = 1, 6
             if (j == 5) before = spring%events
-            call spring%move(1, amplitudes(i)*(-1)**(j + 1))
+            call spring%advance_to(1, amplitudes(i)*(-1)**(j + 1))
          end do
          call check_true(error, spring%events - before <= 18, 'lines of the third cycle')
       end do

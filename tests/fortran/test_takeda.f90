@@ -93,7 +93,7 @@ contains
                           inner(i)//' by hand')
          call spring%create([takeda_1(inner(i))])
          do j = 1, 6
-            call spring%move(1, d(j))
+            call spring%advance_to(1, d(j))
             if (j == 4) before = spring%work(1)
          end do
          ! For each half cycle the loading triangle less the unloading triangle.
@@ -122,7 +122,7 @@ contains
       do i = 1, 3
          call spring%create([takeda_1(inner(i))])
          do j = 1, 9
-            call spring%move(1, d(j))
+            call spring%advance_to(1, d(j))
             f(j) = spring%force(1)
             work(j) = spring%work(1)
          end do
@@ -213,7 +213,7 @@ contains
          most = d_y
          do j = 1, 60
             d = random%uniform(-6.0_wp, 6.0_wp)*d_y
-            call spring%move(1, d)
+            call spring%advance_to(1, d)
             s = merge(1, -1, d > 0.0_wp)
             if (s*d <= most(s)) cycle
             most(s) = s*d
@@ -313,17 +313,17 @@ contains
          call random_path(random, spec%get('d_y'), d)
          call spring%create([spec])
          do j = 1, size(d)
-            call spring%move(1, d(j))
-            if (.not. (spring%lo_closed(1) .or. spring%hi_closed(1))) cycle
-            if (spring%one_way(1) /= 0) cycle
-            direction = merge(1, -1, spring%hi_closed(1))
+            call spring%advance_to(1, d(j))
+            if (.not. (spring%includes_lower_end(1) .or. spring%includes_upper_end(1))) cycle
+            if (spring%unload_on_reversal(1) /= 0) cycle
+            direction = merge(1, -1, spring%includes_upper_end(1))
             found = found + 1
             call spring%arrive(1, direction)
             back = spring%d(1) - 1.0e-3_wp*direction
             do ulps = 1, 1 + mod(path, 4)
-               call spring%move(1, nearest(spring%d(1), real(direction, wp)))
+               call spring%advance_to(1, nearest(spring%d(1), real(direction, wp)))
             end do
-            call spring%move(1, back)
+            call spring%advance_to(1, back)
             call check_true(error, spring%k(1) > 0.0_wp .and. spring%k(1) < 1.0_wp, 'slope after the turn')
             call check_close(error, spring%force(1), 0.0_wp, 0.0_wp, 1.0e-3_wp, 'force after the turn')
          end do
@@ -339,13 +339,13 @@ contains
 
       call check_true(error, b1*k_r4 < slope_4, 'the factor alone would create energy')
       call spring%create([takeda_1('kr')])
-      call spring%move(1, 4.0_wp*d_y)
-      call spring%move(1, -4.0_wp*d_y)
-      call spring%move(1, 1.0_wp*d_y)
+      call spring%advance_to(1, 4.0_wp*d_y)
+      call spring%advance_to(1, -4.0_wp*d_y)
+      call spring%advance_to(1, 1.0_wp*d_y)
       before = spring%work(1)
-      call spring%move(1, 0.0_wp)
+      call spring%advance_to(1, 0.0_wp)
       call check_close(error, spring%force(1), -slope_4*zero_4, 1.0e-12_wp, 0.0_wp, 'on the reloading line')
-      call spring%move(1, 1.0_wp*d_y)
+      call spring%advance_to(1, 1.0_wp*d_y)
       call check_close(error, spring%work(1) - before, 0.0_wp, 0.0_wp, 1.0e-9_wp, 'no work')
    end subroutine secant_floor
 
@@ -448,7 +448,7 @@ contains
                change = from + (d(j) - from)*i/50 - to
                f = spring%force(1)
                to = to + change
-               call spring%move(1, to)
+               call spring%advance_to(1, to)
                if (abs(change) > 1.0e-6_wp) steepest = max(steepest, abs(spring%force(1) - f)/abs(change))
             end do
          end do
@@ -488,7 +488,7 @@ contains
          call random_path(random, spec%get('d_y'), d)
          call spring%create([spec])
          do j = 1, size(d)
-            call spring%move(1, d(j))
+            call spring%advance_to(1, d(j))
             least = min(least, spring%work(1))
          end do
       end do
@@ -511,18 +511,18 @@ contains
       integer :: j
 
       call spring%create([takeda_1('kc')])
-      call spring%move(1, 4.0_wp*d_y)
-      call spring%move(1, -4.0_wp*d_y)
+      call spring%advance_to(1, 4.0_wp*d_y)
+      call spring%advance_to(1, -4.0_wp*d_y)
       do j = 1, n
-         call spring%move(1, vertex(j, n))
+         call spring%advance_to(1, vertex(j, n))
          f(j) = spring%force(1)
       end do
       ! Outward on one side: every loop closes at its start.
       do j = n - 1, 1, -2
-         call spring%move(1, vertex(j, n))
+         call spring%advance_to(1, vertex(j, n))
          call check_same(error, spring%force(1), f(j), 'closed loop')
       end do
-      call spring%move(1, 4.0_wp*d_y)
+      call spring%advance_to(1, 4.0_wp*d_y)
       call check_close(error, spring%force(1), f_4, 1.0e-15_wp, 0.0_wp, 'the peak')
    end subroutine nested_loops
 
@@ -535,25 +535,25 @@ contains
       integer :: j
 
       call spring%create([takeda_1('kc')])
-      call spring%move(1, 4.0_wp*d_y)
-      call spring%move(1, -4.0_wp*d_y)
+      call spring%advance_to(1, 4.0_wp*d_y)
+      call spring%advance_to(1, -4.0_wp*d_y)
       do j = 1, n
-         call spring%move(1, vertex(j, n))
+         call spring%advance_to(1, vertex(j, n))
          f(j) = spring%force(1)
       end do
       do j = n - 1, 1, -2
          d_before = spring%d(1)
          f_before = spring%force(1)
-         call spring%move(1, vertex(j, n))
+         call spring%advance_to(1, vertex(j, n))
          if (j > n - kept) call check_same(error, spring%force(1), f(j), 'remembered loop')
          call check_true(error, abs(spring%force(1) - f_before) &
                          <= k_c*abs(spring%d(1) - d_before)*(1.0_wp + 1.0e-8_wp), 'a jump of the force')
       end do
-      call spring%move(1, 4.0_wp*d_y)
+      call spring%advance_to(1, 4.0_wp*d_y)
       call check_close(error, spring%force(1), f_4, 1.0e-15_wp, 0.0_wp, 'the peak')
-      call spring%move(1, 5.0_wp*d_y)
+      call spring%advance_to(1, 5.0_wp*d_y)
       call check_close(error, spring%force(1), f_y + 4.0_wp*k_u*d_y, 1.0e-15_wp, 0.0_wp, 'the backbone')
-      call spring%move(1, 0.0_wp)
+      call spring%advance_to(1, 0.0_wp)
       call check_close(error, spring%force(1), -122632.372_wp, 0.0_wp, 1.0e-3_wp, 'S4, last point')
    end subroutine forgotten_peaks
 
@@ -568,15 +568,15 @@ contains
       call follow_path(takeda_1('kc'), [nest, 2.5_wp*d_y, 3.5_wp*d_y], f)
       call spring%create([takeda_1('kc')])
       do j = 1, size(nest)
-         call spring%move(1, nest(j))
+         call spring%advance_to(1, nest(j))
       end do
       do j = 1, 5000
-         call spring%move(1, 0.95_wp*d_y)
-         call spring%move(1, 1.0_wp*d_y)
+         call spring%advance_to(1, 0.95_wp*d_y)
+         call spring%advance_to(1, 1.0_wp*d_y)
       end do
-      call spring%move(1, 2.5_wp*d_y)
+      call spring%advance_to(1, 2.5_wp*d_y)
       call check_same(error, spring%force(1), f(8), 'toward the peak at 3')
-      call spring%move(1, 3.5_wp*d_y)
+      call spring%advance_to(1, 3.5_wp*d_y)
       call check_same(error, spring%force(1), f(9), 'toward the peak at 4')
    end subroutine partial_unloading
 

@@ -40,7 +40,8 @@ contains
    !> when it comes to the end of its line ahead.
    !>
    !> Written without branches. Of the ways to both ends divided by the rate, the larger one leads ahead.
-   pure subroutine look_along(n, y, k, lo, hi, slack, one_way, both_ways, w, phi, open, turn, least_rate, &
+   pure subroutine look_along(n, y, k, lo, hi, slack, unload_on_reversal, both_ways, w, phi, open, turn, &
+                              least_rate, &
                               room, ahead, nearest, least_room, any_one_way, stiffness)
       integer, intent(in) :: n
       !> Distances, slopes and ends of the lines; finite, so that quotients do not overflow
@@ -48,7 +49,7 @@ contains
       !> A layer this close to its end is on it, with `room` [m]
       real(wp), intent(in) :: slack(n)
       !> -1, 0 or 1 as in `segment`, and 1 where that is 0, else 0
-      real(wp), intent(in) :: one_way(n), both_ways(n)
+      real(wp), intent(in) :: unload_on_reversal(n), both_ways(n)
       real(wp), intent(in) :: w, phi, open, turn
       !> Rates up to this count as zero; what is added to `slack` [m]
       real(wp), intent(in) :: least_rate, room
@@ -83,7 +84,7 @@ contains
          ahead(i) = max(to_lo, to_hi) + still
          nearest = min(nearest, ahead(i))
          least_room = min(least_room, min(ahead(i) - (room + slack(i))*abs(per_v), &
-                                          one_way(i)*v + both_ways(i) + still))
+                                          unload_on_reversal(i)*v + both_ways(i) + still))
          least_both = min(least_both, both_ways(i))
       end do
       any_one_way = least_both < 0.5_wp

@@ -1,4 +1,5 @@
-!> Straight paths of a fibre section in rotation and axial load: the branches on which its layers go on, and the
+!> Straight paths of a fibre section in rotation and axial load: the branches on which its layers go on, and
+!> the
 !> way from event to event.
 module rbs_hysteresis_layered_fibre_path
    use rbs_base_constants, only: no_stiffness, unbounded
@@ -68,7 +69,7 @@ contains
       integer, intent(out) :: first
       real(wp) :: ahead(block), turned, opening, open, nearest, least_room, stiffness
       integer :: i, begin, n
-      logical :: one_way
+      logical :: unload_on_reversal
 
       way = unbounded
       first = 0
@@ -80,10 +81,11 @@ contains
          associate (finish => begin + n - 1)
             ! A layer that unloads on a reversal is an event of its own, see `least_forward_rate`.
             call look_along(n, self%y(begin:finish), self%k(begin:finish), self%lo(begin:finish), &
-                            self%hi(begin:finish), self%slack(begin:finish), self%one_way(begin:finish), &
+                            self%hi(begin:finish), self%slack(begin:finish), &
+                                 self%unload_on_reversal(begin:finish), &
                             self%both_ways(begin:finish), opening, turned, open, turn, &
                             self%least_rate(open, turn), 0.0_wp, ahead, nearest, least_room, &
-                            one_way, stiffness)
+                            unload_on_reversal, stiffness)
          end associate
          if (.not. nearest < min(way, beyond)) cycle
          do i = 1, n
@@ -154,7 +156,7 @@ contains
       do i = 1, self%count
          v = self%open + self%y(i)*self%turn
          if (abs(v) <= least) cycle
-         if (self%one_way(i)*v < 0.0_wp .or. self%ahead(i)*abs(v) <= room + self%slack(i)) then
+         if (self%unload_on_reversal(i)*v < 0.0_wp .or. self%ahead(i)*abs(v) <= room + self%slack(i)) then
             call self%leave(i, merge(1, -1, v > 0.0_wp))
          end if
       end do
@@ -168,10 +170,10 @@ contains
       real(wp), intent(out) :: least_room
 
       associate (ends => self%ends)
-         call look_along(self%count, self%y, self%k, self%lo, self%hi, self%slack, self%one_way, &
+         call look_along(self%count, self%y, self%k, self%lo, self%hi, self%slack, self%unload_on_reversal, &
                          self%both_ways, self%opening, self%rotation, self%open, self%turn, &
                          self%least_rate(self%open, self%turn), self%room_in_digits(), self%ahead, &
-                         ends%ahead, least_room, ends%one_way, ends%stiffness)
+                         ends%ahead, least_room, ends%unload_on_reversal, ends%stiffness)
       end associate
    end subroutine look_ahead
 
@@ -193,7 +195,7 @@ contains
          else
             ends%ahead = unbounded
          end if
-         if (ends%one_way) return
+         if (ends%unload_on_reversal) return
          call look_back(self%count, self%y, self%lo, self%hi, self%opening, self%rotation, self%open, &
                         self%turn, self%least_rate(self%open, self%turn), self%behind, ends%behind)
          if (ends%behind < beyond) then
@@ -208,7 +210,8 @@ contains
       end associate
    end subroutine set_ends
 
-   !> The branches that lead on, where changing those without room does not end, or where layers soften or have
+   !> The branches that lead on, where changing those without room does not end, or where layers soften or
+   !> have
    !> no stiffness. The rate x of the opening is a root of the continuous, piecewise linear
    !>
    !>     G(x) = sum k_i(v_i) v_i = -dN,        v_i = x + y_i dphi

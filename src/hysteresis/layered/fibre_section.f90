@@ -2,7 +2,8 @@
 !> section, that open by  d_i = w + y_i phi  and together carry an axial load N, compression positive (the
 !> multi-spring form of the rigid body-spring method, Kawai 1978).
 !>
-!> While every layer stays on its branch, with the sums  a = sum k,  s = sum k y,  equilibrium of the axial load
+!> While every layer stays on its branch, with the sums  a = sum k,  s = sum k y,  equilibrium of the axial
+!> load
 !>
 !>     sum F_i = -N        gives        dw = x = -(s dphi + dN)/a
 !>
@@ -11,7 +12,8 @@
 !>     dM = k_m dphi - e dN,    k_m = sum k (y - e)^2
 !>
 !> On a straight path in (phi, N) every layer moves at a constant rate  v_i = x + y_i dphi, and the branches
-!> hold until the first layer reaches an end of its own (`rbs_hysteresis_layered_fibre_path`). Nothing is added up
+!> hold until the first layer reaches an end of its own (`rbs_hysteresis_layered_fibre_path`). Nothing is
+!> added up
 !> along the path: w is corrected by what is missing from equilibrium wherever a branch changes.
 !>
 !> A layer that stands for several equal ones at one place counts with its weight.
@@ -46,7 +48,7 @@ module rbs_hysteresis_layered_fibre_section
       !> The layers that end it, 0 for none
       integer :: first_ahead = 0, first_behind = 0
       !> Whether a layer is on a branch that unloads on reversal, so that there is no way back
-      logical :: one_way = .false.
+      logical :: unload_on_reversal = .false.
       !> sum k v**2: for a rotation at a constant axial load the slope of the moment [N m/rad]
       real(wp) :: stiffness = 0.0_wp
    end type path_ends
@@ -88,9 +90,11 @@ module rbs_hysteresis_layered_fibre_section
       !> Memories and present branches of the layers, of one each (count)
       type(memory_slot), allocatable :: slot(:)
       type(segment), allocatable :: branch(:)
-      !> The same branches with their weights as arrays: slopes, forces without deformation, ends, how close to
-      !> them a layer is on them, and as numbers whether they unload on reversal and whether they do not (count)
-      real(wp), allocatable :: k(:), c(:), lo(:), hi(:), slack(:), one_way(:), both_ways(:)
+      !> The same branches with their weights as arrays: slopes, forces without deformation, ends, how close
+      !> to
+      !> them a layer is on them, and as numbers whether they unload on reversal and whether they do not
+      !> (count)
+      real(wp), allocatable :: k(:), c(:), lo(:), hi(:), slack(:), unload_on_reversal(:), both_ways(:)
       !> Ways to their ends on the chosen path, ahead and behind (count)
       real(wp), allocatable :: ahead(:), behind(:)
       !> Initial stiffness, axial and about the centre of stiffness [N/m, N m/rad]; distance of the outermost
@@ -151,7 +155,7 @@ contains
       self%count = n
       allocate (self%slot(n), self%branch(n), self%kept_slot(n), self%kept_branch(n), self%kept(n), &
                 self%tried_slot(n), self%tried_branch(n))
-      allocate (self%k(n), self%c(n), self%lo(n), self%hi(n), self%slack(n), self%one_way(n), &
+      allocate (self%k(n), self%c(n), self%lo(n), self%hi(n), self%slack(n), self%unload_on_reversal(n), &
                 self%both_ways(n), self%ahead(n), self%behind(n))
       allocate (self%is_kept(n), source=.false.)
       do i = 1, n
@@ -181,17 +185,17 @@ contains
       associate (branch => self%branch(i))
          self%k(i) = self%weight(i)*branch%k
          self%c(i) = self%weight(i)*(branch%f0 - branch%k*branch%d0)
-         self%one_way(i) = branch%one_way
-         self%both_ways(i) = 1 - abs(branch%one_way)
+         self%unload_on_reversal(i) = branch%unload_on_reversal
+         self%both_ways(i) = 1 - abs(branch%unload_on_reversal)
          self%lo(i) = -no_end
          self%hi(i) = no_end
          self%slack(i) = 0.0_wp
          ! The rear end of a branch that unloads on reversal moves with the layer.
-         if (branch%one_way <= 0 .and. branch%lo > -unbounded) then
+         if (branch%unload_on_reversal <= 0 .and. branch%lo > -unbounded) then
             self%lo(i) = branch%lo
             self%slack(i) = on_the_end*abs(branch%lo)
          end if
-         if (branch%one_way >= 0 .and. branch%hi < unbounded) then
+         if (branch%unload_on_reversal >= 0 .and. branch%hi < unbounded) then
             self%hi(i) = branch%hi
             self%slack(i) = max(self%slack(i), on_the_end*abs(branch%hi))
          end if
@@ -217,8 +221,8 @@ contains
          if (.not. self%is_kept(i)) call keep(self, i)
       end if
       associate (branch => self%branch(i))
-         if (branch%one_way > 0) branch%lo = self%deformation(i)
-         if (branch%one_way < 0) branch%hi = self%deformation(i)
+         if (branch%unload_on_reversal > 0) branch%lo = self%deformation(i)
+         if (branch%unload_on_reversal < 0) branch%hi = self%deformation(i)
          call self%rule(self%rule_of(i))%rule%next(self%slot(i)%memory, branch, way)
       end associate
       call put_branch(self, i)
@@ -232,7 +236,7 @@ contains
       integer, intent(in) :: i, way
       real(wp) :: far
 
-      must_leave = self%branch(i)%one_way == -way
+      must_leave = self%branch(i)%unload_on_reversal == -way
       if (must_leave) return
       far = self%branch(i)%end_toward(way)
       must_leave = way*(far - self%deformation(i)) <= self%room_in_digits() + on_the_end*abs(far)
@@ -254,7 +258,8 @@ contains
       least_rate = max(no_rate*(abs(open) + self%reach*abs(turn)), least_speed)
    end function least_rate
 
-   !> Move the joint along the chosen path to a rotation (from zero) and an axial load on the present branches.
+   !> Move the joint along the chosen path to a rotation (from zero) and an axial load on the present
+   !> branches.
    pure subroutine place(self, rotation, axial_load, way, first)
       class(fibre_section), intent(inout) :: self
       real(wp), intent(in) :: rotation, axial_load
@@ -346,9 +351,9 @@ contains
       end do
       least = 1.0_wp
       do i = 1, self%count
-         if (.not. abs(self%one_way(i)) > 0.0_wp) cycle
+         if (.not. abs(self%unload_on_reversal(i)) > 0.0_wp) cycle
          v = open + self%y(i)*turn
-         least = min(least, self%one_way(i)*v(1)/max(abs(v(2)), abs(v(3)), least_rate))
+         least = min(least, self%unload_on_reversal(i)*v(1)/max(abs(v(2)), abs(v(3)), least_rate))
       end do
    end function least_forward_rate
 
@@ -466,7 +471,7 @@ contains
       call stream%items(self%turn, self%press, self%open, self%ends%ahead, self%ends%behind)
       call stream%item(self%ends%first_ahead)
       call stream%item(self%ends%first_behind)
-      call stream%item(self%ends%one_way)
+      call stream%item(self%ends%unload_on_reversal)
       call stream%item(self%ends%stiffness)
       call stream%item(self%failed)
       call stream%item(self%failure_way)

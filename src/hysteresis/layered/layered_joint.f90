@@ -1,6 +1,8 @@
-!> The rule of a layered joint: a fibre section (`rbs_hysteresis_layered_fibre_section`) under a constant axial
+!> The rule of a layered joint: a fibre section (`rbs_hysteresis_layered_fibre_section`) under a constant
+!> axial
 !> load is, like any spring, on a branch with two ends: it ends where the first layer reaches an end (`next`).
-!> Where the axial load varies, the joint follows a straight path in rotation and axial load from event to event.
+!> Where the axial load varies, the joint follows a straight path in rotation and axial load from event to
+!> event.
 module rbs_hysteresis_layered_joint
    use rbs_base_constants, only: no_stiffness, unbounded
    use rbs_base_kinds, only: wp
@@ -118,12 +120,13 @@ contains
       way = section%turn*(rotation - section%rotation)
       first = merge(section%ends%first_ahead, section%ends%first_behind, direction*section%turn > 0.0_wp)
       ! Reversed somewhere between the ends.
-      if (branch%one_way == -direction) first = 0
+      if (branch%unload_on_reversal == -direction) first = 0
       call section%place(rotation, section%axial_load, way, first)
       call find_branch(section, direction, branch)
    end subroutine leave_branch
 
-   !> The branch of the joint at its present axial load when it rotates further in a direction; it ends on each
+   !> The branch of the joint at its present axial load when it rotates further in a direction; it ends on
+   !> each
    !> side where the first of its layers ends.
    subroutine find_branch(section, direction, branch)
       type(fibre_section), intent(inout) :: section
@@ -138,8 +141,7 @@ contains
       branch%f0 = section%moment
       if (section%failed) then
          ! The joint keeps its moment for the rest of the motion; whoever moves it asks `failed`.
-         branch = branch%outward(direction, near=branch%d0, far=direction*unbounded, near_closed=.true., &
-                                 one_way=.true.)
+         branch = branch%outward(direction, near=branch%d0, far=direction*unbounded)
          return
       end if
       branch%k = section%ends%stiffness
@@ -148,7 +150,7 @@ contains
       near = -direction*unbounded
       if (section%ends%ahead < unbounded) far = branch%d0 + direction*section%ends%ahead
       if (section%ends%behind < unbounded) near = branch%d0 - direction*section%ends%behind
-      branch = branch%outward(direction, near=near, far=far, near_closed=.true., one_way=section%ends%one_way)
+      branch = branch%outward(direction, near=near, far=far, unload_on_reversal=section%ends%unload_on_reversal)
    end subroutine find_branch
 
    !> Rotate until there is no moment, and measure rotations from there.
@@ -176,7 +178,8 @@ contains
       branch%f0 = 0.0_wp
    end subroutine find_rest
 
-   !> What is said of an axial load that the layers of a spring do not carry; blank if they do, or if there are
+   !> What is said of an axial load that the layers of a spring do not carry; blank if they do, or if there
+   !> are
    !> none.
    subroutine check_axial_load(rule, axial_load, text)
       class(rule_type), intent(in) :: rule

@@ -9,9 +9,11 @@
 !>                 there, so to all older ones, to the peak, then along the backbone; turning back: unloading
 !>
 !> Every inner loop closes at the turn where it began, on the line that it left, and wipes it out
-!> (`rbs_hysteresis_rules_open_turns`). A turn is also forgotten once reloading starts as far out as its own line
+!> (`rbs_hysteresis_rules_open_turns`). A turn is also forgotten once reloading starts as far out as its own
+!> line
 !> did: there both lines are the same. So lines of reloading never become steeper on their way, unloading
-!> ends at or before their start, and no loop gives energy. Deterioration (`rbs_hysteresis_rules_deterioration`)
+!> ends at or before their start, and no loop gives energy. Deterioration
+!> (`rbs_hysteresis_rules_deterioration`)
 !> acts where the force is zero, by an amount that is zero for an excursion of size zero.
 module rbs_hysteresis_rules_capped
    use rbs_base_check, only: is_given
@@ -80,7 +82,8 @@ module rbs_hysteresis_rules_capped
       real(wp) :: peak(-1:1) = 0.0_wp
       !> The last turn, counted over both sides, and the oldest of those that the present reloading has closed
       integer :: time = 0, closed_time = huge(1)
-      !> Work of the flexural spring so far and up to cracking [J], and share of the strength of each side that
+      !> Work of the flexural spring so far and up to cracking [J], and share of the strength of each side
+      !> that
       !> its work since has left
       real(wp) :: flexural_work = 0.0_wp, work_at_cracking = 0.0_wp, left_by_hinge(-1:1) = 1.0_wp
       !> Where the force was zero when the present side was entered, as seen from it, and way of the last
@@ -147,8 +150,8 @@ contains
       branch = segment(k=self%given(s)%stiffness())
       near = 0.0_wp
       if (.not. abs(branch%k - self%given(-s)%stiffness()) > 0.0_wp) near = -s*now%backbone(-s)%d(1)
-      branch = branch%outward(s, near=near, far=s*now%backbone(s)%d(1), near_closed=near*s >= 0.0_wp, &
-                          one_way=.false.)
+      branch = branch%outward(s, near=near, far=s*now%backbone(s)%d(1), includes_near_end=near*s >= 0.0_wp, &
+                              unload_on_reversal=.false.)
    end function virgin_branch
 
    !> The branch that follows, see `rule_type`.
@@ -195,8 +198,7 @@ contains
       case (unloading)
          if (outward) then
             now%branch = now%left_branch
-            branch = now%left%outward(now%side, near=here%d, far=now%left%end_toward(direction), &
-                                     near_closed=.true., one_way=.true.)
+            branch = now%left%outward(now%side, near=here%d, far=now%left%end_toward(direction))
          else
             call end_excursion(here%d)
          end if
@@ -258,7 +260,7 @@ contains
          end if
          k = unloading_stiffness(s, at)
          branch = segment(d0=here%d, f0=here%f, k=k)
-         branch = branch%outward(s, near=here%d - here%f/k, far=here%d, near_closed=.true., one_way=.false.)
+         branch = branch%outward(s, near=here%d - here%f/k, far=here%d, unload_on_reversal=.false.)
       end subroutine unload
 
       !> Zero force is reached: the excursion to the present side is over.
@@ -301,7 +303,7 @@ contains
          if (now%start_at > s*zero) then
             now%branch = gap
             branch = segment(d0=zero)
-            branch = branch%outward(s, near=zero, far=s*now%start_at, near_closed=.true., one_way=.true.)
+            branch = branch%outward(s, near=zero, far=s*now%start_at)
          else
             call reload()
          end if
@@ -370,7 +372,7 @@ contains
             else
                branch = segment(d0=s*from%d, f0=0.0_wp + s*from%f, k=k)
             end if
-            branch = branch%outward(s, near=s*from%d, far=s*max(at%d, from%d), near_closed=.true., one_way=.true.)
+            branch = branch%outward(s, near=s*from%d, far=s*max(at%d, from%d))
          end associate
       end subroutine aim
 
@@ -503,7 +505,8 @@ contains
          end do
       end subroutine find_turns
 
-      !> The point of the backbone to which a line from zero force leads: the peak, or a corner beyond it if the
+      !> The point of the backbone to which a line from zero force leads: the peak, or a corner beyond it if
+      !> the
       !> line to it is steeper (as to yield in Takeda's rule).
       type(point) function goal_from(s, start) result(goal)
          integer, intent(in) :: s

@@ -49,7 +49,7 @@ contains
       if (self%gap > 0.0_wp) then
          branch = segment(k=0.0_wp, lo=-self%gap, hi=unbounded)
       else
-         branch = segment(k=self%k, hi=0.0_wp, hi_closed=.true.)
+         branch = segment(k=self%k, hi=0.0_wp, includes_upper_end=.true.)
       end if
    end subroutine start
 
@@ -63,7 +63,7 @@ contains
       if (direction > 0) then
          branch = segment(k=0.0_wp, lo=-self%gap, hi=unbounded)
       else
-         branch = segment(d0=-self%gap, k=self%k, lo=-unbounded, hi=-self%gap, hi_closed=.true.)
+         branch = segment(d0=-self%gap, k=self%k, lo=-unbounded, hi=-self%gap, includes_upper_end=.true.)
       end if
    end subroutine next
 

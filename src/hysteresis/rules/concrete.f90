@@ -293,7 +293,7 @@ contains
          if (self%rubs) then
             call set_one_way(branch)
          else
-            branch%hi_closed = .not. now%gap > 0.0_wp
+            branch%includes_upper_end = .not. now%gap > 0.0_wp
          end if
       end subroutine unload
 
@@ -306,8 +306,8 @@ contains
             now%kind = contact
             ! The lines before and after it lead both ways, so both corners belong to this line.
             branch = chord(now%c_p - now%gap, 0.0_wp, c_closed, f_closed)
-            branch%lo_closed = .true.
-            branch%hi_closed = .true.
+            branch%includes_lower_end = .true.
+            branch%includes_upper_end = .true.
             if (self%rubs) call set_one_way(branch)
          else if (now%kind == closing) then
             call unload()
@@ -316,7 +316,8 @@ contains
          end if
       end subroutine touch
 
-      !> Between the paths through (c, f): as stiff as the virgin spring, up to the path of closing and down to
+      !> Between the paths through (c, f): as stiff as the virgin spring, up to the path of closing and down
+      !> to
       !> that of opening.
       subroutine rub(c, f)
          real(wp), intent(in) :: c, f
@@ -418,8 +419,8 @@ contains
             return
          end if
          branch%lo = -c
-         branch%lo_closed = .true.
-         branch%one_way = 1
+         branch%includes_lower_end = .true.
+         branch%unload_on_reversal = 1
       end subroutine release
 
       !> Where a closing crack is fully closed.
@@ -440,7 +441,7 @@ contains
 
          now%kind = opening
          now%c_opened = c
-         branch = segment(d0=-c, lo=-c, hi=unbounded, lo_closed=.true., one_way=1)
+         branch = segment(d0=-c, lo=-c, hi=unbounded, includes_lower_end=.true., unload_on_reversal=1)
       end subroutine open_up
 
       !> The line of zero force while the crack closes, from the closing c until the faces touch.
@@ -509,8 +510,8 @@ contains
    pure subroutine set_one_way(branch)
       type(segment), intent(inout) :: branch
 
-      branch%hi_closed = .true.
-      branch%one_way = -1
+      branch%includes_upper_end = .true.
+      branch%unload_on_reversal = -1
    end subroutine set_one_way
 
    pure subroutine copy(self, other)
@@ -529,7 +530,8 @@ contains
 
       associate (now => self%now)
          call stream%item(now%kind)
-         call stream%items(now%c_u, now%f_u, now%c_p, now%f_largest, now%gap, now%widest, now%c_opened, now%strength)
+         call stream%items(now%c_u, now%f_u, now%c_p, now%f_largest, now%gap, now%widest, now%c_opened, &
+                           now%strength)
       end associate
    end subroutine serialize
 

@@ -49,7 +49,8 @@ module rbs_hysteresis_rules_peak_oriented
    type(key_type), parameter :: capped_keys(*) = [backbone_keys, shared_keys, other_side_keys]
 
    type, extends(rule_type) :: peak_oriented_rule
-      !> The peak-oriented part and, in the rule `pinching`, the one that slips; how many there are, and the share
+      !> The peak-oriented part and, in the rule `pinching`, the one that slips; how many there are, and the
+      !> share
       !> of the first in the force
       type(capped_part) :: part(2)
       integer :: parts = 1
@@ -193,7 +194,7 @@ contains
       real(wp), intent(in) :: here
       integer, intent(in) :: direction
 
-      if (branch%one_way == -direction) then
+      if (branch%unload_on_reversal == -direction) then
          if (direction > 0) then
             branch%hi = here
          else
@@ -217,10 +218,12 @@ contains
       branch%k = b%k + share*(a%k - b%k)
       branch%lo = max(a%lo, b%lo)
       branch%hi = min(a%hi, b%hi)
-      branch%lo_closed = (a%lo_closed .or. a%lo < branch%lo) .and. (b%lo_closed .or. b%lo < branch%lo)
-      branch%hi_closed = (a%hi_closed .or. a%hi > branch%hi) .and. (b%hi_closed .or. b%hi > branch%hi)
-      branch%one_way = a%one_way
-      if (a%one_way == 0) branch%one_way = b%one_way
+      branch%includes_lower_end = (a%includes_lower_end .or. a%lo < branch%lo) .and. &
+           (b%includes_lower_end .or. b%lo < branch%lo)
+      branch%includes_upper_end = (a%includes_upper_end .or. a%hi > branch%hi) .and. &
+           (b%includes_upper_end .or. b%hi > branch%hi)
+      branch%unload_on_reversal = a%unload_on_reversal
+      if (a%unload_on_reversal == 0) branch%unload_on_reversal = b%unload_on_reversal
    end function sum_of
 
    pure subroutine copy(self, other)

@@ -257,7 +257,7 @@ contains
       if (ahead < unbounded) far = now%d + direction*ahead
       if (.not. growing .and. direction*(end_of_reach - far) <= 0.0_wp) far = end_of_reach
       branch = segment(d0=now%d, f0=f, k=slope)
-      branch = branch%outward(direction, near=now%d, far=far, near_closed=.true., one_way=growing .or. one_slips)
+      branch = branch%outward(direction, near=now%d, far=far, unload_on_reversal=growing .or. one_slips)
 
    contains
 
@@ -309,7 +309,8 @@ contains
          end associate
       end subroutine find_limits
 
-      !> Factor of the wear: a bar that has been stretched beyond `d_buckle` bows when it is compressed, and what
+      !> Factor of the wear: a bar that has been stretched beyond `d_buckle` bows when it is compressed, and
+      !> what
       !> is bowed and straightened cracks. The largest elongation is settled where the bar turns back.
       real(wp) function bowing(direction)
          integer, intent(in) :: direction

@@ -215,11 +215,11 @@ contains
          if (s*d < self%d_y) then
             now%branch = cracked_backbone
             branch = segment(d0=s*self%d_c, f0=s*self%f_c, k=self%k_y)
-            branch = branch%outward(s, near=d, far=s*self%d_y, near_closed=.true., one_way=.true.)
+            branch = branch%outward(s, near=d, far=s*self%d_y)
          else
             now%branch = yielded_backbone
             branch = segment(d0=s*self%d_y, f0=s*self%f_y, k=self%k_u)
-            branch = branch%outward(s, near=d, far=s*unbounded, near_closed=.true., one_way=.true.)
+            branch = branch%outward(s, near=d, far=s*unbounded)
          end if
       end subroutine follow_backbone
 
@@ -241,7 +241,8 @@ contains
          else
             near = peak%d - (peak%f + s*self%f_c)/now%k_r(s)
          end if
-         branch = branch%outward(s, near=near, far=peak%d, near_closed=now%cracked(-s), one_way=.false.)
+         branch = branch%outward(s, near=near, far=peak%d, includes_near_end=now%cracked(-s), &
+                                 unload_on_reversal=.false.)
       end subroutine unload_from_peak
 
       !> K_r of a peak (eq 7), not below the secant: unloading must not end on the other side of the origin.
@@ -335,8 +336,7 @@ contains
          now%branch = inner_unloading
          k_in = inner_stiffness(here)
          branch = segment(d0=here%d, f0=here%f, k=k_in)
-         branch = branch%outward(s, near=here%d - here%f/k_in, far=here%d, near_closed=.true., &
-                                  one_way=.false.)
+         branch = branch%outward(s, near=here%d - here%f/k_in, far=here%d, unload_on_reversal=.false.)
       end subroutine unload_from_inner_peak
 
       !> K_in of an inner peak within its bounds, of which the lower one has priority.
@@ -368,8 +368,7 @@ contains
             now%branch = reloading
             now%side = peak%side
             now%aim = peak%left
-            branch = now%aim%line%outward(peak%side, near=peak%at%d, far=now%aim%target%d, &
-                                            near_closed=.true., one_way=.true.)
+            branch = now%aim%line%outward(peak%side, near=peak%at%d, far=now%aim%target%d)
          end associate
          open%count = place - 1
       end subroutine resume_reloading
@@ -415,8 +414,7 @@ contains
             k = self%k_c
             if (s*way > 0.0_wp) k = (target%f - from%f)/way
             branch = segment(d0=target%d, f0=target%f, k=k)
-            branch = branch%outward(s, near=from%d, far=s*max(s*target%d, s*from%d), near_closed=.true., &
-                                  one_way=.true.)
+            branch = branch%outward(s, near=from%d, far=s*max(s*target%d, s*from%d))
          end associate
       end subroutine reload
    end subroutine find_branch

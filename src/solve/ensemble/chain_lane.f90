@@ -88,7 +88,7 @@ contains
             b%k(i, j) = springs%k(j)
             b%first(i, j) = springs%first(j)
             b%last(i, j) = springs%last(j)
-            b%way(i, j) = real(springs%one_way(j), wp)
+            b%way(i, j) = real(springs%unload_on_reversal(j), wp)
          end do
          if (.not. b%damped) return
          do j = 1, 2*b%n

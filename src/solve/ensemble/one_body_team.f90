@@ -250,9 +250,9 @@ contains
       line%k = x%k(l, i)
       line%lo = x%lo(l, i)
       line%hi = x%hi(l, i)
-      line%lo_closed = x%lo_closed(l, i)
-      line%hi_closed = x%hi_closed(l, i)
-      line%one_way = int(x%way(l, i))
+      line%includes_lower_end = x%lo_closed(l, i)
+      line%includes_upper_end = x%hi_closed(l, i)
+      line%unload_on_reversal = int(x%way(l, i))
    end function line_of
 
    pure subroutine put_line(x, l, i, line)
@@ -265,9 +265,9 @@ contains
       x%k(l, i) = line%k
       x%lo(l, i) = line%lo
       x%hi(l, i) = line%hi
-      x%lo_closed(l, i) = line%lo_closed
-      x%hi_closed(l, i) = line%hi_closed
-      x%way(l, i) = real(line%one_way, wp)
+      x%lo_closed(l, i) = line%includes_lower_end
+      x%hi_closed(l, i) = line%includes_upper_end
+      x%way(l, i) = real(line%unload_on_reversal, wp)
    end subroutine put_line
 
    !> A whole step by the method of the run itself.

@@ -363,8 +363,8 @@ contains
             call change_line(spring, springs, i, way, self%spring(2)%work)
             self%events = self%events + 1
             ! A new one-way line starts at the present deformation, to the last bit.
-            if (spring%line%one_way > 0) spring%first = spring%d
-            if (spring%line%one_way < 0) spring%last = spring%d
+            if (spring%line%unload_on_reversal > 0) spring%first = spring%d
+            if (spring%line%unload_on_reversal < 0) spring%last = spring%d
          end do
       end associate
       self%stuck = .true.
@@ -456,8 +456,8 @@ contains
       associate (line => spring%line)
          spring%work = spring%work + (line%f0 + line%k*(0.5_wp*(d + spring%d) - line%d0))*(d - spring%d)
          spring%d = d
-         if (line%one_way > 0) spring%first = d
-         if (line%one_way < 0) spring%last = d
+         if (line%unload_on_reversal > 0) spring%first = d
+         if (line%unload_on_reversal < 0) spring%last = d
       end associate
    end subroutine advance_on_branch
 
@@ -472,9 +472,9 @@ contains
       real(wp), intent(in) :: flexural_work
 
       associate (line => spring%line)
-         if (line%one_way > 0) line%lo = spring%d
-         if (line%one_way < 0) line%hi = spring%d
-         if (line%one_way /= -way) call advance_on_branch(spring, merge(line%hi, line%lo, way > 0))
+         if (line%unload_on_reversal > 0) line%lo = spring%d
+         if (line%unload_on_reversal < 0) line%hi = spring%d
+         if (line%unload_on_reversal /= -way) call advance_on_branch(spring, merge(line%hi, line%lo, way > 0))
          call springs%next_branch(i, line, way, flexural_work)
          spring%first = first_on(line)
          spring%last = last_on(line)

@@ -102,7 +102,7 @@ contains
       some = .false.
       if (.not. path%by_force) return
       do i = 1, path%moving
-         if (path%springs%one_way(i) /= -direction) cycle
+         if (path%springs%unload_on_reversal(i) /= -direction) cycle
          some = .true.
          call path%springs%leave(i, direction)
       end do
@@ -128,11 +128,11 @@ contains
       associate (springs => path%springs)
          ! A spring is beyond the last deformation of its line where the end itself does not belong to it.
          if (path%rate(i) > 0.0_wp) then
-            if (springs%one_way(i) < 0 .or. springs%d(i) > springs%last(i) .or. &
-                (springs%hi_closed(i) .and. springs%d(i) >= springs%last(i))) barred = 1
+            if (springs%unload_on_reversal(i) < 0 .or. springs%d(i) > springs%last(i) .or. &
+                (springs%includes_upper_end(i) .and. springs%d(i) >= springs%last(i))) barred = 1
          else if (path%rate(i) < 0.0_wp) then
-            if (springs%one_way(i) > 0 .or. springs%d(i) < springs%first(i) .or. &
-                (springs%lo_closed(i) .and. springs%d(i) <= springs%first(i))) barred = -1
+            if (springs%unload_on_reversal(i) > 0 .or. springs%d(i) < springs%first(i) .or. &
+                (springs%includes_lower_end(i) .and. springs%d(i) <= springs%first(i))) barred = -1
          end if
       end associate
    end function barred
@@ -189,7 +189,7 @@ contains
       integer, intent(in) :: i
 
       associate (springs => path%springs)
-         at_corner = springs%one_way(i) /= 0 .or. springs%d(i) >= springs%end_toward(i, 1) .or. &
+         at_corner = springs%unload_on_reversal(i) /= 0 .or. springs%d(i) >= springs%end_toward(i, 1) .or. &
                      springs%d(i) <= springs%end_toward(i, -1)
       end associate
    end function at_corner
@@ -199,8 +199,8 @@ contains
       class(static_path), intent(in) :: path
       integer, intent(in) :: i
 
-      if (path%springs%one_way(i) /= 0) then
-         way_out = -path%springs%one_way(i)
+      if (path%springs%unload_on_reversal(i) /= 0) then
+         way_out = -path%springs%unload_on_reversal(i)
       else if (path%springs%d(i) >= path%springs%end_toward(i, 1)) then
          way_out = 1
       else

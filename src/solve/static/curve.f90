@@ -85,7 +85,8 @@ contains
       least(1) = noise*motion_of(column, point)
       least(2) = least(1)/column%joint_height(column%n + 1)
       do i = 1, column%unknowns
-         rate(i) = merge(point%rate(i), 0.0_wp, abs(point%rate(i)) > least(merge(2, 1, column%place(i)%kind == flexure)))
+         rate(i) = merge(point%rate(i), 0.0_wp, abs(point%rate(i)) > least(merge(2, 1, &
+              column%place(i)%kind == flexure)))
       end do
    end function clean
 
@@ -141,10 +142,10 @@ contains
       least = 1.0_wp
       way = sign(1.0_wp, self%length)
       do i = 1, springs%count
-         if (springs%one_way(i) == 0) cycle
+         if (springs%unload_on_reversal(i) == 0) cycle
          largest = max(abs(self%near%rate(i)), abs(self%far%rate(i)), &
                        self%least(merge(2, 1, self%turns(i)))/same_rate)
-         if (largest > 0.0_wp) least = min(least, springs%one_way(i)*way*point%rate(i)/largest + same_rate)
+         if (largest > 0.0_wp) least = min(least, springs%unload_on_reversal(i)*way*point%rate(i)/largest + same_rate)
       end do
       if (.not. springs%pressed) return
       do j = 1, size(springs%layered)
@@ -179,10 +180,10 @@ contains
       ! Round-off of a column that stands.
       if (maxval(abs(self%far%q - self%near%q)) <= noise*least_motion) return
       do i = 1, springs%count
-         hides = springs%one_way(i) /= 0
-         if (hides) hides = hides_turn(self, i, springs%one_way(i))
+         hides = springs%unload_on_reversal(i) /= 0
+         if (hides) hides = hides_turn(self, i, springs%unload_on_reversal(i))
          do side = -1, 1, 2
-            if (springs%one_way(i) == -side .or. hides) cycle
+            if (springs%unload_on_reversal(i) == -side .or. hides) cycle
             hides = passes(self, i, side, springs%end_toward(i, side))
          end do
          if (hides) return

@@ -80,7 +80,8 @@ contains
       m = column%unknowns
       path%load = load
       call path%stride%equilibrium%create(column, by_force, varies)
-      allocate (path%stride%here%q(m), path%stride%here%rate(m), path%stride%there%q(m), path%stride%there%rate(m), source=0.0_wp)
+      allocate (path%stride%here%q(m), path%stride%here%rate(m), path%stride%there%q(m), &
+                path%stride%there%rate(m), source=0.0_wp)
       path%steady = path%stride%equilibrium%steady
       call begin_path(path, column, by_force, m, varies, error, task%before)
       if (allocated(error)) return
@@ -106,7 +107,8 @@ contains
          self%row = self%row + 1
          self%stride%equilibrium%driven = [self%control, target - self%control]
          self%stride%equilibrium%load = [self%load_now, self%load(self%row) - self%load_now]
-         if (.not. any(abs([self%stride%equilibrium%driven(2), self%stride%equilibrium%load(2)]) > 0.0_wp)) return
+         if (.not. any(abs([self%stride%equilibrium%driven(2), &
+                           self%stride%equilibrium%load(2)]) > 0.0_wp)) return
          self%stride%here%t = 0.0_wp
          self%goal = 1.0_wp
          self%extent = 1.0_wp
@@ -123,7 +125,8 @@ contains
             call turn_corner(self, direction, target, error)
             if (allocated(error) .or. self%springs%lost_joint() > 0) return
             ! A spring that was put on the end of its line left the column a little out of equilibrium.
-            if (self%stride%equilibrium%size_of(self%stride%equilibrium%correction, self%stride%here%q) <= no_progress) then
+            if (self%stride%equilibrium%size_of(self%stride%equilibrium%correction, &
+                                                self%stride%here%q) <= no_progress) then
                self%stride%here%q = self%stride%here%q + self%stride%equilibrium%correction
                self%stride%here%force = self%stride%here%force + self%stride%equilibrium%force_correction
             end if
@@ -204,7 +207,8 @@ contains
       call self%stride%find_event(self%springs, limit)
       associate (way => abs(self%stride%there%t - self%stride%here%t))
          near = (self%stride%spring > 0 .or. .not. abs(self%goal - limit) > 0.0_wp) .and. &
-                way <= close_by*self%extent .and. way*largest_turn(self%column, self%stride%here%rate) <= close_by
+                way <= close_by*self%extent .and. way*largest_turn(self%column, &
+                                                                   self%stride%here%rate) <= close_by
       end associate
       done = near
       if (.not. near) call self%stride%find_point(self%springs, limit, .true., done)
@@ -216,10 +220,12 @@ contains
             call self%stride%find_turn(self%springs, done)
             if (done) call self%stride%curve%set(self%column, self%stride%here, self%stride%there)
          end if
-         if (done) done = .not. self%stride%curve%hides_event(self%springs, self%stride%equilibrium%above, cuts < most_looks)
+         if (done) done = .not. self%stride%curve%hides_event(self%springs, self%stride%equilibrium%above, &
+                                                              cuts < most_looks)
       end if
       if (.not. done) return
-      call self%stride%find_works(self%springs, self%most_work, cuts < most_cuts_for_work .and. .not. near, works, done)
+      call self%stride%find_works(self%springs, self%most_work, cuts < most_cuts_for_work .and. .not. near, &
+                                  works, done)
       if (done) call accept(self, turns, works)
    end subroutine try_stride
 
@@ -252,7 +258,8 @@ contains
          self%standing = merge(self%standing + 1, 0, stands)
          if (spring > 0 .and. self%stride%layer == 0) then
             side = merge(1, -1, self%direction*there%rate(spring) > 0.0_wp)
-            closed = merge(self%springs%hi_closed(spring), self%springs%lo_closed(spring), side > 0)
+            closed = merge(self%springs%includes_upper_end(spring), self%springs%includes_lower_end(spring), &
+                           side > 0)
             call self%springs%arrive(spring, side)
             ! Where it made no progress its rate is zero and does not show that it goes on. From an open end
             ! it has gone on already.
@@ -261,7 +268,8 @@ contains
          call put_springs(self)
          ! A motion may have turned by less than the search resolves.
          if (turns .or. spring > 0 .or. &
-             any(self%springs%one_way*self%direction*clean(self%column, there) < 0.0_wp)) self%direction = 0
+             any(self%springs%unload_on_reversal*self%direction*clean(self%column, &
+                                                                      there) < 0.0_wp)) self%direction = 0
       end associate
       self%force = self%stride%there%force
       self%displacement = self%stride%there%displacement
@@ -296,7 +304,8 @@ contains
             i = springs%layered(j)
             work = self%stride%work_of_joint(springs, i)
             call put_on_plane(springs, i, there%q(i), there%axial_load + self%stride%equilibrium%above(i), &
-                                      there%rate(i), there%axial_rate, merge(self%stride%layer, 0, i == self%stride%spring))
+                                      there%rate(i), there%axial_rate, &
+                                           merge(self%stride%layer, 0, i == self%stride%spring))
             springs%work(i) = springs%work(i) + work
          end do
       end associate

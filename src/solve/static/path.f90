@@ -275,7 +275,8 @@ contains
             if (allocated(error)) return
          end if
          task%summary%steps = i
-         if (mod(i, 8192) == 0 .and. associated(task%progress)) call task%progress%update(real(i, wp)/size(target))
+         if (mod(i, 8192) == 0 .and. associated(task%progress)) call task%progress%update(real(i, &
+              wp)/size(target))
          task%summary%events = self%springs%events
          task%summary%cut_steps = self%cuts
          if (allocated(failure)) then
@@ -320,11 +321,11 @@ contains
 
       is_on_end = .false.
       ! Most springs are far from their ends, which need not be computed then.
-      if (rate > 0.0_wp .and. .not. springs%hi_closed(i)) then
+      if (rate > 0.0_wp .and. .not. springs%includes_upper_end(i)) then
          if (springs%last(i) - d > 2.0_wp*on_the_end*abs(springs%last(i))) return
          finish = springs%end_toward(i, 1)
          is_on_end = finish - d <= on_the_end*abs(finish)
-      else if (rate < 0.0_wp .and. .not. springs%lo_closed(i)) then
+      else if (rate < 0.0_wp .and. .not. springs%includes_lower_end(i)) then
          if (d - springs%first(i) > 2.0_wp*on_the_end*abs(springs%first(i))) return
          finish = springs%end_toward(i, -1)
          is_on_end = d - finish <= on_the_end*abs(finish)

@@ -69,7 +69,7 @@ contains
             associate (rise => self%direction*there%rate(i))
                if (.not. abs(rise) > 0.0_wp) cycle
                side = merge(1, -1, rise > 0.0_wp)
-               if (springs%one_way(i) == -side) cycle
+               if (springs%unload_on_reversal(i) == -side) cycle
                way = side*(springs%end_toward(i, side) - there%q(i))
                if (way < room*abs(rise)) then
                   room = way/abs(rise)
@@ -192,7 +192,8 @@ contains
       done = .false.
    end subroutine find_turn
 
-   !> Works of the lateral force and of the axial load on the way that was tried, and of the layered joints whose
+   !> Works of the lateral force and of the axial load on the way that was tried, and of the layered joints
+   !> whose
    !> axial loads vary, all by the cubics of the curve.
    subroutine find_works(self, springs, largest, strict, works, done)
       class(stride_type), intent(inout) :: self
@@ -204,7 +205,8 @@ contains
       !> Of force, axial load and layered joints [J]
       real(wp), intent(out) :: works(3)
       logical, intent(out) :: done
-      real(wp) :: work(2), change(size(self%here%q)), f(size(self%here%q)), lift(2), weight(2), missing, turnover
+      real(wp) :: work(2), change(size(self%here%q)), f(size(self%here%q)), lift(2), weight(2), missing, &
+           turnover
       integer :: j
 
       associate (here => self%here, there => self%there)
@@ -219,8 +221,10 @@ contains
             done = .not. strict .or. abs(work(2)) <= most_correction*max(largest, turnover)
             return
          end if
-         lift = [potential_energy(self%equilibrium%unit, here%q), potential_energy(self%equilibrium%unit, there%q)]
-         weight = [potential_energy(self%equilibrium%steady, here%q), potential_energy(self%equilibrium%steady, there%q)]
+         lift = [potential_energy(self%equilibrium%unit, here%q), &
+              potential_energy(self%equilibrium%unit, there%q)]
+         weight = [potential_energy(self%equilibrium%steady, here%q), &
+              potential_energy(self%equilibrium%steady, there%q)]
          works(2) = sum(self%curve%work([here%axial_load, there%axial_load], lift, &
                                         [here%axial_rate, there%axial_rate], [here%lift_rate, there%lift_rate]))
          f(:) = f - 0.5_wp*springs%k*change

@@ -42,7 +42,8 @@ contains
             ! Most springs stay inside their line and do not turn.
             if (scheme%q(i) >= springs%first(i) .and. scheme%q(i) <= springs%last(i) .and. &
                 state%v(i)*scheme%v(i) > 0.0_wp) cycle
-            call find_exit([springs%end_toward(i, -1), springs%end_toward(i, 1)], springs%one_way(i), &
+            call find_exit([springs%end_toward(i, -1), springs%end_toward(i, 1)], &
+                           springs%unload_on_reversal(i), &
                            [state%q(i), scheme%q(i)], [state%v(i), scheme%v(i)], h, 0.0_wp, one)
             if (one%way == 0) cycle
             if (one%turns .and. keeps_still(state, scheme, i, h)) cycle

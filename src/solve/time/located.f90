@@ -280,7 +280,7 @@ contains
       associate (springs => state%springs)
          do changes = 0, 20 + 10*springs%count
             do i = 1, springs%count
-               if (springs%one_way(i) == 0 .and. springs%d(i) > springs%first(i) .and. &
+               if (springs%unload_on_reversal(i) == 0 .and. springs%d(i) > springs%first(i) .and. &
                    springs%d(i) < springs%last(i)) cycle
                way = direction_of(state%v(i))
                if (way /= 0) then
@@ -312,7 +312,7 @@ contains
       pure logical function goes_on(i, way)
          integer, intent(in) :: i, way
 
-         goes_on = state%springs%one_way(i) == -way
+         goes_on = state%springs%unload_on_reversal(i) == -way
          if (.not. goes_on) goes_on = way*(state%springs%d(i) - state%springs%end_toward(i, way)) >= 0.0_wp
       end function goes_on
 
