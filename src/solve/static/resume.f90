@@ -7,6 +7,7 @@ module rbs_solve_static_resume
    use rbs_column_column, only: column_type
    use rbs_column_top, only: top_displacement
    use rbs_solve_end_state, only: end_state, standing_type, static_state
+   use rbs_solve_line_search, only: false_position
    use rbs_solve_static_path, only: static_path, missing_work
    use rbs_structure_spring_place, only: spring_name
    implicit none
@@ -118,7 +119,8 @@ contains
       class(static_path), intent(inout) :: path
       type(error_type), allocatable, intent(out) :: error
       real(wp), dimension(path%column%unknowns) :: q, way, next
-      real(wp) :: more, next_more, before, change, slope, share, low, high, at_low, at_high, now, largest
+      real(wp) :: more, next_more, before, change, slope, share, now, largest
+      type(false_position) :: line
       integer :: round, trial
       logical :: found, there
 
@@ -134,30 +136,18 @@ contains
          call try(1.0_wp)
          if (.not. found) exit
          slope = measure_of(way, next)
-         ! The trial has gone too far: find the share of the correction at which the next one is across it,
-         ! by the method of false position (Illinois).
+         ! The trial has gone too far: find the share of the correction at which the next one is across it.
          if (slope < -0.3_wp*before) then
-            low = 0.0_wp
-            high = 1.0_wp
-            at_low = before
-            at_high = slope
+            line = false_position(at_low=before, at_high=slope)
             now = 1.0_wp
             do trial = 1, most_trials
-               share = low + (high - low)*at_low/(at_low - at_high)
+               share = line%next()
                call try(share - now)
                now = share
                if (.not. found) exit
                slope = measure_of(way, next)
                if (abs(slope) <= 0.1_wp*before) exit
-               if (slope > 0.0_wp) then
-                  low = share
-                  at_low = slope
-                  at_high = 0.5_wp*at_high
-               else
-                  high = share
-                  at_high = slope
-                  at_low = 0.5_wp*at_low
-               end if
+               call line%narrow(share, slope)
             end do
             if (.not. found) exit
          end if

@@ -9,6 +9,7 @@ module rbs_solve_static_stride
    use rbs_column_top, only: top_displacement
    use rbs_hysteresis_interaction_joints, only: nearest_layer, moment_on_plane
    use rbs_hysteresis_springs, only: spring_array
+   use rbs_solve_line_search, only: false_position
    use rbs_solve_static_curve, only: curve_type, clean, same_rate
    use rbs_solve_static_curved_equilibrium, only: curved_equilibrium, path_point
    implicit none
@@ -152,42 +153,30 @@ contains
       end associate
    end subroutine find_point
 
-   !> Find the point where the first motion turns back, by the method of false position (Illinois).
+   !> Find the point where the first motion turns back.
    subroutine find_turn(self, springs, done)
       class(stride_type), intent(inout) :: self
       type(spring_array), intent(in) :: springs
       logical, intent(out) :: done
-      real(wp) :: near, far, at_near, at_far, value, reached
-      integer :: i, side
+      type(false_position) :: line
+      real(wp) :: value, reached
+      integer :: i
 
       self%spring = 0
       self%layer = 0
-      near = self%here%t
-      far = self%there%t
-      at_near = self%curve%least_rate(springs, self%here)
-      at_far = self%curve%least_rate(springs, self%there)
-      side = 0
-      done = at_near > 0.0_wp .and. at_far < 0.0_wp
+      line = false_position(self%here%t, self%there%t, self%curve%least_rate(springs, self%here), &
+                            self%curve%least_rate(springs, self%there))
+      done = line%at_low > 0.0_wp .and. line%at_high < 0.0_wp
       if (.not. done) return
       do i = 1, 60
-         reached = far - at_far*(far - near)/(at_far - at_near)
-         if (i > 40) reached = 0.5_wp*(near + far)
+         reached = line%next()
+         if (i > 40) reached = 0.5_wp*(line%low + line%high)
          call self%curve%guess(reached, self%there)
          call self%find_point(springs, reached, .false., done)
          if (.not. done) return
          value = self%curve%least_rate(springs, self%there)
          if (abs(value) < 0.9_wp*same_rate) return
-         if (value > 0.0_wp) then
-            near = reached
-            at_near = value
-            if (side > 0) at_far = 0.5_wp*at_far
-            side = 1
-         else
-            far = reached
-            at_far = value
-            if (side < 0) at_near = 0.5_wp*at_near
-            side = -1
-         end if
+         call line%narrow(reached, value)
       end do
       done = .false.
    end subroutine find_turn

@@ -3,6 +3,7 @@
 !> not soften then have a convex potential, on which this converges.
 module rbs_solve_time_newton
    use rbs_base_kinds, only: wp
+   use rbs_solve_line_search, only: false_position
    use rbs_solve_time_halving, only: halving_stepper
    use rbs_solve_time_state, only: state_type, in_bounds, out_of_bounds
    implicit none
@@ -127,7 +128,7 @@ contains
    end function has_converged
 
    !> The trial has gone too far: find the share of the correction at which the residual does little work
-   !> on it, by the method of false position (Illinois).
+   !> on it.
    subroutine search_line(self, state, h, load, slope_before, slope_at_end, share_left, marked, size_now)
       class(newton_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
@@ -138,30 +139,20 @@ contains
       real(wp), intent(in) :: share_left
       logical, intent(inout) :: marked
       real(wp), intent(inout) :: size_now
-      real(wp) :: low, high, at_low, at_high, share, slope, now
+      type(false_position) :: line
+      real(wp) :: share, slope, now
       integer :: trial
 
-      low = 0.0_wp
-      high = 1.0_wp
-      at_low = slope_before
-      at_high = slope_at_end
+      line = false_position(at_low=slope_before, at_high=slope_at_end)
       now = 1.0_wp
       do trial = 1, 8
-         share = low + (high - low)*at_low/(at_low - at_high)
+         share = line%next()
          call self%try(state, h, load, share - now, marked, size_now)
          now = share
          if (.not. size_now < out_of_bounds .or. state%springs%stuck) return
          slope = self%work_of_residual()
          if (abs(slope) <= share_left*slope_before) return
-         if (slope > 0.0_wp) then
-            low = share
-            at_low = slope
-            at_high = 0.5_wp*at_high
-         else
-            high = share
-            at_high = slope
-            at_low = 0.5_wp*at_low
-         end if
+         call line%narrow(share, slope)
       end do
    end subroutine search_line
 
