@@ -227,7 +227,8 @@ contains
                   load, load_rate)
       call middle(self%near%q, self%far%q, self%near%rate, self%far%rate, q, rate)
       call nearest_layer(springs, q, load + above, rate, load_rate, way, spring, layer)
-      passes = way < -no_overshoot*self%length
+      ! As a share of the way between two targets: near an end round-off of a short stride is no event.
+      passes = way < -no_overshoot
       do j = 1, size(springs%layered)
          associate (i => springs%layered(j))
             if (.not. passes) passes = least_forward_rate(springs, i, &

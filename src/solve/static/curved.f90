@@ -14,7 +14,7 @@ module rbs_solve_static_curved
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: put_on_plane
-   use rbs_column_column, only: column_type
+   use rbs_column_column, only: column_type, finite
    use rbs_column_energy, only: potential_energy
    use rbs_column_top, only: largest_turn
    use rbs_solve_static_corner, only: turn_corner
@@ -220,7 +220,9 @@ contains
             call self%stride%find_turn(self%springs, done)
             if (done) call self%stride%curve%set(self%column, self%stride%here, self%stride%there)
          end if
+         ! With small rotations the curve is so slight that no layer goes out of its line and back.
          if (done) done = .not. self%stride%curve%hides_event(self%springs, self%stride%equilibrium%above, &
+                                                              self%column%kinematics == finite .and. &
                                                               cuts < most_looks)
       end if
       if (.not. done) return
