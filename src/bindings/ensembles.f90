@@ -11,8 +11,8 @@ module rbs_bindings_ensembles
    use rbs_case_case_record, only: case_record
    use rbs_case_text_buffer, only: text_buffer
    use rbs_solve_ensemble_block, only: plan_column, run_block
-   use rbs_solve_ensemble_outcome, only: outcome_type, measure_count
-   use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, run_type
+   use rbs_solve_ensemble_run_result, only: run_result, measure_count
+   use rbs_solve_ensemble_ensemble_input, only: ensemble_column, ensemble_motion, run_type
    use rbs_loading_loads, only: loads_type
    implicit none
    private
@@ -65,7 +65,7 @@ contains
       type(ensemble_column), allocatable :: column(:)
       type(ensemble_motion), allocatable :: motion(:)
       type(run_type), allocatable :: run(:)
-      type(outcome_type), allocatable :: outcome(:)
+      type(run_result), allocatable :: outcome(:)
       type(error_type), allocatable :: error
       type(text_buffer) :: text
       integer :: i, at(4), states

@@ -26,7 +26,7 @@ module rbs_bindings_evaluate
    use rbs_section_flexural_spring, only: spring_figures
    use rbs_section_section_figures, only: layer_values, point_values, profile_values, section_figures, &
                                           shear_values
-   use rbs_solve_ensemble_outcome, only: measure_names
+   use rbs_solve_ensemble_run_result, only: measure_names
    use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_version, only: version

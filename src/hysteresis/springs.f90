@@ -67,6 +67,7 @@ module rbs_hysteresis_springs
    contains
       procedure, private :: create_from_rules, create_from_records
       generic :: create => create_from_rules, create_from_records
+      procedure :: restart
       procedure :: copy_state
       procedure :: next_branch
       procedure :: force
@@ -132,6 +133,25 @@ contains
          end select
       end do
    end subroutine create_from_rules
+
+   !> The same springs, virgin once more; their axial loads do not vary.
+   subroutine restart(self, axial_load)
+      class(spring_array), intent(inout) :: self
+      !> As in `create`
+      real(wp), intent(in) :: axial_load(:)
+      type(segment) :: line
+      integer :: i
+
+      self%d = 0.0_wp
+      self%work = 0.0_wp
+      self%events = 0
+      self%stuck = .false.
+      self%version = modulo(self%version + 1, huge(1))
+      do i = 1, self%count
+         call start_under(self%rules%list(self%rules%of(i))%rule, axial_load(i), self%slot(i)%memory, line)
+         call put_line(self, i, line)
+      end do
+   end subroutine restart
 
    !> Virgin springs of their records.
    subroutine create_from_records(self, specs, told)

@@ -7,10 +7,9 @@ module rbs_solve_ensemble_block
    use rbs_output_summary, only: summary_type
    use rbs_solve_end_state, only: end_state, standing_type
    use rbs_solve_ensemble_lane_choice, only: takes_lanes, are_alike
-   use rbs_solve_ensemble_lane_runs, only: run_in_lanes
-   use rbs_solve_ensemble_outcome, only: outcome_type
-   use rbs_solve_ensemble_subject, only: ensemble_column, ensemble_motion, run_type, lane_task
-   use rbs_solve_ensemble_tally, only: settle
+   use rbs_solve_ensemble_ensemble_input, only: ensemble_column, ensemble_motion, run_type, lane_task
+   use rbs_solve_ensemble_run_result, only: run_result, collect
+   use rbs_solve_ensemble_simd_batch, only: run_in_lanes
    use rbs_solve_time_effort, only: expected_seconds
    use rbs_loading_loads, only: loads_type
    use rbs_solve_time_march, only: initial_state
@@ -86,13 +85,13 @@ contains
    end subroutine take_before
 
    !> Run them all.
-   subroutine run_block(column, motion, run, level, outcome, control)
+   subroutine run_block(column, motion, run, level, result, control)
       type(ensemble_column), intent(in) :: column(:)
       type(ensemble_motion), intent(in) :: motion(:)
       type(run_type), intent(in) :: run(:)
       !> Of the kernel: 0 for the fastest, see `chosen_kernel`; `without_lanes`
       integer, intent(in) :: level
-      type(outcome_type), intent(inout) :: outcome(:)
+      type(run_result), intent(inout) :: result(:)
       !> Shared with other threads: 1: not zero to stop before the next run, 2: number of runs that are done
       integer, intent(inout), volatile :: control(2)
       type(lane_task), allocatable :: task(:), others(:)
@@ -123,7 +122,7 @@ contains
                call keep_plan(plan, task(tasks)%plan)
                cycle
             end if
-            call run_alone(one, shaken, run(i)%scale, plan, error, outcome(i))
+            call run_alone(one, shaken, run(i)%scale, plan, error, result(i))
          end associate
          control(2) = control(2) + 1
       end do
@@ -133,13 +132,14 @@ contains
          allocate (together(size(task)))
          do i = 1, size(task)
             together(i) = task(i)%plan%method == task(1)%plan%method .and. &
-                          are_alike(column(run(task(i)%run)%column), column(run(task(1)%run)%column))
+                          are_alike(column(run(task(i)%run)%column)%column, &
+                                    column(run(task(1)%run)%column)%column)
          end do
          others = pack(task, .not. together)
          if (count(together) >= fewest) then
-            call run_in_lanes(column, motion, run, pack(task, together), level, outcome, control)
+            call run_in_lanes(column, motion, run, pack(task, together), level, result, control)
          else
-            call run_few(column, motion, run, pack(task, together), outcome, control)
+            call run_few(column, motion, run, pack(task, together), result, control)
          end if
          call move_alloc(others, task)
          deallocate (together)
@@ -147,12 +147,12 @@ contains
    end subroutine run_block
 
    !> Runs that lanes could take, one after the other.
-   subroutine run_few(column, motion, run, task, outcome, control)
+   subroutine run_few(column, motion, run, task, result, control)
       type(ensemble_column), intent(in) :: column(:)
       type(ensemble_motion), intent(in) :: motion(:)
       type(run_type), intent(in) :: run(:)
       type(lane_task), intent(in) :: task(:)
-      type(outcome_type), intent(inout) :: outcome(:)
+      type(run_result), intent(inout) :: result(:)
       !> See `run_block`
       integer, intent(inout), volatile :: control(2)
       type(time_plan) :: plan
@@ -161,7 +161,7 @@ contains
 
       do i = 1, size(task)
          if (control(1) /= 0) return
-         associate (this => run(task(i)%run), result => outcome(task(i)%run))
+         associate (this => run(task(i)%run), result => result(task(i)%run))
             call plan_run(column(this%column), motion(this%motion), plan, error)
             call run_alone(column(this%column), motion(this%motion), this%scale, plan, error, result)
          end associate
@@ -206,14 +206,14 @@ contains
    end subroutine plan_run
 
    !> One run by itself.
-   subroutine run_alone(column, motion, scale, plan, unplanned, outcome)
+   subroutine run_alone(column, motion, scale, plan, unplanned, result)
       type(ensemble_column), intent(in) :: column
       type(ensemble_motion), intent(in) :: motion
       real(wp), intent(in) :: scale
       type(time_plan), intent(in) :: plan
       !> Why there is no plan
       type(error_type), allocatable, intent(in) :: unplanned
-      type(outcome_type), intent(inout) :: outcome
+      type(run_result), intent(inout) :: result
       type(loads_type) :: loads
       type(initial_state) :: at_rest
       type(end_state) :: before
@@ -224,7 +224,7 @@ contains
 
       call sight%watch_for(column%watch, column%states)
       if (allocated(unplanned)) then
-         call settle(sight%reached, summary, unplanned, outcome)
+         call collect(sight%reached, summary, unplanned, result)
          return
       end if
       loads%ground%time = motion%time
@@ -232,7 +232,7 @@ contains
       call take_before(column, before)
       call run_dynamic(column%column, column%analysis, plan, motion%time, loads, at_rest, unset_integer, &
                        no_rows, summary, error, before=before, sight=sight)
-      call settle(sight%reached, summary, error, outcome)
+      call collect(sight%reached, summary, error, result)
    end subroutine run_alone
 
 end module rbs_solve_ensemble_block

@@ -1,11 +1,10 @@
 !> Which runs lanes can take, and which of them together.
 module rbs_solve_ensemble_lane_choice
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: finite
-   use rbs_solve_ensemble_subject, only: ensemble_column
+   use rbs_column_column, only: column_type, finite
+   use rbs_solve_ensemble_ensemble_input, only: ensemble_column
    use rbs_solve_time_march, only: step_of
    use rbs_solve_time_plan, only: time_plan
-   use rbs_solve_time_sight, only: watch_type
    implicit none
    private
 
@@ -30,8 +29,6 @@ contains
       associate (column => of_runs%column)
          if (column%opens .or. column%held .or. column%kinematics == finite) return
          if (any(column%spring%rule == 'layered')) return
-         ! Lanes of chains have not the bits of the steps that are made for one body without damping.
-         if (column%unknowns == 2 .and. .not. column%damped .and. .not. is_plain_body(of_runs)) return
       end associate
       select case (plan%method)
       case ('rk4')
@@ -49,35 +46,19 @@ contains
       takes_lanes = .true.
    end function takes_lanes
 
-   !> Whether a column is one body without damping that is watched for nothing but yield at a rotation: such
-   !> columns have lanes of their own.
-   pure logical function is_plain_body(of_runs)
-      type(ensemble_column), intent(in) :: of_runs
+   !> Whether a column is one body without damping: such columns have lanes of their own.
+   pure logical function is_plain_body(column)
+      type(column_type), intent(in) :: column
 
-      is_plain_body = of_runs%column%unknowns == 2 .and. .not. of_runs%column%damped
-      if (is_plain_body) is_plain_body = one_rotation(of_runs%watch)
+      is_plain_body = column%unknowns == 2 .and. .not. column%damped
    end function is_plain_body
-
-   !> Whether all that is watched is yield at one rotation to both sides, or nothing.
-   pure logical function one_rotation(watch)
-      type(watch_type), intent(in) :: watch(:)
-
-      one_rotation = size(watch) == 0
-      if (size(watch) /= 2) return
-      one_rotation = all(watch%state == 1 .and. abs(watch%slip) <= 0.0_wp &
-                         .and. abs(watch%opening) <= 0.0_wp) &
-                     .and. abs(watch(1)%rotation + watch(2)%rotation) <= 0.0_wp &
-                     .and. abs(watch(1)%threshold - watch(2)%threshold) <= 0.0_wp
-   end function one_rotation
 
    !> Whether the runs of two columns can advance side by side.
    pure logical function are_alike(one, other)
-      type(ensemble_column), intent(in) :: one, other
+      type(column_type), intent(in) :: one, other
 
-      are_alike = one%column%n == other%column%n .and. &
-                  (one%column%damped .eqv. other%column%damped) .and. &
-                  (allocated(one%column%modal_damping) .eqv. allocated(other%column%modal_damping)) .and. &
-                  (is_plain_body(one) .eqv. is_plain_body(other))
+      are_alike = one%n == other%n .and. (one%damped .eqv. other%damped) .and. &
+                  (allocated(one%modal_damping) .eqv. allocated(other%modal_damping))
    end function are_alike
 
 end module rbs_solve_ensemble_lane_choice

@@ -15,7 +15,6 @@ module rbs_solve_time_halving
    integer, parameter :: most_cuts = 24
 
    type, abstract, extends(stepper_type) :: halving_stepper
-      logical, private :: ready = .false.
    contains
       procedure :: advance
       procedure :: resume
@@ -67,8 +66,8 @@ contains
       logical :: converged
 
       if (allocated(error)) return
-      if (.not. self%ready) call self%prepare(state)
-      self%ready = .true.
+      if (.not. self%begun) call self%prepare(state)
+      self%begun = .true.
       finish = state%time + h
       ! Most steps converge.
       call state%loads%at_time(finish, load)
@@ -87,8 +86,8 @@ contains
       type(state_type), intent(in) :: state
       type(stream_type), intent(inout) :: stream
 
-      if (.not. self%ready) call self%prepare(state)
-      self%ready = .true.
+      if (.not. self%begun) call self%prepare(state)
+      self%begun = .true.
       call self%serialize(stream)
    end subroutine resume
 

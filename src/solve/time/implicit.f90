@@ -91,6 +91,7 @@ contains
       type(state_type), intent(in) :: state
 
       call self%step%start(state)
+      if (allocated(self%dx)) return
       call self%tangent%create(state%motion%structure)
       allocate (self%dx(size(state%q)), self%dq(size(state%q)), self%mean(size(state%q)), source=0.0_wp)
    end subroutine prepare
@@ -121,7 +122,7 @@ contains
       real(wp) :: mean(2)
 
       associate (step => self%step, body => self%one_body, motion => state%motion)
-         if (abs(h - body%h) > 0.0_wp) call fit_one_body(self, state, h)
+         if (abs(h - body%h) > 0.0_wp) call fit_one_body(body, step, self%wanted, state, h)
          call body%take_step(state%springs, state%q, step%v0, step%a0, step%g0, step%largest, &
                              load(lateral), load(horizontal), taken)
          if (.not. taken) return
@@ -152,26 +153,29 @@ contains
    end subroutine take_step_of_one_body
 
    !> Column, method and length of the step, and the tangent on the present lines, of one body.
-   subroutine fit_one_body(self, state, h)
-      class(implicit_stepper), intent(inout) :: self
+   subroutine fit_one_body(body, step, wanted, state, h)
+      type(one_body_step), intent(inout) :: body
+      type(step_balance), intent(in) :: step
+      !> Share of the forces that the residual may have
+      real(wp), intent(in) :: wanted
       type(state_type), intent(in) :: state
       real(wp), intent(in) :: h
 
-      associate (step => self%step, body => self%one_body, column => state%motion%column)
-         if (abs(h - body%h) > 0.0_wp) then
+      if (abs(h - body%h) > 0.0_wp) then
+         associate (column => state%motion%column)
             body%alpha_m = step%alpha_m
             body%alpha_f = step%alpha_f
             body%beta = step%beta
             body%gamma = step%gamma
-            body%wanted = self%wanted
+            body%wanted = wanted
             body%mass = column%inertias(:2)
             body%lower = column%lower(1)
             body%upper = column%upper(1)
             body%softening = softening_of(column)
-            call body%set_step(h)
-         end if
-         call body%fit_to(state%springs)
-      end associate
+         end associate
+         call body%set_step(h)
+      end if
+      call body%fit_to(state%springs)
    end subroutine fit_one_body
 
    !> Find the end of a step of h. If it is not found, the springs are as before.

@@ -54,10 +54,12 @@ contains
       associate (structure => state%motion%structure)
          m = structure%unknowns
          springs = size(structure%place)
-         allocate (self%v0(m), self%a0(m), self%g0(m), self%v1(m), self%a1(m), self%g1(m), self%r(m), &
-                   self%moved(m), self%q1(springs), self%w1(springs), source=0.0_wp)
-         allocate (self%scale(size(structure%group)), self%largest(size(structure%group)), source=0.0_wp)
-         call self%now%create(state%motion%column)
+         if (.not. allocated(self%v0)) then
+            allocate (self%v0(m), self%a0(m), self%g0(m), self%v1(m), self%a1(m), self%g1(m), self%r(m), &
+                      self%moved(m), self%q1(springs), self%w1(springs), source=0.0_wp)
+            allocate (self%scale(size(structure%group)), self%largest(size(structure%group)), source=0.0_wp)
+            call self%now%create(state%motion%column)
+         end if
          call structure%unknown_rates(state%v, self%v0)
          call find_forces(state, state%q, state%v, self%v0, state%load, self%now, self%g0)
          self%a0 = self%g0/structure%inertias

@@ -95,8 +95,12 @@ contains
       self%column => motion%column
       opening = 0
       if (any(abs(self%watch%opening) > 0.0_wp)) opening = 2*motion%column%n
-      allocate (self%lowest(m), self%highest(m), self%inner_q(m, 4), self%inner_v(m, 4), &
-                self%openings(opening), self%inner_openings(opening, 4), source=0.0_wp)
+      if (.not. allocated(self%lowest)) then
+         allocate (self%lowest(m), self%highest(m), self%inner_q(m, 4), self%inner_v(m, 4), &
+                   self%openings(opening), self%inner_openings(opening, 4), source=0.0_wp)
+      end if
+      self%peaks_type = peaks_type()
+      self%collapsed = .false.
       call set_bounds(self)
       self%feels = floor
       if (floor) call self%now%create(motion%column)

@@ -16,7 +16,7 @@ module rbs_solve_time_start
    implicit none
    private
 
-   public :: initial_state, start_state, resume_state, resume_steps, keep_state
+   public :: initial_state, start_state, restart_state, resume_state, resume_steps, keep_state
 
    !> State at the start; arrays that are not allocated are zero.
    type :: initial_state
@@ -173,6 +173,21 @@ contains
       state%at_begin = kinetic_energy(state%motion%column, state%q, state%v) + sum(state%springs%work) &
                        + potential_energy(state%motion%column, state%q)
    end subroutine start_state
+
+   !> The same column at rest once more, under ground motions that have taken the place of others.
+   subroutine restart_state(state)
+      type(state_type), intent(inout) :: state
+
+      state%time = 0.0_wp
+      state%clock = state%begin
+      state%q = 0.0_wp
+      state%v = 0.0_wp
+      state%of_loads = 0.0_wp
+      state%of_damping = 0.0_wp
+      state%lost = .false.
+      call state%springs%restart(state%motion%column%spring%axial_load)
+      call state%loads%at_time(state%time, state%load)
+   end subroutine restart_state
 
    !> The straight column at rest under the loads of the first moment.
    subroutine create_state(state, column, loads, begin, error)

@@ -45,8 +45,11 @@ module rbs_solve_time_state
       integer :: steps = 0
       !> Longest step taken, if the method chooses its steps; 0 if they are as planned [s]
       real(wp) :: longest_step = 0.0_wp
+      !> Whether what it needs before the first step has been found
+      logical :: begun = .false.
    contains
       procedure(advance_interface), deferred :: advance
+      procedure :: restart
       procedure :: resume
    end type stepper_type
 
@@ -85,6 +88,16 @@ contains
 
       call self%sight%see(self%motion, self%springs, self%q, self%v, self%load, clock)
    end subroutine see
+
+   !> Ready for another run of the same column with the same steps.
+   subroutine restart(self)
+      class(stepper_type), intent(inout) :: self
+
+      self%cut_steps = 0
+      self%steps = 0
+      self%longest_step = 0.0_wp
+      self%begun = .false.
+   end subroutine restart
 
    !> Save or restore what the next step depends on besides the state. A method whose steps depend on the
    !> state alone inherits this procedure.

@@ -1,5 +1,5 @@
 !> What an ensemble is made of: columns with what is asked of them, motions of the ground, and runs.
-module rbs_solve_ensemble_subject
+module rbs_solve_ensemble_ensemble_input
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_case_analysis_record, only: analysis_record
@@ -45,4 +45,4 @@ module rbs_solve_ensemble_subject
       real(wp) :: scale = 1.0_wp
    end type lane_task
 
-end module rbs_solve_ensemble_subject
+end module rbs_solve_ensemble_ensemble_input

@@ -1,0 +1,434 @@
+!> Runs in lanes: columns that advance side by side, and beside each lane the state of its run and its method.
+!> For a step on which a spring leaves its line, for which the method has to find something first, or which has
+!> to be cut, the lane is put into them, goes on as every run does, and comes back. So a lane has the bits of a
+!> run alone, and all rules of the program. A lane that is done takes the next run.
+module rbs_solve_ensemble_simd_batch
+   use, intrinsic :: iso_c_binding, only: c_f_pointer, c_intptr_t, c_loc
+   use, intrinsic :: iso_fortran_env, only: int32
+   use rbs_base_error, only: error_type
+   use rbs_base_kinds, only: wp
+   use rbs_column_column, only: column_type
+   use rbs_loading_loads, only: loads_type
+   use rbs_output_summary, only: summary_type
+   use rbs_solve_ensemble_dispatch, only: chosen_kernel
+   use rbs_solve_ensemble_ensemble_input, only: ensemble_column, ensemble_motion, run_type, lane_task
+   use rbs_solve_ensemble_lane_arrays, only: lane_clock, lane_block, lane_method, kernel_type, lanes, few
+   use rbs_solve_ensemble_lane_choice, only: is_plain_body
+   use rbs_solve_ensemble_lane_state, only: fit_block, column_to_lane, springs_to_lane, motion_to_lane, &
+                                            bounds_to_lane, step_to_lane, springs_from_lane, motion_from_lane, &
+                                            step_from_lane, ground_from_lane
+   use rbs_solve_ensemble_one_body_lane, only: body_to_lane, follow_springs, follow_trial, lines_to_body, &
+                                               lines_from_body
+   use rbs_solve_ensemble_run_result, only: run_result, collect
+   use rbs_solve_one_body_implicit_one_body, only: one_body_step
+   use rbs_solve_time_implicit, only: implicit_stepper
+   use rbs_solve_time_march, only: report_state
+   use rbs_solve_time_run_dynamic, only: new_stepper
+   use rbs_solve_time_start, only: initial_state, start_state, restart_state
+   use rbs_solve_time_state, only: state_type, stepper_type
+   implicit none
+   private
+
+   public :: run_in_lanes
+
+   !> What stands beside a lane.
+   type :: lane_type
+      !> Places of the task, and of the column that state and method are for; 0: none
+      integer :: task = 0, column = 0
+      !> Step that they are for [s]
+      real(wp) :: dt = 0.0_wp
+      !> The run alone, which knows the rules of its springs
+      type(state_type) :: state
+      class(stepper_type), allocatable :: stepper
+      !> One body without damping: its steps on which springs leave their lines, and the lines
+      type(one_body_step) :: body
+   end type lane_type
+
+   type :: batch_type
+      type(kernel_type) :: kernel
+      !> Whether the columns are one body without damping
+      logical :: one_body = .false.
+      !> The lanes, in a room that begins where a line of the cache does: an access to several lanes that crosses
+      !> the border of two lines takes twice the time
+      real(wp), allocatable :: room(:)
+      type(lane_clock), pointer :: x => null()
+      type(lane_block), allocatable :: block(:)
+      type(lane_type), allocatable :: lane(:)
+      !> All motions one after the other, each followed by two more points [s, m/s2], and the place of the first
+      !> point of each
+      real(wp), allocatable :: time(:), acceleration(:)
+      integer, allocatable :: first(:)
+   end type batch_type
+
+contains
+
+   !> Run tasks of one method, with columns that are alike, in lanes.
+   subroutine run_in_lanes(column, motion, run, task, level, result, control)
+      type(ensemble_column), intent(in), target :: column(:)
+      type(ensemble_motion), intent(in) :: motion(:)
+      type(run_type), intent(in) :: run(:)
+      type(lane_task), intent(in) :: task(:)
+      !> Of the kernel, see `chosen_kernel`
+      integer, intent(in) :: level
+      type(run_result), intent(inout) :: result(:)
+      !> See `run_block`
+      integer, intent(inout), volatile :: control(2)
+      type(batch_type), target :: batch
+      integer :: next, busy, l
+
+      if (size(task) == 0) return
+      call create_batch(batch, column(run(task(1)%run)%column)%column, motion, level)
+      next = 0
+      busy = 0
+      do l = 1, lanes
+         call refill(l)
+      end do
+      do while (busy > 0)
+         call advance_all()
+      end do
+
+   contains
+
+      !> One step of all lanes.
+      subroutine advance_all()
+         integer :: count, list(lanes), failed, fails(lanes), j
+         type(error_type), allocatable :: error
+
+         call batch%kernel%advance(batch%x, batch%block, count, list)
+         failed = 0
+         do j = 1, count
+            call finish_step_scalar(batch, list(j), error)
+            if (.not. allocated(error)) cycle
+            failed = failed + 1
+            fails(failed) = list(j)
+            call unload(batch, list(j), task, result, error)
+         end do
+         call batch%kernel%finish(batch%x, batch%block, size(batch%time), batch%time, batch%acceleration, count, &
+                                  list)
+         if (batch%x%any_beyond > 0.5_wp) call look_closely(batch)
+         do j = 1, count
+            call unload(batch, list(j), task, result, error)
+            call free(list(j))
+         end do
+         do j = 1, failed
+            call free(fails(j))
+         end do
+      end subroutine advance_all
+
+      !> A run is done.
+      subroutine free(l)
+         integer, intent(in) :: l
+
+         control(2) = control(2) + 1
+         busy = busy - 1
+         call refill(l)
+      end subroutine free
+
+      !> Put the next run into a lane, if there is one.
+      subroutine refill(l)
+         integer, intent(in) :: l
+         type(error_type), allocatable :: error
+
+         do while (next < size(task) .and. control(1) == 0)
+            next = next + 1
+            batch%lane(l)%task = next
+            associate (this => run(task(next)%run))
+               call load_run(batch, l, column(this%column), this%column, motion(this%motion), &
+                             batch%first(this%motion), task(next), error)
+            end associate
+            if (.not. allocated(error)) then
+               busy = busy + 1
+               return
+            end if
+            call unload(batch, l, task, result, error)
+            control(2) = control(2) + 1
+         end do
+      end subroutine refill
+
+   end subroutine run_in_lanes
+
+   !> Lanes for columns of the size and the kind of damping of one, without runs, and the motions.
+   subroutine create_batch(batch, column, motion, level)
+      type(batch_type), intent(inout), target :: batch
+      type(column_type), intent(in) :: column
+      type(ensemble_motion), intent(in) :: motion(:)
+      integer, intent(in) :: level
+      !> Numbers in a line of the cache, and arrays of a block
+      integer, parameter :: line = 8, arrays = 16
+      integer(c_intptr_t) :: address
+      integer :: width, clock, taken, j, m, at
+
+      batch%one_body = is_plain_body(column)
+      batch%kernel = chosen_kernel(level, batch%one_body)
+      width = merge(lanes, few, batch%one_body)
+      clock = line*ceiling(storage_size(batch%x)/real(line*storage_size(1.0_wp), wp))
+      allocate (batch%room(line + clock + arrays*lanes*2*column%n), source=0.0_wp)
+      address = transfer(c_loc(batch%room), address)/(storage_size(1.0_wp)/8)
+      taken = int(modulo(-address, int(line, c_intptr_t)))
+      call c_f_pointer(c_loc(batch%room(taken + 1)), batch%x)
+      batch%x = lane_clock()
+      taken = taken + clock
+      allocate (batch%block(lanes/width), batch%lane(lanes))
+      do j = 1, size(batch%block)
+         call fit_block(batch%block(j), batch%room, taken, (j - 1)*width, width, column)
+      end do
+      at = 0
+      do j = 1, size(motion)
+         at = at + size(motion(j)%time) + 2
+      end do
+      allocate (batch%time(at), batch%acceleration(at), batch%first(size(motion)))
+      at = 0
+      do j = 1, size(motion)
+         m = size(motion(j)%time)
+         batch%first(j) = at + 1
+         batch%time(at + 1:at + m + 2) = [motion(j)%time, motion(j)%time(m) + 1.0_wp, motion(j)%time(m) + 2.0_wp]
+         ! After its end a motion stays at its last value.
+         batch%acceleration(at + 1:at + m) = motion(j)%acceleration
+         batch%acceleration(at + m + 1:at + m + 2) = motion(j)%acceleration(m)
+         at = at + m + 2
+      end do
+   end subroutine create_batch
+
+   !> A run begins in a lane. Its first step is taken alone, as then the method finds what it needs.
+   subroutine load_run(batch, l, column, place, motion, first, task, error)
+      type(batch_type), intent(inout) :: batch
+      integer, intent(in) :: l
+      !> The column, and its place
+      type(ensemble_column), intent(in), target :: column
+      integer, intent(in) :: place
+      type(ensemble_motion), intent(in) :: motion
+      !> Place of the first point of the motion in the table
+      integer, intent(in) :: first
+      type(lane_task), intent(in) :: task
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      call load_motion(motion, first, task, batch%x, l)
+      associate (x => batch%x, b => batch%block((l - 1)/batch%block(1)%width + 1), lane => batch%lane(l))
+         i = l - b%base
+         if (lane%column == place .and. .not. abs(lane%dt - x%h(l)) > 0.0_wp) then
+            call ground_from_lane(x, l, lane%state)
+            call restart_state(lane%state)
+            call lane%stepper%restart()
+         else
+            call create_run(batch, l, column, task, error)
+            if (allocated(error)) return
+            lane%column = place
+            lane%dt = x%h(l)
+         end if
+         call lane%state%sight%watch_for(column%watch, column%states)
+         call lane%state%begin_sight(column%analysis%collapse_drift, .false.)
+         x%furthest(l) = lane%state%sight%furthest
+         call motion_to_lane(x, b, i, lane%state)
+         call springs_to_lane(b, i, lane%state)
+         if (batch%one_body) call lines_to_body(x, b, l, lane%state, lane%stepper, lane%body)
+         x%seen(l) = 0.0_wp
+         x%t(l) = 0.0_wp
+         x%steps(l) = 0.0_wp
+         x%displacement(l) = 0.0_wp
+         x%residual(l) = 0.0_wp
+         x%most(l) = 0.0_wp
+         x%ended(l) = 0.0_wp
+         x%active(l) = 1.0_wp
+         x%ready(l) = 0.0_wp
+         x%tried(l) = 0.0_wp
+      end associate
+   end subroutine load_run
+
+   !> State and method of a run, and what of its column stays as it is.
+   subroutine create_run(batch, l, column, task, error)
+      type(batch_type), intent(inout) :: batch
+      integer, intent(in) :: l
+      type(ensemble_column), intent(in), target :: column
+      type(lane_task), intent(in) :: task
+      type(error_type), allocatable, intent(out) :: error
+      type(loads_type) :: loads
+      type(initial_state) :: at_rest
+
+      associate (x => batch%x, b => batch%block((l - 1)/batch%block(1)%width + 1), lane => batch%lane(l))
+         lane%column = 0
+         loads%ground%time = [x%begin(l), x%finish(l), x%next_finish(l)]
+         loads%ground%value = [x%value(l), x%next_value(l), x%after_value(l)]
+         call start_state(lane%state, column%column, loads, at_rest, 0.0_wp, error)
+         if (allocated(error)) return
+         call new_stepper(lane%stepper, column%column, column%analysis, task%plan)
+         select type (stepper => lane%stepper)
+         type is (implicit_stepper)
+            b%method = lane_method(.true., stepper%step%alpha_m, stepper%step%alpha_f, stepper%step%beta, &
+                                   stepper%step%gamma, stepper%wanted, stepper%acceptable)
+         end select
+         if (batch%one_body) then
+            lane%body = one_body_step()
+            call body_to_lane(x, l, lane%state)
+         else
+            call column_to_lane(b, l - b%base, lane%state%motion)
+         end if
+      end associate
+   end subroutine create_run
+
+   !> The first two intervals of the motion.
+   pure subroutine load_motion(motion, first, task, x, l)
+      type(ensemble_motion), intent(in) :: motion
+      integer, intent(in) :: first
+      type(lane_task), intent(in) :: task
+      type(lane_clock), intent(inout) :: x
+      integer, intent(in) :: l
+      integer :: m
+
+      m = size(motion%time)
+      associate (time => motion%time, value => motion%acceleration, scale => task%scale)
+         x%h(l) = task%plan%dt
+         x%part(l) = 1.0_wp
+         x%parts(l) = real(task%parts, wp)
+         x%left(l) = real(m - 1, wp)
+         x%scale(l) = scale
+         x%begin(l) = time(1)
+         x%finish(l) = time(2)
+         x%value(l) = scale*value(1)
+         x%next_value(l) = scale*value(2)
+         x%slope(l) = (x%next_value(l) - x%value(l))/(time(2) - time(1))
+         x%next_finish(l) = time(m) + 1.0_wp
+         x%after_value(l) = x%next_value(l)
+         x%next_slope(l) = 0.0_wp
+         if (m > 2) then
+            x%next_finish(l) = time(3)
+            x%after_value(l) = scale*value(3)
+            x%next_slope(l) = (x%after_value(l) - x%next_value(l))/(time(3) - time(2))
+         end if
+         x%at(l) = int(first + 2, int32)
+      end associate
+   end subroutine load_motion
+
+   !> Complete in scalar code the step that the other lanes have taken.
+   subroutine finish_step_scalar(batch, l, error)
+      type(batch_type), intent(inout) :: batch
+      integer, intent(in) :: l
+      type(error_type), allocatable, intent(out) :: error
+      logical :: taken
+
+      associate (x => batch%x, b => batch%block((l - 1)/batch%block(1)%width + 1), lane => batch%lane(l), &
+                 state => batch%lane(l)%state)
+         taken = .false.
+         if (x%tried(l) > 0.5_wp) then
+            ! Of RK4 the step has ended, and only the springs have still to follow.
+            if (b%method%implicit) then
+               call follow_trial(x, b, l, lane%body, state%springs, taken)
+            else if (batch%one_body) then
+               call follow_springs(x, b, l, lane%body, state%springs)
+               taken = .true.
+            else
+               call springs_from_lane(b, l - b%base, b%from, state)
+               state%q(:) = b%q(l - b%base, :)
+               call state%springs%move_all(state%q)
+               call springs_to_lane(b, l - b%base, state)
+               taken = .true.
+            end if
+            if (taken) state%time = x%t(l) + x%h(l)
+         end if
+         if (.not. taken) call step_alone(batch, x, b, lane, l, error)
+         if (allocated(error)) return
+         if (state%lost .or. state%springs%stuck) call report_state(state, error)
+      end associate
+   end subroutine finish_step_scalar
+
+   !> A whole step by the method of the run itself.
+   subroutine step_alone(batch, x, b, lane, l, error)
+      type(batch_type), intent(in) :: batch
+      type(lane_clock), intent(inout) :: x
+      type(lane_block), intent(inout) :: b
+      type(lane_type), intent(inout) :: lane
+      integer, intent(in) :: l
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      i = l - b%base
+      if (batch%one_body) then
+         call lines_from_body(b, l, lane%body, lane%state%springs)
+      else
+         call springs_from_lane(b, i, b%q, lane%state)
+      end if
+      call motion_from_lane(x, b, i, lane%state)
+      select type (stepper => lane%stepper)
+      type is (implicit_stepper)
+         ! Before its first step the method has nothing to start from.
+         if (x%steps(l) + stepper%steps > 0.5_wp) call step_from_lane(b, i, stepper)
+      end select
+      call lane%stepper%advance(lane%state, x%h(l), error)
+      if (allocated(error) .or. lane%state%lost .or. lane%state%springs%stuck) return
+      x%ready(l) = 1.0_wp
+      call motion_to_lane(x, b, i, lane%state)
+      call springs_to_lane(b, i, lane%state)
+      select type (stepper => lane%stepper)
+      type is (implicit_stepper)
+         call step_to_lane(b, i, stepper)
+         if (.not. batch%one_body) then
+            call stepper%tangent%fit(stepper%step, lane%state, x%h(l))
+            ! Lanes cannot solve with a tangent that is not positive definite.
+            x%ready(l) = merge(1.0_wp, 0.0_wp, stepper%tangent%matrix%positive)
+            b%tangent(i, :, :) = stepper%tangent%matrix%triangle
+         end if
+      end select
+      if (batch%one_body) call lines_to_body(x, b, l, lane%state, lane%stepper, lane%body)
+   end subroutine step_alone
+
+   !> Lanes in which a limit state may have been reached.
+   subroutine look_closely(batch)
+      type(batch_type), intent(inout) :: batch
+      integer :: l, i
+
+      do l = 1, lanes
+         if (batch%x%beyond(l) < 0.5_wp) cycle
+         associate (x => batch%x, b => batch%block((l - 1)/batch%block(1)%width + 1), &
+                    state => batch%lane(l)%state)
+            i = l - b%base
+            state%sight%q(:) = b%from(i, :)
+            ! A step that was cut has been seen within.
+            state%sight%clock = max(state%sight%clock, x%seen(l))
+            state%q(:) = b%q(i, :)
+            call state%sight%look(state%springs, state%q, x%displacement(l), x%t(l))
+            call bounds_to_lane(b, i, state)
+         end associate
+      end do
+   end subroutine look_closely
+
+   !> Fate and measures of a run that has ended; its lane is empty.
+   subroutine unload(batch, l, task, result, error)
+      type(batch_type), intent(inout) :: batch
+      integer, intent(in) :: l
+      type(lane_task), intent(in) :: task(:)
+      type(run_result), intent(inout) :: result(:)
+      type(error_type), allocatable, intent(in) :: error
+      type(summary_type) :: summary
+
+      associate (x => batch%x, b => batch%block((l - 1)/batch%block(1)%width + 1), lane => batch%lane(l), &
+                 this => task(batch%lane(l)%task))
+         summary%last_displacement = x%displacement(l)
+         summary%last_time = x%t(l)
+         summary%time_step = this%plan%dt
+         summary%peak_displacement = x%peak(l)
+         summary%peak_base_shear = x%base(l)
+         summary%peak_rotation = x%rotation(l)
+         summary%collapsed = abs(x%peak(l)) >= x%furthest(l)
+         summary%energy%input = x%of_loads(l)
+         summary%energy%spring = sum(b%work(l - b%base, :))
+         summary%energy%damping = x%of_damping(l)
+         summary%residual = x%residual(l)
+         summary%largest = x%most(l)
+         summary%events = lane%state%springs%events
+         summary%steps = nint(x%steps(l))
+         if (allocated(lane%stepper)) then
+            summary%steps = summary%steps + lane%stepper%steps
+            summary%cut_steps = lane%stepper%cut_steps
+         end if
+         if (allocated(lane%state%sight%reached)) then
+            call collect(lane%state%sight%reached, summary, error, result(this%run))
+         else
+            call collect([huge(1.0_wp)], summary, error, result(this%run))
+         end if
+         x%active(l) = 0.0_wp
+         x%ready(l) = 0.0_wp
+         lane%task = 0
+      end associate
+   end subroutine unload
+
+end module rbs_solve_ensemble_simd_batch
