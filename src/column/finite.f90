@@ -26,7 +26,7 @@ module rbs_column_finite
    private
 
    public :: finite_work, finite_acceleration
-   public :: finite_kinetic, finite_potential, finite_power, finite_top
+   public :: finite_kinetic, finite_potential, finite_power, finite_top, finite_momentum
 
    !> Arrays of `finite_acceleration`, allocated once.
    type :: finite_work
@@ -44,10 +44,10 @@ module rbs_column_finite
    type :: moving_body
       !> Absolute rotation [rad], its sine and cosine, and its rate [rad/s]
       real(wp) :: rotation = 0.0_wp, s = 0.0_wp, c = 1.0_wp, spin = 0.0_wp
-      !> Velocity of the top [m/s]
-      real(wp) :: top(2) = 0.0_wp
-      !> Velocity of the centroid [m/s]
-      real(wp) :: centroid(2) = 0.0_wp
+      !> Places of bottom, centroid and top [m]
+      real(wp) :: bottom_place(2) = 0.0_wp, centroid_place(2) = 0.0_wp, top_place(2) = 0.0_wp
+      !> Velocities of centroid and top [m/s]
+      real(wp) :: centroid(2) = 0.0_wp, top(2) = 0.0_wp
    end type moving_body
 
 contains
@@ -302,31 +302,26 @@ contains
       end associate
    end subroutine add_last_reaction
 
-   !> Go up by one body: rotation and velocities of body i from those of body i - 1.
+   !> Go up by one body: places and velocities of body i from those of body i - 1.
    pure subroutine climb(column, q, v, i, body)
       type(column_type), intent(in) :: column
       real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds)
       integer, intent(in) :: i
       type(moving_body), intent(inout) :: body
-      real(wp) :: along_t, along_e, bottom(2)
-      integer :: n
+      real(wp) :: along_t, along_e, bottom(2), normal(2)
 
-      n = column%n
-      if (i == n .and. column%held) call stand_upright(body)
+      ! The joint of a held top moves along its directions, which are fixed.
+      if (column%held .and. i == column%n) body%spin = 0.0_wp
       along_t = v(i, shear)
       along_e = -q(i, shear)*body%spin
       if (column%opens) then
          along_t = along_t + q(i, axial)*body%spin
          along_e = along_e + v(i, axial)
       end if
-      bottom(1) = body%top(1) + along_t*body%c + along_e*body%s
-      bottom(2) = body%top(2) - along_t*body%s + along_e*body%c
-      if (.not. (i == n .and. column%held)) then
-         body%rotation = body%rotation + q(i, flexure)
-         body%spin = body%spin + v(i, flexure)
-      end if
-      body%s = sin(body%rotation)
-      body%c = cos(body%rotation)
+      call place_body(column, q, i, body, normal)
+      bottom(1) = body%top(1) + along_t*normal(1) - along_e*normal(2)
+      bottom(2) = body%top(2) + along_t*normal(2) + along_e*normal(1)
+      if (.not. (column%held .and. i == column%n)) body%spin = body%spin + v(i, flexure)
       along_t = column%lower(i)*body%spin
       body%centroid(1) = bottom(1) + along_t*body%c
       body%centroid(2) = bottom(2) - along_t*body%s
@@ -335,15 +330,29 @@ contains
       body%top(2) = bottom(2) - along_t*body%s
    end subroutine climb
 
-   !> Look at the body below a held top in the directions of that: they are fixed.
-   pure subroutine stand_upright(body)
+   !> Rotation and places of body i from those of body i - 1.
+   pure subroutine place_body(column, q, i, body, normal)
+      type(column_type), intent(in) :: column
+      real(wp), intent(in) :: q(column%n, column%kinds)
+      integer, intent(in) :: i
       type(moving_body), intent(inout) :: body
+      !> Direction of the slip of its joint
+      real(wp), intent(out) :: normal(2)
 
-      body%rotation = 0.0_wp
-      body%spin = 0.0_wp
-      body%s = 0.0_wp
-      body%c = 1.0_wp
-   end subroutine stand_upright
+      if (column%held .and. i == column%n) then
+         body%rotation = 0.0_wp
+         body%s = 0.0_wp
+         body%c = 1.0_wp
+      end if
+      normal = [body%c, -body%s]
+      body%bottom_place = body%top_place + q(i, shear)*normal
+      if (column%opens) body%bottom_place = body%bottom_place + q(i, axial)*[body%s, body%c]
+      if (.not. (column%held .and. i == column%n)) body%rotation = body%rotation + q(i, flexure)
+      body%s = sin(body%rotation)
+      body%c = cos(body%rotation)
+      body%centroid_place = body%bottom_place + column%lower(i)*[body%s, body%c]
+      body%top_place = body%bottom_place + column%length(i)*[body%s, body%c]
+   end subroutine place_body
 
    !> Kinetic energy relative to the ground [J].
    pure real(wp) function finite_kinetic(column, q, v) result(energy)
@@ -431,26 +440,35 @@ contains
       real(wp), intent(in) :: q(column%n, column%kinds)
       !> x and y
       real(wp) :: top(2)
-      real(wp) :: rotation, s, c
-      integer :: i, n
+      type(moving_body) :: body
+      real(wp) :: normal(2)
+      integer :: i
 
-      n = column%n
-      top = 0.0_wp
-      rotation = 0.0_wp
-      s = 0.0_wp
-      c = 1.0_wp
-      do i = 1, n
-         if (i == n .and. column%held) then
-            s = 0.0_wp
-            c = 1.0_wp
-         end if
-         top = top + q(i, shear)*[c, -s]
-         if (column%opens) top = top + q(i, axial)*[s, c]
-         rotation = rotation + q(i, flexure)
-         s = sin(rotation)
-         c = cos(rotation)
-         top = top + column%length(i)*[s, c]
+      do i = 1, column%n
+         call place_body(column, q, i, body, normal)
       end do
+      top = body%top_place
    end function finite_top
+
+   !> Momentum along x [kg m/s], and angular momentum about the lowest joint, as it has slipped and opened
+   !> [kg m2/s].
+   pure function finite_momentum(column, q, v) result(momentum)
+      type(column_type), intent(in) :: column
+      real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds)
+      real(wp) :: momentum(2)
+      type(moving_body) :: body
+      real(wp) :: foot(2), lever(2)
+      integer :: i
+
+      momentum = 0.0_wp
+      do i = 1, column%n
+         call climb(column, q, v, i, body)
+         if (i == 1) foot = body%bottom_place
+         lever = body%centroid_place - foot
+         momentum(1) = momentum(1) + column%mass(i)*body%centroid(1)
+         momentum(2) = momentum(2) + column%mass(i)*(body%centroid(1)*lever(2) - body%centroid(2)*lever(1)) &
+                       + column%inertia(i)*body%spin
+      end do
+   end function finite_momentum
 
 end module rbs_column_finite
