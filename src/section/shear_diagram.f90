@@ -111,11 +111,12 @@ contains
             diagram%sheared = sheared
             diagram%lost = lost
             here = last
-            call find_end(model, curvature(i), here)
+            call halve(model, curvature(i), 1.0e-4_wp, here)
          end if
          if (.not. diagram%knee_found .and. beyond_knee(here%point, knee_stiffness)) then
             diagram%knee_found = .true.
-            call find_knee(model, knee_stiffness, last, here, diagram%knee)
+            diagram%knee = here%point
+            call halve(model, here%point%curvature, 1.0e-9_wp, last, knee_stiffness, diagram%knee)
          end if
          if (sheared .or. lost) exit
          count = i
@@ -205,57 +206,41 @@ contains
       beyond_knee = point%strain > 0.0_wp .and. point%force <= stiffness*point%strain
    end function beyond_knee
 
-   !> Halve the step in which the knee is passed.
-   subroutine find_knee(model, stiffness, first, second, knee)
+   !> Halve the step to the last state that the section carries or, with a knee, that is before the knee.
+   subroutine halve(model, above, tolerance, state, stiffness, knee)
       type(model_type), intent(in) :: model
-      real(wp), intent(in) :: stiffness
-      type(shear_state), intent(in) :: first, second
-      type(shear_point), intent(out) :: knee
-      type(shear_state) :: low, here
-      real(wp) :: above, middle
-      integer :: i
-      logical :: sheared, lost
-
-      low = first
-      above = second%point%curvature
-      knee = second%point
-      do i = 1, most_bisections
-         middle = 0.5_wp*(low%point%curvature + above)
-         if (above - low%point%curvature <= 1.0e-9_wp*above) exit
-         here = low
-         call bend(model, middle, here, sheared, lost)
-         if (sheared .or. lost .or. beyond_knee(here%point, stiffness)) then
-            above = middle
-            if (.not. (sheared .or. lost)) knee = here%point
-         else
-            low = here
-         end if
-      end do
-   end subroutine find_knee
-
-   !> The last curvature that is carried, between that of `state` and one that is not.
-   subroutine find_end(model, not_carried, state)
-      type(model_type), intent(in) :: model
-      real(wp), intent(in) :: not_carried
+      !> A curvature beyond that state [1/m]
+      real(wp), intent(in) :: above
+      !> Length of the last step, as a share of the curvature
+      real(wp), intent(in) :: tolerance
+      !> A state that is carried; on return the last one
       type(shear_state), intent(inout) :: state
+      !> Secant at the knee [N], and the first point found beyond it
+      real(wp), intent(in), optional :: stiffness
+      type(shear_point), intent(inout), optional :: knee
       type(shear_state) :: here
-      real(wp) :: above, middle
+      real(wp) :: high, middle
       integer :: i
-      logical :: sheared, lost
+      logical :: sheared, lost, beyond
 
-      above = not_carried
+      high = above
       do i = 1, most_bisections
-         if (above - state%point%curvature <= 1.0e-4_wp*above) exit
-         middle = 0.5_wp*(state%point%curvature + above)
+         if (high - state%point%curvature <= tolerance*high) exit
+         middle = 0.5_wp*(state%point%curvature + high)
          here = state
          call bend(model, middle, here, sheared, lost)
-         if (sheared .or. lost) then
-            above = middle
+         beyond = sheared .or. lost
+         if (present(knee) .and. .not. beyond) then
+            beyond = beyond_knee(here%point, stiffness)
+            if (beyond) knee = here%point
+         end if
+         if (beyond) then
+            high = middle
          else
             state = here
          end if
       end do
-   end subroutine find_end
+   end subroutine halve
 
    !> The curvatures must be positive and increase.
    subroutine check_curvatures(curvature, messages)
