@@ -7,16 +7,15 @@ module rbs_bindings_sections
    use rbs_bindings_statements, only: put_statements
    use rbs_case_group_reader, only: group_reader
    use rbs_section_balance, only: axial_capacity, follow
-   use rbs_section_concrete_law, only: concrete_stress, concrete_type, tension_names
+   use rbs_section_concrete_law, only: concrete_stress, concrete_type, tension_place
    use rbs_section_cross_section, only: section_type
    use rbs_section_events, only: check_rules, events_type, find_events, rule_type
-   use rbs_section_flexural_spring, only: fit_flexural_spring, flexural_spring_type, hinge_type
+   use rbs_section_flexural_spring, only: fit_flexural_spring, flexural_spring_type
    use rbs_section_mcft_layer, only: layer_state, layer_type, solve_layer, stress_of_state
    use rbs_section_resultants, only: laws_type, resultants_type, section_laws
    use rbs_section_section_build, only: make_section, outline_core
    use rbs_section_section_figures, only: figures_of_section, values_of_layer, values_of_point, &
                                           values_of_shear_point
-   use rbs_section_settings_record, only: place_of
    use rbs_section_shape, only: shape_type
    use rbs_section_shear_diagram, only: check_curvatures, follow_shear, shear_diagram_type
    use rbs_section_steel_law, only: steel_stress
@@ -127,12 +126,10 @@ contains
       type(section_type), intent(in) :: section
       type(group_reader), intent(in) :: reader
       type(answer_type), intent(inout) :: answer
-      type(hinge_type) :: hinge
       type(flexural_spring_type) :: spring
 
-      hinge = reader%springs%hinge()
-      call check_rule(section, hinge%confined, hinge%rule, answer%error)
-      if (.not. allocated(answer%error)) call fit_flexural_spring(section, hinge, spring, answer%error)
+      call check_rule(section, reader%springs%confined, reader%springs%rule(), answer%error)
+      if (.not. allocated(answer%error)) call fit_flexural_spring(section, reader%springs, spring, answer%error)
       if (allocated(answer%error)) return
       answer%value = spring%as_array()
       answer%rows = reshape([values_of_point(spring%cracking), values_of_point(spring%yield), &
@@ -154,11 +151,7 @@ contains
       call check_curvatures(curvature, messages)
       call messages%raise(answer%error)
       if (allocated(answer%error)) return
-      associate (given => reader%shear)
-         call follow_shear(section, tension_place(given%tension), given%confined, given%coupled, &
-                           given%axial_load, given%length, given%layers, given%knee, curvature, diagram, &
-                           answer%error)
-      end associate
+      call follow_shear(section, reader%shear, curvature, diagram, answer%error)
       if (allocated(answer%error)) return
       count = size(diagram%points)
       allocate (answer%rows(4, count + 2))
@@ -225,13 +218,6 @@ contains
       answer%rows(2, :) = strips%core_area
       answer%rows(4, :) = strips%area - strips%core_area
    end subroutine cut_section
-
-   !> Place of a tension law that has been checked.
-   pure integer function tension_place(word)
-      character(len=*), intent(in) :: word
-
-      tension_place = place_of(word, tension_names)
-   end function tension_place
 
    !> The rules of the named points must apply to the section.
    subroutine check_rule(section, confined, rule, error)

@@ -12,8 +12,11 @@ module rbs_case_group_reader
    use rbs_case_drawing_record, only: drawing_groups
    use rbs_case_spring_entry, only: entry_list, spring_groups, place_springs
    use rbs_hysteresis_registry, only: rule_names, keys_of
-   use rbs_section_settings_record, only: diagram_record, layer_record, shear_record, springs_record
+   use rbs_section_events, only: diagram_record
+   use rbs_section_flexural_spring, only: hinge_record
+   use rbs_section_mcft_layer, only: layer_record
    use rbs_section_shape, only: shape_names
+   use rbs_section_shear_diagram, only: shear_record
    implicit none
    private
 
@@ -40,7 +43,7 @@ module rbs_case_group_reader
       logical :: of_section = .false.
       !> What is asked of a section
       type(diagram_record) :: diagram
-      type(springs_record) :: springs
+      type(hinge_record) :: springs
       type(shear_record) :: shear
       type(layer_record) :: layer
       !> Units of the numbers that are set

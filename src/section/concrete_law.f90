@@ -16,11 +16,12 @@ module rbs_section_concrete_law
    private
 
    public :: concrete_record, concrete_type, plain_concrete, confined_concrete, spalling_concrete
-   public :: concrete_stress, concrete_both
+   public :: concrete_stress, concrete_both, tension_place
 
    !> Tension laws: no tension at any strain; none beyond f_t; tension stiffening f_t/(1 + sqrt(500 eps))
    !> beyond f_t (Collins and Mitchell 1987).
    character(len=4), parameter, public :: tension_names(3) = ['zero', 'bare', 'ts  ']
+   character(len=*), parameter, public :: tension_choices = 'zero bare ts'
    integer, parameter, public :: tension_zero = 1, tension_bare = 2, tension_ts = 3
 
    real(wp), parameter :: mpa = 1.0e6_wp
@@ -114,6 +115,13 @@ contains
       law%eps_line = min(2.0_wp*plain%eps0, 0.75_wp*eps_spall)
       law%eps_spall = eps_spall
    end function spalling_concrete
+
+   !> Place of a tension law, of which the name has been checked.
+   pure integer function tension_place(word)
+      character(len=*), intent(in) :: word
+
+      tension_place = findloc(tension_names == word, .true., dim=1)
+   end function tension_place
 
    !> Stress [Pa] at a strain, compression positive.
    elemental real(wp) function concrete_stress(law, strain) result(stress)

@@ -1,15 +1,18 @@
 !> Named points of a moment-curvature diagram: cracking, first yield, peak, ultimate.
 module rbs_section_events
    use rbs_base_error, only: error_type, message_list
+   use rbs_base_key_visitor, only: key_visitor, visited_record
+   use rbs_base_keys, only: above_zero, any_number
    use rbs_base_kinds, only: wp
    use rbs_section_balance, only: state_type, begin, advance
    use rbs_section_resultants, only: laws_type
+   use rbs_section_concrete_law, only: tension_choices
    use rbs_section_cross_section, only: section_type
    use rbs_section_steel_law, only: steel_yield_strain
    implicit none
    private
 
-   public :: events_type, point_type, rule_type, find_events, check_rules, reach_moment
+   public :: diagram_record, events_type, point_type, rule_type, find_events, check_rules, reach_moment
 
    !> Rules of yield: the first bar in tension at its yield strain; that, or the extreme fibre at a strain of
    !> compression, whichever comes first (Priestley, Calvi, Kowalsky 2007: 0.002).
@@ -20,6 +23,7 @@ module rbs_section_events
    !> hoop fracture (Mander, Priestley, Park 1988); the first bar breaks in tension; the moment has fallen by
    !> 20 per cent of its peak.
    character(len=6), parameter, public :: ultimate_names(4) = ['cover ', 'mander', 'steel ', 'drop  ']
+   character(len=*), parameter, public :: ultimate_choices = 'cover mander steel drop'
    integer, parameter, public :: ultimate_cover = 1, ultimate_mander = 2, ultimate_steel = 3, &
                                  ultimate_drop = 4
 
@@ -36,6 +40,22 @@ module rbs_section_events
       !> Strains of the extreme fibre in compression for yield 'first' and ultimate 'cover'
       real(wp) :: eps_yield = 0.002_wp, eps_cover = 0.003_wp
    end type rule_type
+
+   !> A moment-curvature diagram.
+   type, extends(visited_record) :: diagram_record
+      !> Compression positive [N]
+      real(wp) :: axial_load = 0.0_wp
+      !> One of `tension_names`
+      character(len=8) :: tension = 'ts'
+      !> Whether the core is confined and the cover spalls
+      logical :: confined = .false.
+      !> One of `yield_names` and of `ultimate_names`, with the strains of these rules
+      character(len=8) :: yielding = 'tension', ultimate = 'cover'
+      real(wp) :: eps_yield = 0.002_wp, eps_cover = 0.003_wp
+   contains
+      procedure :: visit
+      procedure :: rule
+   end type diagram_record
 
    type :: point_type
       !> Whether the diagram has this point
@@ -57,6 +77,29 @@ module rbs_section_events
    integer, parameter :: seek_cracking = 1, seek_yield = 2, seek_ultimate = 3, seek_drop = 4, seek_moment = 5
 
 contains
+
+   subroutine visit(self, v)
+      class(diagram_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%key('axial_load', self%axial_load, 'N', any_number, 'axial load, compression positive')
+      call v%word('tension', self%tension, 'tension law of the concrete', tension_choices)
+      call v%key('confined', self%confined, 'the core is confined and the cover spalls')
+      call v%word('yielding', self%yielding, 'rule of yield', 'tension first')
+      call v%word('ultimate', self%ultimate, 'rule of the ultimate point', ultimate_choices)
+      call v%key('eps_yield', self%eps_yield, '', above_zero, &
+                 'strain of the extreme fibre for yielding = first')
+      call v%key('eps_cover', self%eps_cover, '', above_zero, &
+                 'strain of the extreme fibre for ultimate = cover')
+   end subroutine visit
+
+   !> The rules of the named points; the words must be known.
+   pure type(rule_type) function rule(self)
+      class(diagram_record), intent(in) :: self
+
+      rule = rule_type(findloc(yield_names == self%yielding, .true., dim=1), &
+                       findloc(ultimate_names == self%ultimate, .true., dim=1), self%eps_yield, self%eps_cover)
+   end function rule
 
    !> Follow the diagram along positive curvatures and find its points.
    subroutine find_events(section, laws, axial_load, rule, events, error, only_cracking)

@@ -6,38 +6,47 @@
 module rbs_section_flexural_spring
    use rbs_base_constants, only: unset
    use rbs_base_error, only: error_type, fatal_error, bad_input
+   use rbs_base_key_visitor, only: key_visitor, visited_record
+   use rbs_base_keys, only: above_zero, any_number, not_negative
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_section_concrete_law, only: tension_bare, tension_ts
-   use rbs_section_events, only: events_type, point_type, rule_type, find_events, reach_moment
+   use rbs_section_events, only: events_type, point_type, rule_type, find_events, reach_moment, ultimate_choices, &
+                                 ultimate_names, yield_first, yield_tension
    use rbs_section_resultants, only: laws_type, section_laws
    use rbs_section_cross_section, only: section_type
    use rbs_base_check, only: is_given
    implicit none
    private
 
-   public :: hinge_type, flexural_spring_type, fit_flexural_spring, hinge_length
+   public :: hinge_record, flexural_spring_type, fit_flexural_spring, hinge_length
 
    !> Names of the figures of `as_array`.
    character(len=12), parameter, public :: spring_figures(10) = [character(len=12) :: &
       'k_c', 'd_c', 'k_y', 'd_y', 'k_u', 'b0', 'b1', 'k_u_found', 'hinge_length', 'd_m']
 
    !> How the spring is read from the diagrams.
-   type :: hinge_type
+   type, extends(visited_record) :: hinge_record
       !> From the base to the point of contraflexure [m], axial load, compression positive [N]
       real(wp) :: length = unset, axial_load = unset
       !> Hinge length [m]; `unset`: by the formula above
       real(wp) :: hinge_length = unset
-      type(rule_type) :: rule
-      !> Yield rotation where the diagram with tension stiffening reaches M_y, instead of the bare one
-      logical :: stiffened_yield = .false.
-      !> Factor of M_y and M_u for the shear that acts with the moment
-      real(wp) :: moment_factor = 1.0_wp
+      !> Yield of the bare diagram (A); its moment on the diagram with tension stiffening (B); or `yield_first`
+      !> (first)
+      character(len=8) :: yield_rule = 'A'
+      !> One of `ultimate_names`, and the strains of the rules
+      character(len=8) :: ultimate = 'cover'
+      real(wp) :: eps_yield = 0.002_wp, eps_cover = 0.003_wp
       !> Confined core and spalling cover
       logical :: confined = .false.
+      !> Factor of M_y and M_u for the shear that acts with the moment
+      real(wp) :: moment_factor = 1.0_wp
       !> Exponent B_0, and rotation D_m at which eq 7 is taken for B_1 [rad]; `unset`: the ultimate one
       real(wp) :: b0 = 0.4_wp, d_m = unset
-   end type hinge_type
+   contains
+      procedure :: visit
+      procedure :: rule
+   end type hinge_record
 
    type :: flexural_spring_type
       !> Stiffnesses [N m/rad] and rotations [rad] of the trilinear line
@@ -56,10 +65,40 @@ module rbs_section_flexural_spring
 
 contains
 
+   subroutine visit(self, v)
+      class(hinge_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%key('length', self%length, 'm', above_zero, 'from the base to the point of contraflexure')
+      call v%key('axial_load', self%axial_load, 'N', any_number, 'axial load, compression positive')
+      call v%key('hinge_length', self%hinge_length, 'm', above_zero, &
+                 'length of the hinge; without it 0.08 L + 0.022 f_y d_b (MPa)', optional=.true.)
+      call v%word('yield_rule', self%yield_rule, 'how the yield rotation is read', 'A B first')
+      call v%word('ultimate', self%ultimate, 'rule of the ultimate point', ultimate_choices)
+      call v%key('eps_yield', self%eps_yield, '', above_zero, &
+                 'strain of the extreme fibre for yield_rule = first')
+      call v%key('eps_cover', self%eps_cover, '', above_zero, &
+                 'strain of the extreme fibre for ultimate = cover')
+      call v%key('confined', self%confined, 'the core is confined and the cover spalls')
+      call v%key('moment_factor', self%moment_factor, '', above_zero, &
+                 'factor of the yield and ultimate moments')
+      call v%key('b0', self%b0, '', not_negative, 'exponent of the unloading stiffness')
+      call v%key('d_m', self%d_m, 'rad', above_zero, 'rotation for B_1; without it the ultimate one', &
+                 optional=.true.)
+   end subroutine visit
+
+   !> The rules of the named points; the words must be known.
+   pure type(rule_type) function rule(self)
+      class(hinge_record), intent(in) :: self
+
+      rule = rule_type(merge(yield_first, yield_tension, self%yield_rule == 'first'), &
+                       findloc(ultimate_names == self%ultimate, .true., dim=1), self%eps_yield, self%eps_cover)
+   end function rule
+
    !> Fit the spring.
    subroutine fit_flexural_spring(section, hinge, spring, error)
       type(section_type), intent(in) :: section
-      type(hinge_type), intent(in) :: hinge
+      type(hinge_record), intent(in) :: hinge
       type(flexural_spring_type), intent(out) :: spring
       type(error_type), allocatable, intent(out) :: error
       type(laws_type) :: stiffened, bare
@@ -67,10 +106,10 @@ contains
 
       stiffened = section_laws(section, tension_ts, hinge%confined)
       bare = section_laws(section, tension_bare, hinge%confined)
-      call find_events(section, stiffened, hinge%axial_load, hinge%rule, with_stiffening, error, &
+      call find_events(section, stiffened, hinge%axial_load, hinge%rule(), with_stiffening, error, &
                        only_cracking=.true.)
       if (allocated(error)) return
-      call find_events(section, bare, hinge%axial_load, hinge%rule, without, error)
+      call find_events(section, bare, hinge%axial_load, hinge%rule(), without, error)
       if (allocated(error)) return
       spring%cracking = with_stiffening%cracking
       spring%yield = without%yield
@@ -78,7 +117,7 @@ contains
       spring%peak = without%peak
       call check_points(section, hinge%axial_load, spring, error)
       if (allocated(error)) return
-      if (hinge%stiffened_yield) call stiffen_yield(section, stiffened, hinge, spring, error)
+      if (hinge%yield_rule == 'B') call stiffen_yield(section, stiffened, hinge, spring, error)
       if (allocated(error)) return
       call draw_line(section, hinge, spring, error)
    end subroutine fit_flexural_spring
@@ -120,7 +159,7 @@ contains
    subroutine stiffen_yield(section, laws, hinge, spring, error)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
-      type(hinge_type), intent(in) :: hinge
+      type(hinge_record), intent(in) :: hinge
       type(flexural_spring_type), intent(inout) :: spring
       type(error_type), allocatable, intent(out) :: error
       type(point_type) :: point
@@ -133,7 +172,7 @@ contains
    !> The line through the three points, in rotations.
    subroutine draw_line(section, hinge, spring, error)
       type(section_type), intent(in) :: section
-      type(hinge_type), intent(in) :: hinge
+      type(hinge_record), intent(in) :: hinge
       type(flexural_spring_type), intent(inout) :: spring
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: m_c, m_y, m_u, l_p

@@ -6,9 +6,13 @@
 !> of concrete has V = (E_c/2) A gamma exactly.
 module rbs_section_shear_diagram
    use rbs_base_error, only: error_type, message_list
+   use rbs_base_constants, only: unset
+   use rbs_base_key_visitor, only: key_visitor, visited_record
+   use rbs_base_keys, only: above_zero, any_number, bound_type
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_section_balance, only: state_type, begin, advance
+   use rbs_section_concrete_law, only: tension_choices, tension_place
    use rbs_section_mcft_layer, only: layer_type, layer_state, solve_layer
    use rbs_section_resultants, only: section_laws
    use rbs_section_cross_section, only: section_type, slice
@@ -18,18 +22,37 @@ module rbs_section_shear_diagram
    implicit none
    private
 
-   public :: shear_point, shear_diagram_type, follow_shear, check_curvatures
+   public :: shear_record, shear_point, shear_diagram_type, follow_shear, check_curvatures
 
    !> Layers over the depth.
-   integer, parameter, public :: default_layers = 80
+   integer, parameter :: default_layers = 80
 
    !> The shear spring leaves its first branch where V/gamma has fallen to this share of (E_c/2) A;
    !> calibrated on table 3 of the paper, whose columns have 0.41 to 0.53.
-   real(wp), parameter, public :: default_knee = 0.48_wp
+   real(wp), parameter :: default_knee = 0.48_wp
 
-   integer, parameter, public :: fewest_layers = 4, most_layers = 10000
+   integer, parameter :: fewest_layers = 4, most_layers = 10000
+
+   type(bound_type), parameter :: layer_counts = bound_type(real(fewest_layers, wp), real(most_layers, wp))
+   type(bound_type), parameter :: knees = &
+      bound_type(0.0_wp, 1.0_wp, least_open=.true., most_open=.true., reason='(uncracked it is 1)')
 
    integer, parameter :: most_bisections = 40
+
+   !> A shear diagram.
+   type, extends(visited_record) :: shear_record
+      !> Shear span M/V [m], axial load [N]
+      real(wp) :: length = unset, axial_load = unset
+      character(len=8) :: tension = 'ts'
+      logical :: confined = .false.
+      !> Whether shear changes the longitudinal stresses and the moment
+      logical :: coupled = .false.
+      integer :: layers = default_layers
+      !> Share of (E_c/2) A at the knee
+      real(wp) :: knee = default_knee
+   contains
+      procedure :: visit
+   end type shear_record
 
    !> A point of the diagram: curvature [1/m], moment [N m], shear force [N], shear strain.
    type :: shear_point
@@ -71,22 +94,23 @@ module rbs_section_shear_diagram
 
 contains
 
+   subroutine visit(self, v)
+      class(shear_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%key('length', self%length, 'm', above_zero, 'shear span M/V')
+      call v%key('axial_load', self%axial_load, 'N', any_number, 'axial load, compression positive')
+      call v%word('tension', self%tension, 'tension law of the concrete', tension_choices)
+      call v%key('confined', self%confined, 'the core is confined and the cover spalls')
+      call v%key('coupled', self%coupled, 'shear changes the longitudinal stresses and the moment')
+      call v%key('layers', self%layers, '', layer_counts, 'number of layers over the depth')
+      call v%key('knee', self%knee, '', knees, 'share of (E_c/2) A of the secant at the knee')
+   end subroutine visit
+
    !> Follow the diagram along increasing curvatures.
-   subroutine follow_shear(section, tension, confined, coupled, axial_load, span, layers, knee_share, &
-                           curvature, diagram, error)
+   subroutine follow_shear(section, asked, curvature, diagram, error)
       type(section_type), intent(in) :: section
-      !> Place of the tension law among `tension_names`
-      integer, intent(in) :: tension
-      !> Whether the core has the law of confined concrete, and whether shear changes the moment
-      logical, intent(in) :: confined, coupled
-      !> Compression positive [N]
-      real(wp), intent(in) :: axial_load
-      !> M/V [m]
-      real(wp), intent(in) :: span
-      !> Layers over the depth
-      integer, intent(in) :: layers
-      !> Share of (E_c/2) A at the knee
-      real(wp), intent(in) :: knee_share
+      type(shear_record), intent(in) :: asked
       !> Positive and increasing [1/m]
       real(wp), intent(in) :: curvature(:)
       type(shear_diagram_type), intent(out) :: diagram
@@ -98,10 +122,9 @@ contains
       integer :: i, count
       logical :: sheared, lost
 
-      model%coupled = coupled
-      call prepare(section, tension, confined, axial_load, span, layers, model, here, error)
+      call prepare(section, asked, model, here, error)
       if (allocated(error)) return
-      knee_stiffness = knee_share*0.5_wp*section%plain%ec*section%shape%area()
+      knee_stiffness = asked%knee*0.5_wp*section%plain%ec*section%shape%area()
       allocate (points(size(curvature)))
       count = 0
       do i = 1, size(curvature)
@@ -132,30 +155,29 @@ contains
    end subroutine follow_shear
 
    !> Cut the section into layers and apply its axial load.
-   subroutine prepare(section, tension, confined, axial_load, span, layers, model, state, error)
+   subroutine prepare(section, asked, model, state, error)
       type(section_type), intent(in) :: section
-      integer, intent(in) :: tension, layers
-      logical, intent(in) :: confined
-      real(wp), intent(in) :: axial_load, span
+      type(shear_record), intent(in) :: asked
       type(model_type), intent(inout) :: model
       type(shear_state), intent(out) :: state
       type(error_type), allocatable, intent(out) :: error
       integer :: i
 
-      model%axial_load = axial_load
+      model%axial_load = asked%axial_load
+      model%coupled = asked%coupled
       model%flow%section = section
-      call slice(model%flow%section, layers)
-      model%flow%laws = section_laws(section, tension, confined)
-      model%flow%span = span
-      allocate (model%layers(layers), state%layers(layers))
+      call slice(model%flow%section, asked%layers)
+      model%flow%laws = section_laws(section, tension_place(asked%tension), asked%confined)
+      model%flow%span = asked%length
+      allocate (model%layers(asked%layers), state%layers(asked%layers))
       associate (cut => model%flow%section, laws => model%flow%laws)
-         do i = 1, layers
+         do i = 1, asked%layers
             model%layers(i)%concrete = laws%shell
             if (2.0_wp*cut%strips%core_area(i) > cut%strips%area(i)) model%layers(i)%concrete = laws%core
             model%layers(i)%stirrup = section%transverse%steel
             model%layers(i)%rho_z = transverse_ratio(cut, cut%strips%y(i), cut%strips%area(i)/cut%strips%dy)
          end do
-         call begin(cut, laws, axial_load, state%flexure, error)
+         call begin(cut, laws, asked%axial_load, state%flexure, error)
       end associate
       if (allocated(error)) return
       call begin_flow(model%flow, state%flexure)

@@ -10,7 +10,7 @@ module test_section
                                        tension_zero
    use rbs_section_confinement, only: volumetric_ratio
    use rbs_section_events, only: events_type, find_events, rule_type
-   use rbs_section_flexural_spring, only: fit_flexural_spring, flexural_spring_type, hinge_type
+   use rbs_section_flexural_spring, only: fit_flexural_spring, flexural_spring_type, hinge_record
    use rbs_section_resultants, only: laws_type, resultants, resultants_type, section_laws
    use rbs_section_cross_section, only: section_type, spiral, ties
    use rbs_section_section_build, only: build_section
@@ -428,7 +428,7 @@ contains
    subroutine no_line(error)
       type(error_type), allocatable, intent(inout) :: error
       type(section_type) :: section
-      type(hinge_type) :: hinge
+      type(hinge_record) :: hinge
       type(flexural_spring_type) :: spring
       type(error_type), allocatable :: outcome
 

@@ -14,7 +14,7 @@ module test_shear
    use rbs_section_cross_section, only: section_type, slice, spiral, ties
    use rbs_section_section_build, only: build_section
    use rbs_section_shape, only: new_shape, shape_names
-   use rbs_section_shear_diagram, only: check_curvatures, follow_shear, shear_diagram_type
+   use rbs_section_shear_diagram, only: check_curvatures, follow_shear, shear_diagram_type, shear_record
    use rbs_section_shear_coupling, only: couple
    use rbs_section_shear_flow, only: begin_flow, flow_type, shear_stresses, transverse_ratio
    use rbs_section_steel_law, only: steel_stress, steel_type
@@ -410,8 +410,7 @@ contains
          section%shape%side_wall = section%shape%wall
          section%bar_area = 1.0e-12_wp*section%bar_area
          call build_section(section, 0.006_wp, 400)
-         call follow_shear(section, tension_ts, .false., .false., 1.0e3_wp, span, 80, 0.48_wp, [1.0e-7_wp], &
-                           diagram, failure)
+         call follow_shear(section, shear_record(length=span, axial_load=1.0e3_wp), [1.0e-7_wp], diagram, failure)
          call check_passed(error, failure, 'the analysis')
          call check_close(error, diagram%points(1)%force/diagram%points(1)%strain, &
                           0.5_wp*section%plain%ec*section%shape%area(), 1.0e-3_wp, 0.0_wp, 'shear stiffness')
@@ -430,8 +429,8 @@ contains
       do i = 1, points
          curvature(i) = 0.022_wp*(real(i, wp)/points)**2
       end do
-      call follow_shear(sample_section(), tension_ts, .false., .false., load, span, layers, 0.48_wp, &
-                        curvature, diagram, failure)
+      call follow_shear(sample_section(), shear_record(length=span, axial_load=load, layers=layers), curvature, &
+                        diagram, failure)
       call check_passed(error, failure, 'the analysis')
       call check_true(error, diagram%knee_found .and. .not. (diagram%sheared .or. diagram%lost), 'whole')
    end subroutine sample_diagram
@@ -479,7 +478,7 @@ contains
 
       section = sample_section()
       section%transverse%kind = 0
-      call follow_shear(section, tension_ts, .false., .false., 0.0_wp, 0.7_wp, 80, 0.48_wp, &
+      call follow_shear(section, shear_record(length=0.7_wp, axial_load=0.0_wp), &
                         [(0.02_wp*i/points, i=1, points)], diagram, failure)
       call check_passed(error, failure, 'the analysis')
       call check_true(error, diagram%sheared .and. size(diagram%points) < points, 'sheared')
