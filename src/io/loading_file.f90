@@ -64,7 +64,7 @@ contains
       character(len=*), intent(in) :: path
       !> Units of displacement and force; blank: units of the file, see `convert`
       character(len=*), intent(in) :: units(2)
-      !> Name of the test
+      !> Name of the test; not allocated if it cannot be read
       character(len=:), allocatable, intent(out) :: name
       !> Displacements and forces (rows, 2)
       real(wp), allocatable, intent(out) :: values(:, :)
@@ -78,10 +78,8 @@ contains
       character(len=12), parameter :: drives(2) = ['displacement', 'force       ']
       integer :: column, i
 
-      name = ''
       call read_history(path, 'auto', history, error, layout)
       if (allocated(error)) return
-      name = history%name
       if (history%columns < 2) then
          call fatal_error(error, bad_input, path//': has one column; a test has displacements and forces')
          return
@@ -99,6 +97,7 @@ contains
          call convert(history, path, column, drives(i), units(i), values(:, i), error)
          if (allocated(error)) return
       end do
+      name = history%name
    end subroutine read_test
 
    !> The column with the name or number that the user gives, or else with the name of the drive.
