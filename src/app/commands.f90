@@ -20,7 +20,6 @@ module rbs_app_commands
    use rbs_output_notes, only: column_notes, drift_note, rotation_note
    use rbs_output_channels, only: new_channels
    use rbs_output_summary, only: summary_type, summary_names, summary_units
-   use rbs_solve_end_state, only: end_state
    use rbs_solve_make_column, only: make_column
    use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices
    use rbs_solve_modal_modes, only: modes_type, find_modes
@@ -273,12 +272,11 @@ contains
       type(task_type) :: task
       type(time_plan) :: plan
       type(initial_state) :: at_rest
-      type(end_state) :: before, after
 
       plan%method = 'static'
       if (allocated(case%analysis%initial)) then
-         call read_state(beside(case_path, case%analysis%initial), before%stream, error)
-         if (.not. allocated(error)) call before%check(column, error)
+         call read_state(beside(case_path, case%analysis%initial), task%before%stream, error)
+         if (.not. allocated(error)) call task%before%check(column, error)
          if (allocated(error)) return
       end if
       if (case%analysis%dynamic()) then
@@ -295,24 +293,23 @@ contains
       call recorder%write_head(header(case, plan%method), error)
       if (allocated(error)) return
       call progress%start(quiet)
+      task%recorder => recorder
+      task%progress => progress
+      task%every = case%output%every
+      task%collapse_drift = case%analysis%collapse_drift
+      task%keeps_end = .true.
       if (case%analysis%dynamic()) then
-         call run_dynamic(column, case%analysis, plan, history%time, history%loads, at_rest, &
-                          case%output%every, recorder, summary, error, progress, before, after)
+         call run_dynamic(column, case%analysis, plan, history%time, history%loads, at_rest, task, error)
       else
-         task%recorder => recorder
-         task%progress => progress
-         task%every = case%output%every
-         task%collapse_drift = case%analysis%collapse_drift
-         task%before = before
-         task%keeps_end = .true.
          call run_static(column, any(case%loading(:case%loadings)%drive == 'force'), history%target, task, &
                          error, history%axial_load)
-         summary = task%summary
-         after = task%after
       end if
+      summary = task%summary
       call progress%finish()
       if (allocated(error) .or. .not. allocated(case%output%state)) return
-      if (after%is_given()) call write_state(beside(case_path, case%output%state), after%stream, error)
+      if (task%after%is_given()) then
+         call write_state(beside(case_path, case%output%state), task%after%stream, error)
+      end if
    end subroutine solve
 
    !> A path from the folder of the case.

@@ -24,7 +24,7 @@ module rbs_bindings_runs
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: run_dynamic, plan_dynamic
-   use rbs_solve_time_sight, only: sight_type, watch_type
+   use rbs_solve_time_sight, only: watch_type
    implicit none
    private
 
@@ -39,7 +39,6 @@ module rbs_bindings_runs
       type(case_record) :: case
       type(array_recorder) :: recorder
       type(task_type) :: task
-      type(sight_type) :: sight
    end type run_type
 
 contains
@@ -56,13 +55,17 @@ contains
       character(len=:), allocatable :: note
 
       watches => request%array('watches')
-      call run%sight%watch_for(watches_of(watches), size(watches)/6)
+      call run%task%sight%watch_for(watches_of(watches), size(watches)/6)
       call column_from_statements(request%statement, request%number, run%column, run%case, answer%error)
       if (.not. allocated(answer%error)) then
          associate (output => run%case%output)
             run%recorder%channels = new_channels(run%column, request%what /= 'cyclic', output%openings, &
                                                  output%motion)
          end associate
+         run%task%recorder => run%recorder
+         run%task%every = run%case%output%every
+         run%task%collapse_drift = run%case%analysis%collapse_drift
+         run%task%keeps_end = .true.
          call take_from(request%array('before'), run%task%before)
          if (request%what == 'cyclic') then
             call run_cyclic(request, run, answer%error)
@@ -79,7 +82,7 @@ contains
       if (run%recorder%count == 0) allocate (run%recorder%rows(run%recorder%channels%width, 0))
       call move_alloc(run%recorder%rows, answer%rows)
       answer%kept = run%recorder%count
-      associate (sight => run%sight)
+      associate (sight => run%task%sight)
          where (.not. sight%reached < huge(1.0_wp))
             sight%reached = ieee_value(1.0_wp, ieee_quiet_nan)
             sight%top = sight%reached
@@ -107,10 +110,6 @@ contains
       associate (every => run%case%output%every)
          run%recorder%corners = request%wants('corners')
          run%recorder%expected = kept_rows(size(target), every)
-         run%task%recorder => run%recorder
-         run%task%every = every
-         run%task%collapse_drift = run%case%analysis%collapse_drift
-         run%task%keeps_end = .true.
          call run_static(run%column, request%wants('by_force'), target, run%task, error, &
                          request%array('axial_load'))
       end associate
@@ -191,8 +190,7 @@ contains
             initial%opening_given = request%wants('opening_given')
          end if
          run%recorder%expected = plan%rows(output%every)
-         call run_dynamic(column, analysis, plan, time, loads, initial, output%every, run%recorder, &
-                          run%task%summary, error, before=run%task%before, after=run%task%after, sight=run%sight)
+         call run_dynamic(column, analysis, plan, time, loads, initial, run%task, error)
       end associate
    end subroutine run_time_history
 

@@ -295,7 +295,8 @@ contains
       type(summary_type), intent(out) :: summary
       !> Processor time [s]
       real(wp), intent(out) :: used
-      type(array_recorder) :: recorder
+      type(array_recorder), target :: recorder
+      type(task_type) :: task
       type(time_plan) :: plan
       type(initial_state) :: rest
       type(error_type), allocatable :: error
@@ -305,9 +306,12 @@ contains
       if (allocated(error)) call give_up(error)
       recorder%channels = new_channels(column, .true., .false., .false.)
       recorder%expected = plan%rows(1000)
+      task%recorder => recorder
+      task%every = 1000
       call cpu_time(begin)
-      call run_dynamic(column, analysis, plan, loads%force%time, loads, rest, 1000, recorder, summary, error)
+      call run_dynamic(column, analysis, plan, loads%force%time, loads, rest, task, error)
       call cpu_time(finish)
+      summary = task%summary
       used = finish - begin
       if (allocated(error)) call give_up(error)
    end subroutine run

@@ -13,6 +13,7 @@ module runs
    use rbs_output_recorder, only: array_recorder
    use rbs_output_summary, only: summary_type
    use rbs_loading_loads, only: loads_type
+   use rbs_solve_task, only: task_type
    use rbs_solve_time_located, only: located_stepper
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_pair45, only: pair45_scheme
@@ -61,7 +62,8 @@ contains
    subroutine run(data, column)
       type(run_data), intent(inout) :: data
       type(column_type), intent(in) :: column
-      type(array_recorder) :: recorder
+      type(array_recorder), target :: recorder
+      type(task_type) :: task
       type(loads_type) :: loads
 
       if (allocated(data%rows)) deallocate (data%rows)
@@ -71,8 +73,11 @@ contains
       if (allocated(data%outcome)) return
       recorder%channels = new_channels(column, .true., .false., .false.)
       recorder%expected = data%plan%rows(data%every)
-      call run_dynamic(column, data%analysis, data%plan, data%time, loads, data%initial, data%every, &
-                       recorder, data%summary, data%outcome)
+      task%recorder => recorder
+      task%every = data%every
+      task%collapse_drift = data%analysis%collapse_drift
+      call run_dynamic(column, data%analysis, data%plan, data%time, loads, data%initial, task, data%outcome)
+      data%summary = task%summary
       data%rows = recorder%rows(:, :recorder%count)
    end subroutine run
 

@@ -300,8 +300,8 @@ contains
       type(initial_state) :: start
       type(loads_type) :: none
       type(rk4_stepper) :: stepper
-      type(summary_type) :: summary
-      type(array_recorder) :: recorder
+      type(task_type) :: task
+      type(array_recorder), target :: recorder
       real(wp) :: energy(2), share(2)
       integer, parameter :: steps = 3000
       integer :: kind, i
@@ -324,8 +324,9 @@ contains
             recorder%channels = new_channels(column, .true., .false., .false.)
             stepper = rk4_stepper()
             call stepper%scheme%create(column)
-            call march(column, plan, stepper, [0.0_wp, plan%finish], none, start, unset, steps, recorder, &
-                       summary, outcome)
+            task%recorder => recorder
+            task%every = steps
+            call march(column, plan, stepper, [0.0_wp, plan%finish], none, start, task, outcome)
             call check_passed(error, outcome, 'march')
             energy(i) = (recorder%rows(row_kinetic, 2) + recorder%rows(row_spring, 2)) &
                         /recorder%rows(row_kinetic, 1)
@@ -665,20 +666,20 @@ contains
    subroutine failing(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(failing_recorder) :: recorder
+      type(failing_recorder), target :: recorder
       type(run_data) :: data
       type(column_type) :: column
       type(time_plan) :: plan
       type(loads_type) :: none
-      type(summary_type) :: summary
+      type(task_type) :: task
 
       column = made(column_1('small'))
       data%time = times(5, 0.25_wp)
       call plan_dynamic(column, data%analysis, data%time, none, plan, outcome)
       call check_passed(error, outcome, 'plan')
       recorder%channels = new_channels(column, .true., .false., .false.)
-      call run_dynamic(column, data%analysis, plan, data%time, none, data%initial, unset_integer, recorder, &
-                       summary, outcome)
+      task%recorder => recorder
+      call run_dynamic(column, data%analysis, plan, data%time, none, data%initial, task, outcome)
       call check_failed(error, outcome, analysis_failed, 'disk full at 0.5 s')
       call check_equal(error, recorder%count, 3, 'rows offered')
    end subroutine failing
@@ -686,21 +687,22 @@ contains
    subroutine progress(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(array_recorder) :: recorder
-      type(counting_progress) :: told
+      type(array_recorder), target :: recorder
+      type(counting_progress), target :: told
       type(run_data) :: data
       type(column_type) :: column
       type(time_plan) :: plan
       type(loads_type) :: none
-      type(summary_type) :: summary
+      type(task_type) :: task
 
       column = made(column_1('small'))
       data%time = [0.0_wp, 10.0_wp]
       data%analysis%dt = 1.0e-4_wp
       call plan_dynamic(column, data%analysis, data%time, none, plan, outcome)
       call check_passed(error, outcome, 'plan')
-      call run_dynamic(column, data%analysis, plan, data%time, none, data%initial, unset_integer, recorder, &
-                       summary, outcome, told)
+      task%recorder => recorder
+      task%progress => told
+      call run_dynamic(column, data%analysis, plan, data%time, none, data%initial, task, outcome)
       call check_passed(error, outcome, 'run')
       call check_equal(error, told%count, 12, 'number of reports')
       call check_true(error, told%ascends .and. told%share <= 1.0_wp, 'shares')

@@ -13,6 +13,7 @@ module test_run
    use rbs_output_recorder, only: array_recorder
    use rbs_output_summary, only: summary_type
    use rbs_loading_loads, only: loads_type
+   use rbs_solve_task, only: task_type
    use rbs_solve_time_located, only: located_stepper
    use rbs_solve_time_march, only: initial_state, march
    use rbs_solve_time_plan, only: time_plan, new_plan
@@ -674,8 +675,8 @@ contains
       type(initial_state) :: rest
       type(loads_type) :: none
       type(time_plan) :: plan
-      type(summary_type) :: summary
-      type(array_recorder) :: recorder
+      type(task_type) :: task
+      type(array_recorder), target :: recorder
       integer :: every
 
       do every = 1, 3
@@ -683,25 +684,27 @@ contains
          call check_passed(error, outcome, 'plan')
          recorder = array_recorder()
          recorder%channels = new_channels(made(column_1('small')), .true., .false., .false.)
-         summary = summary_type()
+         task = task_type()
+         task%recorder => recorder
+         task%every = every
          stepper = failing_stepper()
-         call march(made(column_1('small')), plan, stepper, [0.0_wp, 1.0_wp], none, rest, unset, every, &
-                    recorder, summary, outcome)
+         call march(made(column_1('small')), plan, stepper, [0.0_wp, 1.0_wp], none, rest, task, &
+                    outcome)
          call check_failed(error, outcome, analysis_failed, 'no way to go on at 0.9375 s')
          call check_equal(error, recorder%count, 1 + 7/every + 1, 'rows')
          call check_same(error, recorder%rows([row_time, row_displacement], recorder%count), &
                          [0.9375_wp, 0.5_wp], 'the last row is the last good state')
          call check_same(error, recorder%rows([row_time, row_displacement], 2), [0.125_wp, 0.01_wp]*every, &
                          'a row before')
-         call check_equal(error, summary%rows, recorder%count, 'reported rows')
-         call check_equal(error, summary%cut_steps, 8, 'reported cut steps')
-         call check_equal(error, summary%steps, 7, 'reported steps')
+         call check_equal(error, task%summary%rows, recorder%count, 'reported rows')
+         call check_equal(error, task%summary%cut_steps, 8, 'reported cut steps')
+         call check_equal(error, task%summary%steps, 7, 'reported steps')
       end do
       ! Failure in the very first step: the initial state is the only row.
       stepper = failing_stepper(count=7)
       recorder%count = 0
-      call march(made(column_1('small')), plan, stepper, [0.0_wp, 1.0_wp], none, rest, unset, 1, recorder, &
-                 summary, outcome)
+      task%every = 1
+      call march(made(column_1('small')), plan, stepper, [0.0_wp, 1.0_wp], none, rest, task, outcome)
       call check_failed(error, outcome, analysis_failed, 'no way to go on at 0.0625 s')
       call check_equal(error, recorder%count, 2, 'rows')
       ! If no part of the first step succeeds, the initial state is the only row.
@@ -709,12 +712,12 @@ contains
       call new_located(located, made(column_1('small')), 1.0e-10_wp, 1.0e-2_wp)
       located%shortest = 1.0e-2_wp
       recorder%count = 0
-      summary = summary_type()
-      call march(made(column_1('small')), plan, located, [0.0_wp, 1.0_wp], none, rest, unset, 1, recorder, &
-                 summary, outcome)
+      task = task_type()
+      task%recorder => recorder
+      call march(made(column_1('small')), plan, located, [0.0_wp, 1.0_wp], none, rest, task, outcome)
       call check_failed(error, outcome, analysis_failed, 'does not reach the tolerance')
       call check_equal(error, recorder%count, 1, 'rows')
-      call check_equal(error, summary%steps, 0, 'steps')
+      call check_equal(error, task%summary%steps, 0, 'steps')
    end subroutine failing
 
    !> rk45 chooses its own steps; rows follow the steps of the plan.

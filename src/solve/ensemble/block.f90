@@ -1,21 +1,19 @@
 !> A block of runs: columns under ground motions, each of which is scaled. No run stops the others.
 module rbs_solve_ensemble_block
-   use rbs_base_constants, only: unset_integer
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_output_recorder, only: array_recorder
-   use rbs_output_summary, only: summary_type
    use rbs_solve_end_state, only: end_state, standing_type
    use rbs_solve_ensemble_lane_choice, only: takes_lanes, are_alike
    use rbs_solve_ensemble_ensemble_input, only: ensemble_column, ensemble_motion, run_type, lane_task
    use rbs_solve_ensemble_run_result, only: run_result, collect
    use rbs_solve_ensemble_simd_batch, only: run_in_lanes
+   use rbs_solve_task, only: task_type
    use rbs_solve_time_effort, only: expected_seconds
    use rbs_loading_loads, only: loads_type
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: run_dynamic, plan_dynamic
-   use rbs_solve_time_sight, only: sight_type
    use rbs_solve_time_start, only: resume_state
    use rbs_solve_time_state, only: state_type
    implicit none
@@ -216,23 +214,22 @@ contains
       type(run_result), intent(inout) :: result
       type(loads_type) :: loads
       type(initial_state) :: at_rest
-      type(end_state) :: before
-      type(array_recorder) :: no_rows
-      type(sight_type) :: sight
-      type(summary_type) :: summary
+      type(array_recorder), target :: no_rows
+      type(task_type) :: task
       type(error_type), allocatable :: error
 
-      call sight%watch_for(column%watch, column%states)
+      call task%sight%watch_for(column%watch, column%states)
       if (allocated(unplanned)) then
-         call collect(sight%reached, summary, unplanned, result)
+         call collect(task%sight%reached, task%summary, unplanned, result)
          return
       end if
+      task%recorder => no_rows
+      task%collapse_drift = column%analysis%collapse_drift
       loads%ground%time = motion%time
       loads%ground%value = scale*motion%acceleration
-      call take_before(column, before)
-      call run_dynamic(column%column, column%analysis, plan, motion%time, loads, at_rest, unset_integer, &
-                       no_rows, summary, error, before=before, sight=sight)
-      call collect(sight%reached, summary, error, result)
+      call take_before(column, task%before)
+      call run_dynamic(column%column, column%analysis, plan, motion%time, loads, at_rest, task, error)
+      call collect(task%sight%reached, task%summary, error, result)
    end subroutine run_alone
 
 end module rbs_solve_ensemble_block

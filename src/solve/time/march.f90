@@ -8,15 +8,13 @@ module rbs_solve_time_march
    use rbs_column_column, only: column_type
    use rbs_column_energy, only: kinetic_energy, potential_energy
    use rbs_column_top, only: top_motion, top_position
-   use rbs_output_observer, only: observer_type
    use rbs_output_channels, only: energy_type, response_type
-   use rbs_output_recorder, only: recorder_type
    use rbs_output_summary, only: summary_type
-   use rbs_solve_end_state, only: end_state, standing_type
+   use rbs_solve_end_state, only: standing_type
+   use rbs_solve_task, only: task_type
    use rbs_loading_loads, only: loads_type, lateral, horizontal
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_plan, only: time_plan, same_step
-   use rbs_solve_time_sight, only: sight_type
    use rbs_solve_time_start, only: initial_state, start_state, resume_state, resume_steps, keep_state
    use rbs_solve_time_state, only: state_type, stepper_type, out_of_bounds
    use rbs_structure_spring_place, only: flexure
@@ -28,8 +26,7 @@ module rbs_solve_time_march
 contains
 
    !> March through the plan.
-   subroutine march(column, planned, stepper, time, loads, initial, collapse_drift, every, recorder, &
-                    summary, error, progress, before, after, method, setting, sight)
+   subroutine march(column, planned, stepper, time, loads, initial, task, error)
       type(column_type), intent(in) :: column
       type(time_plan), intent(in) :: planned
       !> The method
@@ -38,23 +35,10 @@ contains
       real(wp), intent(in) :: time(:)
       type(loads_type), intent(in) :: loads
       type(initial_state), intent(in) :: initial
-      !> Displacement of the top over the height at which the column has collapsed; `unset`: none
-      real(wp), intent(in) :: collapse_drift
-      !> Every n-th step gives a row, and the last; `unset_integer`: every interval of the plan
-      integer, intent(in) :: every
-      class(recorder_type), intent(inout) :: recorder
-      type(summary_type), intent(inout) :: summary
+      !> Without `every` each interval of the plan has a row
+      type(task_type), intent(inout) :: task
       !> On failure everything up to the last good state has been recorded
       type(error_type), allocatable, intent(out) :: error
-      !> Told now and then how far the run is
-      class(observer_type), intent(inout), optional :: progress
-      !> The state to begin in, and the one at the end; empty where there is none
-      type(end_state), intent(inout), optional :: before, after
-      !> What the method is and its setting: one that goes on with the same remembers its steps
-      integer, intent(in), optional :: method
-      real(wp), intent(in), optional :: setting
-      !> What to watch for, and what has been seen
-      type(sight_type), intent(inout), optional :: sight
       type(standing_type) :: standing
       type(time_plan) :: plan
       type(state_type) :: state
@@ -62,60 +46,56 @@ contains
       integer :: step
 
       plan = planned
-      if (present(before)) then
-         if (before%is_given()) then
-            call resume_state(state, column, loads, before, plan, standing, error)
-            if (allocated(error)) return
-            call resume_steps(state, stepper, before, standing, method, setting)
-         end if
+      if (task%resumes()) then
+         call resume_state(state, column, loads, task%before, plan, standing, error)
+         if (allocated(error)) return
+         call resume_steps(state, stepper, task%before, standing)
       end if
       if (standing%kind == 0) call start_state(state, column, loads, initial, plan%begin, error)
       if (allocated(error)) return
-      if (present(sight)) state%sight = sight
-      call state%begin_sight(collapse_drift, recorder%channels%motion)
-      summary%time_step = plan%dt
-      call take_steps(state, plan, stepper, time, every, response, step, recorder, summary, error, &
-                      progress)
-      summary%last_time = response%time
-      summary%last_displacement = response%displacement
-      summary%peaks_type = state%sight%peaks_type
-      summary%collapsed = state%sight%collapsed
-      summary%events = state%springs%events
-      summary%steps = stepper%steps
-      summary%cut_steps = stepper%cut_steps
-      if (stepper%longest_step > 0.0_wp) summary%time_step = stepper%longest_step
-      if (present(sight)) sight = state%sight
-      if (allocated(error) .or. .not. present(after) .or. summary%lost_joint > 0) return
-      call keep_state(state, stepper, plan, step, response%energy%residual, method, setting, after)
+      state%sight = task%sight
+      call state%begin_sight(task%collapse_drift, task%recorder%channels%motion)
+      task%summary%time_step = plan%dt
+      call take_steps(state, plan, stepper, time, response, step, task, error)
+      task%sight = state%sight
+      associate (summary => task%summary)
+         summary%last_time = response%time
+         summary%last_displacement = response%displacement
+         summary%peaks_type = state%sight%peaks_type
+         summary%collapsed = state%sight%collapsed
+         summary%events = state%springs%events
+         summary%steps = stepper%steps
+         summary%cut_steps = stepper%cut_steps
+         if (stepper%longest_step > 0.0_wp) summary%time_step = stepper%longest_step
+      end associate
+      if (allocated(error) .or. .not. task%keeps_end .or. task%summary%lost_joint > 0) return
+      call keep_state(state, stepper, plan, step, response%energy%residual, task%after)
    end subroutine march
 
    !> The steps of the plan, up to the end of the run.
-   subroutine take_steps(state, plan, stepper, time, every, response, step, recorder, summary, error, progress)
+   subroutine take_steps(state, plan, stepper, time, response, step, task, error)
       type(state_type), intent(inout) :: state
       type(time_plan), intent(in) :: plan
       class(stepper_type), intent(inout) :: stepper
       !> See `march`
       real(wp), intent(in) :: time(:)
-      integer, intent(in) :: every
       !> That of the last row in the end
       type(response_type), intent(inout) :: response
       !> Steps taken, as planned
       integer, intent(out) :: step
-      class(recorder_type), intent(inout) :: recorder
-      type(summary_type), intent(inout) :: summary
+      type(task_type), intent(inout) :: task
       type(error_type), allocatable, intent(inout) :: error
-      class(observer_type), intent(inout), optional :: progress
       type(motion_result) :: now
       real(wp) :: begin, finish, h
       integer :: interval, part, parts, next_row, lost
       logical :: ends
 
-      if (recorder%channels%motion) call now%create(state%motion%column)
+      if (task%recorder%channels%motion) call now%create(state%motion%column)
       next_row = huge(1)
-      if (every /= unset_integer) next_row = min(every, plan%steps)
+      if (task%every /= unset_integer) next_row = min(task%every, plan%steps)
       step = 0
-      call balance(state, response%energy, summary)
-      call keep(state, response, recorder, summary, error, now)
+      call balance(state, response%energy, task%summary)
+      call keep(state, response, task, error, now)
       if (allocated(error)) return
       finish = plan%begin
       do interval = 1, plan%intervals
@@ -125,7 +105,7 @@ contains
          do part = 1, parts
             call stepper%advance(state, h, error)
             if (allocated(error)) then
-               call keep_last(state, now, response, recorder, summary)
+               call keep_last(state, now, response, task)
                return
             end if
             step = step + 1
@@ -136,8 +116,8 @@ contains
             state%clock = begin + part*h
             if (part == parts) state%clock = finish
             lost = state%springs%lost_joint()
-            summary%lost_joint = findloc(state%motion%column%at(flexure, :), lost, dim=1)
-            ends = summary%lost_joint > 0 .or. state%sight%collapsed
+            task%summary%lost_joint = findloc(state%motion%column%at(flexure, :), lost, dim=1)
+            ends = task%summary%lost_joint > 0 .or. state%sight%collapsed
             ! A joint may have lost its axial load, or the column may have collapsed, within the step.
             associate (at => state%begin + state%time)
                if (ends .and. at < state%clock - same_step*h) state%clock = at
@@ -145,18 +125,18 @@ contains
             state%time = state%clock - state%begin
             call state%see(state%clock)
             ends = ends .or. state%sight%collapsed
-            if (summary%lost_joint > 0) then
-               call fall_of(state%springs, lost, summary%fall)
+            if (task%summary%lost_joint > 0) then
+               call fall_of(state%springs, lost, task%summary%fall)
             end if
-            if (ends .or. part == parts) call balance(state, response%energy, summary)
-            if (ends .or. step == next_row .or. (every == unset_integer .and. part == parts)) then
+            if (ends .or. part == parts) call balance(state, response%energy, task%summary)
+            if (ends .or. step == next_row .or. (task%every == unset_integer .and. part == parts)) then
                if (.not. (ends .or. part == parts)) call balance(state, response%energy)
-               call keep(state, response, recorder, summary, error, now)
+               call keep(state, response, task, error, now)
                if (allocated(error) .or. ends) return
-               if (every /= unset_integer) next_row = min(step + every, plan%steps)
+               if (task%every /= unset_integer) next_row = min(step + task%every, plan%steps)
             end if
-            if (iand(step, 8191) == 0 .and. present(progress)) then
-               call progress%update(real(step, wp)/plan%steps)
+            if (iand(step, 8191) == 0 .and. associated(task%progress)) then
+               call task%progress%update(real(step, wp)/plan%steps)
             end if
          end do
       end do
@@ -209,19 +189,18 @@ contains
    end subroutine report_state
 
    !> Record the last good state before a failure.
-   subroutine keep_last(state, now, response, recorder, summary)
+   subroutine keep_last(state, now, response, task)
       type(state_type), intent(inout) :: state
       type(motion_result), intent(inout) :: now
       type(response_type), intent(inout) :: response
-      class(recorder_type), intent(inout) :: recorder
-      type(summary_type), intent(inout) :: summary
+      type(task_type), intent(inout) :: task
       type(error_type), allocatable :: ignored
 
       state%clock = state%begin + state%time
       if (state%lost .or. .not. state%clock > response%time) return
       call state%see(state%clock)
-      call balance(state, response%energy, summary)
-      call keep(state, response, recorder, summary, ignored, now)
+      call balance(state, response%energy, task%summary)
+      call keep(state, response, task, ignored, now)
    end subroutine keep_last
 
    !> The energies of the present state.
@@ -242,11 +221,10 @@ contains
    end subroutine balance
 
    !> Keep the present state, whose energies are in the response.
-   subroutine keep(state, response, recorder, summary, error, now)
+   subroutine keep(state, response, task, error, now)
       type(state_type), intent(in) :: state
       type(response_type), intent(inout) :: response
-      class(recorder_type), intent(inout) :: recorder
-      type(summary_type), intent(inout) :: summary
+      type(task_type), intent(inout) :: task
       type(error_type), allocatable, intent(inout) :: error
       !> Created if the rows hold how the top moves
       type(motion_result), intent(inout) :: now
@@ -258,13 +236,13 @@ contains
       response%height = top(2)
       response%force = state%load(lateral)
       if (state%motion%damped) response%base = state%motion%base_reaction(state%springs, state%q, state%v)
-      if (recorder%channels%motion) then
+      if (task%recorder%channels%motion) then
          call state%motion%acceleration(state%springs, state%q, state%v, state%load, now)
          call top_motion(state%motion%column, state%q, state%v, now%a, response%motion(1), response%motion(2))
          response%motion(3) = state%load(horizontal)
       end if
-      summary%rows = summary%rows + 1
-      call recorder%keep(response, state%springs, state%q, error)
+      task%summary%rows = task%summary%rows + 1
+      call task%recorder%keep(response, state%springs, state%q, error)
    end subroutine keep
 
 end module rbs_solve_time_march

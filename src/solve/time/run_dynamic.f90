@@ -10,12 +10,9 @@ module rbs_solve_time_run_dynamic
    use rbs_column_column, only: column_type, small, finite
    use rbs_column_ends, only: check_inertia_of_ends, check_held_rotation
    use rbs_loading_signal, only: signal_type
-   use rbs_output_observer, only: observer_type
-   use rbs_output_recorder, only: recorder_type
-   use rbs_output_summary, only: summary_type
    use rbs_solve_check_values, only: check_values
+   use rbs_solve_task, only: task_type
    use rbs_solve_modal_modes, only: frequency_bounds, stability_limit
-   use rbs_solve_end_state, only: end_state
    use rbs_solve_time_effort, only: check_effort
    use rbs_solve_time_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha, &
                                       with_finite_rotations
@@ -25,7 +22,6 @@ module rbs_solve_time_run_dynamic
    use rbs_solve_time_pair45, only: pair45_scheme
    use rbs_solve_time_plan, only: time_plan, new_plan, check_times, check_length
    use rbs_solve_time_rk4, only: rk4_stepper, rk4_scheme
-   use rbs_solve_time_sight, only: sight_type
    use rbs_solve_time_state, only: stepper_type
    use rbs_case_analysis_record, only: analysis_record
    use rbs_base_check, only: is_given
@@ -178,8 +174,7 @@ contains
    end subroutine choose_method
 
    !> Response in time under lateral force, ground motion, axial load, or all of them.
-   subroutine run_dynamic(column, analysis, plan, time, loads, initial, every, recorder, summary, error, &
-                          progress, before, after, sight)
+   subroutine run_dynamic(column, analysis, plan, time, loads, initial, task, error)
       type(column_type), intent(in) :: column
       !> Validated settings
       type(analysis_record), intent(in) :: analysis
@@ -189,19 +184,10 @@ contains
       real(wp), intent(in) :: time(:)
       type(loads_type), intent(in) :: loads
       type(initial_state), intent(in) :: initial
-      !> Every n-th step gives a row, and the last; `unset_integer`: every interval of the plan
-      integer, intent(in) :: every
-      class(recorder_type), intent(inout) :: recorder
-      type(summary_type), intent(out) :: summary
+      !> Without `every` each interval of the plan has a row
+      type(task_type), intent(inout) :: task
       type(error_type), allocatable, intent(out) :: error
-      class(observer_type), intent(inout), optional :: progress
-      !> The state to begin in, and the one at the end; empty where there is none
-      type(end_state), intent(inout), optional :: before, after
-      !> What to watch for, and what has been seen
-      type(sight_type), intent(inout), optional :: sight
       class(stepper_type), allocatable :: stepper
-      real(wp) :: setting
-      integer :: method
 
       call check_signal(loads%force, 'force', error)
       call check_signal(loads%ground, 'ground_acceleration', error)
@@ -216,16 +202,11 @@ contains
          call check_held_rotation(column, 'initial velocity', initial%velocity, error)
       end if
       if (allocated(error)) return
-      summary%stable_step = plan%limit
-      summary%method = plan%method
-      summary%reason = plan%reason
+      task%summary%stable_step = plan%limit
+      task%summary%method = plan%method
+      task%summary%reason = plan%reason
       call new_stepper(stepper, column, analysis, plan)
-      method = findloc(methods%name == plan%method, .true., dim=1)
-      if (analysis%events == 'located' .or. plan%located) method = method + 100
-      setting = 0.0_wp
-      if (is_given(analysis%rho_infinity)) setting = analysis%rho_infinity
-      call march(column, plan, stepper, time, loads, initial, analysis%collapse_drift, every, recorder, &
-                 summary, error, progress, before, after, method, setting, sight)
+      call march(column, plan, stepper, time, loads, initial, task, error)
    end subroutine run_dynamic
 
    !> The method of a plan, ready for its first step.
@@ -273,6 +254,9 @@ contains
             call move_alloc(fixed, stepper)
          end if
       end select
+      stepper%method = findloc(methods%name == plan%method, .true., dim=1)
+      if (analysis%events == 'located' .or. plan%located) stepper%method = stepper%method + 100
+      if (is_given(analysis%rho_infinity)) stepper%setting = analysis%rho_infinity
    end subroutine new_stepper
 
    !> An implicit method for the kinematics of a column.

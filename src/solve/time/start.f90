@@ -91,30 +91,26 @@ contains
    end function residual_of
 
    !> The same method goes on with what it remembers, unless a load jumps at the start.
-   subroutine resume_steps(state, stepper, before, standing, method, setting)
+   subroutine resume_steps(state, stepper, before, standing)
       type(state_type), intent(in) :: state
       class(stepper_type), intent(inout) :: stepper
       type(end_state), intent(inout) :: before
       type(standing_type), intent(in) :: standing
-      integer, intent(in), optional :: method
-      real(wp), intent(in), optional :: setting
 
-      if (.not. (present(method) .and. present(setting))) return
-      if (standing%kind /= moving_state .or. standing%method /= method) return
-      if (abs(standing%setting - setting) > 0.0_wp .or. any(abs(state%load - standing%load) > 0.0_wp)) return
+      if (standing%kind /= moving_state .or. standing%method /= stepper%method) return
+      if (abs(standing%setting - stepper%setting) > 0.0_wp .or. &
+          any(abs(state%load - standing%load) > 0.0_wp)) return
       call stepper%resume(state, before%stream)
    end subroutine resume_steps
 
    !> Keep the state at the end.
-   subroutine keep_state(state, stepper, plan, steps, residual, method, setting, after)
+   subroutine keep_state(state, stepper, plan, steps, residual, after)
       type(state_type), intent(inout) :: state
       class(stepper_type), intent(inout) :: stepper
       type(time_plan), intent(in) :: plan
       !> Steps taken, as planned
       integer, intent(in) :: steps
       real(wp), intent(in) :: residual
-      integer, intent(in), optional :: method
-      real(wp), intent(in), optional :: setting
       type(end_state), intent(inout) :: after
       type(standing_type) :: standing
       integer :: i
@@ -144,8 +140,8 @@ contains
             standing%origin = plan%origin
             standing%offset = plan%offset + steps
          end if
-         if (present(method)) standing%method = method
-         if (present(setting)) standing%setting = setting
+         standing%method = stepper%method
+         standing%setting = stepper%setting
          ! The motion stands where its springs do.
          call after%start_saving(column, standing, state%springs)
       end associate

@@ -47,6 +47,9 @@ module rbs_solve_time_state
       real(wp) :: longest_step = 0.0_wp
       !> Whether what it needs before the first step has been found
       logical :: begun = .false.
+      !> What the method is and its setting: a run that goes on with the same remembers its steps
+      integer :: method = 0
+      real(wp) :: setting = 0.0_wp
    contains
       procedure(advance_interface), deferred :: advance
       procedure :: restart
