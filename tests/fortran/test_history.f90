@@ -324,6 +324,7 @@ contains
             recorder%channels = new_channels(column, .true., .false., .false.)
             stepper = rk4_stepper()
             call stepper%scheme%create(column)
+            task = task_type()
             task%recorder => recorder
             task%every = steps
             call march(column, plan, stepper, [0.0_wp, plan%finish], none, start, task, outcome)

@@ -703,6 +703,8 @@ contains
       ! Failure in the very first step: the initial state is the only row.
       stepper = failing_stepper(count=7)
       recorder%count = 0
+      task = task_type()
+      task%recorder => recorder
       task%every = 1
       call march(made(column_1('small')), plan, stepper, [0.0_wp, 1.0_wp], none, rest, task, outcome)
       call check_failed(error, outcome, analysis_failed, 'no way to go on at 0.0625 s')
@@ -714,6 +716,7 @@ contains
       recorder%count = 0
       task = task_type()
       task%recorder => recorder
+      task%every = 1
       call march(made(column_1('small')), plan, located, [0.0_wp, 1.0_wp], none, rest, task, outcome)
       call check_failed(error, outcome, analysis_failed, 'does not reach the tolerance')
       call check_equal(error, recorder%count, 1, 'rows')
