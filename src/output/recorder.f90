@@ -1,7 +1,8 @@
 !> Where kept rows go: an array (Python) or a file (executable). The solver does not know which.
 module rbs_output_recorder
-   use rbs_base_error, only: error_type
+   use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_channels, only: channel_list, response_type
    implicit none
@@ -65,19 +66,36 @@ contains
       type(error_type), allocatable, intent(inout) :: error
 
       if (allocated(error)) return
-      if (.not. allocated(self%rows)) allocate (self%rows(size(row), max(1, self%expected)))
-      if (self%count == size(self%rows, 2)) call make_room(self)
+      if (is_full(self)) call make_room(self, size(row), error)
+      if (allocated(error)) return
       self%count = self%count + 1
       self%rows(:, self%count) = row
    end subroutine record
 
-   !> Room for twice as many rows: how many corners a path has is not known before.
-   subroutine make_room(self)
-      type(array_recorder), intent(inout) :: self
-      real(wp), allocatable :: larger(:, :)
+   pure logical function is_full(self)
+      type(array_recorder), intent(in) :: self
 
-      allocate (larger(size(self%rows, 1), 2*self%count))
-      larger(:, :self%count) = self%rows
+      is_full = .not. allocated(self%rows)
+      if (.not. is_full) is_full = self%count == size(self%rows, 2)
+   end function is_full
+
+   !> Room for all rows that are expected, then for twice as many: how many corners a path has is not known
+   !> before.
+   subroutine make_room(self, width, error)
+      type(array_recorder), intent(inout) :: self
+      integer, intent(in) :: width
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp), allocatable :: larger(:, :)
+      integer :: most, status
+
+      most = max(1, self%expected, 2*self%count)
+      allocate (larger(width, most), stat=status)
+      if (status /= 0) then
+         call fatal_error(error, analysis_failed, 'memory runs out: '//to_text(most)//' rows of '// &
+                          to_text(width)//' numbers; keep fewer of them with every')
+         return
+      end if
+      if (self%count > 0) larger(:, :self%count) = self%rows
       call move_alloc(larger, self%rows)
    end subroutine make_room
 

@@ -78,6 +78,7 @@ contains
       task%collapse_drift = data%analysis%collapse_drift
       call run_dynamic(column, data%analysis, data%plan, data%time, loads, data%initial, task, data%outcome)
       data%summary = task%summary
+      if (recorder%count == 0) allocate (recorder%rows(recorder%channels%width, 0))
       data%rows = recorder%rows(:, :recorder%count)
    end subroutine run
 

@@ -101,6 +101,7 @@ contains
       task%recorder => recorder
       if (present(collapse_drift)) task%collapse_drift = collapse_drift
       call run_static(column, by_force, values, task, outcome)
+      if (recorder%count == 0) allocate (recorder%rows(recorder%channels%width, 0))
       rows = recorder%rows(:, :recorder%count)
       if (present(summary)) summary = task%summary
    end subroutine run

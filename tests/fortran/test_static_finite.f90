@@ -71,6 +71,7 @@ contains
       task%recorder => recorder
       if (present(drift)) task%collapse_drift = drift
       call run_static(column, by_force, values, task, outcome)
+      if (recorder%count == 0) allocate (recorder%rows(recorder%channels%width, 0))
       rows = recorder%rows(:, :recorder%count)
       if (present(summary)) summary = task%summary
    end subroutine run
