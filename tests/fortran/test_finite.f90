@@ -344,6 +344,7 @@ contains
          share = 2.0e-3_wp/i
          now = state(share*one%q, share*one%v, share*one%f, share*one%load)
          call symmetric_mass(column, mass)
+         g = 0.0_wp
          call geometric_forces(column, now%q, g)
          right(:, 1) = column%arm*now%load(1) - column%ground_arm*now%load(2) - now%f - g
          call solve_general(mass, right, regular)
@@ -373,6 +374,7 @@ contains
          share = 1.0e-4_wp/i
          now = state(share*one%q, share*one%v, share*one%f, share*one%load)
          call symmetric_mass(column, mass)
+         g = 0.0_wp
          call geometric_forces(column, now%q, g)
          right(:, 1) = column%arm*now%load(1) - column%ground_arm*now%load(2) - now%f - g
          now%f(2*n + 1:) = now%f(2*n + 1:) - column%axial_joint

@@ -122,7 +122,8 @@ contains
       real(wp) :: mean(2)
 
       associate (step => self%step, body => self%one_body, motion => state%motion)
-         if (abs(h - body%h) > 0.0_wp) call fit_one_body(body, step, self%wanted, state, h)
+         if (abs(h - body%h) > 0.0_wp .or. abs(self%wanted - body%wanted) > 0.0_wp) &
+            call fit_one_body(body, step, self%wanted, state, h)
          call body%take_step(state%springs, state%q, step%v0, step%a0, step%g0, step%largest, &
                              load(lateral), load(horizontal), taken)
          if (.not. taken) return
@@ -161,13 +162,13 @@ contains
       type(state_type), intent(in) :: state
       real(wp), intent(in) :: h
 
+      body%wanted = wanted
       if (abs(h - body%h) > 0.0_wp) then
          associate (column => state%motion%column)
             body%alpha_m = step%alpha_m
             body%alpha_f = step%alpha_f
             body%beta = step%beta
             body%gamma = step%gamma
-            body%wanted = wanted
             body%mass = column%inertias(:2)
             body%lower = column%lower(1)
             body%upper = column%upper(1)
