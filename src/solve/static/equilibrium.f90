@@ -5,10 +5,10 @@
 !>
 !>     K q - a F = r,   a q = x        K = diag(k) + K_G,  a = arms of the lateral force F
 !>
-!> A few bodies driven by the displacement are solved in (slip, relative rotation) with full matrices. Others
-!> are solved in (slip, absolute rotation), where K is a band of two diagonals beside the main one: k_M couples
-!> neighbouring rotations, the axial load only the slip of a joint and the rotation below it. A held top is
-!> solved there too: its rotation is the last unknown, and is left out.
+!> A few bodies are solved in (slip, relative rotation) with full matrices. More are solved in (slip,
+!> absolute rotation), where K is a band of two diagonals beside the main one: k_M couples neighbouring
+!> rotations, the axial load only the slip of a joint and the rotation below it. A held top is solved there
+!> too: its rotation is the last unknown, and is left out.
 module rbs_solve_static_equilibrium
    use rbs_base_band_matrix, only: band_matrix
    use rbs_base_constants, only: no_stiffness
@@ -27,7 +27,7 @@ module rbs_solve_static_equilibrium
    !> recovered: the residual is taken in the deformations of the joints and solved for again.
    integer, parameter :: refinements = 1
 
-   !> Most bodies for which full matrices are faster than bands, driven by the displacement.
+   !> Most bodies for which full matrices are faster than bands.
    integer, parameter :: few_are = 2
 
    type :: equilibrium_type
@@ -40,7 +40,7 @@ module rbs_solve_static_equilibrium
       logical :: coupled = .false.
       !> Initial stiffness (2 n): shares the motion between joints that have none left
       real(wp), allocatable :: initial_stiffness(:)
-      !> Few bodies, driven by the displacement
+      !> Few bodies
       type(few_bodies) :: few
       !> The tangent, and the arms joint by joint (2 n)
       type(band_matrix), private :: tangent
@@ -146,7 +146,13 @@ contains
       integer, intent(out) :: weakest
       logical :: positive
 
-      if (self%coupled) then
+      if (self%few%fits) then
+         self%found(:, 1) = self%arm
+         self%found(:, 2) = r
+         call self%few%solve_force(k, no_stiffness*self%initial_stiffness, self%found, positive)
+         rate = self%found(:, 1)
+         correction = self%found(:, 2)
+      else if (self%coupled) then
          call follow_force_banded(self, k, r, rate, correction, positive)
       else
          positive = all(k > no_stiffness*self%initial_stiffness)

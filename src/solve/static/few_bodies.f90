@@ -1,5 +1,5 @@
-!> Few bodies driven by the displacement of the top, with full matrices: rates of the column on the lines of
-!> its springs, and their update where one spring has changed its line.
+!> Few bodies with full matrices: rates of the column on the lines of its springs, and driven by the
+!> displacement of the top their update where one spring has changed its line.
 !>
 !>     K rate = a dF,   a rate = 1        K = diag(k) + K_G
 module rbs_solve_static_few_bodies
@@ -30,6 +30,7 @@ module rbs_solve_static_few_bodies
    contains
       procedure :: create
       procedure :: solve
+      procedure :: solve_force
       procedure :: update
       procedure :: serialize
    end type few_bodies
@@ -86,6 +87,40 @@ contains
          force_correction = solved(right + 1, m + 1)
       end associate
    end subroutine solve
+
+   !> Driven by the force: elimination without pivots, which shows whether the column is stable.
+   pure subroutine solve_force(self, k, least, right, positive)
+      class(few_bodies), intent(in) :: self
+      !> Stiffness of the springs, and pivots that count as none (unknowns)
+      real(wp), intent(in) :: k(:), least(:)
+      !> Right-hand sides, replaced by the solutions (unknowns, 2)
+      real(wp), intent(inout) :: right(:, :)
+      logical, intent(out) :: positive
+      real(wp) :: a(row_length, row_length), share
+      integer :: i, j, m
+
+      m = self%unknowns
+      positive = .false.
+      a(:, :m) = self%row(:, :m)
+      do j = 1, m
+         a(j, j) = a(j, j) + k(j)
+      end do
+      do j = 1, m
+         if (.not. a(j, j) > least(j)) return
+         do i = j + 1, m
+            share = a(j, i)/a(j, j)
+            a(j:m, i) = a(j:m, i) - share*a(j:m, j)
+            right(i, :) = right(i, :) - share*right(j, :)
+         end do
+      end do
+      do j = m, 1, -1
+         do i = j + 1, m
+            right(j, :) = right(j, :) - a(i, j)*right(i, :)
+         end do
+         right(j, :) = right(j, :)/a(j, j)
+      end do
+      positive = .true.
+   end subroutine solve_force
 
    !> The rates after one spring has changed its line, driven by the displacement, where the last solution is
    !> good enough to be updated. With the change e of the stiffness of spring i and the solution z for a unit
