@@ -215,8 +215,8 @@ contains
          call cpu_time(begin)
          turning = turning - begin
          do i = 1, cycles
-            call spring%move(1, 0.03_wp*i/cycles)
-            call spring%move(1, -0.03_wp*i/cycles)
+            call spring%advance_to(1, 0.03_wp*i/cycles)
+            call spring%advance_to(1, -0.03_wp*i/cycles)
          end do
          call cpu_time(begin)
          turning = turning + begin
@@ -226,7 +226,7 @@ contains
 
       ! From the last turn a little way back, and to and fro there.
       m = max(1000000/divisor, 1000)
-      call spring%move(1, -0.0299_wp)
+      call spring%advance_to(1, -0.0299_wp)
       events = spring%events
       call cpu_time(begin)
       do i = 1, m
