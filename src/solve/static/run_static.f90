@@ -32,7 +32,7 @@ contains
       real(wp), intent(in), optional :: axial_load(:)
       type(column_type) :: loaded
       real(wp) :: load(size(target))
-      logical :: varies
+      logical :: varies, curved
 
       loaded = column
       load = column%axial_load
@@ -47,9 +47,12 @@ contains
             call put_under(loaded, load(1))
          end if
       end if
-      if (varies .or. column%kinematics == finite) then
-         call check_interaction(column, error)
-         if (allocated(error)) return
+      curved = varies .or. column%kinematics == finite
+      if (curved .and. (column%axial_follows .or. column%force_follows)) then
+         call fatal_error(error, bad_input, 'column: loads that follow the top (axial_follows, '// &
+                          'force_follows) have no potential, and a static path could miss the loss of '// &
+                          'stability; use a dynamic analysis')
+         return
       end if
       if (by_force) then
          call check_values(target, 'force', error)
@@ -57,7 +60,7 @@ contains
          call check_values(target, 'displacement', error)
       end if
       if (allocated(error)) return
-      if (varies .or. column%kinematics == finite) then
+      if (curved) then
          call trace_curved(loaded, by_force, target, pack(load, varies), task, error)
       else
          call trace_straight(loaded, by_force, target, task, error)
@@ -106,16 +109,5 @@ contains
       call fatal_error(error, bad_input, "axial_load: with kinematics = 'small', no layered joint and no "// &
                        "axial spring a history of it does nothing; use 'pdelta', or give such springs")
    end subroutine check_axial_load
-
-   !> Whether the column can be followed under an axial load that varies.
-   subroutine check_interaction(column, error)
-      type(column_type), intent(in) :: column
-      type(error_type), allocatable, intent(out) :: error
-
-      if (.not. (column%axial_follows .or. column%force_follows)) return
-      call fatal_error(error, bad_input, 'column: loads that follow the top (axial_follows, '// &
-                       'force_follows) have no potential, and a static path could miss the loss of '// &
-                       'stability; use a dynamic analysis')
-   end subroutine check_interaction
 
 end module rbs_solve_static_run_static
