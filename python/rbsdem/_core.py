@@ -29,9 +29,6 @@ from rbsdem._arguments import (  # noqa: F401  for those that take these from he
 )
 from rbsdem.errors import InputError, SolveError
 
-#: Stands for a whole number that is not given (the constant `unset_integer` of the Fortran part).
-UNSET_INTEGER = -int(np.iinfo(np.int32).max)
-
 #: A number that was not given.
 UNSET = -float(np.finfo(np.float64).max)
 
@@ -129,7 +126,7 @@ _FLOAT = np.dtype(float).str
 
 
 class _Rows:
-    """Rows that Fortran keeps, as numpy takes them; the last array that shows them releases them."""
+    """Rows that Fortran keeps, for numpy; the last array that shows them releases them."""
 
     def __init__(self, answer: Array, address: Array, shape: tuple[int, int]) -> None:
         self.answer = answer
@@ -154,7 +151,7 @@ def _ask(
     control: NDArray[np.int32] = _NO_CONTROL,
     **arrays: Any,
 ) -> Answer:
-    """Return an answer of the Fortran part, whose module `rbs_bindings_evaluate` lists what there is.
+    """Return an answer of the Fortran part; its module `rbs_bindings_evaluate` lists all.
 
     Numbers, switches and arrays go under their names; None is left out.
     """
@@ -273,9 +270,7 @@ def check_spring(statement: Statement, axial_load: float) -> None:
 
 def spring_response(statement: Statement, axial_load: float, deformation: Array) -> Array:
     """Return the forces of a virgin spring along a path."""
-    answer = _evaluate(
-        "spring_response", statement, axial_load=axial_load, deformation=deformation
-    )
+    answer = _evaluate("spring_response", statement, axial_load=axial_load, deformation=deformation)
     return answer.values
 
 
@@ -301,7 +296,7 @@ def modes(column: Statement, count: int | None) -> tuple[Array, Array, float, st
 
 
 def matrices(column: Statement, paper: bool) -> tuple[tuple[str, ...], Array]:
-    """Return the unknowns; mass, stiffness, geometric stiffness and damping, one after the other."""
+    """Return the unknowns; mass, stiffness, geometric stiffness and damping one after another."""
     names, _, rows, _ = _evaluate("matrices", column, paper=paper)
     unknowns = tuple(names.split())
     return unknowns, rows.reshape(4, len(unknowns), len(unknowns))
@@ -349,6 +344,7 @@ def time_history(
     `run_ensemble`; of each the time [s] and the displacement of the top [m] are returned, NaN where
     it is not reached.
     """
+    acting: dict[str, Any] = dict(loads)
     told = False
     while True:
         answer = _ask(
@@ -360,7 +356,7 @@ def time_history(
             opening_given=opening_given,
             before=before,
             told=told,
-            **loads,
+            **acting,
         )
         if answer.status != _LONG_RUN:
             break
@@ -412,7 +408,8 @@ def plan_ensemble(
     joint, factors of slip, rotation and opening, threshold; at least one. `before` are the states
     that the runs of each column begin in; an empty one is at rest.
     """
-    answer = _ask("plan_ensemble", **_columns_and_motions(columns, settings, watches, before, motions))
+    given = _columns_and_motions(columns, settings, watches, before, motions)
+    answer = _ask("plan_ensemble", **given)
     seconds, in_lanes = np.split(answer.rows.T, 2)
     return seconds, in_lanes.astype(np.int32), list(_numbered(answer.text))
 
