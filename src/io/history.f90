@@ -290,7 +290,7 @@ contains
       named = .true.
       worded = .false.
       do i = 1, fields%count
-         associate (word => file%text(first + fields%first(i) - 1:first + fields%last(i) - 1))
+         associate (word => file%text(fields%first(i):fields%last(i)))
             call read_real(word, value, status)
          end associate
          if (status == number_ok) named = .false.
