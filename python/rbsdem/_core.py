@@ -7,7 +7,6 @@ exception.
 from __future__ import annotations
 
 import json
-import math
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
@@ -39,7 +38,7 @@ _ANALYSIS_FAILED = 1
 _LONG_RUN = 3
 
 #: Summary values that are whole numbers.
-_COUNTS = ("steps", "rows", "events", "cut_steps")
+_COUNTS = ("steps", "rows", "events", "cut_steps", "lost_joint")
 
 
 def word(value: Any) -> str:
@@ -364,9 +363,6 @@ def time_history(
         told = True
     count = len(watches)
     run = _finish(answer, answer.values[2 * count :])
-    if "force" not in loads:
-        for name in ("peak_force", "displacement_at_peak_force"):
-            del run[2][name]
     return run, answer.values[: 2 * count].reshape(2, count).T
 
 
@@ -385,7 +381,7 @@ def settings(given: Mapping[str, Any]) -> Statement:
 @cache
 def measures() -> tuple[str, ...]:
     """Return the names of the measures of a run of an ensemble."""
-    return tuple(_names()[2].split())
+    return tuple(_names()[1].split())
 
 
 #: Motions of the ground: times [s] and accelerations [m/s2].
@@ -557,7 +553,7 @@ def section_quantities() -> dict[str, tuple[str, ...]]:
     moment-curvature and of a shear diagram; "profile" and "layer" those of layers.
     """
     kinds = ("section", "spring", "point", "shear", "profile", "layer")
-    return {kind: tuple(text.split(", ")) for kind, text in zip(kinds, _names()[3:], strict=True)}
+    return {kind: tuple(text.split(", ")) for kind, text in zip(kinds, _names()[2:], strict=True)}
 
 
 def _named(kind: str, values: Array) -> dict[str, float]:
@@ -666,30 +662,17 @@ def _finish(answer: Answer, values: Array) -> Run:
     """Name arrays and figures of a run; raise wrong input, return a failed analysis as an error."""
     if answer.status not in (0, _ANALYSIS_FAILED):
         raise InputError(answer.text)
-    method, reason, channels, note = answer.text.split("\n", 3)
+    method, reason, status, channels, figures, note = answer.text.split("\n", 5)
     words = channels.split()
     arrays, at = dict[str, Array](), 0
     for name, joints in zip(words[::2], map(int, words[1::2]), strict=True):
         arrays[name] = answer.rows[:, at : at + joints] if joints else answer.rows[:, at]
         at += max(joints, 1)
     error = SolveError(note) if answer.status else None
-    figures = _names()[1].split()
-    named: dict[str, Any] = dict(zip(figures, values.tolist(), strict=False))
-    for name in _COUNTS:
-        named[name] = int(named[name])
-    status = "collapsed" if named.pop("collapsed") else "completed"
-    lost_joint = int(named.pop("lost_joint"))
-    if lost_joint:
-        status = "axial_failure"
-        named["lost_joint"] = lost_joint
-    else:
-        for name in ("lost_axial_load", "axial_capacity", "fall", "fall_energy"):
-            del named[name]
-    if math.isnan(named["peak_floor_acceleration"]):
-        del named["peak_floor_acceleration"]
-    named["method"] = method
-    named["reason"] = reason
-    named["status"] = "failed" if error else status
-    after = values[len(figures) :]
+    names = figures.split()
+    summary: dict[str, Any] = dict(zip(names, values.tolist(), strict=False))
+    summary |= {name: int(summary[name]) for name in _COUNTS if name in summary}
+    summary |= {"method": method, "reason": reason, "status": "failed" if error else status}
+    after = values[len(names) :]
     state = None if error or not after.size else after.copy()
-    return arrays, state, named, error, "" if error else note
+    return arrays, state, summary, error, "" if error else note

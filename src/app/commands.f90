@@ -19,7 +19,7 @@ module rbs_app_commands
    use rbs_io_posix, only: is_standard_output, same_file, standard_input
    use rbs_output_notes, only: column_notes, drift_note, rotation_note
    use rbs_output_channels, only: new_channels
-   use rbs_output_summary, only: summary_type, summary_names, summary_units
+   use rbs_output_summary, only: figure_type
    use rbs_solve_make_column, only: make_column
    use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices
    use rbs_solve_modal_modes, only: modes_type, find_modes
@@ -39,6 +39,17 @@ module rbs_app_commands
    !> Exit code of a run that ended because the user's criterion of collapse was met.
    integer, parameter :: column_collapsed = 3
 
+   !> What a case asks for, and what comes of it.
+   type :: run_type
+      !> Path of the case
+      character(len=:), allocatable :: path
+      type(case_record) :: case
+      type(case_history) :: history
+      type(column_type) :: column
+      type(csv_recorder) :: recorder
+      type(task_type) :: task
+   end type run_type
+
 contains
 
    !> rbsdem run: solve a case and write its rows.
@@ -48,112 +59,96 @@ contains
       character(len=:), allocatable, intent(in) :: output
       logical, intent(in) :: quiet
       type(error_type), allocatable, intent(out) :: error
-      type(case_record) :: case
-      type(case_history) :: history
-      type(column_type) :: column
-      type(csv_recorder) :: recorder
-      type(summary_type) :: summary
+      type(run_type), target :: run
+      type(message_list) :: notes
       type(error_type), allocatable :: closing
       character(len=:), allocatable :: file
 
-      call prepare(path, case, column, history, error)
+      call prepare(run, path, error)
+      if (.not. allocated(error)) call output_path(run, output, file, error)
+      if (.not. allocated(error)) call check_output(run, file, error)
       if (allocated(error)) return
-      call output_path(path, case, output, file, error)
-      if (allocated(error)) return
-      call check_output(file, path, case, error)
-      if (allocated(error)) return
-      call solve(case, column, history, path, file, recorder, summary, quiet, error)
+      call solve(run, file, quiet, error)
       call remove_if_stopped('')
-      call recorder%close(.not. allocated(error), closing)
+      call run%recorder%close(.not. allocated(error), closing)
       if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
       if (allocated(error)) then
-         if (recorder%count > 0) then
-            if (recorder%file%kept /= '') then
-               error%message = error%message//new_line('a')//'the '//to_text(recorder%count)// &
-                               ' rows up to there are in '//recorder%file%kept
+         if (run%recorder%count > 0) then
+            if (run%recorder%file%kept /= '') then
+               error%message = error%message//new_line('a')//'the '//to_text(run%recorder%count)// &
+                               ' rows up to there are in '//run%recorder%file%kept
             end if
          end if
          return
       end if
       ! Among rows on standard output a summary would be in the way.
       if (.not. (quiet .or. is_standard_output(file))) then
-         call print_summary(case, recorder, summary, error)
-         call print_notes(case, error)
-         call print_rotation(column, summary, error)
+         call print_summary(run, error)
+         call column_notes(run%case%column, notes)
+         call rotation_note(run%column, run%task%summary, notes)
+         call print_notes(notes, error)
       end if
-      if (allocated(error)) return
-      if (summary%lost_joint > 0) then
-         call report_axial_failure(case, recorder, summary, error)
-      else if (summary%collapsed) then
-         call report_collapse(case, recorder, summary, error)
-      end if
+      if (.not. allocated(error)) call report_end(run, error)
    end subroutine run_case
 
-   !> The error of a run that ended at the user's criterion of collapse; the run itself has not failed.
-   subroutine report_collapse(case, recorder, summary, error)
-      type(case_record), intent(in) :: case
-      type(csv_recorder), intent(in) :: recorder
-      type(summary_type), intent(in) :: summary
+   !> The error of a run that ended at the user's criterion of collapse, or where a joint lost its axial load; the
+   !> run itself has not failed.
+   subroutine report_end(run, error)
+      type(run_type), intent(in) :: run
       type(error_type), allocatable, intent(out) :: error
-      character(len=:), allocatable :: place
+      character(len=:), allocatable :: text
 
-      place = 'step '//to_text(nint(summary%last_time))
-      if (case%analysis%dynamic()) place = 'time '//to_text(summary%last_time)//' s'
-      call fatal_error(error, column_collapsed, 'collapsed at '//place//': the top is at '// &
-                       to_text(summary%peak_displacement)//' m, beyond collapse_drift = '// &
-                       to_text(case%analysis%collapse_drift)//' of the height; the rows up to there '// &
-                       'are in '//recorder%file%path)
-   end subroutine report_collapse
-
-   !> The error of a run that ended where a joint lost its axial load; the run itself has not failed.
-   subroutine report_axial_failure(case, recorder, summary, error)
-      type(case_record), intent(in) :: case
-      type(csv_recorder), intent(in) :: recorder
-      type(summary_type), intent(in) :: summary
-      type(error_type), allocatable, intent(out) :: error
-      character(len=:), allocatable :: place, fate
-
-      place = 'step '//to_text(nint(summary%last_time))
-      if (case%analysis%dynamic()) place = 'time '//to_text(summary%last_time)//' s'
-      fate = ', and the joint would fall without end'
-      if (summary%fall%rests) then
-         fate = ', and the joint would rest after '//to_text(abs(summary%fall%drop))//' m'
-      end if
-      call fatal_error(error, column_collapsed, 'axial failure at '//place//': the layers of joint '// &
-                       to_text(case%column%joint_number(summary%lost_joint))//' no longer carry the '// &
-                       'axial load of '// &
-                       to_text(summary%fall%axial_load)//' N; at that rotation they carry at most '// &
-                       to_text(summary%fall%capacity)//' N'//fate//'. The rows up to there are in '// &
-                       recorder%file%path)
-   end subroutine report_axial_failure
+      associate (summary => run%task%summary, fall => run%task%summary%fall)
+         if (summary%status() == 'completed') return
+         text = 'step '//to_text(nint(summary%last_time))
+         if (run%case%analysis%dynamic()) text = 'time '//to_text(summary%last_time)//' s'
+         if (summary%lost_joint > 0) then
+            text = 'axial failure at '//text//': the layers of joint '// &
+                   to_text(run%case%column%joint_number(summary%lost_joint))// &
+                   ' no longer carry the axial load of '//to_text(fall%axial_load)// &
+                   ' N; at that rotation they carry at most '//to_text(fall%capacity)//' N, and the joint would '
+            if (fall%rests) then
+               text = text//'rest after '//to_text(abs(fall%drop))//' m. The'
+            else
+               text = text//'fall without end. The'
+            end if
+         else
+            text = 'collapsed at '//text//': the top is at '//to_text(summary%peak_displacement)// &
+                   ' m, beyond collapse_drift = '//to_text(run%case%analysis%collapse_drift)//' of the height; the'
+         end if
+      end associate
+      call fatal_error(error, column_collapsed, text//' rows up to there are in '//run%recorder%file%path)
+   end subroutine report_end
 
    !> rbsdem check: report all errors of the input without solving the case.
    subroutine check_case(path, quiet, error)
       character(len=*), intent(in) :: path
       logical, intent(in) :: quiet
       type(error_type), allocatable, intent(out) :: error
-      type(case_record) :: case
-      type(case_history) :: history
-      type(column_type) :: column
+      type(run_type) :: run
       type(time_plan) :: plan
+      type(message_list) :: notes
       character(len=:), allocatable :: text
 
-      call prepare(path, case, column, history, error)
+      call prepare(run, path, error)
       if (allocated(error)) return
-      if (case%analysis%dynamic()) then
-         call plan_dynamic(column, case%analysis, history%time, history%loads, plan, error)
-         if (allocated(error)) return
-      end if
-      if (quiet) return
-      call say(path//': no errors', error)
-      if (plan%reason /= '') call say('method: '//method_text(plan%method, plan%reason), error)
-      call print_notes(case, error)
-      if (.not. case%analysis%dynamic()) then
-         call print_drift(case, history, error)
-         return
-      end if
-      call long_run_note(column, plan, text)
-      if (text /= '') call say('note: '//text, error)
+      associate (case => run%case)
+         if (case%analysis%dynamic()) then
+            call plan_dynamic(run%column, case%analysis, run%history%time, run%history%loads, plan, error)
+            if (allocated(error)) return
+         end if
+         if (quiet) return
+         call say(path//': no errors', error)
+         if (plan%reason /= '') call say('method: '//method_text(plan%method, plan%reason), error)
+         call column_notes(case%column, notes)
+         if (case%analysis%dynamic()) then
+            call long_run_note(run%column, plan, text)
+            if (text /= '') call notes%add(text)
+         else if (all(case%loading(:case%loadings)%drive /= 'force') .and. case%column%kinematics /= 'finite') then
+            call drift_note(maxval(abs(run%history%target)), case%column%height, notes)
+         end if
+      end associate
+      call print_notes(notes, error)
    end subroutine check_case
 
    !> rbsdem modes: frequencies, stable step, and the matrices if they are asked for.
@@ -246,70 +241,69 @@ contains
    end subroutine show_keys
 
    !> Read a case and its loadings; all errors in them are returned as one.
-   subroutine prepare(path, case, column, history, error)
+   subroutine prepare(run, path, error)
+      type(run_type), intent(inout) :: run
       character(len=*), intent(in) :: path
-      type(case_record), intent(out) :: case
-      type(column_type), intent(out) :: column
-      type(case_history), intent(out) :: history
       type(error_type), allocatable, intent(out) :: error
 
-      call load_case(path, case, history, error)
-      if (.not. allocated(error)) call make_column(case%column, column, error)
+      run%path = path
+      call load_case(path, run%case, run%history, error)
+      if (.not. allocated(error)) call make_column(run%case%column, run%column, error)
    end subroutine prepare
 
    !> Solve the case and write its rows to a csv.
-   subroutine solve(case, column, history, case_path, path, recorder, summary, quiet, error)
-      type(case_record), intent(in) :: case
-      type(column_type), intent(in) :: column
-      type(case_history), intent(in) :: history
-      !> Paths of the case and of the csv
-      character(len=*), intent(in) :: case_path, path
-      type(csv_recorder), intent(inout), target :: recorder
-      type(summary_type), intent(out) :: summary
+   subroutine solve(run, file, quiet, error)
+      type(run_type), intent(inout), target :: run
+      !> Path of the csv
+      character(len=*), intent(in) :: file
       logical, intent(in) :: quiet
       type(error_type), allocatable, intent(out) :: error
       type(terminal_progress), target :: progress
-      type(task_type) :: task
       type(time_plan) :: plan
       type(initial_state) :: at_rest
+      character(len=:), allocatable :: note
 
       plan%method = 'static'
-      if (allocated(case%analysis%initial)) then
-         call read_state(beside(case_path, case%analysis%initial), task%before%stream, error)
-         if (.not. allocated(error)) call task%before%check(column, error)
+      associate (case => run%case, column => run%column, history => run%history, recorder => run%recorder, &
+                 task => run%task)
+         if (allocated(case%analysis%initial)) then
+            call read_state(beside(run%path, case%analysis%initial), task%before%stream, error)
+            if (.not. allocated(error)) call task%before%check(column, error)
+            if (allocated(error)) return
+         end if
+         if (case%analysis%dynamic()) then
+            call plan_dynamic(column, case%analysis, history%time, history%loads, plan, error)
+            if (allocated(error)) return
+            call long_run_note(column, plan, note)
+            if (.not. (quiet .or. note == '')) then
+               write (error_unit, '(a)') 'rbsdem: note: '//note
+               flush (error_unit)
+            end if
+         end if
+         recorder%units = case%units%system()
+         recorder%channels = new_channels(column, case%analysis%dynamic(), case%output%openings, &
+                                          case%output%motion)
+         call recorder%open(file, error)
          if (allocated(error)) return
-      end if
-      if (case%analysis%dynamic()) then
-         call plan_dynamic(column, case%analysis, history%time, history%loads, plan, error)
+         call remove_if_stopped(recorder%file%own)
+         call recorder%write_head(header(case, plan%method), error)
          if (allocated(error)) return
-         if (.not. quiet) call warn_of_long_run(column, plan)
-      end if
-      recorder%units = case%units%system()
-      recorder%channels = new_channels(column, case%analysis%dynamic(), case%output%openings, &
-                                       case%output%motion)
-      call recorder%open(path, error)
-      if (allocated(error)) return
-      call remove_if_stopped(recorder%file%own)
-      call recorder%write_head(header(case, plan%method), error)
-      if (allocated(error)) return
-      call progress%start(quiet)
-      task%recorder => recorder
-      task%progress => progress
-      task%every = case%output%every
-      task%collapse_drift = case%analysis%collapse_drift
-      task%keeps_end = .true.
-      if (case%analysis%dynamic()) then
-         call run_dynamic(column, case%analysis, plan, history%time, history%loads, at_rest, task, error)
-      else
-         call run_static(column, any(case%loading(:case%loadings)%drive == 'force'), history%target, task, &
-                         error, history%axial_load)
-      end if
-      summary = task%summary
-      call progress%finish()
-      if (allocated(error) .or. .not. allocated(case%output%state)) return
-      if (task%after%is_given()) then
-         call write_state(beside(case_path, case%output%state), task%after%stream, error)
-      end if
+         call progress%start(quiet)
+         task%recorder => run%recorder
+         task%progress => progress
+         task%every = case%output%every
+         task%collapse_drift = case%analysis%collapse_drift
+         task%keeps_end = .true.
+         if (case%analysis%dynamic()) then
+            call run_dynamic(column, case%analysis, plan, history%time, history%loads, at_rest, task, error)
+         else
+            call run_static(column, any(case%loading(:case%loadings)%drive == 'force'), history%target, &
+                            task, error, history%axial_load)
+         end if
+         call progress%finish()
+         if (allocated(error) .or. .not. (allocated(case%output%state) .and. task%after%is_given())) return
+         call write_state(beside(run%path, case%output%state), task%after%stream, error)
+      end associate
    end subroutine solve
 
    !> A path from the folder of the case.
@@ -321,58 +315,38 @@ contains
       if (path(1:1) /= '/') found = case_path(:index(case_path, '/', back=.true.))//path
    end function beside
 
-   !> Say before a long run how long it will take.
-   subroutine warn_of_long_run(column, plan)
-      type(column_type), intent(in) :: column
-      type(time_plan), intent(in) :: plan
-      character(len=:), allocatable :: text
-
-      call long_run_note(column, plan, text)
-      if (text == '') return
-      write (error_unit, '(a)') 'rbsdem: note: '//text
-      flush (error_unit)
-   end subroutine warn_of_long_run
-
    !> Comment lines of the csv.
    function header(case, method) result(lines)
       type(case_record), intent(in) :: case
       !> The method that is used, also where the program chooses it
       character(len=*), intent(in) :: method
       character(len=600) :: lines(3)
+      character(len=:), allocatable :: units
 
+      units = 'SI'
+      if (case%units%force /= 'N' .or. case%units%length /= 'm') then
+         units = trim(case%units%force)//', '//trim(case%units%length)//', else SI'
+      end if
       lines(1) = 'rbsdem '//version
       lines(2) = 'case: '//case%title
-      lines(3) = 'units: '//units_text(case)//', in the names of the columns; method: '//trim(method)// &
+      lines(3) = 'units: '//units//', in the names of the columns; method: '//trim(method)// &
                  ', kinematics: '//trim(case%column%kinematics)
    end function header
 
-   !> The units of the csv: 'SI', or those that the case names with SI for the others.
-   function units_text(case) result(text)
-      type(case_record), intent(in) :: case
-      character(len=:), allocatable :: text
-
-      text = 'SI'
-      if (case%units%force /= 'N' .or. case%units%length /= 'm') then
-         text = trim(case%units%force)//', '//trim(case%units%length)//', else SI'
-      end if
-   end function units_text
-
    !> The rows must not go into a file that the case was read from.
-   subroutine check_output(file, case_path, case, error)
+   subroutine check_output(run, file, error)
+      type(run_type), intent(in) :: run
       !> File for the rows
       character(len=*), intent(in) :: file
-      character(len=*), intent(in) :: case_path
-      type(case_record), intent(in) :: case
       type(error_type), allocatable, intent(out) :: error
       character(len=:), allocatable :: input
       integer :: i
       logical :: clash
 
-      clash = same_file(file, standard_input(case_path))
-      do i = 1, case%loadings
-         if (.not. allocated(case%loading(i)%file)) cycle
-         input = case%loading(i)%file
-         if (input(1:1) /= '/') input = case_path(:index(case_path, '/', back=.true.))//input
+      clash = same_file(file, standard_input(run%path))
+      do i = 1, run%case%loadings
+         if (.not. allocated(run%case%loading(i)%file)) cycle
+         input = beside(run%path, run%case%loading(i)%file)
          if (same_file(file, input)) clash = .true.
          ! A failed run keeps its rows there.
          if (same_file(file//partial, input)) clash = .true.
@@ -384,63 +358,57 @@ contains
    end subroutine check_output
 
    !> Path of the csv: that of the command line, else that of the case, else the case's name with .csv.
-   subroutine output_path(case_path, case, output, path, error)
-      character(len=*), intent(in) :: case_path
-      type(case_record), intent(in) :: case
+   subroutine output_path(run, output, path, error)
+      type(run_type), intent(in) :: run
       character(len=:), allocatable, intent(in) :: output
       character(len=:), allocatable, intent(out) :: path
       type(error_type), allocatable, intent(out) :: error
-      integer :: dot, slash
+      integer :: dot
 
-      slash = index(case_path, '/', back=.true.)
       if (allocated(output)) then
          path = output
-      else if (allocated(case%output%file)) then
-         path = case%output%file
-         if (path(1:1) /= '/') path = case_path(:slash)//path
-      else if (case_path == '-' .or. index(case_path, '/dev/') == 1 .or. &
-               index(case_path, '/proc/') == 1) then
-         call fatal_error(error, bad_input, 'output: a case from '//standard_input(case_path)// &
+      else if (allocated(run%case%output%file)) then
+         path = beside(run%path, run%case%output%file)
+      else if (run%path == '-' .or. index(run%path, '/dev/') == 1 .or. index(run%path, '/proc/') == 1) then
+         call fatal_error(error, bad_input, 'output: a case from '//standard_input(run%path)// &
                           ' has no name for its rows; give one with --output')
       else
-         dot = index(case_path, '.', back=.true.)
-         if (dot <= slash + 1) dot = len(case_path) + 1
-         path = case_path(:dot - 1)//'.csv'
+         dot = index(run%path, '.', back=.true.)
+         if (dot <= index(run%path, '/', back=.true.) + 1) dot = len(run%path) + 1
+         path = run%path(:dot - 1)//'.csv'
       end if
    end subroutine output_path
 
-   !> Print the summary of a run without the values that do not apply to it.
-   subroutine print_summary(case, recorder, summary, error)
-      type(case_record), intent(in) :: case
-      type(csv_recorder), intent(in) :: recorder
-      type(summary_type), intent(in) :: summary
+   !> Print the summary of a run without the values that do not apply to it; its end is reported apart.
+   subroutine print_summary(run, error)
+      type(run_type), intent(in) :: run
       type(error_type), allocatable, intent(inout) :: error
+      type(figure_type), allocatable :: figures(:)
       character(len=28) :: name
+      logical :: dynamic
       integer :: i
 
-      if (case%title /= '') call say(case%title, error)
+      dynamic = run%case%analysis%dynamic()
+      call run%task%summary%get_figures(figures)
+      if (run%case%title /= '') call say(run%case%title, error)
       name = 'method'
-      call say('  '//name//'  '//method_text(summary%method, summary%reason), error)
-      associate (values => summary%as_array())
-         do i = 1, size(values)
-            ! A static path has no steps in time, and an implicit method no stability limit. A collapse is
-            ! reported apart.
-            if (summary_units(i) == 's' .and. .not. values(i) > 0.0_wp) cycle
-            if (summary_names(i) == 'peak_floor_acceleration' .and. &
-                summary%peak_floor_acceleration < 0.0_wp) cycle
-            if (summary_names(i) == 'collapsed' .or. summary_names(i) == 'lost_joint') cycle
-            if (i > findloc(summary_names, 'lost_joint', dim=1)) exit
+      call say('  '//name//'  '//method_text(run%task%summary%method, run%task%summary%reason), error)
+      do i = 1, size(figures)
+         associate (figure => figures(i))
+            if (figure%name == 'lost_joint') exit
+            ! A static path has no steps in time, and an implicit method no stability limit.
+            if (figure%unit == 's' .and. .not. figure%value > 0.0_wp) cycle
             ! Without inertia the base holds the force at the top; in time there mostly is none.
-            if (summary_names(i) == 'peak_base_shear' .and. .not. case%analysis%dynamic()) cycle
-            if (index(summary_names(i), 'peak_force') > 0 .and. case%analysis%dynamic() .and. &
-                .not. abs(summary%peak_force) > 0.0_wp) cycle
-            name = summary_names(i)
-            if (summary_units(i) /= '') name = trim(name)//'_'//summary_units(i)
-            call say('  '//name//'  '//to_text(values(i)), error)
-         end do
-      end associate
+            if (figure%name == 'peak_base_shear' .and. .not. dynamic) cycle
+            if (index(figure%name, 'peak_force') > 0 .and. dynamic .and. &
+                .not. abs(run%task%summary%peak_force) > 0.0_wp) cycle
+            name = figure%name
+            if (figure%unit /= '') name = trim(name)//'_'//figure%unit
+            call say('  '//name//'  '//to_text(figure%value), error)
+         end associate
+      end do
       name = 'rows in'
-      call say('  '//name//'  '//recorder%file%path, error)
+      call say('  '//name//'  '//run%recorder%file%path, error)
    end subroutine print_summary
 
    !> A method, with the reason if the program chose it.
@@ -453,13 +421,11 @@ contains
    end function method_text
 
    !> Print notes on input that is valid but may be a mistake, a line each.
-   subroutine print_notes(case, error)
-      type(case_record), intent(in) :: case
+   subroutine print_notes(notes, error)
+      type(message_list), intent(in) :: notes
       type(error_type), allocatable, intent(inout) :: error
-      type(message_list) :: notes
       integer :: first, last
 
-      call column_notes(case%column, notes)
       if (notes%count == 0) return
       first = 1
       do while (first <= len(notes%text))
@@ -468,28 +434,5 @@ contains
          first = last + 2
       end do
    end subroutine print_notes
-
-   !> Print a note if a path leads further than a column goes.
-   subroutine print_drift(case, history, error)
-      type(case_record), intent(in) :: case
-      type(case_history), intent(in) :: history
-      type(error_type), allocatable, intent(inout) :: error
-      character(len=:), allocatable :: text
-
-      if (any(case%loading(:case%loadings)%drive == 'force') .or. case%column%kinematics == 'finite') return
-      call drift_note(maxval(abs(history%target)), case%column%height, text)
-      if (text /= '') call say('note: '//text, error)
-   end subroutine print_drift
-
-   !> Print a note if rotations are larger than the kinematics allow.
-   subroutine print_rotation(column, summary, error)
-      type(column_type), intent(in) :: column
-      type(summary_type), intent(in) :: summary
-      type(error_type), allocatable, intent(inout) :: error
-      character(len=:), allocatable :: text
-
-      call rotation_note(column, summary, text)
-      if (text /= '') call say('note: '//text, error)
-   end subroutine print_rotation
 
 end module rbs_app_commands

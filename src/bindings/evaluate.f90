@@ -22,7 +22,6 @@ module rbs_bindings_evaluate
    use rbs_loading_spectrum, only: response_spectrum
    use rbs_output_notes, only: column_notes
    use rbs_output_channels, only: channel_units
-   use rbs_output_summary, only: figure_names
    use rbs_section_flexural_spring, only: spring_figures
    use rbs_section_section_figures, only: layer_values, point_values, profile_values, section_figures, &
                                           shear_values
@@ -82,13 +81,13 @@ contains
       end select
    end subroutine evaluate
 
-   !> Names of the values that come back, a line each: values of rows with their units, figures of a
-   !> run, measures of a run of an ensemble; then what belongs to a section.
+   !> Names of the values that come back, a line each: values of rows with their units, measures of a
+   !> run of an ensemble; then what belongs to a section.
    subroutine name_quantities(answer)
       type(answer_type), intent(inout) :: answer
       character(len=1), parameter :: line = new_line('a')
 
-      answer%text = trim(channel_units())//line//trim(figure_names())//line//trim(measure_names())//line// &
+      answer%text = trim(channel_units())//line//trim(measure_names())//line// &
                     list_of(section_figures)//line//list_of(spring_figures)//line//list_of(point_values)//line// &
                     list_of(shear_values)//line//list_of(profile_values)//line//list_of(layer_values)
    end subroutine name_quantities

@@ -14,7 +14,7 @@ module rbs_bindings_runs
    use rbs_output_channels, only: new_channels
    use rbs_output_notes, only: rotation_note
    use rbs_output_recorder, only: array_recorder
-   use rbs_output_summary, only: summary_type
+   use rbs_output_summary, only: figure_type
    use rbs_solve_end_state, only: end_state
    use rbs_solve_static_run_static, only: run_static
    use rbs_solve_static_path, only: kept_rows
@@ -45,14 +45,18 @@ contains
 
    !> A static path or a response in time. Rows: those of the run. Values: when each of the `watches` is reached
    !> first [s] and the displacement of the top then [m], not numbers where it is not; figures of the run; the
-   !> state at its end, if there is one. The text is the method, the reason for it, the channels of the rows
-   !> and a note on a run that succeeded, with line ends between.
+   !> state at its end, if there is one. The text is the method, the reason for it, how the run ended, the channels of
+   !> the rows, the names of the figures, and a note on a run that succeeded, a line each.
    subroutine run_analysis(request, answer)
       type(request_type), intent(in) :: request
       type(answer_type), intent(inout) :: answer
       type(run_type), target :: run
       real(c_double), pointer, contiguous :: watches(:)
+      type(figure_type), allocatable :: figure(:)
+      type(message_list) :: notes
       character(len=:), allocatable :: note
+      character(len=1), parameter :: line = new_line('a')
+      integer :: i
 
       watches => request%array('watches')
       call run%task%sight%watch_for(watches_of(watches), size(watches)/6)
@@ -75,25 +79,33 @@ contains
       end if
       note = ''
       if (.not. allocated(answer%error)) then
-         call rotation_note(run%column, run%task%summary, note)
+         call rotation_note(run%column, run%task%summary, notes)
+         if (notes%count > 0) note = notes%text
       else if (answer%error%code /= analysis_failed) then
          return
       end if
       if (run%recorder%count == 0) allocate (run%recorder%rows(run%recorder%channels%width, 0))
       call move_alloc(run%recorder%rows, answer%rows)
       answer%kept = run%recorder%count
+      call run%task%summary%get_figures(figure)
       associate (sight => run%task%sight)
          where (.not. sight%reached < huge(1.0_wp))
             sight%reached = ieee_value(1.0_wp, ieee_quiet_nan)
             sight%top = sight%reached
          end where
-         answer%value = [sight%reached, sight%top, run%task%summary%as_array()]
+         answer%value = [sight%reached, sight%top, (figure(i)%value, i=1, size(figure))]
       end associate
       if (run%task%after%is_given()) then
          answer%value = [answer%value, run%task%after%stream%value(:run%task%after%stream%count)]
       end if
-      answer%text = trim(run%task%summary%method)//new_line('a')//trim(run%task%summary%reason)//new_line('a')// &
-                    trim(run%recorder%channels%names())//new_line('a')//note
+      associate (summary => run%task%summary)
+         answer%text = trim(summary%method)//line//trim(summary%reason)//line//summary%status()//line// &
+                       trim(run%recorder%channels%names())//line
+      end associate
+      do i = 1, size(figure)
+         answer%text = answer%text//trim(figure(i)%name)//' '
+      end do
+      answer%text = answer%text//line//note
    end subroutine run_analysis
 
    !> Static path through the `target`s.

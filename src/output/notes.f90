@@ -73,46 +73,46 @@ contains
 
    !> Rotations that are taken as small but have grown large. The first term that is left out of sin(th) is
    !> th^3/6, an error of th^2/6; in cos(th), which lever arms contain, the error is th^2/2.
-   subroutine rotation_note(column, summary, text)
+   subroutine rotation_note(column, summary, notes)
       type(column_type), intent(in) :: column
       type(summary_type), intent(in) :: summary
-      !> Empty if there is no note
-      character(len=:), allocatable, intent(out) :: text
+      type(message_list), intent(inout) :: notes
       character(len=6) :: kinematics
+      integer :: before
 
-      text = ''
       ! A run to its collapse was asked for, and its rotations are known to be large.
       if (summary%collapsed) return
       if (column%kinematics == finite) return
       ! A path is given; a response in time goes where it goes.
       if (.not. summary%time_step > 0.0_wp) then
-         call drift_note(summary%peak_displacement, sum(column%length), text)
+         before = notes%count
+         call drift_note(summary%peak_displacement, sum(column%length), notes)
+         if (notes%count > before) return
       end if
-      if (text /= '' .or. .not. summary%peak_rotation > largest_small) return
+      if (.not. summary%peak_rotation > largest_small) return
       kinematics = 'pdelta'
       if (column%kinematics == small) kinematics = 'small'
       ! Without a number of its own, so that a session that makes many runs is told once.
       if (summary%peak_rotation < 1.0_wp) then
-         text = "the rotation of a body goes beyond 0.1 rad; with kinematics = '"//trim(kinematics)// &
-                "' the displacement errs by about th^2/6 of it, where th is peak_rotation; use 'finite'"
+         call notes%add("the rotation of a body goes beyond 0.1 rad; with kinematics = '"//trim(kinematics)// &
+                        "' the displacement errs by about th^2/6 of it, where th is peak_rotation; use 'finite'")
       else
-         text = "the rotation of a body goes beyond 1 rad; with kinematics = '"//trim(kinematics)// &
-                "' the displacement has no meaning then (displacements are in m, forces in N); use 'finite'"
+         call notes%add("the rotation of a body goes beyond 1 rad; with kinematics = '"//trim(kinematics)// &
+                        "' the displacement has no meaning then (displacements are in m, forces in N); use "// &
+                        "'finite'")
       end if
    end subroutine rotation_note
 
    !> A displacement beyond half of the height, which a number in another unit is.
-   pure subroutine drift_note(displacement, height, text)
+   subroutine drift_note(displacement, height, notes)
       !> Largest of the top, and height [m]
       real(wp), intent(in) :: displacement, height
-      !> Empty if there is no note
-      character(len=:), allocatable, intent(out) :: text
+      type(message_list), intent(inout) :: notes
 
-      text = ''
       if (.not. abs(displacement) > far*height) return
-      text = 'the top goes beyond half of the height; displacements are in m (16 mm is 0.016), drifts '// &
-             'are parts of the height (2 per cent is 0.02), forces are in N; if it is meant, use '// &
-             "kinematics = 'finite'"
+      call notes%add('the top goes beyond half of the height; displacements are in m (16 mm is 0.016), drifts '// &
+                     'are parts of the height (2 per cent is 0.02), forces are in N; if it is meant, use '// &
+                     "kinematics = 'finite'")
    end subroutine drift_note
 
    !> Springs and loads that do not go together, as numbers in another unit do: the strength of the lowest

@@ -7,20 +7,15 @@ module rbs_output_summary
    implicit none
    private
 
-   public :: peaks_type, summary_type, summary_size, summary_names, summary_units, figure_names
+   public :: peaks_type, summary_type, figure_type
 
-   integer, parameter :: summary_size = 23
-
-   !> Names of the figures of `as_array`, and their SI units.
-   character(len=26), parameter :: summary_names(summary_size) = [character(len=26) :: &
-      'steps', 'rows', 'events', 'time_step', 'stable_step', 'peak_displacement', 'peak_force', &
-      'displacement_at_peak_force', 'peak_base_shear', 'input_energy', 'spring_energy', 'damping_energy', &
-      'energy_residual', 'relative_energy_residual', 'peak_rotation', 'peak_floor_acceleration', &
-      'cut_steps', 'collapsed', &
-      'lost_joint', 'lost_axial_load', 'axial_capacity', 'fall', 'fall_energy']
-   character(len=4), parameter :: summary_units(summary_size) = [character(len=4) :: &
-      '', '', '', 's', 's', 'm', 'N', 'm', 'N', 'J', 'J', 'J', 'J', '', 'rad', 'm/s2', '', '', &
-                                                             '', 'N', 'N', 'm', 'J']
+   !> A figure of a summary.
+   type :: figure_type
+      character(len=26) :: name
+      !> SI
+      character(len=4) :: unit
+      real(wp) :: value
+   end type figure_type
 
    !> The largest responses: over all points (static) or all steps (in time), kept or not.
    type :: peaks_type
@@ -41,6 +36,8 @@ module rbs_output_summary
    end type peaks_type
 
    type, extends(peaks_type) :: summary_type
+      !> Whether a lateral force acts at the top
+      logical :: has_force = .true.
       !> Steps or increments taken, rows kept, lines that springs have left
       integer :: steps = 0, rows = 0, events = 0
       !> Time step and stability limit of the scheme [s]; 0 in a static analysis
@@ -66,7 +63,8 @@ module rbs_output_summary
       real(wp) :: residual = 0.0_wp, largest = 0.0_wp
    contains
       procedure :: see_energies
-      procedure :: as_array
+      procedure :: get_figures
+      procedure :: status
    end type summary_type
 
 contains
@@ -121,33 +119,51 @@ contains
       self%largest = max(self%largest, abs(energy%input), energy%kinetic + energy%spring)
    end subroutine see_energies
 
-   !> The figures in the order of `summary_names`.
-   pure function as_array(self) result(values)
+   !> The figures that apply to the run. How far a joint falls that does not rest is not a number.
+   pure subroutine get_figures(self, list)
       class(summary_type), intent(in) :: self
-      real(wp) :: values(summary_size)
+      type(figure_type), allocatable, intent(out) :: list(:)
+      logical, allocatable :: applies(:)
+      real(wp) :: drop, freed
 
-      values = [real(self%steps, wp), real(self%rows, wp), real(self%events, wp), self%time_step, &
-                self%stable_step, self%peak_displacement, self%peak_force, self%displacement_at_peak, &
-                self%peak_base_shear, self%energy%input, self%energy%spring, self%energy%damping, self%residual, &
-                self%residual/max(self%largest, tiny(1.0_wp)), self%peak_rotation, &
-                self%peak_floor_acceleration, real(self%cut_steps, wp), &
-                merge(1.0_wp, 0.0_wp, self%collapsed), real(self%lost_joint, wp), self%fall%axial_load, &
-                self%fall%capacity, self%fall%drop, self%fall%freed]
-      associate (floor => values(findloc(summary_names, 'peak_floor_acceleration', dim=1)))
-         if (floor < 0.0_wp) floor = ieee_value(floor, ieee_quiet_nan)
-      end associate
-      if (.not. self%fall%rests) values(summary_size - 1:) = ieee_value(1.0_wp, ieee_quiet_nan)
-   end function as_array
+      drop = merge(self%fall%drop, ieee_value(drop, ieee_quiet_nan), self%fall%rests)
+      freed = merge(self%fall%freed, ieee_value(freed, ieee_quiet_nan), self%fall%rests)
+      list = [figure_type('steps', '', real(self%steps, wp)), &
+              figure_type('rows', '', real(self%rows, wp)), &
+              figure_type('events', '', real(self%events, wp)), &
+              figure_type('time_step', 's', self%time_step), &
+              figure_type('stable_step', 's', self%stable_step), &
+              figure_type('peak_displacement', 'm', self%peak_displacement), &
+              figure_type('peak_force', 'N', self%peak_force), &
+              figure_type('displacement_at_peak_force', 'm', self%displacement_at_peak), &
+              figure_type('peak_base_shear', 'N', self%peak_base_shear), &
+              figure_type('input_energy', 'J', self%energy%input), &
+              figure_type('spring_energy', 'J', self%energy%spring), &
+              figure_type('damping_energy', 'J', self%energy%damping), &
+              figure_type('energy_residual', 'J', self%residual), &
+              figure_type('relative_energy_residual', '', self%residual/max(self%largest, tiny(1.0_wp))), &
+              figure_type('peak_rotation', 'rad', self%peak_rotation), &
+              figure_type('peak_floor_acceleration', 'm/s2', self%peak_floor_acceleration), &
+              figure_type('cut_steps', '', real(self%cut_steps, wp)), &
+              figure_type('lost_joint', '', real(self%lost_joint, wp)), &
+              figure_type('lost_axial_load', 'N', self%fall%axial_load), &
+              figure_type('axial_capacity', 'N', self%fall%capacity), &
+              figure_type('fall', 'm', drop), figure_type('fall_energy', 'J', freed)]
+      applies = spread(.true., 1, size(list))
+      applies(findloc(list%name, 'lost_joint', dim=1):) = self%lost_joint > 0
+      applies(findloc(list%name, 'peak_floor_acceleration', dim=1)) = self%peak_floor_acceleration >= 0.0_wp
+      where (index(list%name, 'peak_force') > 0) applies = self%has_force
+      list = pack(list, applies)
+   end subroutine get_figures
 
-   !> Names of the figures in their order, separated by blanks.
-   pure function figure_names() result(names)
-      character(len=512) :: names
-      integer :: i
+   !> How the run ended, if nothing failed.
+   pure function status(self)
+      class(summary_type), intent(in) :: self
+      character(len=:), allocatable :: status
 
-      names = summary_names(1)
-      do i = 2, summary_size
-         names = trim(names)//' '//summary_names(i)
-      end do
-   end function figure_names
+      status = 'completed'
+      if (self%collapsed) status = 'collapsed'
+      if (self%lost_joint > 0) status = 'axial_failure'
+   end function status
 
 end module rbs_output_summary

@@ -8,7 +8,7 @@ module test_results
    use rbs_column_column_record, only: column_record
    use rbs_output_channels, only: channel_list, energy_type, new_channels
    use rbs_output_recorder, only: array_recorder
-   use rbs_output_summary, only: summary_type, summary_size, summary_names
+   use rbs_output_summary, only: figure_type, summary_type
    use samples, only: chain, made, random_type, rich_column
    use row_places, only: row_time, row_displacement, row_force, row_residual, row_top, row_joints
    implicit none
@@ -27,7 +27,8 @@ contains
                unit_test('recorder keeps nothing after an error', recorder_after_error), &
                unit_test('summary has peaks with sign, of kept and other rows', peaks), &
                unit_test('summary has the energies of kept rows', energies), &
-               unit_test('summary as an array, in the order of its names', as_array)]
+               unit_test('figures of a summary: those that apply', figures), &
+               unit_test('how a run ends', ends)]
    end subroutine collect_results
 
    subroutine labels(error)
@@ -148,43 +149,62 @@ contains
       call check_same(error, summary%largest, 60.0_wp, 'largest energy')
    end subroutine energies
 
-   subroutine as_array(error)
+   subroutine figures(error)
       type(error_type), allocatable, intent(inout) :: error
       type(summary_type) :: summary
-      real(wp) :: values(summary_size)
+      type(figure_type), allocatable :: list(:)
 
-      values = summary%as_array()
-      ! How far a column falls is not known of one that stands.
-      call check_true(error, ieee_is_nan(values(named('peak_floor_acceleration'))), 'no acceleration')
-      values(named('peak_floor_acceleration')) = 0.0_wp
-      call check_same(error, values(:summary_size - 2), spread(0.0_wp, 1, summary_size - 2), &
-                      'nothing seen yet')
-      call check_true(error, all(ieee_is_nan(values(summary_size - 1:))), 'no fall')
+      call summary%get_figures(list)
+      call check_true(error, all(abs(list%value) <= 0.0_wp), 'nothing seen yet')
+      call check_true(error, all(list%name /= 'peak_floor_acceleration'), 'no acceleration')
+      call check_true(error, all(list%name /= 'lost_joint' .and. list%name /= 'fall'), 'no fall')
       summary%steps = 7
       summary%stable_step = 0.5_wp
       call summary%see_peak(0.1_wp, 5.0_wp)
       call summary%see_energies(energy_of(50.0_wp, 1.0e-9_wp))
-      values = summary%as_array()
-      call check_same(error, values(named('steps')), 7.0_wp, 'steps')
-      call check_same(error, values(named('stable_step')), 0.5_wp, 'stable step')
-      call check_same(error, values(named('peak_force')), 5.0_wp, 'peak force')
-      call check_same(error, values(named('damping_energy')), 3.0_wp, 'damping')
-      call check_close(error, values(named('relative_energy_residual')), 1.0e-9_wp/50.0_wp, 1.0e-15_wp, &
-                       0.0_wp, 'relative residual')
       summary%peak_rotation = 0.25_wp
       summary%cut_steps = 3
+      call summary%see_floor(-2.0_wp)
+      call summary%get_figures(list)
+      call check_same(error, named('steps'), 7.0_wp, 'steps')
+      call check_same(error, named('stable_step'), 0.5_wp, 'stable step')
+      call check_same(error, named('peak_force'), 5.0_wp, 'peak force')
+      call check_same(error, named('damping_energy'), 3.0_wp, 'damping')
+      call check_close(error, named('relative_energy_residual'), 1.0e-9_wp/50.0_wp, 1.0e-15_wp, &
+                       0.0_wp, 'relative residual')
+      call check_same(error, named('peak_rotation'), 0.25_wp, 'peak rotation')
+      call check_same(error, named('cut_steps'), 3.0_wp, 'cut steps')
+      call check_same(error, named('peak_floor_acceleration'), 2.0_wp, 'acceleration')
+      summary%has_force = .false.
+      summary%lost_joint = 2
+      call summary%get_figures(list)
+      call check_true(error, all(index(list%name, 'peak_force') == 0), 'no force')
+      call check_same(error, named('lost_joint'), 2.0_wp, 'joint that was lost')
+      ! How far a column falls is not known where it does not rest.
+      call check_true(error, ieee_is_nan(named('fall')) .and. ieee_is_nan(named('fall_energy')), 'no rest')
+      summary%fall%rests = .true.
+      call summary%get_figures(list)
+      call check_same(error, named('fall'), 0.0_wp, 'rest')
+
+   contains
+
+      real(wp) function named(name)
+         character(len=*), intent(in) :: name
+
+         named = list(findloc(list%name == name, .true., dim=1))%value
+      end function named
+
+   end subroutine figures
+
+   subroutine ends(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(summary_type) :: summary
+
+      call check_equal(error, summary%status(), 'completed', 'end of the loading')
       summary%collapsed = .true.
-      values = summary%as_array()
-      call check_same(error, values(named('peak_rotation')), 0.25_wp, 'peak rotation')
-      call check_same(error, values(named('cut_steps')), 3.0_wp, 'cut steps')
-      call check_same(error, values(named('collapsed')), 1.0_wp, 'collapsed')
-      call check_true(error, all(summary_names /= ''), 'every number has a name')
-   end subroutine as_array
-
-   integer function named(name)
-      character(len=*), intent(in) :: name
-
-      named = findloc(summary_names == name, .true., dim=1)
-   end function named
+      call check_equal(error, summary%status(), 'collapsed', 'collapse')
+      summary%lost_joint = 1
+      call check_equal(error, summary%status(), 'axial_failure', 'loss of the axial load')
+   end subroutine ends
 
 end module test_results

@@ -202,6 +202,7 @@ contains
          call check_held_rotation(column, 'initial velocity', initial%velocity, error)
       end if
       if (allocated(error)) return
+      task%summary%has_force = loads%force%acts()
       task%summary%stable_step = plan%limit
       task%summary%method = plan%method
       task%summary%reason = plan%reason
