@@ -200,9 +200,9 @@ MUTANTS = (
     # The column
     Mutant(
         "critical-load-of-slip",
-        "src/column/axial.f90",
-        "tau = multiple*turning(i) + multiple**2*sliding(i)",
-        "tau = multiple*turning(i) + multiple*sliding(i)",
+        "src/column/sturm.f90",
+        "+ axial*sliding(i)*b + (t12*b)*(t12*b*p2)",
+        "+ sliding(i)*b + (t12*b)*(t12*b*p2)",
         "buckling",
         "column modal",
     ),
@@ -232,9 +232,9 @@ MUTANTS = (
     ),
     Mutant(
         "geometric-band",
-        "src/column/band.f90",
-        "band(1, t - 2) = band(1, t - 2) + 2.0_wp*force*column%upper(i - 1)",
-        "band(1, t - 2) = band(1, t - 2) + force*column%upper(i - 1)",
+        "src/column/chain.f90",
+        "band(1, t - 2) = band(1, t - 2) + 2.0_wp*force*upper(max(i - 1, 1))",
+        "band(1, t - 2) = band(1, t - 2) + force*upper(max(i - 1, 1))",
         "p-delta",
         "band",
     ),
@@ -273,9 +273,9 @@ MUTANTS = (
     ),
     Mutant(
         "modal-damping",
-        "src/solve/modal/damping.f90",
-        "sqrt(2.0_wp*ratio*modes%omega(j))",
-        "sqrt(ratio*modes%omega(j))",
+        "src/solve/modal/matrices.f90",
+        "sqrt(2.0_wp*column%modal_damping(min(j, given))*modes%omega(j))",
+        "sqrt(column%modal_damping(min(j, given))*modes%omega(j))",
         "damping",
         "modal",
     ),

@@ -6,36 +6,12 @@ module rbs_base_small_systems
    implicit none
    private
 
-   public :: factor_positive, solve_rows, row_length
+   public :: solve_rows, row_length
 
    !> Length of an equation in `solve_rows`: up to five unknowns and three right-hand sides.
    integer, parameter :: row_length = 8
 
 contains
-
-   !> Cholesky factor of a symmetric matrix, in place; it exists if the matrix is positive definite.
-   pure subroutine factor_positive(a, positive)
-      !> Matrix (n, n), of which only the lower triangle is read; on return its factor there
-      real(wp), intent(inout) :: a(:, :)
-      !> Whether the matrix is positive definite
-      logical, intent(out) :: positive
-      integer :: i, j, k
-
-      positive = .false.
-      do k = 1, size(a, 1)
-         if (.not. a(k, k) > 0.0_wp) return
-         a(k, k) = sqrt(a(k, k))
-         do i = k + 1, size(a, 1)
-            a(i, k) = a(i, k)/a(k, k)
-         end do
-         do j = k + 1, size(a, 1)
-            do i = j, size(a, 1)
-               a(i, j) = a(i, j) - a(i, k)*a(j, k)
-            end do
-         end do
-      end do
-      positive = .true.
-   end subroutine factor_positive
 
    !> Solve a very small system for three right-hand sides by elimination with partial pivoting. All equations
    !> have the same length, known when this is compiled: they are added without loops.

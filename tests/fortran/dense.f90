@@ -4,7 +4,7 @@ module dense
    implicit none
    private
 
-   public :: solve_positive, solve_general, solve_eigen
+   public :: factor_positive, solve_positive, solve_general, solve_eigen
 
    interface
       subroutine dsygv(itype, jobz, uplo, n, a, lda, b, ldb, w, work, lwork, info)
@@ -19,6 +19,30 @@ module dense
    end interface
 
 contains
+
+   !> Cholesky factor of a symmetric matrix, in place; it exists if the matrix is positive definite.
+   pure subroutine factor_positive(a, positive)
+      !> Matrix (n, n), of which only the lower triangle is read; on return its factor there
+      real(wp), intent(inout) :: a(:, :)
+      !> Whether the matrix is positive definite
+      logical, intent(out) :: positive
+      integer :: i, j, k
+
+      positive = .false.
+      do k = 1, size(a, 1)
+         if (.not. a(k, k) > 0.0_wp) return
+         a(k, k) = sqrt(a(k, k))
+         do i = k + 1, size(a, 1)
+            a(i, k) = a(i, k)/a(k, k)
+         end do
+         do j = k + 1, size(a, 1)
+            do i = j, size(a, 1)
+               a(i, j) = a(i, j) - a(i, k)*a(j, k)
+            end do
+         end do
+      end do
+      positive = .true.
+   end subroutine factor_positive
 
    !> Solve with the factor of `factor_positive`.
    pure subroutine solve_positive(factor, b)

@@ -1,11 +1,10 @@
 !> Equation of motion of the chain with small rotations: the O(n) forms against dense matrices from the
 !> equations of theory.md, and against the energies.
 module test_chain
-   use dense, only: solve_positive
-   use check, only: unit_test, check_close, check_same, check_true
+   use dense, only: factor_positive, solve_positive
+   use check, only: unit_test, check_close, check_passed, check_same, check_true
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_base_small_systems, only: factor_positive
    use rbs_base_text, only: to_text
    use rbs_column_chain, only: body_forces
    use rbs_column_column, only: column_type
@@ -13,6 +12,7 @@ module test_chain
    use rbs_column_mass, only: symmetric_mass
    use rbs_column_top, only: top_position
    use rbs_loading_signal, only: signal_type
+   use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, axial
    use rbs_solve_time_motion, only: motion_result
@@ -169,17 +169,21 @@ contains
       type(column_record) :: spec
       type(state_type) :: state
       type(motion_result) :: now
-      real(wp), allocatable :: mass(:, :), expected(:)
+      type(matrices_type) :: matrices
+      type(error_type), allocatable :: outcome
+      real(wp), allocatable :: mass(:, :), expected(:), force(:)
       integer :: kind, n
-      logical :: positive
 
       do n = 1, 6
          do kind = 0, 127
             spec = variant(n, kind, random)
             call random_state(spec, random, state)
             call equation_of_motion(spec, state, mass, expected)
-            call factor_positive(mass, positive)
-            call solve_positive(mass, expected)
+            call assemble_matrices(state%motion%column, .false., matrices, outcome)
+            call check_passed(error, outcome, 'matrices')
+            force = expected
+            call matrices%accelerations(force, expected, outcome)
+            call check_passed(error, outcome, 'accelerations')
             call now%create(state%motion%column)
             call state%motion%acceleration(state%springs, state%q, state%v, state%load, now)
             ! Round-off of the dense solution grows with the condition of M.

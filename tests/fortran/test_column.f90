@@ -1,9 +1,9 @@
 !> Geometry, mass matrix in both forms, axial forces: against sums from the equations of theory.md.
 module test_column
+   use dense, only: factor_positive
    use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_same, check_true
    use rbs_base_error, only: error_type, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_base_small_systems, only: factor_positive
    use rbs_base_text, only: to_text
    use rbs_column_axial, only: geometric_stiffness, geometric_forces, axial_energy, critical_factor, &
                                check_stable

@@ -1,12 +1,12 @@
 !> The interface to LAPACK: small systems by hand, and every possible failure.
 module test_linalg
-   use dense, only: solve_general, solve_positive
+   use dense, only: factor_positive, solve_general, solve_positive
    use check, only: unit_test, check_close, check_failed, check_passed, check_true
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_base_band_matrix, only: band_matrix
    use rbs_base_linalg, only: solve_tridiagonal, solve_general_band, solve_dense
-   use rbs_base_small_systems, only: factor_positive, solve_rows, row_length
+   use rbs_base_small_systems, only: solve_rows, row_length
    implicit none
    private
 

@@ -36,7 +36,8 @@ contains
                unit_test('modal damping: exact for elastic springs, safe for others', modal_step), &
                unit_test('damping from present stiffness ends with that stiffness', tangent_step), &
                unit_test('near the critical load the modes come with a warning', near_critical), &
-               unit_test('all modes of too many bodies are refused', too_many)]
+               unit_test('all modes of too many bodies are refused', too_many), &
+               unit_test('the first modes of 5000 bodies: those of a beam', first_of_many)]
    end subroutine collect_modal
 
    !> The two values of eq 6 corrected, k_M/(2 I) with I = m l^2/12; the small one from the product.
@@ -520,5 +521,36 @@ contains
       call stability_limit(column, limit, outcome)
       call check_passed(error, outcome, 'stability_limit')
    end subroutine too_many
+
+   !> A slender cantilever of equal bodies, error of second order in 1/n.
+   subroutine first_of_many(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: n = 5000
+      real(wp), parameter :: ei = 1.0e6_wp, length = 2.0_wp, mass = 100.0_wp
+      !> Roots of cos x cosh x = -1
+      real(wp), parameter :: roots(3) = [1.8751040687119611_wp, 4.6940911329741746_wp, 7.8547574382376126_wp]
+      type(error_type), allocatable :: outcome
+      type(column_record) :: spec
+      type(column_type) :: column
+      type(modes_type) :: modes
+      integer :: i
+
+      spec = chain(n, 'small')
+      spec%lengths = length/n
+      spec%masses = mass/n
+      spec%shear(:) = elastic(1.0e18_wp)
+      spec%flexure(:) = elastic(ei*n/length)
+      spec%flexure(1) = elastic(2.0_wp*ei*n/length)
+      call find_modes(made(spec), modes, outcome, count=3)
+      call check_passed(error, outcome, 'find_modes')
+      if (allocated(error)) return
+      call check_close(error, modes%omega, roots**2*sqrt(ei/(mass*length**3)), 1.0e-6_wp, 0.0_wp, 'beam')
+      ! A cantilever's end moves by 2 per unit of mass, in every mode.
+      column = made(spec)
+      do i = 1, 3
+         call check_close(error, dot_product(modes%shapes(:, i), column%arm), 2.0_wp/sqrt(mass), 1.0e-3_wp, &
+                          0.0_wp, 'top')
+      end do
+   end subroutine first_of_many
 
 end module test_modal

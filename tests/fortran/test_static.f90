@@ -1,13 +1,12 @@
 !> The static path, event to event: against springs in series, bracketing, closed forms, and other runs.
 module test_static
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-   use dense, only: solve_general, solve_positive
+   use dense, only: factor_positive, solve_general, solve_positive
    use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_true
    use rbs_base_constants, only: unset_integer
    use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_base_small_systems, only: factor_positive
    use rbs_column_axial, only: geometric_stiffness, geometric_forces
    use rbs_column_column, only: column_type
    use rbs_hysteresis_springs, only: follow_path, spring_array

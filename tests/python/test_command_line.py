@@ -131,6 +131,10 @@ def test_version_is_that_of_the_package(run_cli):
         (["run", "case.nml", "-o"], ["-o needs the path of a file"]),
         (["check", "case.nml", "--output", "o.csv"], ["--output is for run only"]),
         (["modes", "case.nml", "-o", "o.csv"], ["--output is for run only"]),
+        (["run", "case.nml", "--count", "3"], ["--count is for modes only"]),
+        (["check", "case.nml", "--matrices"], ["--matrices is for modes only"]),
+        (["modes", "case.nml", "--count"], ["--count needs a number of modes above zero"]),
+        (["modes", "case.nml", "--count=-2"], ["--count needs a number of modes above zero"]),
     ],
 )
 def test_wrong_arguments_exit_2_with_a_remedy(run_cli, case_text, tmp_path, arguments, words):
@@ -276,6 +280,27 @@ def test_modes_equal_those_of_python_to_the_last_digit(run_cli, case_text, tmp_p
     assert np.array_equal(table[:, 3], modes.omega)
     assert lines[-1].startswith("# stable step")
     assert float(lines[-1].rpartition(":")[2]) == modes.stable_step
+
+
+def test_first_modes_and_matrices_equal_those_of_python_to_the_last_digit(
+    run_cli, case_text, tmp_path
+):
+    write(tmp_path, case_text(column="n = 4, height = 1.6, mass = 614.4"))
+    result = run_cli(["modes", "case.nml", "--count", "3", "--matrices"], tmp_path)
+    lines = result.stdout.splitlines()
+    assert lines[4].startswith("# stable step")
+    column = rbsdem.Column(1.6, 614.4, BILINEAR, TAKEDA, n=4)
+    np.testing.assert_array_equal(
+        [float(line.split(",")[3]) for line in lines[1:4]], rbsdem.modes(column, count=3).omega
+    )
+    matrices = rbsdem.matrices(column)
+    for k, name in enumerate(("mass", "stiffness", "geometric", "damping")):
+        head, *rows = (line.split(",") for line in lines[5 + 9 * k : 14 + 9 * k])
+        assert head == [name, *matrices.unknowns]
+        assert [row[0] for row in rows] == list(matrices.unknowns)
+        np.testing.assert_array_equal(
+            np.array([row[1:] for row in rows], float), getattr(matrices, name)
+        )
 
 
 def test_modes_of_table_3_column_1_are_those_of_eq_6_corrected(run_cli, case_text, tmp_path):

@@ -177,6 +177,60 @@ def test_modes_of_too_many_bodies_are_refused():
     column = chain([0.004] * 501, [1.0] * 501, [1e9] * 501, [1e9] * 501)
     with pytest.raises(rbsdem.InputError, match="up to 500 bodies, not for n = 501"):
         rbsdem.modes(column)
+    np.testing.assert_array_less(np.diff(-rbsdem.modes(column, count=3).omega), 0)
+
+
+@pytest.mark.parametrize("top", ["free", "fixed"])
+def test_the_first_modes_are_those_of_all_modes(top):
+    """With openings, whose modes lie between the others."""
+    stiff = rbsdem.Elastic(3e8)
+    column = rbsdem.Column(
+        3.0, 900.0, stiff, stiff, n=12, axial_spring=rbsdem.Elastic(2e9), axial_load=1e6,
+        kinematics="pdelta", top=top, top_mass=50.0,
+    )  # fmt: skip
+    every = rbsdem.modes(column)
+    for count in (1, 5, 1000):
+        first = rbsdem.modes(column, count=count)
+        m = min(count, every.omega.size)
+        np.testing.assert_array_equal(first.omega, every.omega[:m])
+        np.testing.assert_array_equal(first.shapes, every.shapes[:, :m])
+    assert first.stable_step == every.stable_step
+    with pytest.raises(rbsdem.InputError, match="count = 0"):
+        rbsdem.modes(column, count=0)
+
+
+@pytest.mark.parametrize("top", ["free", "fixed"])
+@pytest.mark.parametrize("form", ["symmetric", "paper"])
+def test_matrices_satisfy_the_eigenproblem_of_the_modes(form, top):
+    """K + K_G and C = 2 zeta omega M too; the paper's unknowns are sums of the others."""
+    stiff, zeta, n = rbsdem.Elastic(3e8), 0.04, 5
+    column = rbsdem.Column(
+        3.0, 900.0, stiff, stiff, n=n, axial_spring=rbsdem.Elastic(2e9), axial_load=1e6,
+        kinematics="pdelta", top=top, top_mass=50.0, damping=zeta,
+    )  # fmt: skip
+    found = rbsdem.matrices(column, form)
+    modes = rbsdem.modes(column)
+    bodies = n + (top == "fixed")
+    rotations = bodies - (top == "fixed")
+    angle = "theta" if form == "paper" else "rotation"
+    names = [f"slip_{j + 1}" for j in range(bodies)]
+    names += [f"{angle}_{j + 1}" for j in range(rotations)]
+    names += [f"opening_{j + 1}" for j in range(bodies)]
+    assert found.unknowns == tuple(names)
+    shapes = np.delete(modes.shapes, range(bodies + rotations, 2 * bodies), axis=0)
+    if form == "paper":
+        turned = slice(bodies, bodies + rotations)
+        shapes[turned] = np.cumsum(shapes[turned], axis=0)
+    inertia = found.mass @ shapes
+    size = np.abs(inertia * modes.omega**2).max()
+    np.testing.assert_allclose(
+        (found.stiffness + found.geometric) @ shapes, inertia * modes.omega**2, atol=1e-12 * size
+    )
+    size = np.abs(inertia * modes.omega).max()
+    np.testing.assert_allclose(
+        found.damping @ shapes, 2 * zeta * inertia * modes.omega, atol=1e-12 * size
+    )
+    assert np.abs(found.geometric).max() > 0
 
 
 # ---- the beam ------------------------------------------------------------------------------------

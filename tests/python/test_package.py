@@ -138,7 +138,7 @@ def test_signatures_of_the_analyses_are_the_promised_ones():
         "collapse_drift", "allow_unstable", "max_seconds", "every", "openings", "motion",
     ]  # fmt: skip
     assert names(rbsdem.matrices) == ["column", "form"]
-    assert names(rbsdem.modes) == ["column"]
+    assert names(rbsdem.modes) == ["column", "count"]
 
 
 # ---- files and versions --------------------------------------------------------------------------

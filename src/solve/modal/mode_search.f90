@@ -19,6 +19,13 @@ module rbs_solve_modal_mode_search
    !> Below this change it may be as exact as round-off lets it be.
    real(wp), parameter :: nearly = 1.0e-9_wp
 
+   !> The shift stands so far beside the frequency: where a shape is at home in a part of the chain, its pivot
+   !> vanishes there, and what is below would drown in its round-off.
+   real(wp), parameter :: beside = 1.0e-8_wp
+
+   !> Most steps of the iteration before the bounds are drawn closer.
+   integer, parameter :: most_steps = 10
+
    !> Modes closer than this are made orthogonal to each other, and so many below to the first trial of a
    !> shape, which they would outweigh.
    real(wp), parameter :: close_by = 1.0e-5_wp
@@ -98,32 +105,41 @@ contains
       !> Squares of the frequencies, and slips and rotations of unit modal mass (2, n, as many)
       real(wp), intent(inout), contiguous :: squares(:), shapes(:, :, :)
       real(wp) :: change, last_change, rho, shift
-      integer :: below
-      logical :: begun, more
+      integer :: below, step
+      logical :: astray, more
 
-      begun = .false.
+      astray = .false.
+      step = 0
       rho = 0.0_wp
-      last_change = huge(1.0_wp)
       do
          call split(self%low(j), self%high(j), shift, more)
-         if (more .and. .not. (self%below_low(j) == j - 1 .and. self%below_high(j) == j)) then
+         if (more .and. (astray .or. self%below_low(j) /= j - 1 .or. self%below_high(j) /= j)) then
             below = count_below(self, shift)
+            astray = .false.
+            step = 0
             cycle
          end if
-         if (.not. more) shift = self%low(j)
-         begun = begun .and. more .and. rho > self%low(j) .and. rho < self%high(j)
-         if (begun) shift = rho
-         below = count_below(self, shift)
-         if (.not. begun) then
+         if (.not. more) then
+            step = 0
+            shift = self%low(j)
+         end if
+         if (step > 0) shift = (1.0_wp - beside)*rho
+         ! So near to a frequency the number of pivots is not certain, so it bounds nothing.
+         below = self%chain%factor(shift)
+         if (step == 0) then
             last_change = huge(1.0_wp)
             call any_motion(self)
             call iterate(self, place, shift, squares, shapes, rho)
          end if
-         begun = .true.
+         change = rho
          call iterate(self, place, shift, squares, shapes, rho)
-         change = abs(rho - shift)
-         if (.not. more .or. change <= arrived*rho .or. &
-             (change < nearly*rho .and. change > 0.5_wp*last_change)) exit
+         if (.not. more) exit
+         step = step + 1
+         change = abs(rho - change)
+         if (rho >= self%low(j) .and. rho <= self%high(j)) then
+            if (change <= arrived*rho .or. (change < nearly*rho .and. change > 0.5_wp*last_change)) exit
+         end if
+         astray = .not. (rho > self%low(j) .and. rho < self%high(j)) .or. step > most_steps
          last_change = change
       end do
       shapes(:, :, place) = shapes(:, :, place)/sqrt(self%chain%mass_product(self%x, self%x))
