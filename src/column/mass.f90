@@ -2,6 +2,7 @@
 module rbs_column_mass
    use rbs_base_kinds, only: wp
    use rbs_column_column, only: column_type
+   use rbs_structure_spring_place, only: shear, flexure, axial
    implicit none
    private
 
@@ -17,8 +18,8 @@ contains
    !> and M_ww = M_uu for the openings, which nothing couples to the others while rotations are small.
    subroutine symmetric_mass(column, mass)
       type(column_type), intent(in) :: column
-      !> Matrix (unknowns, unknowns) [kg, kg m, kg m2]
-      real(wp), intent(out) :: mass(:, :)
+      !> Matrix (unknowns, unknowns), here by joint and kind [kg, kg m, kg m2]
+      real(wp), intent(out) :: mass(column%n, column%kinds, column%n, column%kinds)
       real(wp) :: between
       integer :: i, j, p, n
 
@@ -28,12 +29,12 @@ contains
          do i = 1, n
             p = max(i, j)
             between = column%joint_height(p) - column%joint_height(min(i, j))
-            mass(i, j) = column%mass_above(p)
-            mass(i, n + j) = column%moment_above(p) &
+            mass(i, shear, j, shear) = column%mass_above(p)
+            mass(i, shear, j, flexure) = column%moment_above(p) &
                              + (column%joint_height(p) - column%joint_height(j))*column%mass_above(p)
-            mass(n + j, i) = mass(i, n + j)
-            mass(n + i, n + j) = column%inertia_above(p) + between*column%moment_above(p)
-            if (column%opens) mass(2*n + i, 2*n + j) = column%mass_above(p)
+            mass(j, flexure, i, shear) = mass(i, shear, j, flexure)
+            mass(i, flexure, j, flexure) = column%inertia_above(p) + between*column%moment_above(p)
+            if (column%opens) mass(i, axial, j, axial) = column%mass_above(p)
          end do
       end do
    end subroutine symmetric_mass
@@ -43,8 +44,8 @@ contains
    !> h = j for i < j, I_i = m_i l_i^2/12.
    subroutine paper_mass(column, mass)
       type(column_type), intent(in) :: column
-      !> Matrix (2 n, 2 n) [kg, kg m, kg m2]
-      real(wp), intent(out) :: mass(:, :)
+      !> Matrix (2 n, 2 n), here by joint and kind [kg, kg m, kg m2]
+      real(wp), intent(out) :: mass(column%n, 2, column%n, 2)
       real(wp) :: to_joint
       integer :: i, j, p, n
 
@@ -53,16 +54,16 @@ contains
          associate (l => column%length(j), m => column%mass(j), s => column%lower(j))
             do i = 1, n
                p = max(i, j)
-               mass(i, j) = column%mass_above(p)
-               mass(n + i, j) = column%moment_above(p) &
+               mass(i, shear, j, shear) = column%mass_above(p)
+               mass(i, flexure, j, shear) = column%moment_above(p) &
                                 + (column%joint_height(p) - column%joint_height(i))*column%mass_above(p)
                if (i > j) then
-                  mass(i, n + j) = l*column%mass_above(i)
-                  mass(n + i, n + j) = l*column%moment_above(i)
+                  mass(i, shear, j, flexure) = l*column%mass_above(i)
+                  mass(i, flexure, j, flexure) = l*column%moment_above(i)
                else
                   to_joint = column%joint_height(j) - column%joint_height(i)
-                  mass(i, n + j) = m*s + l*column%mass_above(j + 1)
-                  mass(n + i, n + j) = column%inertia(j) + m*(to_joint + s)*s &
+                  mass(i, shear, j, flexure) = m*s + l*column%mass_above(j + 1)
+                  mass(i, flexure, j, flexure) = column%inertia(j) + m*(to_joint + s)*s &
                                        + l*(column%moment_above(j + 1) &
                                             + (to_joint + l)*column%mass_above(j + 1))
                end if
