@@ -24,7 +24,7 @@ module rbs_bindings_runs
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: run_dynamic, plan_dynamic
-   use rbs_solve_time_sight, only: watch_type
+   use rbs_solve_time_sight, only: sight_type, watch_type
    implicit none
    private
 
@@ -39,6 +39,7 @@ module rbs_bindings_runs
       type(case_record) :: case
       type(array_recorder) :: recorder
       type(task_type) :: task
+      type(sight_type) :: sight
    end type run_type
 
 contains
@@ -59,7 +60,7 @@ contains
       integer :: i
 
       watches => request%array('watches')
-      call run%task%sight%watch_for(watches_of(watches), size(watches)/6)
+      call run%sight%watch_for(watches_of(watches), size(watches)/6)
       call column_from_statements(request%statement, request%number, run%column, run%case, answer%error)
       if (.not. allocated(answer%error)) then
          associate (output => run%case%output)
@@ -88,7 +89,7 @@ contains
       call move_alloc(run%recorder%rows, answer%rows)
       answer%kept = run%recorder%count
       call run%task%summary%get_figures(figure)
-      associate (sight => run%task%sight)
+      associate (sight => run%sight)
          where (.not. sight%reached < huge(1.0_wp))
             sight%reached = ieee_value(1.0_wp, ieee_quiet_nan)
             sight%top = sight%reached
@@ -202,7 +203,7 @@ contains
             initial%opening_given = request%wants('opening_given')
          end if
          run%recorder%expected = plan%rows(output%every)
-         call run_dynamic(column, analysis, plan, time, loads, initial, run%task, error)
+         call run_dynamic(column, analysis, plan, time, loads, initial, run%task, error, run%sight)
       end associate
    end subroutine run_time_history
 

@@ -6,7 +6,6 @@ module rbs_solve_task
    use rbs_output_recorder, only: recorder_type
    use rbs_output_summary, only: summary_type
    use rbs_solve_end_state, only: end_state
-   use rbs_solve_time_sight, only: sight_type
    implicit none
    private
 
@@ -23,8 +22,6 @@ module rbs_solve_task
       !> The state to begin in, empty: virgin; and the state at the end, if it is asked for
       type(end_state) :: before, after
       logical :: keeps_end = .false.
-      !> What a run in time is watched for, and what has been seen
-      type(sight_type) :: sight
       !> Figures of the run, up to the last good state if it fails
       type(summary_type) :: summary
    contains

@@ -14,6 +14,7 @@ module rbs_solve_ensemble_block
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: run_dynamic, plan_dynamic
+   use rbs_solve_time_sight, only: sight_type
    use rbs_solve_time_start, only: resume_state
    use rbs_solve_time_state, only: state_type
    implicit none
@@ -216,11 +217,12 @@ contains
       type(initial_state) :: at_rest
       type(array_recorder), target :: no_rows
       type(task_type) :: task
+      type(sight_type) :: sight
       type(error_type), allocatable :: error
 
-      call task%sight%watch_for(column%watch, column%states)
+      call sight%watch_for(column%watch, column%states)
       if (allocated(unplanned)) then
-         call collect(task%sight%reached, task%summary, unplanned, result)
+         call collect(sight%reached, task%summary, unplanned, result)
          return
       end if
       task%recorder => no_rows
@@ -228,8 +230,8 @@ contains
       loads%ground%time = motion%time
       loads%ground%value = scale*motion%acceleration
       call take_before(column, task%before)
-      call run_dynamic(column%column, column%analysis, plan, motion%time, loads, at_rest, task, error)
-      call collect(task%sight%reached, task%summary, error, result)
+      call run_dynamic(column%column, column%analysis, plan, motion%time, loads, at_rest, task, error, sight)
+      call collect(sight%reached, task%summary, error, result)
    end subroutine run_alone
 
 end module rbs_solve_ensemble_block

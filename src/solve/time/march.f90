@@ -15,6 +15,7 @@ module rbs_solve_time_march
    use rbs_loading_loads, only: loads_type, lateral, horizontal
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_plan, only: time_plan, same_step
+   use rbs_solve_time_sight, only: sight_type
    use rbs_solve_time_start, only: initial_state, start_state, resume_state, resume_steps, keep_state
    use rbs_solve_time_state, only: state_type, stepper_type, out_of_bounds
    use rbs_structure_spring_place, only: flexure
@@ -26,7 +27,7 @@ module rbs_solve_time_march
 contains
 
    !> March through the plan.
-   subroutine march(column, planned, stepper, time, loads, initial, task, error)
+   subroutine march(column, planned, stepper, time, loads, initial, task, error, sight)
       type(column_type), intent(in) :: column
       type(time_plan), intent(in) :: planned
       !> The method
@@ -39,6 +40,8 @@ contains
       type(task_type), intent(inout) :: task
       !> On failure everything up to the last good state has been recorded
       type(error_type), allocatable, intent(out) :: error
+      !> What to watch for, and what has been seen
+      type(sight_type), intent(inout), optional :: sight
       type(standing_type) :: standing
       type(time_plan) :: plan
       type(state_type) :: state
@@ -53,11 +56,11 @@ contains
       end if
       if (standing%kind == 0) call start_state(state, column, loads, initial, plan%begin, error)
       if (allocated(error)) return
-      state%sight = task%sight
+      if (present(sight)) state%sight = sight
       call state%begin_sight(task%collapse_drift, task%recorder%channels%motion)
       task%summary%time_step = plan%dt
       call take_steps(state, plan, stepper, time, response, step, task, error)
-      task%sight = state%sight
+      if (present(sight)) sight = state%sight
       associate (summary => task%summary)
          summary%last_time = response%time
          summary%last_displacement = response%displacement

@@ -22,6 +22,7 @@ module rbs_solve_time_run_dynamic
    use rbs_solve_time_pair45, only: pair45_scheme
    use rbs_solve_time_plan, only: time_plan, new_plan, check_times, check_length
    use rbs_solve_time_rk4, only: rk4_stepper, rk4_scheme
+   use rbs_solve_time_sight, only: sight_type
    use rbs_solve_time_state, only: stepper_type
    use rbs_case_analysis_record, only: analysis_record
    use rbs_base_check, only: is_given
@@ -174,7 +175,7 @@ contains
    end subroutine choose_method
 
    !> Response in time under lateral force, ground motion, axial load, or all of them.
-   subroutine run_dynamic(column, analysis, plan, time, loads, initial, task, error)
+   subroutine run_dynamic(column, analysis, plan, time, loads, initial, task, error, sight)
       type(column_type), intent(in) :: column
       !> Validated settings
       type(analysis_record), intent(in) :: analysis
@@ -187,6 +188,8 @@ contains
       !> Without `every` each interval of the plan has a row
       type(task_type), intent(inout) :: task
       type(error_type), allocatable, intent(out) :: error
+      !> What to watch for, and what has been seen
+      type(sight_type), intent(inout), optional :: sight
       class(stepper_type), allocatable :: stepper
 
       call check_signal(loads%force, 'force', error)
@@ -207,7 +210,7 @@ contains
       task%summary%method = plan%method
       task%summary%reason = plan%reason
       call new_stepper(stepper, column, analysis, plan)
-      call march(column, plan, stepper, time, loads, initial, task, error)
+      call march(column, plan, stepper, time, loads, initial, task, error, sight)
    end subroutine run_dynamic
 
    !> The method of a plan, ready for its first step.
