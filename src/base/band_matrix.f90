@@ -98,10 +98,10 @@ contains
       class(band_matrix), intent(inout) :: self
 
       if (allocated(self%scale)) call scale_band(self%size, size(self%band, 1), self%scale, self%band)
-      self%triangle(:, :) = self%band
       if (self%width <= narrow) then
-         call factor_narrow(self%size, self%triangle, self%negative)
+         call factor_narrow(self%size, self%band, self%triangle, self%negative)
       else
+         self%triangle(:, :) = self%band
          call factor_wide(self%size, self%width, self%triangle, self%negative)
       end if
       self%positive = self%negative == 0
@@ -122,11 +122,12 @@ contains
       end do
    end subroutine scale_band
 
-   !> Factor L D L', in place, for a half-width up to 3.
-   pure subroutine factor_narrow(n, band, negative)
+   !> Factor L D L' for a half-width up to 3.
+   pure subroutine factor_narrow(n, band, triangle, negative)
       integer, intent(in) :: n
-      !> Lower band; on return 1/D and L
-      real(wp), intent(inout) :: band(4, n)
+      !> Lower band; 1/D and L
+      real(wp), intent(in) :: band(4, n)
+      real(wp), intent(out) :: triangle(4, n)
       !> Number of pivots that are not positive
       integer, intent(out) :: negative
       real(wp) :: pivot, share, l1, l2, l3, below1, below2, below3
@@ -150,10 +151,10 @@ contains
          l1 = below1*share
          l2 = below2*share
          l3 = below3*share
-         band(1, j) = share
-         band(2, j) = l1
-         band(3, j) = l2
-         band(4, j) = l3
+         triangle(1, j) = share
+         triangle(2, j) = l1
+         triangle(3, j) = l2
+         triangle(4, j) = l3
          r11 = r22 + l1*below1
          r21 = r32 + l1*below2
          r31 = l1*below3
@@ -163,7 +164,7 @@ contains
       end do
    end subroutine factor_narrow
 
-   !> The same for any half-width.
+   !> The same for any half-width, in place.
    pure subroutine factor_wide(n, width, band, negative)
       integer, intent(in) :: n, width
       real(wp), intent(inout) :: band(width + 1, n)
@@ -250,6 +251,12 @@ contains
       real(wp), intent(inout), contiguous :: b(:)
       logical, intent(out) :: regular
 
+      if (self%positive .and. self%width <= narrow .and. .not. allocated(self%scale)) then
+         ! The tangent of most implicit steps
+         call solve_narrow(self%size, self%triangle, b)
+         regular = .true.
+         return
+      end if
       call scale_rows(self, 1, b)
       call solve_scaled(self, 1, b, regular)
       call scale_rows(self, 1, b)

@@ -71,9 +71,8 @@ contains
       end do
    end subroutine displacements
 
-   !> Forces and moments about the centroids from the forces of the joints and those at the top, -B' f + p; the
-   !> moments are added to.
-   pure subroutine body_forces(n, opens, lower, upper, f, lateral, axial_load, weight, g)
+   !> Forces and moments about the centroids from the forces of the joints and those at the top, -B' f + p.
+   pure subroutine body_forces(n, opens, lower, upper, f, lateral, axial_load, weight, adds, g)
       integer, intent(in) :: n
       logical, intent(in) :: opens
       real(wp), intent(in) :: lower(n), upper(n)
@@ -81,16 +80,22 @@ contains
       real(wp), intent(in) :: f(*)
       !> Loads at the top, compression positive, and weight of the bodies [N]
       real(wp), intent(in) :: lateral, axial_load, weight(n)
-      !> (2 n or 3 n)
+      !> Whether the moments are added to those that are there (2 n or 3 n)
+      logical, intent(in) :: adds
       real(wp), intent(inout) :: g(*)
+      real(wp) :: moment
       integer :: i
 
       do i = 1, n - 1
          g(2*i - 1) = f(i + 1) - f(i)
-         g(2*i) = ((f(n + i + 1) - f(n + i)) + (lower(i)*f(i) + upper(i)*f(i + 1))) + g(2*i)
+         moment = (f(n + i + 1) - f(n + i)) + (lower(i)*f(i) + upper(i)*f(i + 1))
+         if (adds) moment = moment + g(2*i)
+         g(2*i) = moment
       end do
       g(2*n - 1) = lateral - f(n)
-      g(2*n) = ((lower(n)*f(n) + upper(n)*lateral) - f(2*n)) + g(2*n)
+      moment = (lower(n)*f(n) + upper(n)*lateral) - f(2*n)
+      if (adds) moment = moment + g(2*n)
+      g(2*n) = moment
       if (.not. opens) return
       do i = 1, n - 1
          g(2*n + i) = (f(2*n + i + 1) - f(2*n + i)) - weight(i)

@@ -380,13 +380,9 @@ contains
       real(wp), intent(inout), contiguous :: f(:)
       real(wp), intent(out), contiguous :: g(:)
 
-      if (size(axial) > 0) then
-         call second_order_forces(self%n, self%length, axial, d, f, 2, g)
-      else
-         g = 0.0_wp
-      end if
+      if (size(axial) > 0) call second_order_forces(self%n, self%length, axial, d, f, 2, g)
       call body_forces(self%n, self%opens, self%lower, self%upper, f, load(lateral), &
-                       self%axial_load + load(top_axial), self%weight, g)
+                       self%axial_load + load(top_axial), self%weight, size(axial) > 0, g)
    end subroutine forces
 
    !> Axial forces for the rotations of the bodies, then across the slips of the joints (2 n).
