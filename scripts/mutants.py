@@ -34,7 +34,7 @@ ROOT = Path(__file__).resolve().parents[1]
 # Tests in Python that are run first where the Fortran suites notice nothing.
 NEAR = {
     "src/hysteresis": "test_springs test_springs_capped test_layered_reference",
-    "src/column": "test_column test_physics",
+    "src/structure/column": "test_column test_physics",
     "src/solve": "test_static test_dynamics",
     "src/section": "test_section test_section_springs",
     "src/output": "test_static test_dynamics",
@@ -200,7 +200,7 @@ MUTANTS = (
     # The column
     Mutant(
         "critical-load-of-slip",
-        "src/column/sturm.f90",
+        "src/structure/column/sturm.f90",
         "+ axial*sliding(i)*b + (t12*b)*(t12*b*p2)",
         "+ sliding(i)*b + (t12*b)*(t12*b*p2)",
         "buckling",
@@ -208,7 +208,7 @@ MUTANTS = (
     ),
     Mutant(
         "own-inertia-of-the-top",
-        "src/column/column.f90",
+        "src/structure/column/column.f90",
         "+ spec%top_inertia + own*shift*column%upper(n)",
         "+ spec%top_inertia",
         "inertia",
@@ -216,7 +216,7 @@ MUTANTS = (
     ),
     Mutant(
         "weight-above-a-centroid",
-        "src/column/column.f90",
+        "src/structure/column/column.f90",
         "column%axial_body = dead + column%gravity*(column%mass/2.0_wp + above(2:))",
         "column%axial_body = dead + column%gravity*(column%mass + above(2:))",
         "self-weight",
@@ -224,7 +224,7 @@ MUTANTS = (
     ),
     Mutant(
         "load-of-layered-joints",
-        "src/column/column.f90",
+        "src/structure/column/column.f90",
         "column%spring(n + 1:2*n)%axial_load = column%compression",
         "column%spring(n + 1:2*n)%axial_load = column%axial_load",
         "self-weight",
@@ -232,7 +232,7 @@ MUTANTS = (
     ),
     Mutant(
         "geometric-band",
-        "src/column/chain.f90",
+        "src/structure/column/chain.f90",
         "band(1, t - 2) = band(1, t - 2) + 2.0_wp*force*upper(max(i - 1, 1))",
         "band(1, t - 2) = band(1, t - 2) + force*upper(max(i - 1, 1))",
         "p-delta",
@@ -240,7 +240,7 @@ MUTANTS = (
     ),
     Mutant(
         "coriolis",
-        "src/column/finite.f90",
+        "src/structure/column/finite.f90",
         "separation = bottom(2) - below(2) + 2.0_wp*v(i)*spin_below + slip*turn_below",
         "separation = bottom(2) - below(2) + v(i)*spin_below + slip*turn_below",
         "finite-rotations",

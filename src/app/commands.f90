@@ -10,7 +10,7 @@ module rbs_app_commands
    use rbs_base_text, only: to_text
    use rbs_case_key_list, only: keys_as_json, keys_as_table
    use rbs_case_text_buffer, only: text_buffer
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_io_case_file, only: case_history, load_case
    use rbs_io_csv, only: csv_recorder
    use rbs_io_namelist, only: read_case

@@ -13,7 +13,7 @@ module rbs_bindings_evaluate
    use rbs_case_key_list, only: keys_as_json
    use rbs_case_methods, only: method_rows
    use rbs_case_text_buffer, only: text_buffer
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: follow_path
    use rbs_loading_loading_record, only: loading_record

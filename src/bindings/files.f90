@@ -5,7 +5,7 @@ module rbs_bindings_files
    use rbs_bindings_statements, only: case_from_statements
    use rbs_case_case_record, only: case_record
    use rbs_case_writer, only: namelist_sink, statement_sink, write_case
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_io_case_file, only: case_history, load_case
    use rbs_io_history, only: layout_type
    use rbs_io_loading_file, only: read_test

@@ -9,7 +9,7 @@ module rbs_bindings_runs
    use rbs_bindings_exchange, only: request_type, answer_type
    use rbs_bindings_statements, only: column_from_statements
    use rbs_case_case_record, only: case_record
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_loading_signal, only: signal_type
    use rbs_output_channels, only: new_channels
    use rbs_output_notes, only: rotation_note

@@ -8,8 +8,8 @@ module rbs_bindings_statements
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_case_case_record, only: case_record
    use rbs_case_group_reader, only: group_reader
-   use rbs_column_column, only: column_type
-   use rbs_hysteresis_layered_joint, only: check_axial_load
+   use rbs_structure_column_column, only: column_type
+   use rbs_hysteresis_layered_layered_joint, only: check_axial_load
    use rbs_hysteresis_rule, only: rule_type
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_solve_make_column, only: make_column

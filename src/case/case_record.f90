@@ -5,7 +5,7 @@ module rbs_case_case_record
    use rbs_base_units, only: unit_system, unit_named, length_units, force_units, mass_units
    use rbs_case_analysis_record, only: analysis_record, output_record
    use rbs_case_drawing_record, only: drawing_groups, drawing_record
-   use rbs_column_column_record, only: column_record
+   use rbs_structure_column_column_record, only: column_record
    use rbs_loading_loading_record, only: loading_record
    implicit none
    private

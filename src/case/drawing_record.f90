@@ -7,7 +7,7 @@ module rbs_case_drawing_record
    use rbs_base_key_visitor, only: key_visitor, visited_record
    use rbs_base_keys, only: above_zero, any_number, bound_type, one_or_more
    use rbs_base_kinds, only: wp
-   use rbs_column_column_record, only: most_bodies
+   use rbs_structure_column_column_record, only: most_bodies
    use rbs_section_cross_section, only: spiral, ties
    use rbs_section_section_record, only: append_steel, find_steel, section_record
    use rbs_section_shape, only: column_size

@@ -7,7 +7,7 @@ module rbs_case_spring_entry
    use rbs_base_keys, only: key_type, above_zero, any_number, not_negative, one_or_more
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column_record, only: column_record, most_bodies
+   use rbs_structure_column_column_record, only: column_record, most_bodies
    use rbs_hysteresis_registry, only: rule_names, suits
    use rbs_hysteresis_rule, only: in_layer
    use rbs_hysteresis_spring_record, only: spring_record

@@ -9,7 +9,7 @@ module rbs_case_writer
    use rbs_case_case_record, only: case_record
    use rbs_case_spring_entry, only: entry_list, spring_entry
    use rbs_case_text_buffer, only: text_buffer
-   use rbs_column_column_record, only: column_record
+   use rbs_structure_column_column_record, only: column_record
    use rbs_hysteresis_registry, only: keys_of
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_section_cross_section, only: no_ties

@@ -7,7 +7,7 @@ module rbs_hysteresis_interaction_joints
    use rbs_hysteresis_layered_fibre_fall, only: layer_fall, find_fall
    use rbs_hysteresis_layered_fibre_path, only: choose_branches, way_to_event
    use rbs_hysteresis_layered_fibre_section, only: fibre_section
-   use rbs_hysteresis_layered_joint, only: branch_under
+   use rbs_hysteresis_layered_layered_joint, only: branch_under
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_springs, only: spring_array, put_line, read_plane
    implicit none

@@ -1,7 +1,7 @@
 !> All rules by name. A new rule needs a file of its own, and a line here.
 module rbs_hysteresis_registry
    use rbs_base_keys, only: key_type
-   use rbs_hysteresis_layered_joint, only: layered_rule
+   use rbs_hysteresis_layered_layered_joint, only: layered_rule
    use rbs_hysteresis_rule, only: rule_type, rule_length, places_length, in_shear, in_flexure, in_axial, &
                                   in_layer
    use rbs_hysteresis_rules_bilinear, only: bilinear_rule, bilinear_keys

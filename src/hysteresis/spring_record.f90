@@ -9,7 +9,7 @@ module rbs_hysteresis_spring_record
    use rbs_base_keys, only: key_type, word_kind, check_number, choice_name, find_key
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text, list_of
-   use rbs_hysteresis_layered_joint, only: layered_rule
+   use rbs_hysteresis_layered_layered_joint, only: layered_rule
    use rbs_hysteresis_registry, only: rule_names, new_rule, keys_of, suits
    use rbs_hysteresis_rule, only: rule_type, spring_rules, rule_length, most_parameters, in_layer
    implicit none

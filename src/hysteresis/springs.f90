@@ -9,7 +9,7 @@ module rbs_hysteresis_springs
    use rbs_hysteresis_journal, only: journal_type
    use rbs_hysteresis_layered_fibre_path, only: go
    use rbs_hysteresis_layered_fibre_section, only: fibre_section
-   use rbs_hysteresis_layered_joint, only: start_under
+   use rbs_hysteresis_layered_layered_joint, only: start_under
    use rbs_hysteresis_rule, only: memory_slot, spring_rules
    use rbs_hysteresis_segment, only: segment, first_on, last_on, upper_end, lower_end
    use rbs_hysteresis_spring_record, only: spring_record, make_rules

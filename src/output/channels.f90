@@ -4,7 +4,7 @@ module rbs_output_channels
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_base_units, only: unit_system
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_interaction_joints, only: fill_openings
    use rbs_hysteresis_springs, only: spring_array
    implicit none

@@ -4,8 +4,8 @@ module rbs_output_notes
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type, small, finite
-   use rbs_column_column_record, only: column_record
+   use rbs_structure_column_column, only: column_type, small, finite
+   use rbs_structure_column_column_record, only: column_record
    use rbs_hysteresis_springs, only: follow_path
    use rbs_output_summary, only: summary_type
    implicit none

@@ -12,7 +12,7 @@ module rbs_solve_end_state
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_registry, only: keys_of, rule_names
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: spring_array

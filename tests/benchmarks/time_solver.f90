@@ -15,7 +15,7 @@ program time_solver
    use rbs_base_constants, only: pi
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_output_channels, only: new_channels
    use rbs_output_recorder, only: array_recorder
@@ -28,7 +28,7 @@ program time_solver
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: plan_dynamic, run_dynamic
    use rbs_case_analysis_record, only: analysis_record
-   use rbs_column_column_record, only: column_record
+   use rbs_structure_column_column_record, only: column_record
    use rbs_hysteresis_spring_record, only: spring_record
    implicit none
 

@@ -12,7 +12,7 @@ module any_rule
    use rbs_hysteresis_registry, only: keys_of, rule_names, suits
    use rbs_hysteresis_rule, only: rule_type, rule_memory, most_parameters, in_layer
    use rbs_hysteresis_segment, only: segment
-   use rbs_hysteresis_layered_joint, only: carries_axial_load
+   use rbs_hysteresis_layered_layered_joint, only: carries_axial_load
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: spring_array
    use samples, only: random_type

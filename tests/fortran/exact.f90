@@ -4,8 +4,8 @@ module exact
    use dense, only: solve_general
    use rbs_base_constants, only: pi
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type
-   use rbs_column_column_record, only: column_record
+   use rbs_structure_column_column, only: column_type
+   use rbs_structure_column_column_record, only: column_record
    use samples, only: chain, elastic, random_type
    implicit none
    private

@@ -6,9 +6,9 @@ module runs
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_loading_signal, only: signal_type
-   use rbs_column_energy, only: kinetic_energy, potential_energy
+   use rbs_structure_column_energy, only: kinetic_energy, potential_energy
    use rbs_output_channels, only: new_channels
    use rbs_output_recorder, only: array_recorder
    use rbs_output_summary, only: summary_type
@@ -22,7 +22,7 @@ module runs
    use rbs_solve_time_run_dynamic, only: plan_dynamic, run_dynamic
    use rbs_solve_time_state, only: state_type, stepper_type
    use rbs_case_analysis_record, only: analysis_record
-   use rbs_column_column_record, only: column_record
+   use rbs_structure_column_column_record, only: column_record
    use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: bilinear, chain, column_1, made, random_type, d_c, k_c
    use row_places, only: row_joints

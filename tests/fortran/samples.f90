@@ -3,9 +3,9 @@ module samples
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_solve_make_column, only: make_column
-   use rbs_column_column_record, only: column_record
+   use rbs_structure_column_column_record, only: column_record
    use rbs_hysteresis_spring_record, only: spring_record
    implicit none
    private

@@ -12,7 +12,7 @@ module test_capped
    use rbs_hysteresis_rules_backbone_parameters, only: backbone_parameters
    use rbs_hysteresis_registry, only: keys_of, rule_names
    use rbs_hysteresis_rule, only: most_parameters
-   use rbs_column_column_record, only: column_record
+   use rbs_structure_column_column_record, only: column_record
    use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: elastic, random_type
    implicit none

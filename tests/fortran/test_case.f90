@@ -7,12 +7,12 @@ module test_case
    use rbs_base_error, only: error_type, message_list, bad_input
    use rbs_base_kinds, only: wp
    use rbs_case_methods, only: methods
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_solve_make_column, only: make_column
    use rbs_case_analysis_record, only: analysis_record
    use rbs_case_case_record, only: case_record
    use rbs_base_check, only: is_given
-   use rbs_column_column_record, only: column_record, most_bodies, most_dense
+   use rbs_structure_column_column_record, only: column_record, most_bodies, most_dense
    use rbs_loading_loading_record, only: loading_record, units_of
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_base_keys, only: deformation, force, stiffness

@@ -6,11 +6,11 @@ module test_chain
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_chain, only: body_forces
-   use rbs_column_column, only: column_type
-   use rbs_column_energy, only: kinetic_energy, kinetic_of, potential_energy
-   use rbs_column_mass, only: symmetric_mass
-   use rbs_column_top, only: top_position
+   use rbs_structure_column_chain, only: body_forces
+   use rbs_structure_column_column, only: column_type
+   use rbs_structure_column_energy, only: kinetic_energy, kinetic_of, potential_energy
+   use rbs_structure_column_mass, only: symmetric_mass
+   use rbs_structure_column_top, only: top_position
    use rbs_loading_signal, only: signal_type
    use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices
    use rbs_solve_modal_modes, only: modes_type, find_modes
@@ -18,7 +18,7 @@ module test_chain
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_rk4, only: rk4_scheme
    use rbs_solve_time_state, only: state_type
-   use rbs_column_column_record, only: column_record
+   use rbs_structure_column_column_record, only: column_record
    use runs, only: new_state, signal_of
    use samples, only: bilinear, made, random_type, rich_column
    implicit none

@@ -5,11 +5,11 @@ module test_column
    use rbs_base_error, only: error_type, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_axial, only: geometric_stiffness, geometric_forces, axial_energy, critical_factor, &
+   use rbs_structure_column_axial, only: geometric_stiffness, geometric_forces, axial_energy, critical_factor, &
                                check_stable
-   use rbs_column_column, only: column_type, small, pdelta, finite
-   use rbs_column_mass, only: symmetric_mass, paper_mass
-   use rbs_column_column_record, only: column_record
+   use rbs_structure_column_column, only: column_type, small, pdelta, finite
+   use rbs_structure_column_mass, only: symmetric_mass, paper_mass
+   use rbs_structure_column_column_record, only: column_record
    use rbs_structure_spring_place, only: spring_name
    use samples, only: chain, column_1, elastic, made, random_type, k_c, s_k, mass_1, height_1
    implicit none

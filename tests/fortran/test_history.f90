@@ -6,8 +6,8 @@ module test_history
    use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type
-   use rbs_column_energy, only: kinetic_energy, potential_energy
+   use rbs_structure_column_column, only: column_type
+   use rbs_structure_column_energy, only: kinetic_energy, potential_energy
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_output_observer, only: observer_type
    use rbs_output_channels, only: new_channels
@@ -22,7 +22,7 @@ module test_history
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_rk4, only: rk4_stepper
    use rbs_solve_time_run_dynamic, only: plan_dynamic, run_dynamic
-   use rbs_column_column_record, only: column_record
+   use rbs_structure_column_column_record, only: column_record
    use runs, only: run_data, run, times, last_deformation
    use samples, only: chain, column_1, elastic, made, random_type, d_y, k_u, mass_1, height_1
    use row_places, only: row_time, row_displacement, row_force, row_input, row_kinetic, row_spring, &

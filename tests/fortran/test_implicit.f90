@@ -6,12 +6,12 @@ module test_implicit
    use rbs_base_error, only: error_type, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_solve_modal_modes, only: modes_type, find_modes, frequency_bounds
    use rbs_solve_time_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha
    use rbs_loading_loads, only: loads_type
    use rbs_solve_time_state, only: state_type
-   use rbs_column_column_record, only: column_record
+   use rbs_structure_column_column_record, only: column_record
    use runs, only: scene_type, scenes, new_scene, new_mass, play, play_located, find_reference, new_state, &
                    signal_of, check_order, residual_of, distance
    use samples, only: chain, column_1, compression, elastic, made, random_type, takeda_1, d_y, k_u

@@ -5,7 +5,7 @@ module test_implicit_finite
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_solve_time_finite_joint, only: turned_body, turn_body, body_at, joint_type, joint_change, &
                                           joint_at, joint_forces, joint_tangent, local
    use rbs_solve_time_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha, &
@@ -13,7 +13,7 @@ module test_implicit_finite
    use rbs_solve_time_implicit_finite, only: finite_stepper
    use rbs_loading_loads, only: loads_type
    use rbs_solve_time_state, only: state_type
-   use rbs_column_column_record, only: column_record
+   use rbs_structure_column_column_record, only: column_record
    use runs, only: scene_type, new_scene, play, find_reference, new_state, signal_of, check_order, &
                    residual_of, distance
    use samples, only: bilinear, chain, elastic, made, random_type, rich_column

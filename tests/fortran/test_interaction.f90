@@ -6,7 +6,7 @@ module test_interaction
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_layered_fibre_path, only: go
    use rbs_hysteresis_layered_fibre_section, only: fibre_section
-   use rbs_hysteresis_layered_joint, only: start_under
+   use rbs_hysteresis_layered_layered_joint, only: start_under
    use rbs_hysteresis_rule, only: rule_type, rule_memory
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_spring_record, only: spring_record

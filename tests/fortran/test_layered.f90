@@ -4,14 +4,14 @@ module test_layered
    use paths, only: check_copies, check_increments
    use rbs_base_error, only: bad_input, error_type, message_list
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_layered_fibre_section, only: fibre_section
-   use rbs_hysteresis_layered_joint, only: start_under, carries_axial_load
+   use rbs_hysteresis_layered_layered_joint, only: start_under, carries_axial_load
    use rbs_hysteresis_rule, only: rule_type, rule_memory
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_solve_make_column, only: make_column
-   use rbs_column_column_record, only: column_record
+   use rbs_structure_column_column_record, only: column_record
    use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: bilinear, compression, concrete_1, elastic, steel_1, takeda_1, random_type
    implicit none

@@ -8,7 +8,7 @@ module test_run
    use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_output_channels, only: new_channels
    use rbs_output_recorder, only: array_recorder
    use rbs_output_summary, only: summary_type
@@ -20,7 +20,7 @@ module test_run
    use rbs_solve_time_run_dynamic, only: plan_dynamic
    use rbs_solve_time_state, only: state_type, stepper_type
    use rbs_case_analysis_record, only: analysis_record
-   use rbs_column_column_record, only: column_record
+   use rbs_structure_column_column_record, only: column_record
    use runs, only: run_data, run, times, new_located
    use samples, only: bilinear, chain, column_1, compression, elastic, made, k_c, k_u, height_1
    use row_places, only: row_time, row_displacement, row_force, row_input, row_kinetic, row_spring, &

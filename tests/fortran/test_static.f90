@@ -7,8 +7,8 @@ module test_static
    use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_axial, only: geometric_stiffness, geometric_forces
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_axial, only: geometric_stiffness, geometric_forces
+   use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_output_channels, only: new_channels
    use rbs_output_recorder, only: array_recorder, recorder_type
@@ -17,7 +17,7 @@ module test_static
    use rbs_solve_static_run_static, only: run_static
    use rbs_solve_static_path, only: kept_rows
    use rbs_solve_task, only: task_type
-   use rbs_column_column_record, only: column_record
+   use rbs_structure_column_column_record, only: column_record
    use samples, only: bilinear, bilinear_1, chain, column_1, elastic, made, random_type, takeda_1, &
                       k_c, d_y, f_y, k_u, s_k, s_d, height_1
    use row_places, only: row_time, row_displacement, row_force, row_axial, row_residual, row_joints, &

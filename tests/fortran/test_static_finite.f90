@@ -5,14 +5,14 @@ module test_static_finite
    use rbs_base_error, only: error_type, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_output_channels, only: new_channels
    use rbs_output_recorder, only: array_recorder
    use rbs_output_summary, only: summary_type
    use rbs_solve_static_run_static, only: run_static
    use rbs_solve_task, only: task_type
-   use rbs_column_column_record, only: column_record
+   use rbs_structure_column_column_record, only: column_record
    use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: bilinear, bilinear_1, chain, column_1, compression, elastic, made, random_type, &
       takeda, takeda_1, f_y, d_y, k_u, s_k, height_1, mass_1

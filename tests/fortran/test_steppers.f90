@@ -6,14 +6,14 @@ module test_steppers
    use rbs_base_error, only: error_type, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_loading_loads, only: loads_type
    use rbs_solve_time_located, only: located_stepper
    use rbs_solve_time_pair45, only: pair45_scheme
    use rbs_solve_time_rk4, only: rk4_stepper
    use rbs_solve_time_state, only: state_type
-   use rbs_column_column_record, only: column_record
+   use rbs_structure_column_column_record, only: column_record
    use runs, only: scene_type, scenes, new_scene, new_mass, play, play_located, find_reference, new_state, &
                    new_located, signal_of, check_order, residual_of, distance
    use samples, only: bilinear, chain, column_1, compression, elastic, made, random_type, takeda_1, d_c, &

@@ -142,7 +142,9 @@ def test_mass_is_spread_in_proportion_to_the_lengths():
     given = rbsdem.Column(
         3.0, None, ELASTIC, ELASTIC, n=3, lengths=lengths, masses=[150.0, 450.0, 300.0]
     )
-    np.testing.assert_allclose(rbsdem.matrices(spread).mass, rbsdem.matrices(given).mass, rtol=1e-15)
+    np.testing.assert_allclose(
+        rbsdem.matrices(spread).mass, rbsdem.matrices(given).mass, rtol=1e-15
+    )
 
 
 def test_mass_matrix_form_unknown():

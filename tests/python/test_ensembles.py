@@ -346,7 +346,9 @@ def test_lanes_have_the_bits_of_a_run_alone(columns: Callable, settings: dict) -
     own = columns()
     grid = np.meshgrid(np.arange(len(own)), np.arange(3), np.arange(7), indexing="ij")
     place = [axis.ravel().astype(np.int32) for axis in grid]
-    task = Task(own, motions, settings, place[0], place[1], scales[place[2]], states=tuple(LIMIT_STATES))
+    task = Task(
+        own, motions, settings, place[0], place[1], scales[place[2]], states=tuple(LIMIT_STATES)
+    )
     alone = compute(task, kernel=-1)
     for kernel in (1, 2, 3):
         found = compute(task, kernel=kernel)

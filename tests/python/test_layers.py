@@ -20,8 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FLOORS = (
     ("base",),
     ("hysteresis",),
-    ("structure",),
-    ("column", "section"),
+    ("structure", "section"),
     ("loading",),
     ("case",),
     ("output",),
@@ -423,7 +422,7 @@ def plant(root: Path, name: str, text: str) -> None:
 
 def good_tree(root: Path) -> None:
     plant(root, "src/base/kinds.f90", KINDS)
-    for room in ("case", "column", "section", "solve", "io", "app"):
+    for room in ("case", "structure", "section", "solve", "io", "app"):
         plant(root, f"src/{room}/thing.f90", GOOD_MODULE.format(module=f"rbs_{room}_thing"))
     plant(root, "src/section.f90", GOOD_MODULE.format(module="rbs_section"))
     plant(root, "src/bindings/bindings.f90", "subroutine s()\n implicit none\nend subroutine s\n")
@@ -476,11 +475,11 @@ BAD = {
         "arrow from bindings back to app",
     ),
     "neighbours": (
-        "src/column/thing.f90",
-        GOOD_MODULE.format(module="rbs_column_thing").replace(
+        "src/structure/column/thing.f90",
+        GOOD_MODULE.format(module="rbs_structure_column_thing").replace(
             USE, USE + "use rbs_section, only: x\n"
         ),
-        "arrow from column back to section",
+        "arrow from structure back to section",
     ),
     "an unknown room": (
         "src/attic/thing.f90",

@@ -105,7 +105,7 @@ def test_every_field_of_a_result_counts_for_equality():
             other = {
                 "column": COLUMN,
                 "case": CASE,
-                    "channels": ("time",),
+                "channels": ("time",),
                 "rest": np.zeros((1, 1)),
                 "motion": np.zeros((1, 3)),
             }[field.name]

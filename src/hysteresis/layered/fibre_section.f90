@@ -341,18 +341,18 @@ contains
       real(wp), intent(in) :: turn(3), press(3)
       !> Below this number of the least rates that count, a rate is none
       real(wp), intent(in) :: digits
-      real(wp) :: open(3), v(3), least_rate
+      real(wp) :: lift(3), v(3), least_rate
       integer :: i
 
       least_rate = 0.0_wp
       do i = 1, 3
-         open(i) = self%rate_of_opening(turn(i), press(i))
-         least_rate = max(least_rate, digits*self%least_rate(open(i), turn(i)))
+         lift(i) = self%rate_of_opening(turn(i), press(i))
+         least_rate = max(least_rate, digits*self%least_rate(lift(i), turn(i)))
       end do
       least = 1.0_wp
       do i = 1, self%count
          if (.not. abs(self%unload_on_reversal(i)) > 0.0_wp) cycle
-         v = open + self%y(i)*turn
+         v = lift + self%y(i)*turn
          least = min(least, self%unload_on_reversal(i)*v(1)/max(abs(v(2)), abs(v(3)), least_rate))
       end do
    end function least_forward_rate

@@ -3,7 +3,7 @@
 !> load is, like any spring, on a branch with two ends: it ends where the first layer reaches an end (`next`).
 !> Where the axial load varies, the joint follows a straight path in rotation and axial load from event to
 !> event.
-module rbs_hysteresis_layered_joint
+module rbs_hysteresis_layered_layered_joint
    use rbs_base_constants, only: no_stiffness, unbounded
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -236,4 +236,4 @@ contains
       call find_branch(section, 1, branch)
    end subroutine branch_under
 
-end module rbs_hysteresis_layered_joint
+end module rbs_hysteresis_layered_layered_joint

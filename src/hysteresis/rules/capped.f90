@@ -164,10 +164,10 @@ contains
       call find_branch(self, memory%now, memory%open, branch, direction)
    end subroutine next
 
-   subroutine find_branch(self, now, open, branch, direction)
+   subroutine find_branch(self, now, turns_of, branch, direction)
       class(capped_part), intent(in) :: self
       type(capped_state), intent(inout) :: now
-      type(open_turns), intent(inout) :: open(-1:1)
+      type(open_turns), intent(inout) :: turns_of(-1:1)
       type(segment), intent(inout) :: branch
       integer, intent(in) :: direction
       type(point) :: here
@@ -228,7 +228,7 @@ contains
          now%side = s
          now%branch = on_backbone
          ! No turn of this side lies ahead any more.
-         open(s)%count = 0
+         turns_of(s)%count = 0
          if (.not. now%yielded .and. s*here%d >= now%backbone(s)%d_y) then
             ! What was dissipated before yield does not deteriorate.
             k = unloading_stiffness(s, point(s*here%d, s*here%f))
@@ -270,11 +270,11 @@ contains
          associate (s => now%side)
             if (now%yielded) now%dissipated(s) = now%dissipated(s) + (now%work - now%work_at_zero)
             now%work_at_zero = now%work
-            call open(-s)%fade(now%turned%at%d)
+            call turns_of(-s)%fade(now%turned%at%d)
             ! A turn behind others that were closed takes their place.
             now%time = modulo(now%time, huge(1) - 1) + 1
             now%turned%time = min(now%closed_time, now%time)
-            call open(s)%push(now%turned)
+            call turns_of(s)%push(now%turned)
             now%way_back = now%turned%at%d - now%entered
             call enter(-s, zero)
          end associate
@@ -299,7 +299,7 @@ contains
          else
             call find_turns(s, -unbounded)
          end if
-         call open(s)%forget_inside(now%start_at)
+         call turns_of(s)%forget_inside(now%start_at)
          if (now%start_at > s*zero) then
             now%branch = gap
             branch = segment(d0=zero)
@@ -317,7 +317,7 @@ contains
          now%closed_start = now%start_at
          now%closed_at = now%start_at
          now%closed_time = huge(1)
-         associate (s => now%side, turns => open(now%side))
+         associate (s => now%side, turns => turns_of(now%side))
             do while (turns%count > 0)
                call turns%list(turns%count)%shift(now%start_at, self%k_0, found)
                if (found) exit
@@ -337,20 +337,20 @@ contains
       subroutine go_on(here)
          type(point), intent(in) :: here
 
-         associate (s => now%side, turns => open(now%side))
+         associate (s => now%side, turns => turns_of(now%side))
             now%closed_start = outermost_rest(s*here%d)
             now%closed_at = s*here%d
             if (now%to_turn) then
                ! The inner loop is closed.
                now%closed_time = turns%list(turns%count)%time
-               call open(-s)%let_fade(now%closed_time, s*here%d)
+               call turns_of(-s)%let_fade(now%closed_time, s*here%d)
                now%start_at = turns%list(turns%count)%start
                now%goal = turns%list(turns%count)%goal
                turns%count = turns%count - 1
                now%to_turn = turns%count > 0
                call aim(point(s*here%d, s*here%f))
             else
-               call open(-s)%let_fade(0, s*here%d)
+               call turns_of(-s)%let_fade(0, s*here%d)
                call follow_backbone(s, here)
             end if
          end associate
@@ -463,7 +463,7 @@ contains
                if (left*moved > now%peak(s)*now%target_left(s)) moved = now%peak(s)*now%target_left(s)/left
                if (is_given(given%d_u)) moved = min(moved, max(now%peak(s), given%d_u))
                moved = max(moved, now%peak(s))
-               call open(s)%move_with_peak(now%peak(s), moved)
+               call turns_of(s)%move_with_peak(now%peak(s), moved)
                now%peak(s) = moved
                now%target_left(s) = left
             end if
@@ -487,14 +487,14 @@ contains
          real(wp), intent(in) :: least
          integer :: i
 
-         do i = 1, open(s)%count
-            associate (turned => open(s)%list(i))
+         do i = 1, turns_of(s)%count
+            associate (turned => turns_of(s)%list(i))
                ! That of the peak itself stays: unloading from it ends behind `least` in any case.
                if (turned%at%d < turned%goal%d) turned%start = max(turned%start, least)
                if (i == 1) then
                   turned%goal = goal_from(s, turned%start)
                else
-                  turned%goal = open(s)%list(i - 1)%at
+                  turned%goal = turns_of(s)%list(i - 1)%at
                end if
                if (turned%at%d >= turned%goal%d) then
                   turned%at%f = now%backbone(s)%force(turned%at%d)

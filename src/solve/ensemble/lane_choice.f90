@@ -1,7 +1,7 @@
 !> Which runs lanes can take, and which of them together.
 module rbs_solve_ensemble_lane_choice
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type, finite
+   use rbs_structure_column_column, only: column_type, finite
    use rbs_solve_ensemble_ensemble_input, only: ensemble_column
    use rbs_solve_time_march, only: step_of
    use rbs_solve_time_plan, only: time_plan

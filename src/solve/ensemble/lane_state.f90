@@ -1,7 +1,7 @@
 !> A column as a lane of a block, and the lane as the state of a run alone.
 module rbs_solve_ensemble_lane_state
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_loading_loads, only: horizontal
    use rbs_solve_ensemble_lane_arrays, only: lane_clock, lane_block, allot, few
    use rbs_solve_time_implicit, only: implicit_stepper

@@ -7,7 +7,7 @@ module rbs_solve_ensemble_simd_batch
    use, intrinsic :: iso_fortran_env, only: int32
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_loading_loads, only: loads_type
    use rbs_output_summary, only: summary_type
    use rbs_solve_ensemble_dispatch, only: chosen_kernel

@@ -8,9 +8,9 @@ module rbs_solve_modal_matrices
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: solve_dense
    use rbs_base_text, only: to_text
-   use rbs_column_axial, only: geometric_stiffness
-   use rbs_column_column, only: column_type
-   use rbs_column_mass, only: symmetric_mass, paper_mass
+   use rbs_structure_column_axial, only: geometric_stiffness
+   use rbs_structure_column_column, only: column_type
+   use rbs_structure_column_mass, only: symmetric_mass, paper_mass
    use rbs_solve_modal_modes, only: modes_type, find_modes, most_numbers
    implicit none
    private

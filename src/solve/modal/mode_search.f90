@@ -7,7 +7,7 @@
 !> masses.
 module rbs_solve_modal_mode_search
    use rbs_base_kinds, only: wp
-   use rbs_column_sturm, only: sturm_chain
+   use rbs_structure_column_sturm, only: sturm_chain
    implicit none
    private
 

@@ -3,7 +3,7 @@
 !> would take nearly all of the time. The equations are those of the chain.
 module rbs_solve_one_body_rk4_one_body
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type, small
+   use rbs_structure_column_column, only: column_type, small
    use rbs_hysteresis_springs, only: spring_array
    implicit none
    private

@@ -7,7 +7,7 @@ module rbs_solve_static_corner
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: choose_lines
-   use rbs_column_axial, only: critical_factor
+   use rbs_structure_column_axial, only: critical_factor
    use rbs_solve_static_path, only: static_path, describe_state, name_spring
    implicit none
    private

@@ -2,8 +2,8 @@
 module rbs_solve_static_curve
    use rbs_base_constants, only: unbounded
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type
-   use rbs_column_top, only: largest_turn
+   use rbs_structure_column_column, only: column_type
+   use rbs_structure_column_top, only: largest_turn
    use rbs_hysteresis_interaction_joints, only: least_forward_rate, nearest_layer
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_static_curved_equilibrium, only: path_point

@@ -14,9 +14,9 @@ module rbs_solve_static_curved
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: put_on_plane
-   use rbs_column_column, only: column_type, finite
-   use rbs_column_energy, only: potential_energy
-   use rbs_column_top, only: largest_turn
+   use rbs_structure_column_column, only: column_type, finite
+   use rbs_structure_column_energy, only: potential_energy
+   use rbs_structure_column_top, only: largest_turn
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_curve, only: clean, most_turn
    use rbs_solve_static_path, only: static_path, describe_state, name_spring, is_on_end, on_the_end, &

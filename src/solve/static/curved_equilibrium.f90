@@ -5,7 +5,7 @@
 !>     c = c_0 + c' t,   N = N_0 + N' t + r F
 !>
 !> with r F as in an exterior column of a frame; where N is constant, t is c. In absolute rotations joint by
-!> joint (see `rbs_column_dead_loads`), with the loads less the forces of the springs R(z, F, N) and their
+!> joint (see `rbs_structure_column_dead_loads`), with the loads less the forces of the springs R(z, F, N) and their
 !> derivatives K = -dR/dz, a = dR/dF, p = dR/dN, rates and corrections follow from one band with a border,
 !>
 !>     [K    -(a + r p)] [dz]   [p N'         R             ]
@@ -15,8 +15,8 @@
 module rbs_solve_static_curved_equilibrium
    use rbs_base_band_matrix, only: band_matrix
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type, small
-   use rbs_column_dead_loads, only: per_joint, dead_loads, add_springs, to_joints
+   use rbs_structure_column_column, only: column_type, small
+   use rbs_structure_column_dead_loads, only: per_joint, dead_loads, add_springs, to_joints
    use rbs_hysteresis_springs, only: spring_array
    implicit none
    private

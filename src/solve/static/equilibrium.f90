@@ -13,9 +13,9 @@ module rbs_solve_static_equilibrium
    use rbs_base_band_matrix, only: band_matrix
    use rbs_base_constants, only: no_stiffness
    use rbs_base_kinds, only: wp
-   use rbs_column_axial, only: geometric_stiffness, geometric_forces
-   use rbs_column_column, only: column_type
-   use rbs_column_dead_loads, only: to_joints
+   use rbs_structure_column_axial, only: geometric_stiffness, geometric_forces
+   use rbs_structure_column_column, only: column_type
+   use rbs_structure_column_dead_loads, only: to_joints
    use rbs_solve_static_few_bodies, only: few_bodies
    implicit none
    private

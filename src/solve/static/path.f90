@@ -6,9 +6,9 @@ module rbs_solve_static_path
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type, finite
-   use rbs_column_energy, only: potential_energy
-   use rbs_column_top, only: largest_turn, top_displacement, top_position
+   use rbs_structure_column_column, only: column_type, finite
+   use rbs_structure_column_energy, only: potential_energy
+   use rbs_structure_column_top, only: largest_turn, top_displacement, top_position
    use rbs_hysteresis_interaction_joints, only: fall_of, vary_axial_loads
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_channels, only: response_type

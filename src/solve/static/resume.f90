@@ -4,8 +4,8 @@ module rbs_solve_static_resume
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: go_under, vary_axial_loads
-   use rbs_column_column, only: column_type
-   use rbs_column_top, only: top_displacement
+   use rbs_structure_column_column, only: column_type
+   use rbs_structure_column_top, only: top_displacement
    use rbs_solve_end_state, only: end_state, standing_type, static_state
    use rbs_solve_line_search, only: false_position
    use rbs_solve_static_path, only: static_path, missing_work

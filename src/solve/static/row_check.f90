@@ -4,8 +4,8 @@
 module rbs_solve_static_row_check
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type, finite
-   use rbs_column_top, only: top_displacement
+   use rbs_structure_column_column, only: column_type, finite
+   use rbs_structure_column_top, only: top_displacement
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_spring_place, only: shear, flexure, axial
    implicit none

@@ -6,7 +6,7 @@ module rbs_solve_static_straight
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_path, only: static_path, describe_state, is_on_end, on_the_end, &

@@ -4,9 +4,9 @@
 !> the end of the stride.
 module rbs_solve_static_stride
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: finite
-   use rbs_column_energy, only: potential_energy
-   use rbs_column_top, only: top_displacement
+   use rbs_structure_column_column, only: finite
+   use rbs_structure_column_energy, only: potential_energy
+   use rbs_structure_column_top, only: top_displacement
    use rbs_hysteresis_interaction_joints, only: nearest_layer, moment_on_plane
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_line_search, only: false_position

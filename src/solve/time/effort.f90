@@ -6,7 +6,7 @@ module rbs_solve_time_effort
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_case_methods, only: method_type, method_named
-   use rbs_column_column, only: column_type, finite
+   use rbs_structure_column_column, only: column_type, finite
    use rbs_solve_modal_modes, only: frequency_bounds
    use rbs_solve_time_plan, only: time_plan
    implicit none

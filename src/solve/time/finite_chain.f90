@@ -3,7 +3,7 @@
 !> bodies have moved, and the velocities of the joints.
 module rbs_solve_time_finite_chain
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_solve_time_finite_joint, only: turned_body, turn_body, body_at, joint_type, joint_change, &
                                           joint_at, joint_rates
    use rbs_solve_time_state, only: state_type

@@ -13,9 +13,9 @@ module rbs_solve_time_finite_step
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_linalg, only: solve_general_band
-   use rbs_column_column, only: column_type
-   use rbs_column_energy, only: kinetic_energy
-   use rbs_column_finite, only: finite_work, finite_acceleration
+   use rbs_structure_column_column, only: column_type
+   use rbs_structure_column_energy, only: kinetic_energy
+   use rbs_structure_column_finite, only: finite_work, finite_acceleration
    use rbs_solve_time_finite_chain, only: finite_chain
    use rbs_solve_time_finite_joint, only: joint_forces, joint_tangent, local
    use rbs_loading_loads, only: lateral, horizontal, vertical, axial

@@ -7,7 +7,7 @@ module rbs_solve_time_located
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_column_energy, only: kinetic_of
+   use rbs_structure_column_energy, only: kinetic_of
    use rbs_hysteresis_interaction_joints, only: choose_lines, put_on_plane
    use rbs_hysteresis_layer_events, only: turn_layer
    use rbs_solve_time_event, only: event_type, find_event, same_event, distance_to, standing_rotation, &

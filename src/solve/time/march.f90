@@ -5,9 +5,9 @@ module rbs_solve_time_march
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: fall_of
-   use rbs_column_column, only: column_type
-   use rbs_column_energy, only: kinetic_energy, potential_energy
-   use rbs_column_top, only: top_motion, top_position
+   use rbs_structure_column_column, only: column_type
+   use rbs_structure_column_energy, only: kinetic_energy, potential_energy
+   use rbs_structure_column_top, only: top_motion, top_position
    use rbs_output_channels, only: energy_type, response_type
    use rbs_output_summary, only: summary_type
    use rbs_solve_end_state, only: standing_type

@@ -11,11 +11,11 @@ module rbs_solve_time_motion
    use rbs_base_error, only: error_type
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
-   use rbs_column_chain, only: chain_accelerations, second_order_forces
-   use rbs_column_column, only: column_type, small, finite
-   use rbs_column_energy, only: kinetic_energy, power_of_lifts
-   use rbs_column_finite, only: finite_work, finite_acceleration, finite_power
-   use rbs_column_momentum, only: momentum_at_foot
+   use rbs_structure_column_chain, only: chain_accelerations, second_order_forces
+   use rbs_structure_column_column, only: column_type, small, finite
+   use rbs_structure_column_energy, only: kinetic_energy, power_of_lifts
+   use rbs_structure_column_finite, only: finite_work, finite_acceleration, finite_power
+   use rbs_structure_column_momentum, only: momentum_at_foot
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_modal_matrices, only: modal_damping
    use rbs_loading_loads, only: lateral, horizontal, vertical, axial

@@ -1,7 +1,7 @@
 !> The embedded pair of order 5(4) of Dormand and Prince (1980), with the estimate of its error.
 module rbs_solve_time_pair45
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type
    implicit none

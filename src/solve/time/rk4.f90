@@ -2,7 +2,7 @@
 module rbs_solve_time_rk4
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_loading_loads, only: lateral, horizontal
    use rbs_solve_one_body_rk4_one_body, only: rk4_body
    use rbs_solve_time_scheme, only: scheme_type

@@ -6,9 +6,9 @@ module rbs_solve_time_run_dynamic
    use rbs_base_text, only: to_text
    use rbs_case_methods, only: method_type, methods, method_named, responses_tried, usual_tolerance, &
                                usual_rho_infinity
-   use rbs_column_axial, only: check_stable
-   use rbs_column_column, only: column_type, small, finite
-   use rbs_column_ends, only: check_inertia_of_ends, check_held_rotation
+   use rbs_structure_column_axial, only: check_stable
+   use rbs_structure_column_column, only: column_type, small, finite
+   use rbs_structure_column_ends, only: check_inertia_of_ends, check_held_rotation
    use rbs_loading_signal, only: signal_type
    use rbs_solve_check_values, only: check_values
    use rbs_solve_task, only: task_type

@@ -1,7 +1,7 @@
 !> What an explicit scheme is: one step from a state, tried without moving it.
 module rbs_solve_time_scheme
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_state, only: state_type
    implicit none

@@ -3,8 +3,8 @@
 module rbs_solve_time_sight
    use rbs_base_check, only: is_given
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type, finite
-   use rbs_column_top, only: top_motion, top_displacement, largest_turn
+   use rbs_structure_column_column, only: column_type, finite
+   use rbs_structure_column_top, only: top_motion, top_displacement, largest_turn
    use rbs_hysteresis_interaction_joints, only: fill_openings, opening_of
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_summary, only: peaks_type

@@ -5,9 +5,9 @@ module rbs_solve_time_start
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: go_under, vary_axial_loads
-   use rbs_column_column, only: column_type
-   use rbs_column_energy, only: kinetic_energy, potential_energy
-   use rbs_column_top, only: top_displacement
+   use rbs_structure_column_column, only: column_type
+   use rbs_structure_column_energy, only: kinetic_energy, potential_energy
+   use rbs_structure_column_top, only: top_displacement
    use rbs_solve_end_state, only: end_state, standing_type, moving_state
    use rbs_loading_loads, only: loads_type, lateral, vertical, top_axial => axial
    use rbs_solve_time_plan, only: time_plan, same_step

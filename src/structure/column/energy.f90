@@ -1,11 +1,11 @@
 !> Energies of a column that do not depend on its springs, at every level of kinematics.
-module rbs_column_energy
+module rbs_structure_column_energy
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
-   use rbs_column_axial, only: axial_energy
-   use rbs_column_column, only: column_type, small, finite
+   use rbs_structure_column_axial, only: axial_energy
+   use rbs_structure_column_column, only: column_type, small, finite
    use rbs_structure_spring_place, only: shear, flexure, axial
-   use rbs_column_finite, only: finite_kinetic, finite_potential
+   use rbs_structure_column_finite, only: finite_kinetic, finite_potential
    use rbs_structure_structure, only: vertical, top_axial
    implicit none
    private
@@ -100,4 +100,4 @@ contains
       if (column%opens) watt = watt - load(top_axial)*rising
    end function power_of_lifts
 
-end module rbs_column_energy
+end module rbs_structure_column_energy

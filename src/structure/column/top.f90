@@ -1,10 +1,10 @@
 !> Where the top of a column is, at every level of kinematics, and how far its bodies have turned.
-module rbs_column_top
+module rbs_structure_column_top
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type, small, finite
+   use rbs_structure_column_column, only: column_type, small, finite
    use rbs_structure_spring_place, only: shear, flexure, axial
-   use rbs_column_finite, only: finite_top
+   use rbs_structure_column_finite, only: finite_top
    implicit none
    private
 
@@ -118,4 +118,4 @@ contains
       end do
    end function largest_turn
 
-end module rbs_column_top
+end module rbs_structure_column_top

@@ -1,10 +1,10 @@
 !> Second-order work of the axial forces: geometric stiffness and critical load.
-module rbs_column_axial
+module rbs_structure_column_axial
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type
-   use rbs_column_sturm, only: sturm_chain, lateral_chain
+   use rbs_structure_column_column, only: column_type
+   use rbs_structure_column_sturm, only: sturm_chain, lateral_chain
    use rbs_structure_spring_place, only: shear, flexure
    implicit none
    private
@@ -147,4 +147,4 @@ contains
                        'Reduce axial_load or stiffen the springs')
    end subroutine check_stable
 
-end module rbs_column_axial
+end module rbs_structure_column_axial

@@ -12,9 +12,9 @@
 !> lose the low frequencies of a long chain, which are differences of large numbers in it.
 !>
 !> Openings, which nothing couples to slips and rotations, are a chain of their own that does not rotate.
-module rbs_column_sturm
+module rbs_structure_column_sturm
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    implicit none
    private
 
@@ -259,4 +259,4 @@ contains
       end do
    end function sum_of_squares
 
-end module rbs_column_sturm
+end module rbs_structure_column_sturm

@@ -10,12 +10,12 @@
 !> it and the body below turns by minus the rotation of that body, and its moment holds the top. That joint
 !> is the lowest one turned about the middle of the column: it slips and opens along the directions of the
 !> body above it, which are fixed.
-module rbs_column_column
+module rbs_structure_column_column
    use rbs_base_check, only: is_given
    use rbs_base_kinds, only: wp
-   use rbs_column_chain, only: deformations, displacements, body_forces, second_order_forces, &
+   use rbs_structure_column_chain, only: deformations, displacements, body_forces, second_order_forces, &
                                add_joint_stiffness, add_axial_stiffness
-   use rbs_column_column_record, only: column_record
+   use rbs_structure_column_column_record, only: column_record
    use rbs_hysteresis_rule, only: spring_rules
    use rbs_hysteresis_spring_record, only: spring_record, make_rules
    use rbs_structure_spring_place, only: spring_place, shear, flexure, axial
@@ -310,7 +310,7 @@ contains
       column%initial_stiffness = column%rules%initial_stiffness()
    end subroutine set_springs
 
-   !> The coordinates of the bodies, in which the mass is diagonal; see `rbs_column_chain`.
+   !> The coordinates of the bodies, in which the mass is diagonal; see `rbs_structure_column_chain`.
    subroutine set_unknowns(column)
       type(column_type), intent(inout) :: column
       integer :: i, n, m
@@ -435,4 +435,4 @@ contains
       call add_axial_stiffness(self%n, self%length, self%lower, self%upper, k, band)
    end subroutine add_geometric
 
-end module rbs_column_column
+end module rbs_structure_column_column

@@ -1,5 +1,5 @@
 !> What the user asked of the column: geometry, mass, joints, axial load, damping.
-module rbs_column_column_record
+module rbs_structure_column_column_record
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use rbs_base_check, only: is_given
    use rbs_base_constants, only: unset, standard_gravity
@@ -356,4 +356,4 @@ contains
                         "'; it is one of "//list_of(pack(rule_names, suits(rule_names, place))))
    end subroutine check_spring
 
-end module rbs_column_column_record
+end module rbs_structure_column_column_record

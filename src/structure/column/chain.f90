@@ -12,7 +12,7 @@
 !> Joint i acts on body i with -V_i, -M_i, -N_i at its bottom, and on body i - 1 the other way round at its
 !> top: B' f. It is M^-1 r of eqs 1-3 without M. Stiffness is a band of half-width 3, band(1 + i - j, j) =
 !> a(i, j) for j <= i <= j + 3; the y are a chain of their own behind the rest.
-module rbs_column_chain
+module rbs_structure_column_chain
    use rbs_base_kinds, only: wp
    implicit none
    private
@@ -219,4 +219,4 @@ contains
       end do
    end subroutine add_axial_stiffness
 
-end module rbs_column_chain
+end module rbs_structure_column_chain

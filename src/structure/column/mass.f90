@@ -1,7 +1,7 @@
 !> Mass matrix of the chain for small rotations, in two views of the same equations.
-module rbs_column_mass
+module rbs_structure_column_mass
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_structure_spring_place, only: shear, flexure, axial
    implicit none
    private
@@ -72,4 +72,4 @@ contains
       end do
    end subroutine paper_mass
 
-end module rbs_column_mass
+end module rbs_structure_column_mass

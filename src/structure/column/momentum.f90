@@ -1,8 +1,8 @@
 !> Momentum of a column relative to the ground, at every level of kinematics.
-module rbs_column_momentum
+module rbs_structure_column_momentum
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type, finite
-   use rbs_column_finite, only: finite_momentum
+   use rbs_structure_column_column, only: column_type, finite
+   use rbs_structure_column_finite, only: finite_momentum
    use rbs_structure_spring_place, only: shear, flexure
    implicit none
    private
@@ -47,4 +47,4 @@ contains
       end do
    end function of_upright_bodies
 
-end module rbs_column_momentum
+end module rbs_structure_column_momentum

@@ -1,9 +1,9 @@
 !> What the ends of a column need where it moves in time: a footing and a fixed top have inertia of their own.
-module rbs_column_ends
+module rbs_structure_column_ends
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    implicit none
    private
 
@@ -52,4 +52,4 @@ contains
                        'to zero, not to '//to_text(total)//'; change that of the last joint')
    end subroutine check_held_rotation
 
-end module rbs_column_ends
+end module rbs_structure_column_ends

@@ -16,11 +16,11 @@
 !> all in the directions of the two bodies, so that only sine and cosine of phi_i are needed. A
 !> field of acceleration that all bodies share (ground, weight) is felt by the first joint alone. No mass
 !> matrix is built and none is factored.
-module rbs_column_finite
+module rbs_structure_column_finite
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: solve_tridiagonal
-   use rbs_column_column, only: column_type
+   use rbs_structure_column_column, only: column_type
    use rbs_structure_spring_place, only: shear, flexure, axial
    implicit none
    private
@@ -471,4 +471,4 @@ contains
       end do
    end function finite_momentum
 
-end module rbs_column_finite
+end module rbs_structure_column_finite

@@ -7,9 +7,9 @@
 !> axial loads on openings of rotated joints. P = `axial_body`, Q = `axial_joint` (`axial_slip` on slips),
 !> th_0 = 0. In absolute rotations joints meet only their neighbours. Unknowns stand joint by joint here: slip,
 !> opening if there is one, absolute rotation.
-module rbs_column_dead_loads
+module rbs_structure_column_dead_loads
    use rbs_base_kinds, only: wp
-   use rbs_column_column, only: column_type, finite
+   use rbs_structure_column_column, only: column_type, finite
    use rbs_structure_spring_place, only: shear, flexure, axial
    implicit none
    private
@@ -138,4 +138,4 @@ contains
       end do
    end subroutine to_joints
 
-end module rbs_column_dead_loads
+end module rbs_structure_column_dead_loads
