@@ -41,9 +41,9 @@ contains
    pure subroutine geometric_forces(column, q, g)
       type(column_type), intent(in) :: column
       !> Deformations (unknowns)
-      real(wp), intent(in) :: q(column%n, *)
+      real(wp), intent(in) :: q(column%n, 2)
       !> Forces of slips and rotations; those of openings are not touched (unknowns) [N, N m]
-      real(wp), intent(inout) :: g(column%n, *)
+      real(wp), intent(inout) :: g(column%n, 2)
       real(wp) :: rotation, above
       integer :: i, n
 
@@ -66,7 +66,7 @@ contains
    pure real(wp) function axial_energy(column, q) result(energy)
       type(column_type), intent(in) :: column
       !> Deformations (2 n)
-      real(wp), intent(in) :: q(column%n, *)
+      real(wp), intent(in) :: q(column%n, 2)
       real(wp) :: rotation
       integer :: i
 

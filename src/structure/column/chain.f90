@@ -23,14 +23,15 @@ module rbs_structure_column_chain
 contains
 
    !> Deformations of the joints from displacements of the bodies, d = B x.
-   pure subroutine deformations(n, opens, lower, upper, x, d)
+   pure subroutine deformations(n, kinds, lower, upper, x, d)
       integer, intent(in) :: n
-      logical, intent(in) :: opens
+      !> Kinds of deformations: 2, or 3 where joints open
+      integer, intent(in) :: kinds
       !> Distances from the centroid to bottom and top (n) [m]
       real(wp), intent(in) :: lower(n), upper(n)
       !> (2 n or 3 n)
-      real(wp), intent(in) :: x(*)
-      real(wp), intent(inout) :: d(*)
+      real(wp), intent(in) :: x(kinds*n)
+      real(wp), intent(inout) :: d(kinds*n)
       integer :: i
 
       d(1) = x(1) - lower(1)*x(2)
@@ -39,7 +40,7 @@ contains
          d(i) = (x(2*i - 1) - x(2*i - 3)) - (lower(i)*x(2*i) + upper(i - 1)*x(2*i - 2))
          d(n + i) = x(2*i) - x(2*i - 2)
       end do
-      if (.not. opens) return
+      if (kinds < 3) return
       d(2*n + 1) = x(2*n + 1)
       do i = 2*n + 2, 3*n
          d(i) = x(i) - x(i - 1)
@@ -47,11 +48,12 @@ contains
    end subroutine deformations
 
    !> Displacements of the bodies from deformations of the joints, from the ground up.
-   pure subroutine displacements(n, opens, lower, upper, d, x)
+   pure subroutine displacements(n, kinds, lower, upper, d, x)
       integer, intent(in) :: n
-      logical, intent(in) :: opens
-      real(wp), intent(in) :: lower(n), upper(n), d(*)
-      real(wp), intent(inout) :: x(*)
+      !> Kinds of deformations: 2, or 3 where joints open
+      integer, intent(in) :: kinds
+      real(wp), intent(in) :: lower(n), upper(n), d(kinds*n)
+      real(wp), intent(inout) :: x(kinds*n)
       real(wp) :: top, rotation, height
       integer :: i
 
@@ -63,7 +65,7 @@ contains
          x(2*i - 1) = top + d(i) + lower(i)*rotation
          top = x(2*i - 1) + upper(i)*rotation
       end do
-      if (.not. opens) return
+      if (kinds < 3) return
       height = 0.0_wp
       do i = 2*n + 1, 3*n
          height = height + d(i)
@@ -72,17 +74,18 @@ contains
    end subroutine displacements
 
    !> Forces and moments about the centroids from the forces of the joints and those at the top, -B' f + p.
-   pure subroutine body_forces(n, opens, lower, upper, f, lateral, axial_load, weight, adds, g)
+   pure subroutine body_forces(n, kinds, lower, upper, f, lateral, axial_load, weight, adds, g)
       integer, intent(in) :: n
-      logical, intent(in) :: opens
+      !> Kinds of deformations: 2, or 3 where joints open
+      integer, intent(in) :: kinds
       real(wp), intent(in) :: lower(n), upper(n)
       !> Shear forces [N], moments [N m] and axial forces, tension positive [N], of the joints
-      real(wp), intent(in) :: f(*)
+      real(wp), intent(in) :: f(kinds*n)
       !> Loads at the top, compression positive, and weight of the bodies [N]
       real(wp), intent(in) :: lateral, axial_load, weight(n)
       !> Whether the moments are added to those that are there (2 n or 3 n)
       logical, intent(in) :: adds
-      real(wp), intent(inout) :: g(*)
+      real(wp), intent(inout) :: g(kinds*n)
       real(wp) :: moment
       integer :: i
 
@@ -96,7 +99,7 @@ contains
       moment = (lower(n)*f(n) + upper(n)*lateral) - f(2*n)
       if (adds) moment = moment + g(2*n)
       g(2*n) = moment
-      if (.not. opens) return
+      if (kinds < 3) return
       do i = 1, n - 1
          g(2*n + i) = (f(2*n + i + 1) - f(2*n + i)) - weight(i)
       end do
@@ -159,14 +162,15 @@ contains
    end subroutine second_order_forces
 
    !> Add B' diag(k) B of the springs.
-   pure subroutine add_joint_stiffness(n, opens, lower, upper, k, band)
+   pure subroutine add_joint_stiffness(n, kinds, lower, upper, k, band)
       integer, intent(in) :: n
-      logical, intent(in) :: opens
+      !> Kinds of deformations: 2, or 3 where joints open
+      integer, intent(in) :: kinds
       real(wp), intent(in) :: lower(n), upper(n)
       !> Stiffness of the joints [N/m, N m, N/m]
-      real(wp), intent(in) :: k(*)
+      real(wp), intent(in) :: k(kinds*n)
       !> Lower band
-      real(wp), intent(inout) :: band(4, *)
+      real(wp), intent(inout) :: band(4, kinds*n)
       real(wp) :: shear, flexure, low, up
       integer :: i, t
 
@@ -189,7 +193,7 @@ contains
          band(2, t - 2) = band(2, t - 2) - shear*up
          band(3, t - 2) = band(3, t - 2) + shear*up*low - flexure
       end do
-      if (.not. opens) return
+      if (kinds < 3) return
       do i = 2*n + 1, 3*n
          band(1, i) = band(1, i) + k(i)
          if (i == 2*n + 1) cycle
@@ -203,7 +207,7 @@ contains
       integer, intent(in) :: n
       real(wp), intent(in) :: length(n), lower(n), upper(n), axial(2*n)
       !> Lower band
-      real(wp), intent(inout) :: band(4, *)
+      real(wp), intent(inout) :: band(4, 2*n)
       real(wp) :: force
       integer :: i, t
 

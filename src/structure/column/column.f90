@@ -360,7 +360,7 @@ contains
       real(wp), intent(in), contiguous :: dx(:)
       real(wp), intent(out), contiguous :: dd(:)
 
-      call deformations(self%n, self%opens, self%lower, self%upper, dx, dd)
+      call deformations(self%n, self%kinds, self%lower, self%upper, dx, dd)
    end subroutine spring_rates
 
    !> Changes of the displacements of the bodies from those of the joints.
@@ -369,7 +369,7 @@ contains
       real(wp), intent(in), contiguous :: dd(:)
       real(wp), intent(out), contiguous :: dx(:)
 
-      call displacements(self%n, self%opens, self%lower, self%upper, dd, dx)
+      call displacements(self%n, self%kinds, self%lower, self%upper, dd, dx)
       if (self%held) dx(2*self%n) = 0.0_wp
    end subroutine unknown_rates
 
@@ -381,7 +381,7 @@ contains
       real(wp), intent(out), contiguous :: g(:)
 
       if (size(axial) > 0) call second_order_forces(self%n, self%length, axial, d, f, 2, g)
-      call body_forces(self%n, self%opens, self%lower, self%upper, f, load(lateral), &
+      call body_forces(self%n, self%kinds, self%lower, self%upper, f, load(lateral), &
                        self%axial_load + load(top_axial), self%weight, size(axial) > 0, g)
    end subroutine forces
 
@@ -423,7 +423,7 @@ contains
       real(wp), intent(in), contiguous :: k(:)
       real(wp), intent(inout), contiguous :: band(:, :)
 
-      call add_joint_stiffness(self%n, self%opens, self%lower, self%upper, k, band)
+      call add_joint_stiffness(self%n, self%kinds, self%lower, self%upper, k, band)
    end subroutine add_stiffness
 
    !> Add the geometric stiffness.

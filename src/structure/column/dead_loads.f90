@@ -29,7 +29,7 @@ contains
    pure subroutine dead_loads(column, q, force, load, arm, band, top)
       type(column_type), intent(in) :: column
       !> Deformations of the joints (unknowns)
-      real(wp), intent(in) :: q(column%n, *)
+      real(wp), intent(in) :: q(column%n, column%kinds)
       !> Lateral force F [N]
       real(wp), intent(in) :: force
       !> Loads [N, N, N m] and arms [1, 1, m] (unknowns, joint by joint)
@@ -94,7 +94,7 @@ contains
    pure subroutine add_springs(column, f, k, load, band)
       type(column_type), intent(in) :: column
       !> Forces and stiffness of the springs (unknowns)
-      real(wp), intent(in) :: f(column%n, *), k(column%n, *)
+      real(wp), intent(in) :: f(column%n, column%kinds), k(column%n, column%kinds)
       real(wp), intent(inout), contiguous :: load(:), band(:, :)
       integer :: i, j, n, per
 
@@ -124,7 +124,7 @@ contains
       integer, intent(in) :: per
       real(wp), intent(in), contiguous :: z(:)
       !> (unknowns, or 2 n of them)
-      real(wp), intent(out) :: q(column%n, *)
+      real(wp), intent(out) :: q(column%n, per)
       real(wp) :: below
       integer :: i, n
 

@@ -106,7 +106,7 @@ contains
    !> Largest absolute rotation of a body in deformations, or in a change of them, in size [rad].
    pure real(wp) function largest_turn(column, change) result(largest)
       type(column_type), intent(in) :: column
-      real(wp), intent(in) :: change(column%n, *)
+      real(wp), intent(in) :: change(column%n, 2)
       real(wp) :: rotation
       integer :: i
 
