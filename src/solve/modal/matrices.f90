@@ -12,6 +12,7 @@ module rbs_solve_modal_matrices
    use rbs_structure_column_column, only: column_type
    use rbs_structure_column_mass, only: symmetric_mass, paper_mass
    use rbs_solve_modal_modes, only: modes_type, find_modes, most_numbers
+   use rbs_structure_spring_place, only: flexure
    implicit none
    private
 
@@ -37,6 +38,7 @@ contains
       logical, intent(in) :: paper
       type(matrices_type), intent(out) :: matrices
       type(error_type), allocatable, intent(out) :: error
+      character(len=9) :: names(3)
       integer :: i, m, n
 
       n = column%n
@@ -60,27 +62,16 @@ contains
       matrices%damping = matrices%damping + column%mass_damping*matrices%mass &
                          + column%stiffness_damping*matrices%stiffness
       allocate (matrices%unknown(m))
-      do i = 1, n
-         matrices%unknown(i) = 'slip_'//to_text(joint(i))
-         matrices%unknown(n + i) = 'rotation_'//to_text(joint(i))
-         if (paper) matrices%unknown(n + i) = 'theta_'//to_text(joint(i))
-         if (column%opens) matrices%unknown(2*n + i) = 'opening_'//to_text(joint(i))
+      names = [character(len=9) :: 'slip_', merge('theta_   ', 'rotation_', paper), 'opening_']
+      do i = 1, m
+         matrices%unknown(i) = trim(names(column%place(i)%kind))//to_text(column%place(i)%joint)
       end do
       call transform(column, paper, matrices%mass)
       call transform(column, paper, matrices%stiffness)
       call transform(column, paper, matrices%geometric)
       call transform(column, paper, matrices%damping)
-      if (column%held) matrices%unknown = [matrices%unknown(:2*n - 1), matrices%unknown(2*n + 1:)]
+      if (column%held) matrices%unknown = pack(matrices%unknown, [(i /= column%at(flexure, n), i=1, m)])
       if (paper .and. .not. column%held) call paper_mass(column, matrices%mass(:2*n, :2*n))
-
-   contains
-
-      integer function joint(i)
-         integer, intent(in) :: i
-
-         joint = i - merge(1, 0, column%footing)
-      end function joint
-
    end subroutine assemble_matrices
 
    !> Take the rotation of a held top out, which is minus the sum of those below, and pass to absolute

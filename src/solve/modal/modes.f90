@@ -9,6 +9,7 @@ module rbs_solve_modal_modes
    use rbs_structure_column_column_record, only: most_dense
    use rbs_structure_column_sturm, only: lateral_chain, opening_chain
    use rbs_solve_modal_mode_search, only: mode_search
+   use rbs_structure_spring_place, only: shear, flexure, axial
    implicit none
    private
 
@@ -101,13 +102,13 @@ contains
          associate (shape => modes%shapes(:, i), found => shapes(:, :, next(b), b))
             modes%omega(i) = sqrt(lowest(b))
             if (b == 2) then
-               shape(2*n + 1:) = found(1, :)
+               shape(column%at(axial, :)) = found(1, :)
             else
-               shape(:n) = found(1, :)
-               shape(n + 1:2*n) = found(2, :)
+               shape(column%at(shear, :)) = found(1, :)
+               shape(column%at(flexure, :)) = found(2, :)
             end if
             ! The top goes to +x or, if it only goes along the column, up.
-            top = dot_product(column%arm, shape) + sum(shape(2*n + 1:))
+            top = dot_product(column%arm, shape) + sum(shape, column%place%kind == axial)
             shape = sign(1.0_wp, top)*shape
          end associate
          next(b) = next(b) + 1

@@ -17,6 +17,7 @@ module rbs_solve_static_equilibrium
    use rbs_structure_column_column, only: column_type
    use rbs_structure_column_dead_loads, only: to_joints
    use rbs_solve_static_few_bodies, only: few_bodies
+   use rbs_structure_spring_place, only: shear, flexure
    implicit none
    private
 
@@ -104,9 +105,10 @@ contains
       do i = 1, n
          self%lever(2*i - 1) = 1.0_wp
          self%lever(2*i) = column%length(i)
-         stiffness(2*i - 1) = column%initial_stiffness(i)
-         stiffness(2*i) = column%initial_stiffness(n + i)
-         if (i < n) stiffness(2*i) = stiffness(2*i) + column%initial_stiffness(n + i + 1)
+         stiffness(2*i - 1:2*i) = column%initial_stiffness(column%at(:flexure, i))
+      end do
+      do i = 2, n
+         stiffness(2*i - 2) = stiffness(2*i - 2) + column%initial_stiffness(column%at(flexure, i))
       end do
       call self%tangent%create(self%unknowns, 2, stiffness)
    end subroutine create_band
@@ -275,19 +277,20 @@ contains
    !> The same in (slip, absolute rotation), joint by joint, as a band.
    subroutine fill_tangent(self, k)
       type(equilibrium_type), intent(inout) :: self
-      real(wp), intent(in) :: k(:)
+      !> Stiffness of the springs, by kind
+      real(wp), intent(in) :: k(self%column%n, 2)
       integer :: i, n
 
       n = self%column%n
       associate (band => self%tangent%band, column => self%column)
          band = 0.0_wp
          do i = 1, n
-            band(1, 2*i - 1) = k(i)
-            band(1, 2*i) = k(n + i) - column%axial_body(i)*column%length(i)
+            band(1, 2*i - 1) = k(i, shear)
+            band(1, 2*i) = k(i, flexure) - column%axial_body(i)*column%length(i)
             if (i == n) exit
-            band(1, 2*i) = band(1, 2*i) + k(n + i + 1)
+            band(1, 2*i) = band(1, 2*i) + k(i + 1, flexure)
             band(2, 2*i) = -column%axial_slip(i + 1)
-            band(3, 2*i) = -k(n + i + 1)
+            band(3, 2*i) = -k(i + 1, flexure)
          end do
       end associate
       if (self%column%held) call self%tangent%hold_last(self%tangent%stiffness(2*n))
@@ -296,14 +299,14 @@ contains
    !> Forces on (slip, absolute rotation), joint by joint, from those of the joints.
    pure subroutine along_joints(n, r, b)
       integer, intent(in) :: n
-      real(wp), intent(in) :: r(:)
-      real(wp), intent(out) :: b(:)
+      !> By kind; joint by joint
+      real(wp), intent(in) :: r(n, 2)
+      real(wp), intent(out) :: b(2, n)
       integer :: i
 
       do i = 1, n
-         b(2*i - 1) = r(i)
-         b(2*i) = r(n + i)
-         if (i < n) b(2*i) = b(2*i) - r(n + i + 1)
+         b(:, i) = r(i, :)
+         if (i < n) b(2, i) = b(2, i) - r(i + 1, flexure)
       end do
    end subroutine along_joints
 
