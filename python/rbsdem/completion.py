@@ -91,6 +91,8 @@ def _add_executable(commands: argparse._SubParsersAction[argparse.ArgumentParser
     check.add_argument(*quiet, action="store_true", help="print errors only")
     modes = commands.add_parser("modes", help="natural frequencies, stable step")
     modes.add_argument("case", metavar="CASE.nml")
+    modes.add_argument("--count", metavar="N", help="this many, the lowest")
+    modes.add_argument("--matrices", action="store_true", help="mass and stiffness matrices too")
     keys = commands.add_parser("keys", help="keys of a group or rule, or all")
     known = _core.keys()
     keys.add_argument("name", nargs="?", choices=[*known["groups"], *known["rules"]])

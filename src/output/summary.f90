@@ -159,7 +159,7 @@ contains
    !> How the run ended, if nothing failed.
    pure function status(self)
       class(summary_type), intent(in) :: self
-      character(len=:), allocatable :: status
+      character(len=13) :: status
 
       status = 'completed'
       if (self%collapsed) status = 'collapsed'

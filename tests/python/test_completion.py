@@ -16,7 +16,7 @@ def test_every_command_and_option_of_the_executable_is_known(run_cli):
     """The parser that stands for the executable has the words of its help."""
     whole = completion.whole_parser()
     parsers = next(a for a in whole._actions if a.choices).choices
-    usage = re.findall(r"^  rbsdem ([a-z]+) (.*?)   ", run_cli(["--help"]).stdout, re.MULTILINE)
+    usage = re.findall(r"^  rbsdem ([a-z]+) (.*?)  ", run_cli(["--help"]).stdout, re.MULTILINE)
     assert {name for name, _ in usage} == set(parsers) - set(COMMANDS)
     for name, words in usage:
         known = {o for a in parsers[name]._actions for o in a.option_strings}
