@@ -86,14 +86,20 @@ contains
          end if
          if (word(:mark - 1) /= '--count') then
             if (allocated(value)) command%output = value
-            if (.not. allocated(value)) call complain(word(:mark - 1)//' needs the path of a file after it', error)
+            if (.not. allocated(value)) then
+               call complain(word(:mark - 1)//' needs the path of a file after it', error)
+            end if
             return
          end if
          status = 1
          if (allocated(value)) then
-            if (verify(value, '0123456789') == 0 .and. len(value) < 9) read (value, *, iostat=status) command%count
+            if (verify(value, '0123456789') == 0 .and. len(value) < 9) then
+               read (value, *, iostat=status) command%count
+            end if
          end if
-         if (status /= 0 .or. command%count < 1) call complain('--count needs a number of modes above zero', error)
+         if (status /= 0 .or. command%count < 1) then
+            call complain('--count needs a number of modes above zero', error)
+         end if
          return
       case default
          call complain("the option '"//word(:mark - 1)//"' is not known; did you mean '"// &
@@ -152,7 +158,8 @@ contains
       else if (command%as_json .and. command%name /= 'keys') then
          call complain('--json is for keys only', error)
       else if ((command%count > 0 .or. command%matrices) .and. command%name /= 'modes') then
-         call complain(trim(merge('--count   ', '--matrices', command%count > 0))//' is for modes only', error)
+         call complain(trim(merge('--count   ', '--matrices', command%count > 0))//' is for modes only', &
+                       error)
       else if (command%name == 'keys') then
          if (allocated(command%case)) then
             call complain("one argument too many: '"//command%case//"'", error)

@@ -91,8 +91,8 @@ contains
       if (.not. allocated(error)) call report_end(run, error)
    end subroutine run_case
 
-   !> The error of a run that ended at the user's criterion of collapse, or where a joint lost its axial load; the
-   !> run itself has not failed.
+   !> The error of a run that ended at the user's criterion of collapse, or where a joint lost its axial load;
+   !> the run itself has not failed.
    subroutine report_end(run, error)
       type(run_type), intent(in) :: run
       type(error_type), allocatable, intent(out) :: error
@@ -106,7 +106,8 @@ contains
             text = 'axial failure at '//text//': the layers of joint '// &
                    to_text(run%case%column%joint_number(summary%lost_joint))// &
                    ' no longer carry the axial load of '//to_text(fall%axial_load)// &
-                   ' N; at that rotation they carry at most '//to_text(fall%capacity)//' N, and the joint would '
+                   ' N; at that rotation they carry at most '//to_text(fall%capacity)// &
+                   ' N, and the joint would '
             if (fall%rests) then
                text = text//'rest after '//to_text(abs(fall%drop))//' m. The'
             else
@@ -114,7 +115,8 @@ contains
             end if
          else
             text = 'collapsed at '//text//': the top is at '//to_text(summary%peak_displacement)// &
-                   ' m, beyond collapse_drift = '//to_text(run%case%analysis%collapse_drift)//' of the height; the'
+                   ' m, beyond collapse_drift = '//to_text(run%case%analysis%collapse_drift)// &
+                   ' of the height; the'
          end if
       end associate
       call fatal_error(error, column_collapsed, text//' rows up to there are in '//run%recorder%file%path)
@@ -144,7 +146,8 @@ contains
          if (case%analysis%dynamic()) then
             call long_run_note(run%column, plan, text)
             if (text /= '') call notes%add(text)
-         else if (all(case%loading(:case%loadings)%drive /= 'force') .and. case%column%kinematics /= 'finite') then
+         else if (all(case%loading(:case%loadings)%drive /= 'force') .and. &
+                  case%column%kinematics /= 'finite') then
             call drift_note(maxval(abs(run%history%target)), case%column%height, notes)
          end if
       end associate

@@ -224,6 +224,7 @@ contains
          call check_number(x, trim(self%group), key, self%messages, self%sound)
       case (listing)
          if (is_given(x)) call list_numbers(self, key%name, [x])
+      case default                                  ! no other mode
       end select
    end subroutine one_number
 
@@ -256,6 +257,7 @@ contains
             if (size(x) > 1) key%name = name//'('//to_text(i)//')'
             call check_number(x(i), trim(self%group), key, self%messages, self%sound)
          end do
+      case default                                  ! no other mode
       end select
    end subroutine real_list_key
 
@@ -284,6 +286,7 @@ contains
          worst = minval(i)
          if (real(worst, wp) >= bound%least) worst = maxval(i)
          call check_number(real(worst, wp), trim(self%group), key, self%messages, self%sound)
+      case default                                  ! no other mode
       end select
    end subroutine integer_list_key
 
@@ -307,8 +310,8 @@ contains
       value = trim(text)
       call one_text(self, key, value)
       if (len(value) > len(text)) then
-         call self%messages%add(trim(self%group)//': '//name//" = '"//value(:min(40, len(value)))//"' has "// &
-                                to_text(len(value))//' characters; at most '//to_text(len(text))// &
+         call self%messages%add(trim(self%group)//': '//name//" = '"//value(:min(40, len(value)))// &
+                                "' has "//to_text(len(value))//' characters; at most '//to_text(len(text))// &
                                 ' are allowed')
       end if
       text = value
@@ -341,6 +344,7 @@ contains
          if (text == self%keys(find_key(self%keys(:self%count), key%name))%default_text) return
          self%listed = self%listed + 1
          self%entry(self%listed) = entry_type(key%name, text_kind, text=text)
+      case default                                  ! no other mode
       end select
    end subroutine one_text
 
@@ -393,7 +397,8 @@ contains
          end if
          self%listed = self%listed + 1
          if (key%kind == word_kind) then
-            self%entry(self%listed) = entry_type(name, text_kind, text=trim(choice_name(key, nint(number(1)))))
+            self%entry(self%listed) = entry_type(name, text_kind, &
+                                                 text=trim(choice_name(key, nint(number(1)))))
          else
             self%entry(self%listed) = entry_type(name, key%kind, number=number)
          end if

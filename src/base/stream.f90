@@ -1,6 +1,6 @@
-!> A stream of numbers in which an object saves its history variables. One procedure of the object, `serialize`,
-!> names each component once; the stream takes the values when it saves and returns them, to the last bit, when
-!> it restores. So the two cannot differ, and the numbers can go through an array or a file.
+!> A stream of numbers in which an object saves its history variables. One procedure of the object,
+!> `serialize`, names each component once; the stream takes the values when it saves and returns them, to the
+!> last bit, when it restores. So the two cannot differ, and the numbers can go through an array or a file.
 module rbs_base_stream
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_kinds, only: wp

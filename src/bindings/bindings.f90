@@ -3,10 +3,10 @@
 ! f2py would treat real(wp) as a C float without a warning, so only c_double and c_int appear here.
 
 subroutine rbs_evaluate(what, statement, nn, number, names, m, input, control, answer, address, sizes)
-   ! Answer a request (see `request_type`). `answer` is a pointer, for `rbs_read` and `rbs_release`, and zero if
-   ! there is nothing to read; `address` is that of its rows. `sizes`: status (0 success, 1 the analysis failed, 2 bad input, 3 a long run that waits
-   ! to be told), characters of the text, numbers of the values, values of a row, and rows. Another thread may
-   ! read and set `control`.
+   ! Answer a request (see `request_type`). `answer` is a pointer, for `rbs_read` and `rbs_release`, and zero
+   ! if there is nothing to read; `address` is that of its rows. `sizes`: status (0 success, 1 the analysis
+   ! failed, 2 bad input, 3 a long run that waits to be told), characters of the text, numbers of the values,
+   ! values of a row, and rows. Another thread may read and set `control`.
    use iso_c_binding, only: c_double, c_int
    use rbs_bindings_doors, only: open_door
    implicit none

@@ -1,5 +1,5 @@
-!> Keeps an answer until Python has read it. Its rows, which may be many, are not copied: Python looks at them in
-!> place and releases them with the last array that shows them.
+!> Keeps an answer until Python has read it. Its rows, which may be many, are not copied: Python looks at them
+!> in place and releases them with the last array that shows them.
 module rbs_bindings_doors
    use, intrinsic :: iso_c_binding, only: c_double, c_f_pointer, c_int, c_loc, c_null_ptr
    use rbs_bindings_evaluate, only: evaluate

@@ -24,9 +24,9 @@ module rbs_bindings_ensembles
 
 contains
 
-   !> What each motion takes for each column, and what is wrong with the columns. Rows: for each column expected
-   !> seconds of each motion, then 1 for each that lanes take. Text: number of the column and message of each
-   !> fault.
+   !> What each motion takes for each column, and what is wrong with the columns. Rows: for each column
+   !> expected seconds of each motion, then 1 for each that lanes take. Text: number of the column and message
+   !> of each fault.
    subroutine plan_ensemble(request, answer)
       type(request_type), intent(in) :: request
       type(answer_type), intent(inout) :: answer
@@ -120,8 +120,8 @@ contains
    end subroutine take_motions
 
    !> The next column of the request: the statement holds those of all columns with their settings, each
-   !> followed by `after`, the arrays `watches` and `before` what all are watched for and the states that their
-   !> runs begin in, and `counts` how many numbers, watches and numbers of its state each has.
+   !> followed by `after`, the arrays `watches` and `before` what all are watched for and the states that
+   !> their runs begin in, and `counts` how many numbers, watches and numbers of its state each has.
    subroutine next_column(request, place, at, motion, column, error)
       type(request_type), intent(in) :: request
       integer, intent(in) :: place
@@ -140,8 +140,8 @@ contains
                  before => request%array('before'))
          next(1) = at(1) + index(request%statement(at(1):), after)
          next(2:) = at(2:) + nint(counts(3*place - 2:3*place)*[1, 6, 1])
-         call column_from_statements(request%statement(at(1):next(1) - 2), request%number(at(2):next(2) - 1), &
-                                     column%column, case, error)
+         call column_from_statements(request%statement(at(1):next(1) - 2), &
+                                     request%number(at(2):next(2) - 1), column%column, case, error)
          column%watch = watches_of(watches(at(3):next(3) - 1))
          if (allocated(column%before)) deallocate (column%before)
          if (next(4) > at(4)) column%before = before(at(4):next(4) - 1)

@@ -88,8 +88,8 @@ contains
       character(len=1), parameter :: line = new_line('a')
 
       answer%text = trim(channel_units())//line//trim(measure_names())//line// &
-                    list_of(section_figures)//line//list_of(spring_figures)//line//list_of(point_values)//line// &
-                    list_of(shear_values)//line//list_of(profile_values)//line//list_of(layer_values)
+                    list_of(section_figures)//line//list_of(spring_figures)//line//list_of(point_values)// &
+                    line//list_of(shear_values)//line//list_of(profile_values)//line//list_of(layer_values)
    end subroutine name_quantities
 
    !> Whether the rule allows a spring, or the forces of a virgin one along a path of deformations.

@@ -1,5 +1,5 @@
-!> What crosses between Python and Fortran: a request, which names what is wanted and brings a text and numbers,
-!> and its answer, a text and numbers of any length.
+!> What crosses between Python and Fortran: a request, which names what is wanted and brings a text and
+!> numbers, and its answer, a text and numbers of any length.
 module rbs_bindings_exchange
    use, intrinsic :: iso_c_binding, only: c_double
    use rbs_base_error, only: error_type
@@ -14,8 +14,8 @@ module rbs_bindings_exchange
       !> Groups of keys (see `rbs_bindings_statements`) or another text, and the numbers of the keys
       character(len=:), allocatable :: statement
       real(c_double), pointer, contiguous :: number(:) => null()
-      !> Arrays with names: name and size of each ('values:100'), separated by blanks, and all their numbers one
-      !> after the other
+      !> Arrays with names: name and size of each ('values:100'), separated by blanks, and all their numbers
+      !> one after the other
       character(len=:), allocatable :: names
       real(c_double), pointer, contiguous :: input(:) => null()
    contains

@@ -21,9 +21,9 @@ module rbs_bindings_files
 
 contains
 
-   !> Read a case, with all the checks of the executable. Text and values: title, column, analysis and output as
-   !> a statement. Rows: for each of the drives whether it acts, then its values; before them the times, which
-   !> always act.
+   !> Read a case, with all the checks of the executable. Text and values: title, column, analysis and output
+   !> as a statement. Rows: for each of the drives whether it acts, then its values; before them the times,
+   !> which always act.
    subroutine case_from_file(path, answer)
       character(len=*), intent(in) :: path
       type(answer_type), intent(inout) :: answer
@@ -95,9 +95,10 @@ contains
       answer%text = sink%buffer%text(:sink%buffer%length)
    end subroutine case_to_text
 
-   !> Displacements [m] and forces [N] of a measured test, and its name. The text of the request: units of both,
-   !> empty for those of the file, and the path, with line ends between. Without a layout (separator, decimal
-   !> point, lines before the first row) the file says what it has; else columns are taken by their numbers.
+   !> Displacements [m] and forces [N] of a measured test, and its name. The text of the request: units of
+   !> both, empty for those of the file, and the path, with line ends between. Without a layout (separator,
+   !> decimal point, lines before the first row) the file says what it has; else columns are taken by their
+   !> numbers.
    subroutine test_from_file(request, answer)
       type(request_type), intent(in) :: request
       type(answer_type), intent(inout) :: answer

@@ -44,10 +44,11 @@ module rbs_bindings_runs
 
 contains
 
-   !> A static path or a response in time. Rows: those of the run. Values: when each of the `watches` is reached
-   !> first [s] and the displacement of the top then [m], not numbers where it is not; figures of the run; the
-   !> state at its end, if there is one. The text is the method, the reason for it, how the run ended, the channels of
-   !> the rows, the names of the figures, and a note on a run that succeeded, a line each.
+   !> A static path or a response in time. Rows: those of the run. Values: when each of the `watches` is
+   !> reached first [s] and the displacement of the top then [m], not numbers where it is not; figures of the
+   !> run; the state at its end, if there is one. The text is the method, the reason for it, how the run
+   !> ended, the channels of the rows, the names of the figures, and a note on a run that succeeded, a line
+   !> each.
    subroutine run_analysis(request, answer)
       type(request_type), intent(in) :: request
       type(answer_type), intent(inout) :: answer

@@ -47,6 +47,7 @@ contains
          call reader%check('shear', messages)
       case ('layer_response')
          call reader%check('layer', messages)
+      case default                                  ! no settings
       end select
       call messages%raise(answer%error)
       if (allocated(answer%error)) return
@@ -67,6 +68,7 @@ contains
       case ('section_strips')
          call cut_section(reader, request%wants('round_core'), request%whole('number'), answer)
          return
+      case default                                  ! asks for the section, which is made next
       end select
       call make_section(reader%case%drawing%section, section, answer%error)
       if (allocated(answer%error)) return
@@ -129,7 +131,9 @@ contains
       type(flexural_spring_type) :: spring
 
       call check_rule(section, reader%springs%confined, reader%springs%rule(), answer%error)
-      if (.not. allocated(answer%error)) call fit_flexural_spring(section, reader%springs, spring, answer%error)
+      if (.not. allocated(answer%error)) then
+         call fit_flexural_spring(section, reader%springs, spring, answer%error)
+      end if
       if (allocated(answer%error)) return
       answer%value = spring%as_array()
       answer%rows = reshape([values_of_point(spring%cracking), values_of_point(spring%yield), &
@@ -198,7 +202,8 @@ contains
       allocate (answer%rows(6, size(path)/2))
       do i = 1, size(answer%rows, 2)
          call solve_layer(layer, path(2*i - 1), path(2*i), state, found)
-         answer%rows(:, i) = [values_of_layer(state, stress_of_state(layer, state)), merge(1.0_wp, 0.0_wp, found)]
+         answer%rows(:, i) = [values_of_layer(state, stress_of_state(layer, state)), &
+                              merge(1.0_wp, 0.0_wp, found)]
       end do
    end subroutine respond_layer
 
@@ -214,7 +219,8 @@ contains
       call outline_core(reader%case%drawing%section, round_core, inside)
       call cut_strips(reader%case%drawing%section%shape, inside, number, strips)
       allocate (answer%rows(4, number))
-      call strip_centroids(reader%case%drawing%section%shape, inside, strips, answer%rows(1, :), answer%rows(3, :))
+      call strip_centroids(reader%case%drawing%section%shape, inside, strips, answer%rows(1, :), &
+                           answer%rows(3, :))
       answer%rows(2, :) = strips%core_area
       answer%rows(4, :) = strips%area - strips%core_area
    end subroutine cut_section

@@ -128,7 +128,7 @@ contains
       type(case_record) :: case
       type(message_list) :: messages
       class(rule_type), allocatable :: rule
-      character(len=200) :: capacity
+      character(len=:), allocatable :: capacity
 
       call case_from_statements(text, number, case, error)
       if (allocated(error)) return
@@ -139,7 +139,7 @@ contains
       if (allocated(error)) return
       call spring%make(rule)
       call check_axial_load(rule, axial_load, capacity)
-      if (capacity /= '') call fatal_error(error, bad_input, 'layered spring: '//trim(capacity))
+      if (capacity /= '') call fatal_error(error, bad_input, 'layered spring: '//capacity)
    end subroutine spring_from_statements
 
 end module rbs_bindings_statements

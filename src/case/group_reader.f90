@@ -173,7 +173,8 @@ contains
             if (all(rule_names /= rule)) return
             place = 0
             call messages%add_at(where, '&'//trim(self%group)//': '//trim(name)// &
-                                 ' is not used by the rule '//trim(rule)//'; remove it or choose another rule')
+                                 ' is not used by the rule '//trim(rule)// &
+                                 '; remove it or choose another rule')
             return
          end associate
       end do

@@ -59,7 +59,8 @@ contains
       call buffer%append(new_line('a')//'}, "rules": {')
       do i = 1, size(rule_names)
          call keys_of(rule_names(i), keys)
-         call append_list(rule_names(i), '{"places": "'//trim(places_of(rule_names(i)))//'", "keys": [', keys, ']}')
+         call append_list(rule_names(i), '{"places": "'//trim(places_of(rule_names(i)))//'", "keys": [', &
+                          keys, ']}')
       end do
       call buffer%append(new_line('a')//'}, "section": {')
       do i = 1, size(section_parts)

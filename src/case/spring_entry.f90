@@ -130,7 +130,8 @@ contains
       column%footing = any_beneath(list)
       first = merge(0, 1, column%footing)
       last = column%joint_number(column%joints())
-      range = to_text(first)//' to '//trim(merge('n + 1', 'n    ', column%top == 'fixed'))//' = '//to_text(last)
+      range = to_text(first)//' to '//trim(merge('n + 1', 'n    ', column%top == 'fixed'))//' = '// &
+              to_text(last)
       known = messages%count
       call check_ids(list, messages)
       numbered = messages%count == known

@@ -1,6 +1,5 @@
 !> Layered joints whose axial loads vary: they follow straight paths in rotation and axial load, and are on
-!> planes
-!> where other springs are on lines.
+!> planes where other springs are on lines.
 module rbs_hysteresis_interaction_joints
    use rbs_base_constants, only: unbounded
    use rbs_base_kinds, only: wp
@@ -80,7 +79,8 @@ contains
       select type (section => springs%slot(i)%memory)
       type is (fibre_section)
          if (springs%pressed) then
-            opening = section%opening_at(d, springs%press_at(i) + share*(springs%press_to(i) - springs%press_at(i)))
+            opening = section%opening_at(d, springs%press_at(i) &
+                                         + share*(springs%press_to(i) - springs%press_at(i)))
          else
             opening = section%opening_at(d, section%axial_load)
          end if
@@ -136,7 +136,8 @@ contains
       integer, intent(in) :: i
       real(wp), intent(in) :: rotation, axial_load
 
-      moment = springs%f0(i) + springs%k(i)*(rotation - springs%d0(i)) - springs%centre(i)*(axial_load - springs%press_at(i))
+      moment = springs%f0(i) + springs%k(i)*(rotation - springs%d0(i)) &
+               - springs%centre(i)*(axial_load - springs%press_at(i))
    end function moment_on_plane
 
    !> The least forward rate of the layers of a joint on one-way lines, see `fibre_section`.

@@ -22,8 +22,7 @@ module rbs_hysteresis_journal
       !> Whether each spring is among them (count)
       logical, allocatable :: is_kept(:)
       !> The branches that they had (changed), and their memories (count). A layered joint marks itself: of
-      !> its
-      !> many layers few change
+      !> its many layers few change
       type(segment), allocatable :: line(:)
       type(memory_slot), allocatable :: slot(:)
    contains

@@ -28,8 +28,7 @@ module rbs_hysteresis_registry
 contains
 
    !> A rule without parameters yet, its keys, and where springs of this rule may be used: some of the words
-   !> of
-   !> `rbs_hysteresis_rule`, separated by blanks. If the name is not known, no rule, no keys and blanks.
+   !> of `rbs_hysteresis_rule`, separated by blanks. If the name is not known, no rule, no keys and blanks.
    subroutine new_rule(name, rule, keys, places)
       character(len=*), intent(in) :: name
       class(rule_type), allocatable, intent(out) :: rule

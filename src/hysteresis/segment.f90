@@ -62,8 +62,8 @@ contains
       integer, intent(in) :: s
       !> Ends, `far` further in the direction s than `near`
       real(wp), intent(in) :: near, far
-      !> Whether the branch is left when the motion turns back from s, by default yes. The spring is on the near
-      !> end of such a branch
+      !> Whether the branch is left when the motion turns back from s, by default yes. The spring is on the
+      !> near end of such a branch
       logical, intent(in), optional :: unload_on_reversal
       !> Whether the near end belongs to a branch that leads both ways, by default yes
       logical, intent(in), optional :: includes_near_end

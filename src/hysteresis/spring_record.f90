@@ -281,8 +281,7 @@ contains
    end subroutine make
 
    !> The layers of a joint. Equal springs share a rule; those at one place, as bars in a row, are one layer
-   !> that
-   !> counts several times.
+   !> that counts several times.
    recursive subroutine make_layers(self, joint)
       type(spring_record), intent(in) :: self
       type(layered_rule), intent(inout) :: joint

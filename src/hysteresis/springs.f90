@@ -1,6 +1,5 @@
 !> The springs of a structure: rules off the hot path, their present branches as plain arrays on it, and a
-!> mark to
-!> return to.
+!> mark to return to.
 module rbs_hysteresis_springs
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use rbs_base_constants, only: unbounded

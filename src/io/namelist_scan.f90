@@ -275,8 +275,8 @@ contains
          length = scan(self%text(first:), ' ,/''"=') - 1
          if (length < 0) length = len(self%text) - first + 1
          if (length == 0) then
-            call self%complain("'"//self%letter()//"' is not allowed among the values of '"//trim(name)//"'", &
-                               messages)
+            call self%complain("'"//self%letter()//"' is not allowed among the values of '"//trim(name)// &
+                               "'", messages)
             return
          end if
          star = index(self%text(first:first + length - 1), '*')
@@ -358,7 +358,7 @@ contains
    !> Take a name, in lower case; blank if the next character cannot begin one.
    subroutine take_name(self, name)
       class(nml_scan), intent(inout) :: self
-      character(len=*), intent(out) :: name
+      character(len=32), intent(out) :: name
       integer :: length
 
       length = self%run_of(self%at, name_set)

@@ -119,14 +119,14 @@ contains
       end do
       size = max(size, int(length, int64))
       if (status /= 0) then
-         call refuse(path, 'there is not enough memory to read it; raise the limit of the process or make '// &
-                     'the file shorter', error)
+         call refuse(path, 'there is not enough memory to read it; raise the limit of the process or '// &
+                     'make the file shorter', error)
       else if (size > int(limit, int64)) then
          call refuse(path, 'has '//to_text(real(size, wp))//' bytes, more than the '//to_text(limit)// &
                      ' that are read; is it the right file?', error)
       else if (count == nobody_writes) then
-         call refuse(path, 'is a pipe that nobody writes to; start its writer first, or give the path of a '// &
-                     'file', error)
+         call refuse(path, 'is a pipe that nobody writes to; start its writer first, or give the path '// &
+                     'of a file', error)
       else if (count < 0_c_size_t) then
          call refuse(path, 'cannot be read; check the path and the permissions', error)
       else if (length == 0) then
@@ -301,6 +301,7 @@ contains
             select case (lower(word(1 + scan(word(:1), '+-'):)))
             case ('nan', 'inf', 'infinity')
                status = number_not_finite
+            case default                            ! not a number
             end select
             return
          end if

@@ -14,8 +14,8 @@ module rbs_output_channels
 
    !> Which rows hold a channel: all; those of a static path, or of a response in time; those of a column with
    !> axial springs; those in time of a damped column; on demand how the top moves, and layered joints.
-   integer, parameter :: always = 1, static_path = 2, in_time = 3, axial_springs = 4, damping = 5, motion = 6, &
-                         layers = 7
+   integer, parameter :: always = 1, static_path = 2, in_time = 3, axial_springs = 4, damping = 5, &
+                         motion = 6, layers = 7
 
    !> A quantity of a row.
    type :: channel_type
@@ -28,10 +28,10 @@ module rbs_output_channels
    end type channel_type
 
    !> All of them, in the order of a row. In a static analysis the first is the number of the row. Energies:
-   !> work of lateral force and ground motion; motion; springs; damping; potential of the axial forces; what is
-   !> left of the balance. Without `base_shear` and `base_moment` the base has the forces of the lowest joint.
-   !> The motion is that of the top relative to the ground. Openings of layered joints are those at the middle
-   !> of their sections; `rest` is the rotation at which they rest under their first axial load.
+   !> work of lateral force and ground motion; motion; springs; damping; potential of the axial forces; what
+   !> is left of the balance. Without `base_shear` and `base_moment` the base has the forces of the lowest
+   !> joint. The motion is that of the top relative to the ground. Openings of layered joints are those at the
+   !> middle of their sections; `rest` is the rotation at which they rest under their first axial load.
    type(channel_type), parameter :: channel(24) = [ &
       channel_type('step', '', static_path), channel_type('time', 's', in_time), &
       channel_type('displacement', 'm'), channel_type('force', 'N'), channel_type('input', 'J'), &
@@ -79,7 +79,8 @@ module rbs_output_channels
       !> Time [s] or number of the point; displacement and height of the top [m]; lateral force [N]
       real(wp) :: time = 0.0_wp, displacement = 0.0_wp, height = 0.0_wp, force = 0.0_wp
       type(energy_type) :: energy
-      !> Shear and moment at the base [N, N m]; velocity and acceleration of the top, acceleration of the ground
+      !> Shear and moment at the base [N, N m]; velocity and acceleration of the top, acceleration of the
+      !> ground
       real(wp) :: base(2) = 0.0_wp, motion(3) = 0.0_wp
    end type response_type
 
@@ -166,7 +167,8 @@ contains
       text = ''
       do i = 1, size(channel)
          if (self%first(i) == 0) cycle
-         text = trim(text)//' '//trim(channel(i)%name)//' '//to_text(merge(self%joints, 0, channel(i)%of_joints))
+         text = trim(text)//' '//trim(channel(i)%name)//' '// &
+                to_text(merge(self%joints, 0, channel(i)%of_joints))
       end do
    end function names
 

@@ -94,12 +94,13 @@ contains
       if (column%kinematics == small) kinematics = 'small'
       ! Without a number of its own, so that a session that makes many runs is told once.
       if (summary%peak_rotation < 1.0_wp) then
-         call notes%add("the rotation of a body goes beyond 0.1 rad; with kinematics = '"//trim(kinematics)// &
-                        "' the displacement errs by about th^2/6 of it, where th is peak_rotation; use 'finite'")
+         call notes%add("the rotation of a body goes beyond 0.1 rad; with kinematics = '"// &
+                        trim(kinematics)//"' the displacement errs by about th^2/6 of it, where th is "// &
+                        "peak_rotation; use 'finite'")
       else
          call notes%add("the rotation of a body goes beyond 1 rad; with kinematics = '"//trim(kinematics)// &
-                        "' the displacement has no meaning then (displacements are in m, forces in N); use "// &
-                        "'finite'")
+                        "' the displacement has no meaning then (displacements are in m, forces in N); "// &
+                        "use 'finite'")
       end if
    end subroutine rotation_note
 
@@ -110,9 +111,9 @@ contains
       type(message_list), intent(inout) :: notes
 
       if (.not. abs(displacement) > far*height) return
-      call notes%add('the top goes beyond half of the height; displacements are in m (16 mm is 0.016), drifts '// &
-                     'are parts of the height (2 per cent is 0.02), forces are in N; if it is meant, use '// &
-                     "kinematics = 'finite'")
+      call notes%add('the top goes beyond half of the height; displacements are in m (16 mm is 0.016), '// &
+                     'drifts are parts of the height (2 per cent is 0.02), forces are in N; if it is '// &
+                     "meant, use kinematics = 'finite'")
    end subroutine drift_note
 
    !> Springs and loads that do not go together, as numbers in another unit do: the strength of the lowest

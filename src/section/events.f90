@@ -98,7 +98,8 @@ contains
       class(diagram_record), intent(in) :: self
 
       rule = rule_type(findloc(yield_names == self%yielding, .true., dim=1), &
-                       findloc(ultimate_names == self%ultimate, .true., dim=1), self%eps_yield, self%eps_cover)
+                       findloc(ultimate_names == self%ultimate, .true., dim=1), self%eps_yield, &
+                       self%eps_cover)
    end function rule
 
    !> Follow the diagram along positive curvatures and find its points.

@@ -11,8 +11,8 @@ module rbs_section_flexural_spring
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_section_concrete_law, only: tension_bare, tension_ts
-   use rbs_section_events, only: events_type, point_type, rule_type, find_events, reach_moment, ultimate_choices, &
-                                 ultimate_names, yield_first, yield_tension
+   use rbs_section_events, only: events_type, point_type, rule_type, find_events, reach_moment, &
+                                 ultimate_choices, ultimate_names, yield_first, yield_tension
    use rbs_section_resultants, only: laws_type, section_laws
    use rbs_section_cross_section, only: section_type
    use rbs_base_check, only: is_given
@@ -31,8 +31,8 @@ module rbs_section_flexural_spring
       real(wp) :: length = unset, axial_load = unset
       !> Hinge length [m]; `unset`: by the formula above
       real(wp) :: hinge_length = unset
-      !> Yield of the bare diagram (A); its moment on the diagram with tension stiffening (B); or `yield_first`
-      !> (first)
+      !> Yield of the bare diagram (A); its moment on the diagram with tension stiffening (B); or
+      !> `yield_first` (first)
       character(len=8) :: yield_rule = 'A'
       !> One of `ultimate_names`, and the strains of the rules
       character(len=8) :: ultimate = 'cover'
@@ -92,7 +92,8 @@ contains
       class(hinge_record), intent(in) :: self
 
       rule = rule_type(merge(yield_first, yield_tension, self%yield_rule == 'first'), &
-                       findloc(ultimate_names == self%ultimate, .true., dim=1), self%eps_yield, self%eps_cover)
+                       findloc(ultimate_names == self%ultimate, .true., dim=1), self%eps_yield, &
+                       self%eps_cover)
    end function rule
 
    !> Fit the spring.

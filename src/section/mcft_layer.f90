@@ -23,7 +23,8 @@ module rbs_section_mcft_layer
    implicit none
    private
 
-   public :: layer_record, layer_type, layer_state, layer_stress, stress_of_state, solve_layer, crack_softening
+   public :: layer_record, layer_type, layer_state, layer_stress, stress_of_state, solve_layer, &
+             crack_softening
 
    !> One layer of the modified compression field theory.
    type, extends(visited_record) :: layer_record

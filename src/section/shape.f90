@@ -183,8 +183,8 @@ contains
    end function solid_second_moment
 
    !> Area of an elastic section that carries shear [m2]: 5/6 of a rectangle, 0.9 of a circle, 5/6 of the webs
-   !> of a box over the whole depth. From 0.9 to half of the area of a thin ring, as the factor of Cowper (1966)
-   !> falls with the square of the ratio of the radii (no Poisson's ratio).
+   !> of a box over the whole depth. From 0.9 to half of the area of a thin ring, as the factor of Cowper
+   !> (1966) falls with the square of the ratio of the radii (no Poisson's ratio).
    elemental real(wp) function shear_area(self) result(area)
       class(shape_type), intent(in) :: self
       type(shape_type) :: void

@@ -19,7 +19,7 @@ contains
       type(column_type), intent(out) :: column
       type(error_type), allocatable, intent(out) :: error
       type(message_list) :: messages
-      character(len=200) :: text
+      character(len=:), allocatable :: text
       integer :: i
 
       call spec%validate(messages)
@@ -29,11 +29,12 @@ contains
       do i = 1, column%n
          associate (at => column%at(flexure, i))
             if (column%spring(at)%rule /= 'layered') cycle
-            call check_axial_load(column%rules%list(column%rules%of(at))%rule, column%spring(at)%axial_load, text)
+            call check_axial_load(column%rules%list(column%rules%of(at))%rule, column%spring(at)%axial_load, &
+                                  text)
          end associate
          if (text == '') cycle
-         call fatal_error(error, bad_input, 'flexure spring of joint '//to_text(spec%joint_number(i))//': '// &
-                          trim(text))
+         call fatal_error(error, bad_input, 'flexure spring of joint '//to_text(spec%joint_number(i))// &
+                          ': '//text)
          return
       end do
    end subroutine make_column

@@ -107,8 +107,8 @@ module rbs_structure_structure
          real(wp), intent(out), contiguous :: axial(:)
       end subroutine press
 
-      !> Add to a lower band, band(1 + i - j, j) = a(i, j): B' diag(k) B of the stiffness of the springs, or the
-      !> geometric stiffness of the axial forces.
+      !> Add to a lower band, band(1 + i - j, j) = a(i, j): B' diag(k) B of the stiffness of the springs, or
+      !> the geometric stiffness of the axial forces.
       subroutine assemble(self, k, band)
          import :: structure_type, wp
          implicit none

@@ -283,8 +283,8 @@ contains
       end do
    end subroutine bodies
 
-   !> Deformations and displacements are inverse to each other, the forces on the bodies are the transpose; the
-   !> kinetic energy of the bodies is half of v M v of the joints.
+   !> Deformations and displacements are inverse to each other, the forces on the bodies are the transpose;
+   !> the kinetic energy of the bodies is half of v M v of the joints.
    subroutine check_bodies(error, column, random)
       type(error_type), allocatable, intent(inout) :: error
       type(column_type), intent(in) :: column
@@ -299,7 +299,8 @@ contains
       call column%unknown_rates(v, x)
       call column%spring_rates(x, back)
       call check_close(error, back, v, 0.0_wp, 1.0e-14_wp, 'there and back')
-      call body_forces(n, column%kinds, column%lower, column%upper, f, 0.0_wp, 0.0_wp, 0.0_wp*column%mass, .false., g)
+      call body_forces(n, column%kinds, column%lower, column%upper, f, 0.0_wp, 0.0_wp, &
+                       0.0_wp*column%mass, .false., g)
       call check_close(error, dot_product(g, x), -dot_product(f, v), 0.0_wp, 1.0e-13_wp, 'equal works')
       call check_close(error, x(2*n - 1) + column%upper(n)*x(2*n), dot_product(column%arm, v), 0.0_wp, &
                        1.0e-14_wp, 'velocity of the top')

@@ -5,8 +5,8 @@ module test_column
    use rbs_base_error, only: error_type, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_structure_column_axial, only: geometric_stiffness, geometric_forces, axial_energy, critical_factor, &
-                               check_stable
+   use rbs_structure_column_axial, only: geometric_stiffness, geometric_forces, axial_energy, &
+                                         critical_factor, check_stable
    use rbs_structure_column_column, only: column_type, small, pdelta, finite
    use rbs_structure_column_mass, only: symmetric_mass, paper_mass
    use rbs_structure_column_column_record, only: column_record

@@ -8,8 +8,8 @@ module test_finite
    use rbs_base_text, only: to_text
    use rbs_structure_column_axial, only: geometric_forces, axial_energy
    use rbs_structure_column_column, only: column_type
-   use rbs_structure_column_finite, only: finite_work, finite_acceleration, finite_kinetic, finite_potential, &
-                                finite_power, finite_top
+   use rbs_structure_column_finite, only: finite_work, finite_acceleration, finite_kinetic, &
+                                          finite_potential, finite_power, finite_top
    use rbs_structure_column_mass, only: symmetric_mass
    use rbs_structure_column_column_record, only: column_record
    use exact, only: point, variant, state, sample, variant_of, random_state, place, dense_mass, &

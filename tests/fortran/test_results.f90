@@ -143,8 +143,8 @@ contains
       call summary%see_energies(energy_of(50.0_wp, 1.0e-9_wp))
       call summary%see_energies(energy_of(-40.0_wp, -2.0e-9_wp))
       call summary%see_energies(energy_of(-60.0_wp, 0.0_wp))
-      call check_same(error, [summary%energy%input, summary%energy%spring, summary%energy%damping], [-60.0_wp, 2.0_wp, 3.0_wp], &
-                      'energies at the end')
+      call check_same(error, [summary%energy%input, summary%energy%spring, summary%energy%damping], &
+                      [-60.0_wp, 2.0_wp, 3.0_wp], 'energies at the end')
       call check_same(error, summary%residual, 2.0e-9_wp, 'largest residual')
       call check_same(error, summary%largest, 60.0_wp, 'largest energy')
    end subroutine energies

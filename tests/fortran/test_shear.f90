@@ -410,7 +410,8 @@ contains
          section%shape%side_wall = section%shape%wall
          section%bar_area = 1.0e-12_wp*section%bar_area
          call build_section(section, 0.006_wp, 400)
-         call follow_shear(section, shear_record(length=span, axial_load=1.0e3_wp), [1.0e-7_wp], diagram, failure)
+         call follow_shear(section, shear_record(length=span, axial_load=1.0e3_wp), [1.0e-7_wp], diagram, &
+                           failure)
          call check_passed(error, failure, 'the analysis')
          call check_close(error, diagram%points(1)%force/diagram%points(1)%strain, &
                           0.5_wp*section%plain%ec*section%shape%area(), 1.0e-3_wp, 0.0_wp, 'shear stiffness')
@@ -429,8 +430,8 @@ contains
       do i = 1, points
          curvature(i) = 0.022_wp*(real(i, wp)/points)**2
       end do
-      call follow_shear(sample_section(), shear_record(length=span, axial_load=load, layers=layers), curvature, &
-                        diagram, failure)
+      call follow_shear(sample_section(), shear_record(length=span, axial_load=load, layers=layers), &
+                        curvature, diagram, failure)
       call check_passed(error, failure, 'the analysis')
       call check_true(error, diagram%knee_found .and. .not. (diagram%sheared .or. diagram%lost), 'whole')
    end subroutine sample_diagram

@@ -369,7 +369,9 @@ contains
                else if (mod(j, 7) == 0) then
                   ! Turn back on a one-way line.
                   i = 2 + mod(j + round, 4)
-                  if (springs%unload_on_reversal(i) /= 0) call springs%leave(i, -springs%unload_on_reversal(i))
+                  if (springs%unload_on_reversal(i) /= 0) then
+                     call springs%leave(i, -springs%unload_on_reversal(i))
+                  end if
                else
                   call springs%move_all(point)
                end if

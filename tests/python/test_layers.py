@@ -31,8 +31,8 @@ FLOORS = (
 )
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 
-#: Rooms inside solve, by floor: each kind of analysis stands alone, except that time asks modal, and the
-#: steps of one body.
+#: Rooms inside solve, by floor: each kind of analysis stands alone, except that time asks modal
+#: and the steps of one body.
 ANALYSES = {"modal": 0, "one_body": 0, "static": 1, "time": 1, "ensemble": 2}
 
 #: What each room inside solve/ may use of the others; what they share lies beside them.
@@ -605,7 +605,7 @@ def test_a_bad_tree_has_its_fault(name: str, tmp_path: Path) -> None:
 
 
 def test_no_dense_solver_of_lapack_stands_in_a_loop_over_events_or_steps():
-    """Full matrices are solved once, if asked for. What is solved again has a band, or loops of our own."""
+    """Full matrices are solved once, if asked for. What is solved again has a band or our loops."""
     used = {}
     for path in sorted((ROOT / "src").rglob("*.f90")):
         for line in statements(path.read_text()):

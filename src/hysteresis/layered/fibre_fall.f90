@@ -2,9 +2,8 @@
 !> that rotation, and where the joint comes to rest if it falls, if it does.
 !>
 !> At a fixed rotation the joint closes (or opens, where tension is lost) from end to end of the branches of
-!> its
-!> layers. It rests at the first point at which the layers carry the load again and their stiffness ahead is
-!> positive; what the load does on the way beyond the work of the layers is set free.
+!> its layers. It rests at the first point at which the layers carry the load again and their stiffness ahead
+!> is positive; what the load does on the way beyond the work of the layers is set free.
 module rbs_hysteresis_layered_fibre_fall
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_layered_fibre_path, only: most_branches

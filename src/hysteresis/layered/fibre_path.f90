@@ -1,6 +1,5 @@
 !> Straight paths of a fibre section in rotation and axial load: the branches on which its layers go on, and
-!> the
-!> way from event to event.
+!> the way from event to event.
 module rbs_hysteresis_layered_fibre_path
    use rbs_base_constants, only: no_stiffness, unbounded
    use rbs_base_kinds, only: wp
@@ -211,8 +210,7 @@ contains
    end subroutine set_ends
 
    !> The branches that lead on, where changing those without room does not end, or where layers soften or
-   !> have
-   !> no stiffness. The rate x of the opening is a root of the continuous, piecewise linear
+   !> have no stiffness. The rate x of the opening is a root of the continuous, piecewise linear
    !>
    !>     G(x) = sum k_i(v_i) v_i = -dN,        v_i = x + y_i dphi
    !>

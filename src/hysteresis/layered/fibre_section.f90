@@ -13,8 +13,7 @@
 !>
 !> On a straight path in (phi, N) every layer moves at a constant rate  v_i = x + y_i dphi, and the branches
 !> hold until the first layer reaches an end of its own (`rbs_hysteresis_layered_fibre_path`). Nothing is
-!> added up
-!> along the path: w is corrected by what is missing from equilibrium wherever a branch changes.
+!> added up along the path: w is corrected by what is missing from equilibrium wherever a branch changes.
 !>
 !> A layer that stands for several equal ones at one place counts with its weight.
 module rbs_hysteresis_layered_fibre_section
@@ -91,8 +90,7 @@ module rbs_hysteresis_layered_fibre_section
       type(memory_slot), allocatable :: slot(:)
       type(segment), allocatable :: branch(:)
       !> The same branches with their weights as arrays: slopes, forces without deformation, ends, how close
-      !> to
-      !> them a layer is on them, and as numbers whether they unload on reversal and whether they do not
+      !> to them a layer is on them, and as numbers whether they unload on reversal and whether they do not
       !> (count)
       real(wp), allocatable :: k(:), c(:), lo(:), hi(:), slack(:), unload_on_reversal(:), both_ways(:)
       !> Ways to their ends on the chosen path, ahead and behind (count)

@@ -1,8 +1,7 @@
 !> The rule of a layered joint: a fibre section (`rbs_hysteresis_layered_fibre_section`) under a constant
-!> axial
-!> load is, like any spring, on a branch with two ends: it ends where the first layer reaches an end (`next`).
-!> Where the axial load varies, the joint follows a straight path in rotation and axial load from event to
-!> event.
+!> axial load is, like any spring, on a branch with two ends: it ends where the first layer reaches an end
+!> (`next`). Where the axial load varies, the joint follows a straight path in rotation and axial load from
+!> event to event.
 module rbs_hysteresis_layered_layered_joint
    use rbs_base_constants, only: no_stiffness, unbounded
    use rbs_base_kinds, only: wp
@@ -126,16 +125,15 @@ contains
    end subroutine leave_branch
 
    !> The branch of the joint at its present axial load when it rotates further in a direction; it ends on
-   !> each
-   !> side where the first of its layers ends.
+   !> each side where the first of its layers ends.
    subroutine find_branch(section, direction, branch)
       type(fibre_section), intent(inout) :: section
       integer, intent(in) :: direction
       type(segment), intent(out) :: branch
       real(wp) :: near, far
 
-      ! Both ends belong to the branch: where a joint stands exactly on a corner, as one of contacts without an
-      ! axial load does at rest, it would otherwise have no branch.
+      ! Both ends belong to the branch: where a joint stands exactly on a corner, as one of contacts without
+      ! an axial load does at rest, it would otherwise have no branch.
       call choose_branches(section, real(direction, wp), 0.0_wp)
       branch%d0 = section%rotation - section%rest
       branch%f0 = section%moment
@@ -150,7 +148,8 @@ contains
       near = -direction*unbounded
       if (section%ends%ahead < unbounded) far = branch%d0 + direction*section%ends%ahead
       if (section%ends%behind < unbounded) near = branch%d0 - direction*section%ends%behind
-      branch = branch%outward(direction, near=near, far=far, unload_on_reversal=section%ends%unload_on_reversal)
+      branch = branch%outward(direction, near=near, far=far, &
+                              unload_on_reversal=section%ends%unload_on_reversal)
    end subroutine find_branch
 
    !> Rotate until there is no moment, and measure rotations from there.
@@ -179,13 +178,12 @@ contains
    end subroutine find_rest
 
    !> What is said of an axial load that the layers of a spring do not carry; blank if they do, or if there
-   !> are
-   !> none.
+   !> are none.
    subroutine check_axial_load(rule, axial_load, text)
       class(rule_type), intent(in) :: rule
       !> Compression positive [N]
       real(wp), intent(in) :: axial_load
-      character(len=*), intent(out) :: text
+      character(len=:), allocatable, intent(out) :: text
       real(wp) :: carried, refused, trial
       integer :: i
 

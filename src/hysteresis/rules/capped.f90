@@ -10,11 +10,10 @@
 !>
 !> Every inner loop closes at the turn where it began, on the line that it left, and wipes it out
 !> (`rbs_hysteresis_rules_open_turns`). A turn is also forgotten once reloading starts as far out as its own
-!> line
-!> did: there both lines are the same. So lines of reloading never become steeper on their way, unloading
+!> line did: there both lines are the same. So lines of reloading never become steeper on their way, unloading
 !> ends at or before their start, and no loop gives energy. Deterioration
-!> (`rbs_hysteresis_rules_deterioration`)
-!> acts where the force is zero, by an amount that is zero for an excursion of size zero.
+!> (`rbs_hysteresis_rules_deterioration`) acts where the force is zero, by an amount that is zero for an
+!> excursion of size zero.
 module rbs_hysteresis_rules_capped
    use rbs_base_check, only: is_given
    use rbs_base_constants, only: unbounded
@@ -83,8 +82,7 @@ module rbs_hysteresis_rules_capped
       !> The last turn, counted over both sides, and the oldest of those that the present reloading has closed
       integer :: time = 0, closed_time = huge(1)
       !> Work of the flexural spring so far and up to cracking [J], and share of the strength of each side
-      !> that
-      !> its work since has left
+      !> that its work since has left
       real(wp) :: flexural_work = 0.0_wp, work_at_cracking = 0.0_wp, left_by_hinge(-1:1) = 1.0_wp
       !> Where the force was zero when the present side was entered, as seen from it, and way of the last
       !> excursion to the other side from there [m or rad]
@@ -506,8 +504,7 @@ contains
       end subroutine find_turns
 
       !> The point of the backbone to which a line from zero force leads: the peak, or a corner beyond it if
-      !> the
-      !> line to it is steeper (as to yield in Takeda's rule).
+      !> the line to it is steeper (as to yield in Takeda's rule).
       type(point) function goal_from(s, start) result(goal)
          integer, intent(in) :: s
          !> As seen from the side

@@ -317,8 +317,7 @@ contains
       end subroutine touch
 
       !> Between the paths through (c, f): as stiff as the virgin spring, up to the path of closing and down
-      !> to
-      !> that of opening.
+      !> to that of opening.
       subroutine rub(c, f)
          real(wp), intent(in) :: c, f
          real(wp) :: upper, lower
@@ -377,7 +376,9 @@ contains
          end if
          ! Both lines from c_0 on.
          meeting = c_0
-         if (self%k*(1.0_wp - 1.0e-9_wp) > slope) meeting = c_0 + (f_0 - f - self%k*(c_0 - c))/(self%k - slope)
+         if (self%k*(1.0_wp - 1.0e-9_wp) > slope) then
+            meeting = c_0 + (f_0 - f - self%k*(c_0 - c))/(self%k - slope)
+         end if
          meeting = max(meeting, now%c_p - now%gap)
       end function meeting
 

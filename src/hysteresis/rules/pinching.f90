@@ -2,11 +2,10 @@
 !> Ibarra, Medina, Krawinkler 2005 (Earthquake Eng. Struct. Dyn. 34, section 2.3).
 !>
 !> Two parts with the same backbone act in parallel (`rbs_hysteresis_rules_capped`). One has the share kappa_f
-!> of
-!> the force and is peak-oriented. The other slips: it has no force before the deformation
+!> of the force and is peak-oriented. The other slips: it has no force before the deformation
 !> (1 - kappa_d) d_per, where unloading from the peak ends at d_per, and goes to the peak from there. So the
-!> line from zero force to the peak has its break there, with kappa_f times the force of the straight line,
-!> as in the source, and what holds for each part holds for both.
+!> line from zero force to the peak has its break there, with kappa_f times the force of the straight line, as
+!> in the source, and what holds for each part holds for both.
 module rbs_hysteresis_rules_pinching
    use rbs_base_keys, only: key_type, share_above_zero
    use rbs_base_kinds, only: wp

@@ -202,6 +202,7 @@ contains
          else
             call reload_from_inner(direction, here)
          end if
+      case default                                  ! no other branch
       end select
 
    contains

@@ -1,6 +1,6 @@
 !> Columns that are advanced side by side, each in a lane: each value is an array over the lanes, so that one
-!> instruction does the same for several columns. It stands below the rest of the program, since it is compiled
-!> together with the kernels, each for its own set of instructions.
+!> instruction does the same for several columns. It stands below the rest of the program, since it is
+!> compiled together with the kernels, each for its own set of instructions.
 module rbs_solve_ensemble_lane_arrays
    use, intrinsic :: iso_fortran_env, only: int32, real64
    implicit none
@@ -65,12 +65,13 @@ module rbs_solve_ensemble_lane_arrays
       real(wp) :: flexible(lanes) = 0.0_wp, coupling(lanes) = 0.0_wp, turning(lanes) = 0.0_wp, &
                   softening(lanes) = 0.0_wp
       !> Mass and rotary inertia, distances of the centroid from bottom and top, length
-      real(wp) :: mass(lanes, 2) = 1.0_wp, lower(lanes) = 0.0_wp, upper(lanes) = 0.0_wp, length(lanes) = 0.0_wp
+      real(wp) :: mass(lanes, 2) = 1.0_wp, lower(lanes) = 0.0_wp, upper(lanes) = 0.0_wp, &
+                  length(lanes) = 0.0_wp
    end type lane_clock
 
-   !> Some lanes of columns of n bodies: their joints (width, n), and unknowns (width, 2 n) in the order of the
-   !> joints, slips before rotations, or of the bodies, displacement and rotation of each. All lanes of one body
-   !> without damping are one block, other columns are in blocks of `few`.
+   !> Some lanes of columns of n bodies: their joints (width, n), and unknowns (width, 2 n) in the order of
+   !> the joints, slips before rotations, or of the bodies, displacement and rotation of each. All lanes of
+   !> one body without damping are one block, other columns are in blocks of `few`.
    type :: lane_block
       !> Number of lanes, lanes before the block, and bodies
       integer :: width = 0, base = 0, n = 0
@@ -89,8 +90,8 @@ module rbs_solve_ensemble_lane_arrays
       !> forces so far (width, 2)
       real(wp), pointer, contiguous :: v0(:, :) => null(), a0(:, :) => null(), g0(:, :) => null(), &
                                        largest(:, :) => null()
-      !> Not of one body without damping: damping of the joints per velocity; what of it stands under the sum of
-      !> its power, and the factor before that sum; damping of the bodies per momentum; modal damping
+      !> Not of one body without damping: damping of the joints per velocity; what of it stands under the sum
+      !> of its power, and the factor before that sum; damping of the bodies per momentum; modal damping
       !> (width, 2 n, 2 n)
       real(wp), allocatable :: damping(:, :), summed(:, :), matrix(:, :, :)
       real(wp) :: factor(few) = 1.0_wp, of_mass(few) = 0.0_wp
@@ -105,8 +106,8 @@ module rbs_solve_ensemble_lane_arrays
    !> The arrays of a block of one body without damping as its kernel sees them, with sizes that the compiler
    !> knows: in the order in which they stand in the room.
    type :: body_arrays
-      real(wp), dimension(lanes, 2) :: q, v, from, lowest, highest, d0, f0, k, first, last, way, work, v0, a0, g0, &
-                                       largest
+      real(wp), dimension(lanes, 2) :: q, v, from, lowest, highest, d0, f0, k, first, last, way, work, v0, &
+                                       a0, g0, largest
    end type body_arrays
 
    abstract interface

@@ -1,7 +1,7 @@
 !> Runs in lanes: columns that advance side by side, and beside each lane the state of its run and its method.
-!> For a step on which a spring leaves its line, for which the method has to find something first, or which has
-!> to be cut, the lane is put into them, goes on as every run does, and comes back. So a lane has the bits of a
-!> run alone, and all rules of the program. A lane that is done takes the next run.
+!> For a step on which a spring leaves its line, for which the method has to find something first, or which
+!> has to be cut, the lane is put into them, goes on as every run does, and comes back. So a lane has the bits
+!> of a run alone, and all rules of the program. A lane that is done takes the next run.
 module rbs_solve_ensemble_simd_batch
    use, intrinsic :: iso_c_binding, only: c_f_pointer, c_intptr_t, c_loc
    use, intrinsic :: iso_fortran_env, only: int32
@@ -15,8 +15,8 @@ module rbs_solve_ensemble_simd_batch
    use rbs_solve_ensemble_lane_arrays, only: lane_clock, lane_block, lane_method, kernel_type, lanes, few
    use rbs_solve_ensemble_lane_choice, only: is_plain_body
    use rbs_solve_ensemble_lane_state, only: fit_block, column_to_lane, springs_to_lane, motion_to_lane, &
-                                            bounds_to_lane, step_to_lane, springs_from_lane, motion_from_lane, &
-                                            step_from_lane, ground_from_lane
+                                            bounds_to_lane, step_to_lane, springs_from_lane, &
+                                            motion_from_lane, step_from_lane, ground_from_lane
    use rbs_solve_ensemble_one_body_lane, only: body_to_lane, follow_springs, follow_trial, lines_to_body, &
                                                lines_from_body
    use rbs_solve_ensemble_run_result, only: run_result, collect
@@ -48,14 +48,14 @@ module rbs_solve_ensemble_simd_batch
       type(kernel_type) :: kernel
       !> Whether the columns are one body without damping
       logical :: one_body = .false.
-      !> The lanes, in a room that begins where a line of the cache does: an access to several lanes that crosses
-      !> the border of two lines takes twice the time
+      !> The lanes, in a room that begins where a line of the cache does: an access to several lanes that
+      !> crosses the border of two lines takes twice the time
       real(wp), allocatable :: room(:)
       type(lane_clock), pointer :: x => null()
       type(lane_block), allocatable :: block(:)
       type(lane_type), allocatable :: lane(:)
-      !> All motions one after the other, each followed by two more points [s, m/s2], and the place of the first
-      !> point of each
+      !> All motions one after the other, each followed by two more points [s, m/s2], and the place of the
+      !> first point of each
       real(wp), allocatable :: time(:), acceleration(:)
       integer, allocatable :: first(:)
    end type batch_type
@@ -103,8 +103,8 @@ contains
             fails(failed) = list(j)
             call unload(batch, list(j), task, result, error)
          end do
-         call batch%kernel%finish(batch%x, batch%block, size(batch%time), batch%time, batch%acceleration, count, &
-                                  list)
+         call batch%kernel%finish(batch%x, batch%block, size(batch%time), batch%time, batch%acceleration, &
+                                  count, list)
          if (batch%x%any_beyond > 0.5_wp) call look_closely(batch)
          do j = 1, count
             call unload(batch, list(j), task, result, error)
@@ -181,7 +181,8 @@ contains
       do j = 1, size(motion)
          m = size(motion(j)%time)
          batch%first(j) = at + 1
-         batch%time(at + 1:at + m + 2) = [motion(j)%time, motion(j)%time(m) + 1.0_wp, motion(j)%time(m) + 2.0_wp]
+         batch%time(at + 1:at + m + 2) = [motion(j)%time, motion(j)%time(m) + 1.0_wp, &
+                                          motion(j)%time(m) + 2.0_wp]
          ! After its end a motion stays at its last value.
          batch%acceleration(at + 1:at + m) = motion(j)%acceleration
          batch%acceleration(at + m + 1:at + m + 2) = motion(j)%acceleration(m)

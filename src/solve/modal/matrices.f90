@@ -1,6 +1,6 @@
 !> The matrices of the uncracked column for small rotations, in full: mass, stiffness of the joints, geometric
-!> stiffness of the axial forces, and damping. The solvers do without them, and the tests hold their recursions
-!> equal to these.
+!> stiffness of the axial forces, and damping. The solvers do without them, and the tests hold their
+!> recursions equal to these.
 !>
 !>     M q'' + C q' + (K + K_G) q = p
 module rbs_solve_modal_matrices
@@ -44,8 +44,9 @@ contains
       n = column%n
       m = column%unknowns
       if (real(m, wp)**2 > most_numbers) then
-         call fatal_error(error, bad_input, 'matrices: those of n = '//to_text(n)//' bodies take too much '// &
-                          'memory; take '//to_text(int(sqrt(most_numbers))*n/m)//' at the most')
+         call fatal_error(error, bad_input, 'matrices: those of n = '//to_text(n)// &
+                          ' bodies take too much memory; take '//to_text(int(sqrt(most_numbers))*n/m)// &
+                          ' at the most')
          return
       end if
       allocate (matrices%mass(m, m))
@@ -117,8 +118,10 @@ contains
       allocate (a, source=self%mass)
       acceleration = force
       call solve_dense(a, acceleration, regular)
-      if (.not. regular) call fatal_error(error, analysis_failed, 'matrices: the mass matrix has no inverse; '// &
-                                          'check the masses')
+      if (.not. regular) then
+         call fatal_error(error, analysis_failed, 'matrices: the mass matrix has no inverse; '// &
+                          'check the masses')
+      end if
    end subroutine accelerations
 
    !> C = sum_j 2 zeta_j omega_j (M s_j) (M s_j)', the modes s_j of the uncracked column.

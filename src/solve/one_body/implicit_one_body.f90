@@ -27,9 +27,10 @@ module rbs_solve_one_body_implicit_one_body
    !> Share of the work of the residual on a correction by which the correction may overshoot.
    real(wp), parameter :: too_far = 0.9_wp
 
-   !> One spring beside its rule: its line, the first and the last deformation that belong to the line, present
-   !> deformation and work, and how it has come to its line in this step: +1 or -1 by the end of another, 0 it
-   !> was on it before. It moves as those of `rbs_hysteresis_spring_lines` do, with the same bits.
+   !> One spring beside its rule: its line, the first and the last deformation that belong to the line,
+   !> present deformation and work, and how it has come to its line in this step: +1 or -1 by the end of
+   !> another, 0 it was on it before. It moves as those of `rbs_hysteresis_spring_lines` do, with the same
+   !> bits.
    type :: body_spring
       type(segment) :: line
       real(wp) :: first = 0.0_wp, last = 0.0_wp, d = 0.0_wp, work = 0.0_wp
@@ -57,8 +58,8 @@ module rbs_solve_one_body_implicit_one_body
       !> measured by
       real(wp) :: q(2) = 0.0_wp, r(2) = 0.0_wp, v1(2) = 0.0_wp, a1(2) = 0.0_wp, g(2) = 0.0_wp, &
                   scale(2) = 0.0_wp
-      !> Inverse of the tangent (11, 12, 21, 22), the stiffnesses that it is for, whether it is for the present
-      !> step, and the lines that it belongs to
+      !> Inverse of the tangent (11, 12, 21, 22), the stiffnesses that it is for, whether it is for the
+      !> present step, and the lines that it belongs to
       real(wp) :: inverse(4) = 0.0_wp
       real(wp), private :: stiffness(2) = -1.0_wp
       logical, private :: fits = .false.

@@ -1,6 +1,6 @@
 !> The classical Runge-Kutta step for the paper's column: one body, small rotations, no damping, lateral force
-!> and horizontal ground motion. The two unknowns stay in registers, while the loops of a chain and their calls
-!> would take nearly all of the time. The equations are those of the chain.
+!> and horizontal ground motion. The two unknowns stay in registers, while the loops of a chain and their
+!> calls would take nearly all of the time. The equations are those of the chain.
 module rbs_solve_one_body_rk4_one_body
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column, only: column_type, small

@@ -76,8 +76,8 @@ contains
       end if
    end subroutine turn_corner
 
-   !> The layers of joints whose axial loads vary choose their lines for the present rates; a joint whose plane
-   !> changes by that had no room on it.
+   !> The layers of joints whose axial loads vary choose their lines for the present rates; a joint whose
+   !> plane changes by that had no room on it.
    subroutine choose_planes(path, count)
       class(static_path), intent(inout) :: path
       integer, intent(inout) :: count
@@ -152,9 +152,9 @@ contains
       end do
    end subroutine change_lines
 
-   !> Try both ways of the springs at the corner in all combinations, one change at a time (Gray code),
-   !> until all have room. Of more springs than can be tried, those come first that the search
-   !> has changed more than once.
+   !> Try both ways of the springs at the corner in all combinations, one change at a time (Gray code), until
+   !> all have room. Of more springs than can be tried, those come first that the search has changed more than
+   !> once.
    subroutine try_all_ways(path, direction, found)
       class(static_path), intent(inout) :: path
       integer, intent(in) :: direction

@@ -27,8 +27,8 @@ module rbs_solve_static_curve
    !> The least motion of the top [m] over the way between two targets where the axial load varies.
    real(wp), parameter :: least_motion = 1.0e-4_wp
 
-   !> A spring that goes back less than this share of its deformation has not turned; one that is beyond its end
-   !> by less than the second share of its way is not beyond it.
+   !> A spring that goes back less than this share of its deformation has not turned; one that is beyond its
+   !> end by less than the second share of its way is not beyond it.
    real(wp), parameter :: no_way = 1.0e-10_wp, no_overshoot = 1.0e-9_wp
 
    type :: curve_type
@@ -108,8 +108,8 @@ contains
    end function is_gentle
 
    !> Work of a force on a way: the trapezoidal rule, and what the slopes at the ends correct of it [J]. The
-   !> correction is exact if both are cubics of the parameter, or one a cubic of the other: the smallest is that
-   !> of the straightest curve.
+   !> correction is exact if both are cubics of the parameter, or one a cubic of the other: the smallest is
+   !> that of the straightest curve.
    pure function work(self, force, way, force_rate, way_rate)
       class(curve_type), intent(in) :: self
       !> At both ends
@@ -145,7 +145,9 @@ contains
          if (springs%unload_on_reversal(i) == 0) cycle
          largest = max(abs(self%near%rate(i)), abs(self%far%rate(i)), &
                        self%least(merge(2, 1, self%turns(i)))/same_rate)
-         if (largest > 0.0_wp) least = min(least, springs%unload_on_reversal(i)*way*point%rate(i)/largest + same_rate)
+         if (largest > 0.0_wp) then
+            least = min(least, springs%unload_on_reversal(i)*way*point%rate(i)/largest + same_rate)
+         end if
       end do
       if (.not. springs%pressed) return
       do j = 1, size(springs%layered)
@@ -246,7 +248,9 @@ contains
 
          value = 0.5_wp*(a + b) + 0.125_wp*self%length*(rate_a - rate_b)
          slope = 0.0_wp
-         if (abs(rate_a) + abs(rate_b) > 0.0_wp) slope = 1.5_wp*(b - a)/self%length - 0.25_wp*(rate_a + rate_b)
+         if (abs(rate_a) + abs(rate_b) > 0.0_wp) then
+            slope = 1.5_wp*(b - a)/self%length - 0.25_wp*(rate_a + rate_b)
+         end if
       end subroutine middle
 
    end function layer_passes

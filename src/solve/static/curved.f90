@@ -32,8 +32,8 @@ module rbs_solve_static_curved
    !> A stride below this share of what is driven, or of what was tried, does not count as one.
    real(wp), parameter :: no_stride = 1.0e-11_wp
 
-   !> A stride may be cut at least this often, however short it becomes; this often for its work, and for what a
-   !> cubic shows of layers.
+   !> A stride may be cut at least this often, however short it becomes; this often for its work, and for what
+   !> a cubic shows of layers.
    integer, parameter :: fewest_cuts = 20, most_cuts_for_work = 8, most_looks = 6
 
    !> A way below this share of the largest value is straight to the last digit, and too short for Newton's
@@ -195,8 +195,8 @@ contains
       !> How often it has been cut
       integer, intent(in) :: cuts
       logical, intent(out) :: done
-      !> Whether the way was so short that it is straight, and tells nothing of how far the next stride may go.
-      !> A part of a way that was too long does not count: before a limit point the path bends within any
+      !> Whether the way was so short that it is straight, and tells nothing of how far the next stride may
+      !> go. A part of a way that was too long does not count: before a limit point the path bends within any
       !> distance
       logical, intent(out) :: near
       real(wp) :: works(3)
@@ -242,9 +242,11 @@ contains
       integer :: side
 
       associate (there => self%stride%there, here => self%stride%here, spring => self%stride%spring)
-         ! An end that is met where the path goes to, but for round-off, is met there: beyond it, the path would
-         ! turn back.
-         if (abs(self%goal - there%t) <= on_the_end*abs(self%goal) + round_off*self%extent) there%t = self%goal
+         ! An end that is met where the path goes to, but for round-off, is met there: beyond it, the path
+         ! would turn back.
+         if (abs(self%goal - there%t) <= on_the_end*abs(self%goal) + round_off*self%extent) then
+            there%t = self%goal
+         end if
          associate (driven => self%stride%equilibrium%driven(1) + self%stride%equilibrium%driven(2)*there%t)
             if (self%by_force) then
                there%force = driven
@@ -326,8 +328,8 @@ contains
          call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//state//' and the '// &
                           'axial load '//to_text(self%stride%here%axial_load)//' N on the way to '// &
                           to_text(target)//merge(' N', ' m', self%by_force)//': the column snaps through '// &
-                          'or has lost its capacity there ('//spring//' has the least stiffness left). The '// &
-                          'path up to there is kept; use a dynamic analysis to go on')
+                          'or has lost its capacity there ('//spring//' has the least stiffness left). '// &
+                          'The path up to there is kept; use a dynamic analysis to go on')
       else if (self%by_force) then
          call fatal_error(error, analysis_failed, 'the lateral force '//to_text(target)// &
                           ' N is beyond the capacity of the column: no stable equilibrium was found '// &

@@ -5,8 +5,9 @@
 !>     c = c_0 + c' t,   N = N_0 + N' t + r F
 !>
 !> with r F as in an exterior column of a frame; where N is constant, t is c. In absolute rotations joint by
-!> joint (see `rbs_structure_column_dead_loads`), with the loads less the forces of the springs R(z, F, N) and their
-!> derivatives K = -dR/dz, a = dR/dF, p = dR/dN, rates and corrections follow from one band with a border,
+!> joint (see `rbs_structure_column_dead_loads`), with the loads less the forces of the springs R(z, F, N) and
+!> their derivatives K = -dR/dz, a = dR/dF, p = dR/dN, rates and corrections follow from one band with a
+!> border,
 !>
 !>     [K    -(a + r p)] [dz]   [p N'         R             ]
 !>     [a'    0        ] [dF] = [c'    |      what c misses ]
@@ -47,8 +48,8 @@ module rbs_solve_static_curved_equilibrium
       logical :: by_force = .false., varies = .false.
       !> What is driven and the axial load at t = 0, and their rates
       real(wp) :: driven(2) = [0.0_wp, 1.0_wp], load(2) = 0.0_wp, ratio = 0.0_wp
-      !> The column under its constant axial loads alone, which where the load at the top varies is the weight,
-      !> and under a unit at the top
+      !> The column under its constant axial loads alone, which where the load at the top varies is the
+      !> weight, and under a unit at the top
       type(column_type) :: steady, unit
       !> Weight above the joints that layered joints feel (unknowns) [N]
       real(wp), allocatable :: above(:)
@@ -60,8 +61,10 @@ module rbs_solve_static_curved_equilibrium
       !> The column under the present loads, and its tangent
       type(column_type), private :: column
       type(band_matrix), private :: tangent
-      !> R, a, p and its part without springs, right-hand sides and solutions, joint by joint; forces of springs
-      real(wp), allocatable, private :: residual(:), arm(:), pushed(:), lift(:), right(:, :), change(:, :), f(:)
+      !> R, a, p and its part without springs, right-hand sides and solutions, joint by joint; forces of
+      !> springs
+      real(wp), allocatable, private :: residual(:), arm(:), pushed(:), lift(:), right(:, :), &
+                                        change(:, :), f(:)
    contains
       procedure :: create
       procedure :: solve

@@ -311,9 +311,9 @@ contains
    end subroutine along_joints
 
    !> Joints one above the other that nothing couples, small rotations without axial load, driven by the
-   !> displacement. They share the force, and their motions add up. The force is that of the most flexible joint p and
-   !> what takes the others to it, F' = -r_p/a_p + F'': with F' itself, its motion (r_p + a_p F')/k_p would be
-   !> a difference of round-off over next to nothing.
+   !> displacement. They share the force, and their motions add up. The force is that of the most flexible
+   !> joint p and what takes the others to it, F' = -r_p/a_p + F'': with F' itself, its motion
+   !> (r_p + a_p F')/k_p would be a difference of round-off over next to nothing.
    pure subroutine follow_diagonal(arm, initial, k, r, gap, rate, force_rate, correction, force_correction, &
                                    regular)
       !> Arms of the force and initial stiffness of the joints (m)

@@ -52,8 +52,8 @@ module rbs_solve_static_path
       real(wp) :: axial_rate = 0.0_wp
       !> How often each spring has changed its line at the present corner (unknowns)
       integer, allocatable :: changed(:)
-      !> Energy of springs and axial load at the start, work of the axial load as far as it varies [J], and the
-      !> steps that were cut
+      !> Energy of springs and axial load at the start, work of the axial load as far as it varies [J], and
+      !> the steps that were cut
       real(wp) :: at_begin = 0.0_wp, load_work = 0.0_wp
       integer :: cuts = 0
       !> Axial load at the top without what follows the force [N], and energy that was damped before [J]
@@ -264,7 +264,9 @@ contains
          if (task%summary%lost_joint > 0 .and. allocated(failure)) deallocate (failure)
          if (allocated(failure)) failure%message = 'row '//to_text(i)//': '//failure%message
          call see_peaks(self)
-         if (may_collapse) task%summary%collapsed = abs(self%displacement)/self%column%height >= task%collapse_drift
+         if (may_collapse) then
+            task%summary%collapsed = abs(self%displacement)/self%column%height >= task%collapse_drift
+         end if
          call find_response(self, real(i - 1, wp), response)
          call task%summary%see_energies(response%energy)
          if (mod(i - 1, n) == 0 .or. i == size(target) .or. allocated(failure) .or. &
@@ -371,7 +373,8 @@ contains
    pure real(wp) function missing_work(self)
       class(static_path), intent(in) :: self
 
-      missing_work = self%work + self%at_begin - sum(self%springs%work) - self%damped_before - self%axial_work()
+      missing_work = self%work + self%at_begin - sum(self%springs%work) - self%damped_before &
+                     - self%axial_work()
    end function missing_work
 
    !> Potential of the constant axial loads, and the work of those that vary [J].

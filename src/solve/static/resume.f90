@@ -69,8 +69,8 @@ contains
       if (lost > 0) then
          call fatal_error(error, analysis_failed, 'initial: the layers of '// &
                           trim(spring_name(path%column%place(lost)))// &
-                          ' cannot carry the axial load of '//to_text(press(path%column%index_of(lost)))//' N in the '// &
-                          'state that the first analysis ended in; give a smaller axial_load')
+                          ' cannot carry the axial load of '//to_text(press(path%column%index_of(lost)))// &
+                          ' N in the state that the first analysis ended in; give a smaller axial_load')
          return
       end if
       path%load_now = merge(standing%axial_load, path%column%axial_load, varies)

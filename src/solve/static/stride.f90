@@ -182,8 +182,7 @@ contains
    end subroutine find_turn
 
    !> Works of the lateral force and of the axial load on the way that was tried, and of the layered joints
-   !> whose
-   !> axial loads vary, all by the cubics of the curve.
+   !> whose axial loads vary, all by the cubics of the curve.
    subroutine find_works(self, springs, largest, strict, works, done)
       class(stride_type), intent(inout) :: self
       type(spring_array), intent(in) :: springs
@@ -215,7 +214,8 @@ contains
          weight = [potential_energy(self%equilibrium%steady, here%q), &
               potential_energy(self%equilibrium%steady, there%q)]
          works(2) = sum(self%curve%work([here%axial_load, there%axial_load], lift, &
-                                        [here%axial_rate, there%axial_rate], [here%lift_rate, there%lift_rate]))
+                                        [here%axial_rate, there%axial_rate], &
+                                        [here%lift_rate, there%lift_rate]))
          f(:) = f - 0.5_wp*springs%k*change
          do j = 1, size(springs%layered)
             if (springs%pressed) f(springs%layered(j)) = 0.0_wp
@@ -224,7 +224,8 @@ contains
          turnover = sum(abs(change*f)) + sum(abs(works))
          missing = works(1) - works(2) - works(3) - sum(change*f) - (weight(2) - weight(1))
          done = .not. strict .or. abs(missing) <= &
-                most_missing(merge(1, 2, self%equilibrium%steady%kinematics == finite))*max(largest, turnover) &
+                most_missing(merge(1, 2, self%equilibrium%steady%kinematics == finite)) &
+                *max(largest, turnover) &
                 + round_off*(abs(there%axial_load)*maxval(abs(lift)) + maxval(abs(weight)))
       end associate
    end subroutine find_works
@@ -238,7 +239,8 @@ contains
       associate (here => self%here, there => self%there)
          work = sum(self%curve%work( &
                     moment_on_plane(springs, i, [here%q(i), there%q(i)], &
-                                            [here%axial_load, there%axial_load] + self%equilibrium%above(i)), &
+                                            [here%axial_load, there%axial_load] &
+                                            + self%equilibrium%above(i)), &
                     [here%q(i), there%q(i)], &
                     springs%k(i)*[here%rate(i), there%rate(i)] &
                     - springs%centre(i)*[here%axial_rate, there%axial_rate], [here%rate(i), there%rate(i)]))

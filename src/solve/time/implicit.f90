@@ -1,5 +1,5 @@
-!> Newmark's method and the generalised-alpha method (HHT is a case of it) in the unknowns of a structure, where
-!> the mass is diagonal and the tangent a band: O(n) a step, no limit of stability.
+!> Newmark's method and the generalised-alpha method (HHT is a case of it) in the unknowns of a structure,
+!> where the mass is diagonal and the tangent a band: O(n) a step, no limit of stability.
 !>
 !> The springs are straight lines, so the tangent step is exact up to the next end of a line. Where Newton's
 !> method goes back and forth between two branches, the solution goes from end to end instead. A step that
@@ -19,7 +19,8 @@ module rbs_solve_time_implicit
    implicit none
    private
 
-   public :: implicit_stepper, fit_one_body, new_newmark, new_generalised_alpha, new_hht, with_finite_rotations
+   public :: implicit_stepper, fit_one_body, new_newmark, new_generalised_alpha, new_hht, &
+             with_finite_rotations
 
    type, extends(newton_stepper) :: implicit_stepper
       !> Whether it is average acceleration, which with finite rotations has the forces of the mean
@@ -122,8 +123,9 @@ contains
       real(wp) :: mean(2)
 
       associate (step => self%step, body => self%one_body, motion => state%motion)
-         if (abs(h - body%h) > 0.0_wp .or. abs(self%wanted - body%wanted) > 0.0_wp) &
+         if (abs(h - body%h) > 0.0_wp .or. abs(self%wanted - body%wanted) > 0.0_wp) then
             call fit_one_body(body, step, self%wanted, state, h)
+         end if
          call body%take_step(state%springs, state%q, step%v0, step%a0, step%g0, step%largest, &
                              load(lateral), load(horizontal), taken)
          if (.not. taken) return

@@ -22,7 +22,8 @@ module rbs_solve_time_implicit_balance
    type :: step_balance
       !> Parameters of the method; those of Newmark's average acceleration
       real(wp) :: alpha_m = 0.0_wp, alpha_f = 0.0_wp, beta = 0.25_wp, gamma = 0.5_wp
-      !> Velocities, accelerations and forces of the unknowns at the start of a step, and at its end (unknowns)
+      !> Velocities, accelerations and forces of the unknowns at the start of a step, and at its end
+      !> (unknowns)
       real(wp), allocatable :: v0(:), a0(:), g0(:), v1(:), a1(:), g1(:)
       !> Residual, and what the unknowns have moved in the step (unknowns)
       real(wp), allocatable :: r(:), moved(:)

@@ -33,8 +33,8 @@ module rbs_solve_time_motion
       !> Forces of the joints: springs, damping and, with small rotations, the second-order share of the axial
       !> forces (unknowns) [N, N m, N]
       real(wp), allocatable :: f(:)
-      !> Small rotations: forces on the unknowns of the structure, without the inertia of the moving ground and
-      !> without mass damping, and their accelerations relative to the ground (unknowns)
+      !> Small rotations: forces on the unknowns of the structure, without the inertia of the moving ground
+      !> and without mass damping, and their accelerations relative to the ground (unknowns)
       real(wp), allocatable :: force(:), x(:)
       !> The latter where joints do not open, along x and in rotation (n)
       real(wp), allocatable :: along(:), turning(:)
@@ -92,7 +92,8 @@ contains
       type(column_type), intent(in) :: column
 
       allocate (self%a(column%unknowns), self%f(column%unknowns), self%force(column%unknowns), &
-                self%x(column%unknowns), self%along(column%n), self%turning(column%n), self%moment(column%n), source=0.0_wp)
+                self%x(column%unknowns), self%along(column%n), self%turning(column%n), &
+                self%moment(column%n), source=0.0_wp)
       self%axial = [column%axial_body, column%axial_slip]
       if (column%kinematics == finite) call self%work%create(column%n)
    end subroutine create_result
@@ -159,7 +160,8 @@ contains
          end if
          if (self%second_order) then
             if (self%acts(vertical) .or. self%acts(axial)) call self%column%axial_forces(load, result%axial)
-            call second_order_forces(self%column%n, self%column%length, result%axial, q, result%f, 1, result%moment)
+            call second_order_forces(self%column%n, self%column%length, result%axial, q, result%f, 1, &
+                                     result%moment)
          end if
          call chain_accelerations(self%column%n, self%column%lower, self%column%upper, self%inverse_mass, &
                                   self%inverse_inertia, result%f, result%moment, load(lateral), &

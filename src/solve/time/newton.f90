@@ -1,6 +1,6 @@
 !> Implicit steps by Newton's method with a line search. Every trial goes from the state at the start of the
-!> step, each spring in one direction, so that earlier trials leave no trace; and the forces of springs that do
-!> not soften then have a convex potential, on which this converges.
+!> step, each spring in one direction, so that earlier trials leave no trace; and the forces of springs that
+!> do not soften then have a convex potential, on which this converges.
 module rbs_solve_time_newton
    use rbs_base_kinds, only: wp
    use rbs_solve_line_search, only: false_position
@@ -20,8 +20,8 @@ module rbs_solve_time_newton
       !> The residual has vanished below this share of the forces; where round-off does not let it, below the
       !> second
       real(wp) :: wanted = 1.0e-12_wp, acceptable = 1.0e-7_wp
-      !> Whether an overshoot is bounded too where the residual does negative work on the correction, as a tangent
-      !> that is not positive definite may let it
+      !> Whether an overshoot is bounded too where the residual does negative work on the correction, as a
+      !> tangent that is not positive definite may let it
       logical :: searches_uphill = .true.
    contains
       procedure :: iterate

@@ -66,8 +66,9 @@ contains
       if (lost > 0) then
          call fatal_error(error, analysis_failed, 'initial: the layers of '// &
                           trim(spring_name(column%place(lost)))// &
-                          ' cannot carry the axial load of '//to_text(column%axial_force(lost, state%load))//' N in the '// &
-                          'state that the first analysis ended in; give a smaller axial_load')
+                          ' cannot carry the axial load of '// &
+                          to_text(column%axial_force(lost, state%load))// &
+                          ' N in the state that the first analysis ended in; give a smaller axial_load')
          return
       end if
       state%q = state%springs%d

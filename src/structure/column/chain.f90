@@ -135,8 +135,8 @@ contains
       end do
    end subroutine chain_accelerations
 
-   !> Second-order forces of axial forces, those of the potential -sum a_k l_k th_k^2/2 - sum b_k u_k th_{k-1}:
-   !> on the joints their part in u, on the bodies that in th.
+   !> Second-order forces of axial forces, those of the potential -sum a_k l_k th_k^2/2 - sum b_k u_k
+   !> th_{k-1}: on the joints their part in u, on the bodies that in th.
    pure subroutine second_order_forces(n, length, axial, d, shear, step, moment)
       integer, intent(in) :: n
       !> a, then b, compression positive (2 n) [N]

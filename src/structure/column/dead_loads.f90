@@ -3,10 +3,10 @@
 !>     A = sum P_i l_i cos th_i + sum Q_i (-u_i sin th_{i-1} + w_i cos th_{i-1}) - F x_T
 !>     x_T = sum l_i sin th_i + u_i cos th_{i-1} + w_i sin th_{i-1}
 !>
-!> or, with the other kinematics, to second order without what the lateral force does on rotated bodies and the
-!> axial loads on openings of rotated joints. P = `axial_body`, Q = `axial_joint` (`axial_slip` on slips),
-!> th_0 = 0. In absolute rotations joints meet only their neighbours. Unknowns stand joint by joint here: slip,
-!> opening if there is one, absolute rotation.
+!> or, with the other kinematics, to second order without what the lateral force does on rotated bodies and
+!> the axial loads on openings of rotated joints. P = `axial_body`, Q = `axial_joint` (`axial_slip` on slips),
+!> th_0 = 0. In absolute rotations joints meet only their neighbours. Unknowns stand joint by joint here:
+!> slip, opening if there is one, absolute rotation.
 module rbs_structure_column_dead_loads
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column, only: column_type, finite

@@ -171,10 +171,13 @@ contains
          associate (lower => column%lower(i), upper => column%upper(i))
             ! Moments about the centroid, of joint i at its bottom and of joint i + 1.
             turn = (lower*(transverse*c - tension*s) - moment &
-                    + transverse_above*(upper + opening_above) - tension_above*slip_above + moment_above)*per_inertia
+                    + transverse_above*(upper + opening_above) - tension_above*slip_above &
+                    + moment_above)*per_inertia
             ! b'' = c'' - lower (om' t - om^2 e), along t and e of the body below.
-            bottom(1) = (transverse_above*c + tension_above*s - transverse)*per_mass + lower*(spin**2*s - turn*c)
-            bottom(2) = (tension_above*c - transverse_above*s - tension)*per_mass + lower*(spin**2*c + turn*s)
+            bottom(1) = (transverse_above*c + tension_above*s - transverse)*per_mass &
+                        + lower*(spin**2*s - turn*c)
+            bottom(2) = (tension_above*c - transverse_above*s - tension)*per_mass &
+                        + lower*(spin**2*c + turn*s)
             a(i, shear) = bottom(1) - below(1) + slip*spin_below**2
             a(i, flexure) = turn - turn_below
             separation = bottom(2) - below(2) + 2.0_wp*v(i, shear)*spin_below + slip*turn_below
@@ -290,7 +293,8 @@ contains
       associate (s => work%sine, c => work%cosine, force => work%axial)
          if (i < n) then
             turn = (column%upper(i)*s(n)*force(n) - column%lower(i)*s(i)*force(i))/column%inertia(i)
-            a(i, shear) = a(i, shear) + force(n)*(c(i)*s(n) + s(i)*c(n))/column%mass(i) - column%lower(i)*c(i)*turn - below
+            a(i, shear) = a(i, shear) + force(n)*(c(i)*s(n) + s(i)*c(n))/column%mass(i) &
+                          - column%lower(i)*c(i)*turn - below
             a(i, flexure) = a(i, flexure) + turn - turn_below
             below = (force(i)*s(i) + force(n)*s(n))/column%mass(i) + column%upper(i)*turn
             turn_below = turn

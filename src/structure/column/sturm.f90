@@ -1,5 +1,5 @@
 !> The dynamic stiffness K - s M of the chain, by elimination from the top down: the number of its negative
-!> pivots is that of the squared frequencies below s (a Sturm sequence), and it is solved with the same pivots.
+!> pivots is that of the squared frequencies below s (a Sturm sequence), and the same pivots solve it.
 !>
 !> The bodies above joint i, each joint between them in equilibrium, answer the motion (x, th) of its upper
 !> side like the negative stiffness -T, a 2 by 2 matrix. A body adds its inertia and its axial force to T, a
@@ -78,7 +78,8 @@ contains
       self%n = n
       self%modes = n
       allocate (self%k(2, n), self%joint(7, n), source=1.0_wp)
-      allocate (self%mass(2, n), self%lower(n), self%upper(n), self%turning(n), self%sliding(n), source=0.0_wp)
+      allocate (self%mass(2, n), self%lower(n), self%upper(n), self%turning(n), self%sliding(n), &
+                source=0.0_wp)
       self%k(1, :) = column%initial_stiffness(2*n + 1:)
       self%mass(1, :) = column%mass
    end function opening_chain
@@ -93,8 +94,8 @@ contains
 
       axial = 1.0_wp
       if (present(multiple)) axial = multiple
-      call eliminate(self%n, self%held, self%k, self%mass, self%lower, self%upper, self%turning, self%sliding, &
-                     s, axial, self%joint, below)
+      call eliminate(self%n, self%held, self%k, self%mass, self%lower, self%upper, self%turning, &
+                     self%sliding, s, axial, self%joint, below)
    end function factor
 
    pure subroutine eliminate(n, held, k, mass, lower, upper, turning, sliding, s, axial, joint, below)

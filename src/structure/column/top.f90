@@ -72,7 +72,8 @@ contains
             lifts = a(i, axial)
          end if
          velocity = velocity + (v(i, shear) + opening*spin)*c + (opens - q(i, shear)*spin)*s
-         acceleration = acceleration + (a(i, shear) + 2.0_wp*opens*spin + opening*turn - q(i, shear)*spin**2)*c &
+         acceleration = acceleration + (a(i, shear) + 2.0_wp*opens*spin + opening*turn &
+                                        - q(i, shear)*spin**2)*c &
                         + (lifts - 2.0_wp*v(i, shear)*spin - q(i, shear)*turn - opening*spin**2)*s
          rotation = rotation + q(i, flexure)
          spin = spin + v(i, flexure)
