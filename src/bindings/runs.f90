@@ -101,8 +101,8 @@ contains
          answer%value = [answer%value, run%task%after%stream%value(:run%task%after%stream%count)]
       end if
       associate (summary => run%task%summary)
-         answer%text = trim(summary%method)//line//trim(summary%reason)//line//trim(summary%status())//line// &
-                       trim(run%recorder%channels%names())//line
+         answer%text = trim(summary%method)//line//trim(summary%reason)//line//trim(summary%status())// &
+                       line//trim(run%recorder%channels%names())//line
       end associate
       do i = 1, size(figure)
          answer%text = answer%text//trim(figure(i)%name)//' '

@@ -97,8 +97,8 @@ contains
       call self%tangent%create(m, per_joint(column), band(1, :))
    end subroutine create
 
-   !> The axial load at the top apart from the weight, which is taken from the bodies: what is left when the load
-   !> is taken off would depend on it by round-off, and a path that is cut begins under another load.
+   !> The axial load at the top apart from the weight, which is taken from the bodies: what is left when the
+   !> load is taken off would depend on it by round-off, and a path that is cut begins under another load.
    subroutine take_load_off(self)
       type(curved_equilibrium), intent(inout) :: self
       real(wp) :: second_order
