@@ -93,7 +93,9 @@ def test_two_bodies_whose_axial_load_follows_the_force(
     result = rbsdem.cyclic(two_bodies(kinematics, axial_force_ratio=1.5), displacement=DRIVEN)
     found = np.column_stack([result.force, result.slip[:, 0], result.rotation])[rows]
     np.testing.assert_allclose(found, points, rtol=1e-9)
-    assert result.summary["energy_residual"] < 1e-13 * result.summary["input_energy"]
+    # With P-Delta the force is a curve, and the works of each stride may miss 1e-13 of the energy.
+    share = 1e-12 if kinematics == "pdelta" else 1e-13
+    assert result.summary["energy_residual"] < share * result.summary["input_energy"]
 
 
 @pytest.mark.parametrize("kinematics", ["small", "pdelta"])
