@@ -63,6 +63,8 @@ module rbs_hysteresis_springs
       !> Where they vary (count): axial load that the joint is to reach, axial load of the present plane
       !> [N], and its centre of stiffness e = -dM/dN [m]
       real(wp), allocatable :: press_to(:), press_at(:), centre(:)
+      !> Deformations that the springs go to, a work array (count)
+      real(wp), allocatable, private :: ahead(:)
    contains
       procedure, private :: create_from_rules, create_from_records
       generic :: create => create_from_rules, create_from_records
@@ -606,10 +608,10 @@ contains
       !> Deformations and rates of the first springs; in units of the rates
       real(wp), intent(in), contiguous :: q(:), rate(:)
       real(wp), intent(in) :: way
-      real(wp) :: to(size(q))
 
-      to = min(max(q + rate*way, self%first(:size(q))), self%last(:size(q)))
-      call advance_all(size(q), to, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
+      if (.not. allocated(self%ahead)) allocate (self%ahead(self%count))
+      self%ahead(:size(q)) = min(max(q + rate*way, self%first(:size(q))), self%last(:size(q)))
+      call advance_all(size(q), self%ahead, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
                        self%first, self%last)
    end subroutine go_along
 

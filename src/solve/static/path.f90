@@ -11,10 +11,10 @@ module rbs_solve_static_path
    use rbs_structure_column_top, only: largest_turn, top_displacement, top_position
    use rbs_hysteresis_interaction_joints, only: fall_of, vary_axial_loads
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_output_channels, only: response_type
+   use rbs_output_channels, only: energy_type, response_type
    use rbs_solve_static_row_check, only: row_check
    use rbs_solve_task, only: task_type
-   use rbs_structure_spring_place, only: spring_name, axial, flexure
+   use rbs_structure_spring_place, only: spring_name, axial
    implicit none
    private
 
@@ -50,6 +50,9 @@ module rbs_solve_static_path
       real(wp), allocatable :: rate(:)
       !> The same of the axial load at the top where it varies [N]
       real(wp) :: axial_rate = 0.0_wp
+      !> Number of the straight line that the path is on, 0 for a curve, and where the line begins
+      integer :: line = 0
+      real(wp) :: start = 0.0_wp
       !> How often each spring has changed its line at the present corner (unknowns)
       integer, allocatable :: changed(:)
       !> Energy of springs and axial load at the start, work of the axial load as far as it varies [J], and
@@ -230,8 +233,9 @@ contains
       type(error_type), allocatable :: failure
       type(row_check) :: check
       type(response_type) :: response
+      real(wp) :: way
       logical :: may_collapse
-      integer :: i, n, lost
+      integer :: i, n, lost, line
 
       n = task%every
       if (.not. is_given(n)) n = 1
@@ -241,6 +245,8 @@ contains
       ! A path that goes on has forces and works from before, and the round-off of theirs.
       call check_row(self, check, self%control, failure)
       if (allocated(failure)) deallocate (failure)
+      line = -1
+      way = 0.0_wp
       do i = 1, size(target)
          self%number = i - 1
          self%way_begin = self%control
@@ -249,7 +255,13 @@ contains
          call self%advance(target(i), failure)
          if (.not. allocated(failure) .and. self%springs%lost_joint() == 0) then
             call stand_on_ends(self)
-            call check_row(self, check, target(i), failure)
+            ! On a straight line what is wrong grows with the way.
+            if (self%line == 0 .or. self%line /= line .or. abs(self%control - self%start) > 2.0_wp*way .or. &
+                i == size(target)) then
+               call check_row(self, check, target(i), failure)
+               line = self%line
+               way = abs(self%control - self%start)
+            end if
             if (allocated(failure)) then
                ! What is no state of the column is no row.
                failure%message = 'row '//to_text(i)//': '//failure%message
@@ -258,8 +270,10 @@ contains
             end if
          end if
          lost = self%springs%lost_joint()
-         task%summary%lost_joint = findloc(self%column%at(flexure, :), lost, dim=1)
-         if (lost > 0) call fall_of(self%springs, lost, task%summary%fall)
+         if (lost > 0) then
+            task%summary%lost_joint = self%column%index_of(lost)
+            call fall_of(self%springs, lost, task%summary%fall)
+         end if
          ! Where a joint has lost its axial load, that is what ends the path.
          if (task%summary%lost_joint > 0 .and. allocated(failure)) deallocate (failure)
          if (allocated(failure)) failure%message = 'row '//to_text(i)//': '//failure%message
@@ -267,11 +281,12 @@ contains
          if (may_collapse) then
             task%summary%collapsed = abs(self%displacement)/self%column%height >= task%collapse_drift
          end if
-         call find_response(self, real(i - 1, wp), response)
+         call find_energies(self, response%energy)
          call task%summary%see_energies(response%energy)
          if (mod(i - 1, n) == 0 .or. i == size(target) .or. allocated(failure) .or. &
              task%summary%collapsed .or. task%summary%lost_joint > 0) then
             task%summary%rows = task%summary%rows + 1
+            call find_response(self, real(i - 1, wp), response)
             task%summary%last_time = response%time
             call task%recorder%keep(response, self%springs, self%springs%d, error)
             if (allocated(error)) return
@@ -299,6 +314,7 @@ contains
 
       call see_peaks(self)
       if (.not. self%task%recorder%corners) return
+      call find_energies(self, response%energy)
       call find_response(self, self%number - 1 + share, response)
       call self%task%recorder%keep(response, self%springs, self%springs%d, error)
    end subroutine see_corner
@@ -384,24 +400,31 @@ contains
       axial_work = potential_energy(self%steady, self%springs%d) + self%load_work
    end function axial_work
 
-   !> The response at the present point.
+   !> The energies at the present point.
+   subroutine find_energies(self, energy)
+      class(static_path), intent(in) :: self
+      type(energy_type), intent(out) :: energy
+
+      energy%input = self%work
+      energy%spring = sum(self%springs%work)
+      energy%damping = self%damped_before
+      energy%axial = self%axial_work()
+      energy%residual = self%work + self%at_begin - energy%spring - self%damped_before - energy%axial
+   end subroutine find_energies
+
+   !> The response at the present point, whose energies are known.
    subroutine find_response(self, number, response)
       class(static_path), intent(in) :: self
       !> Of the row, between two targets with the share of the way
       real(wp), intent(in) :: number
-      type(response_type), intent(out) :: response
+      type(response_type), intent(inout) :: response
       real(wp) :: top(2)
 
       response%time = number
       response%displacement = self%displacement
       response%force = self%force
-      response%energy%input = self%work
-      response%energy%spring = sum(self%springs%work)
-      response%energy%damping = self%damped_before
-      response%energy%axial = self%axial_work()
       top = top_position(self%column, self%springs%d)
       response%height = top(2)
-      response%energy%residual = missing_work(self)
    end subroutine find_response
 
    !> Where the path is, for a message.

@@ -25,7 +25,6 @@ module rbs_solve_static_straight
    type, extends(static_path) :: straight_path
       type(equilibrium_type) :: equilibrium
       !> The line: values at `start`, and rates per unit of what is driven
-      real(wp) :: start = 0.0_wp
       real(wp), allocatable :: q(:)
       real(wp) :: force_start = 0.0_wp, force_rate = 0.0_wp
       real(wp) :: displacement_start = 0.0_wp, displacement_rate = 0.0_wp
@@ -148,6 +147,7 @@ contains
       real(wp) :: way, missing
       integer :: i
 
+      self%line = self%line + 1
       self%start = self%control
       self%displacement_start = self%displacement
       do i = 1, self%moving

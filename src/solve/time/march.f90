@@ -18,7 +18,6 @@ module rbs_solve_time_march
    use rbs_solve_time_sight, only: sight_type
    use rbs_solve_time_start, only: initial_state, start_state, resume_state, resume_steps, keep_state
    use rbs_solve_time_state, only: state_type, stepper_type, out_of_bounds
-   use rbs_structure_spring_place, only: flexure
    implicit none
    private
 
@@ -119,7 +118,7 @@ contains
             state%clock = begin + part*h
             if (part == parts) state%clock = finish
             lost = state%springs%lost_joint()
-            task%summary%lost_joint = findloc(state%motion%column%at(flexure, :), lost, dim=1)
+            if (lost > 0) task%summary%lost_joint = state%motion%column%index_of(lost)
             ends = task%summary%lost_joint > 0 .or. state%sight%collapsed
             ! A joint may have lost its axial load, or the column may have collapsed, within the step.
             associate (at => state%begin + state%time)
