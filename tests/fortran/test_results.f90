@@ -200,11 +200,11 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(summary_type) :: summary
 
-      call check_equal(error, summary%status(), 'completed', 'end of the loading')
+      call check_equal(error, trim(summary%status()), 'completed', 'end of the loading')
       summary%collapsed = .true.
-      call check_equal(error, summary%status(), 'collapsed', 'collapse')
+      call check_equal(error, trim(summary%status()), 'collapsed', 'collapse')
       summary%lost_joint = 1
-      call check_equal(error, summary%status(), 'axial_failure', 'loss of the axial load')
+      call check_equal(error, trim(summary%status()), 'axial_failure', 'loss of the axial load')
    end subroutine ends
 
 end module test_results
