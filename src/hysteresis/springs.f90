@@ -611,8 +611,8 @@ contains
 
       if (.not. allocated(self%ahead)) allocate (self%ahead(self%count))
       self%ahead(:size(q)) = min(max(q + rate*way, self%first(:size(q))), self%last(:size(q)))
-      call advance_all(size(q), self%ahead, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
-                       self%first, self%last)
+      call advance_all(size(q), self%ahead, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, &
+                       self%work, self%first, self%last)
    end subroutine go_along
 
    !> The plane that a layered joint is on.
