@@ -402,7 +402,11 @@ def test_cut_and_restart(rng: Rng) -> None:
     """A path that goes on in the state of another one is one path: bits."""
     column, loading = static_case(rng)
     whole = follow(column, loading)
-    cut = int(rng.integers(1, points(loading)))
+    # One point has one axial load, under which its path is that of a constant one: round-off.
+    fewest = 2 if "axial_load" in loading else 1
+    if points(loading) <= fewest:
+        raise Discard
+    cut = int(rng.integers(fewest, points(loading)))
     first = follow(column, {name: values[:cut] for name, values in loading.items()})
     if first.state is None or first.summary["status"] != "completed":
         raise Discard
