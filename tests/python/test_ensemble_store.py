@@ -368,7 +368,7 @@ def test_kill_9(tmp_path: Path) -> None:
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_every_run_that_has_ended_is_kept(tmp_path: Path, number: signal.Signals) -> None:
     """In tasks of which none has ended, and although no shard was due yet."""
-    command = begin(tmp_path, longest=1e3, beat=1e3, dt=1e-4)
+    command = begin(tmp_path, longest=1e3, beat=1e3, dt=2e-5)
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     with subprocess.Popen(command, **pipes) as process:
         assert process.stdout is not None
