@@ -605,12 +605,14 @@ contains
    !> Springs go at constant rates from given deformations, each on its own line and not beyond its end.
    pure subroutine go_along(self, q, rate, way)
       class(spring_array), intent(inout) :: self
-      !> Deformations and rates of the first springs; in units of the rates
+      !> Deformations of the first springs, rates of these and more; in units of the rates
       real(wp), intent(in), contiguous :: q(:), rate(:)
       real(wp), intent(in) :: way
 
       if (.not. allocated(self%ahead)) allocate (self%ahead(self%count))
-      self%ahead(:size(q)) = min(max(q + rate*way, self%first(:size(q))), self%last(:size(q)))
+      associate (m => size(q))
+         self%ahead(:m) = min(max(q + rate(:m)*way, self%first(:m)), self%last(:m))
+      end associate
       call advance_all(size(q), self%ahead, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, &
                        self%work, self%first, self%last)
    end subroutine go_along
