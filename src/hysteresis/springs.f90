@@ -161,15 +161,14 @@ contains
       type(spring_record), intent(in) :: specs(:)
       integer, intent(in), optional :: told(:)
       type(spring_rules) :: rules
-      integer :: none(size(specs))
+      integer :: heard(size(specs))
+      real(wp) :: axial_load(size(specs))
 
-      none = 0
+      heard = 0
+      if (present(told)) heard = told
+      axial_load = specs%axial_load
       call make_rules(specs, rules)
-      if (present(told)) then
-         call self%create(rules, told, specs%axial_load)
-      else
-         call self%create(rules, none, specs%axial_load)
-      end if
+      call self%create(rules, heard, axial_load)
    end subroutine create_from_records
 
    !> Take the state of other springs with the same rules, without an allocation where there is room.

@@ -125,6 +125,7 @@ contains
       type(figure_type), allocatable, intent(out) :: list(:)
       logical, allocatable :: applies(:)
       real(wp) :: drop, freed
+      integer :: i
 
       drop = merge(self%fall%drop, ieee_value(drop, ieee_quiet_nan), self%fall%rests)
       freed = merge(self%fall%freed, ieee_value(freed, ieee_quiet_nan), self%fall%rests)
@@ -149,9 +150,17 @@ contains
               figure_type('lost_axial_load', 'N', self%fall%axial_load), &
               figure_type('axial_capacity', 'N', self%fall%capacity), &
               figure_type('fall', 'm', drop), figure_type('fall_energy', 'J', freed)]
-      applies = spread(.true., 1, size(list))
-      applies(findloc(list%name, 'lost_joint', dim=1):) = self%lost_joint > 0
-      applies(findloc(list%name, 'peak_floor_acceleration', dim=1)) = self%peak_floor_acceleration >= 0.0_wp
+      allocate (applies(size(list)))
+      do i = 1, size(list)
+         select case (list(i)%name)
+         case ('lost_joint', 'lost_axial_load', 'axial_capacity', 'fall', 'fall_energy')
+            applies(i) = self%lost_joint > 0
+         case ('peak_floor_acceleration')
+            applies(i) = self%peak_floor_acceleration >= 0.0_wp
+         case default
+            applies(i) = .true.
+         end select
+      end do
       where (index(list%name, 'peak_force') > 0) applies = self%has_force
       list = pack(list, applies)
    end subroutine get_figures

@@ -83,11 +83,12 @@ contains
    subroutine create_few(self, column)
       type(equilibrium_type), intent(inout) :: self
       type(column_type), intent(in) :: column
-      real(wp) :: geometric(2*column%n + 1, 2*column%n + 1)
+      real(wp) :: geometric(2*column%n + 1, 2*column%n + 1), stiffness(2*column%n, 2*column%n)
 
       associate (m => self%unknowns)
          geometric = 0.0_wp
-         call geometric_stiffness(column, geometric(:m, :m))
+         call geometric_stiffness(column, stiffness)
+         geometric(:m, :m) = stiffness
          geometric(:m, m + 1) = -self%arm
          geometric(m + 1, :m) = self%arm
       end associate

@@ -156,11 +156,15 @@ contains
       logical, intent(in) :: by_force
       !> Number of springs that can move
       integer, intent(in) :: moving
+      integer :: heard(column%unknowns)
+      real(wp) :: axial_load(column%unknowns)
 
       self%column = column
       self%by_force = by_force
       self%moving = moving
-      call self%springs%create(column%rules, column%place%heard, column%spring%axial_load)
+      heard = column%place%heard
+      axial_load = column%spring%axial_load
+      call self%springs%create(column%rules, heard, axial_load)
       allocate (self%rate(column%unknowns), source=0.0_wp)
       allocate (self%changed(column%unknowns), source=0)
    end subroutine prepare

@@ -222,17 +222,20 @@ contains
       type(state_type), intent(inout) :: state
       type(column_type), intent(in) :: column
       real(wp) :: axial_load(column%unknowns)
-      integer :: i
+      integer :: heard(column%unknowns), i
+      logical :: varies
 
-      if (.not. any(state%loads%acts([vertical, top_axial]))) then
-         call state%springs%create(column%rules, column%place%heard, column%spring%axial_load)
+      heard = column%place%heard
+      axial_load = column%spring%axial_load
+      varies = any(state%loads%acts([vertical, top_axial]))
+      if (.not. varies) then
+         call state%springs%create(column%rules, heard, axial_load)
          return
       end if
-      axial_load = column%spring%axial_load
       do i = 1, column%n
          axial_load(column%at(flexure, i)) = column%axial_force(i, state%load)
       end do
-      call state%springs%create(column%rules, column%place%heard, axial_load)
+      call state%springs%create(column%rules, heard, axial_load)
       call vary_axial_loads(state%springs)
       call state%motion%press(state%springs, state%load)
    end subroutine create_springs
