@@ -54,7 +54,7 @@ module rbs_base_band_matrix
       real(wp), allocatable, private :: right(:, :), more(:, :)
    contains
       procedure :: create
-      procedure :: hold_last
+      procedure :: hold
       procedure :: factor
       generic :: solve => solve_one, solve_many
       procedure, private :: solve_one, solve_many
@@ -80,18 +80,20 @@ contains
       self%scale = [1.0_wp/sqrt(stiffness), (0.0_wp, i=2, rows)]
    end subroutine create
 
-   !> Hold the last unknown, the rotation of a held top: it couples with nothing.
-   pure subroutine hold_last(self, diagonal)
+   !> Hold an unknown that a support keeps still: it couples with nothing.
+   pure subroutine hold(self, unknown, diagonal)
       class(band_matrix), intent(inout) :: self
+      integer, intent(in) :: unknown
       !> What stands on the diagonal in its place
       real(wp), intent(in) :: diagonal
       integer :: i
 
-      do i = 2, min(self%width + 1, self%size)
-         self%band(i, self%size + 1 - i) = 0.0_wp
+      do i = 1, min(self%width, unknown - 1)
+         self%band(1 + i, unknown - i) = 0.0_wp
       end do
-      self%band(1, self%size) = diagonal
-   end subroutine hold_last
+      self%band(2:, unknown) = 0.0_wp
+      self%band(1, unknown) = diagonal
+   end subroutine hold
 
    !> Scale the matrix and factor it.
    subroutine factor(self)

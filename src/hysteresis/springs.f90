@@ -21,7 +21,7 @@ module rbs_hysteresis_springs
    !> of the rule. The longest correct move closes all open inner loops that a rule remembers.
    integer, parameter :: most_lines = 10000
 
-   !> `count` springs in their present state. Assignment copies everything, `copy_state` what changes.
+   !> `count` springs in their present state. Assignment copies everything.
    type :: spring_array
       !> Number of springs
       integer :: count = 0
@@ -69,7 +69,6 @@ module rbs_hysteresis_springs
       procedure, private :: create_from_rules, create_from_records
       generic :: create => create_from_rules, create_from_records
       procedure :: restart
-      procedure :: copy_state
       procedure :: next_branch
       procedure :: force
       procedure :: end_toward
@@ -170,27 +169,6 @@ contains
       call make_rules(specs, rules)
       call self%create(rules, heard, axial_load)
    end subroutine create_from_records
-
-   !> Take the state of other springs with the same rules, without an allocation where there is room.
-   subroutine copy_state(self, other)
-      class(spring_array), intent(inout) :: self
-      class(spring_array), intent(in) :: other
-      integer :: i
-
-      self%d(:) = other%d
-      self%work(:) = other%work
-      self%work_before(:) = other%work_before
-      self%events = other%events
-      self%stuck = other%stuck
-      call self%journal%forget()
-      do i = 1, self%count
-         call self%slot(i)%memory%copy(other%slot(i)%memory)
-         call put_line(self, i, other%line_of(i))
-         self%first(i) = other%first(i)
-         self%last(i) = other%last(i)
-      end do
-      self%version = modulo(self%version + 1, huge(1))
-   end subroutine copy_state
 
    !> The branch that follows from the rule of a spring, see `rule_type`.
    subroutine next_branch(self, i, branch, direction, flexural_work)

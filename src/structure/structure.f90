@@ -60,7 +60,6 @@ module rbs_structure_structure
       procedure(assemble), deferred :: add_stiffness
       procedure(assemble), deferred :: add_geometric
       procedure :: add_ground
-      procedure :: hold
       procedure :: work_of
    end type structure_type
 
@@ -155,25 +154,5 @@ contains
          end do
       end associate
    end function work_of
-
-   !> Take what is held out of a band: it couples with nothing.
-   pure subroutine hold(self, band, diagonal)
-      class(structure_type), intent(in) :: self
-      !> Lower band (half_width + 1, unknowns)
-      real(wp), intent(inout), contiguous :: band(:, :)
-      !> What stands on the diagonal in its place, per inertia
-      real(wp), intent(in) :: diagonal
-      integer :: i, j
-
-      if (.not. self%has_held) return
-      do j = 1, self%unknowns
-         if (.not. self%is_held(j)) cycle
-         do i = 1, min(self%half_width, j - 1)
-            band(1 + i, j - i) = 0.0_wp
-         end do
-         band(2:, j) = 0.0_wp
-         band(1, j) = diagonal*self%inertias(j)
-      end do
-   end subroutine hold
 
 end module rbs_structure_structure

@@ -162,7 +162,7 @@ contains
       if (.not. self%column%held) return
       self%residual(m) = 0.0_wp
       self%pushed(m) = 0.0_wp
-      call self%tangent%hold_last(self%tangent%stiffness(m))
+      call self%tangent%hold(m, self%tangent%stiffness(m))
    end subroutine assemble
 
    !> Rates at a point, and what takes its residual away; under a driven force it must be stable.

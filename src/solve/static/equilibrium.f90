@@ -294,7 +294,7 @@ contains
             band(3, 2*i) = -k(i + 1, flexure)
          end do
       end associate
-      if (self%column%held) call self%tangent%hold_last(self%tangent%stiffness(2*n))
+      if (self%column%held) call self%tangent%hold(2*n, self%tangent%stiffness(2*n))
    end subroutine fill_tangent
 
    !> Forces on (slip, absolute rotation), joint by joint, from those of the joints.

@@ -82,6 +82,7 @@ contains
       type(state_type), intent(in) :: state
       real(wp), intent(in) :: h
       real(wp) :: of_mass, of_damping
+      integer :: i
 
       of_damping = (1.0_wp - step%alpha_f)*step%gamma/(step%beta*h)
       of_mass = (1.0_wp - step%alpha_m)/(step%beta*h**2) + of_damping*state%motion%column%mass_damping
@@ -98,7 +99,11 @@ contains
             call structure%add_geometric((1.0_wp - step%alpha_f)*step%now%axial, self%matrix%band)
          end if
          self%matrix%band(1, :) = self%matrix%band(1, :) + of_mass*structure%inertias
-         call structure%hold(self%matrix%band, of_mass)
+         if (structure%has_held) then
+            do i = 1, structure%unknowns
+               if (structure%is_held(i)) call self%matrix%hold(i, of_mass*structure%inertias(i))
+            end do
+         end if
          self%stiffness = self%matrix%band(1, :)
          call self%matrix%factor()
       end associate
