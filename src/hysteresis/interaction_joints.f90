@@ -12,7 +12,7 @@ module rbs_hysteresis_interaction_joints
    implicit none
    private
 
-   public :: vary_axial_loads, fall_of, fill_openings, opening_of, choose_lines, nearest_layer, &
+   public :: vary_axial_loads, fall_of, fill_openings, opening_of, rest_of, choose_lines, nearest_layer, &
         moment_on_plane
    public :: least_forward_rate, put_on_plane, go_under
 
@@ -86,6 +86,18 @@ contains
          end if
       end select
    end function opening_of
+
+   !> Rotation from which a layered joint counts its own [rad]; 0 of other springs.
+   pure real(wp) function rest_of(springs, i) result(rest)
+      type(spring_array), intent(in) :: springs
+      integer, intent(in) :: i
+
+      rest = 0.0_wp
+      select type (section => springs%slot(i)%memory)
+      type is (fibre_section)
+         rest = section%rest
+      end select
+   end function rest_of
 
    !> Put the layers of a joint on the lines on which they go on along a straight path.
    subroutine choose_lines(springs, i, turn, press)

@@ -12,34 +12,49 @@
 !> body above it, which are fixed.
 module rbs_structure_column_column
    use rbs_base_check, only: is_given
+   use rbs_base_error, only: error_type, fatal_error, bad_input
+   use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_structure_channel, only: channel_type, response_type, row_contents
    use rbs_structure_column_chain, only: deformations, displacements, body_forces, second_order_forces, &
-                               add_joint_stiffness, add_axial_stiffness
+                               chain_accelerations, add_joint_stiffness, add_axial_stiffness
    use rbs_structure_column_column_record, only: column_record
-   use rbs_hysteresis_rule, only: spring_rules
-   use rbs_hysteresis_spring_record, only: spring_record, make_rules
+   use rbs_hysteresis_interaction_joints, only: opening_of, rest_of
+   use rbs_hysteresis_spring_record, only: make_rules
+   use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_spring_place, only: spring_place, shear, flexure, axial
-   use rbs_structure_structure, only: structure_type, unknown_group, lateral, horizontal, vertical, top_axial
+   use rbs_structure_structure, only: structure_type, unknown_group, small, pdelta, finite, lateral, &
+                                      horizontal, vertical, top_axial, signals
    implicit none
    private
 
    public :: column_type, new_column
-   public :: small, pdelta, finite
+   public :: small, pdelta, finite, column_channel
 
-   !> Levels of kinematics.
-   integer, parameter :: small = 1, pdelta = 2, finite = 3
+   !> What rows of a column hold besides what all structures have; some only where joints have axial
+   !> springs, in time where there is damping, on demand how the top moves, and layered joints. Without
+   !> `base_shear` and `base_moment` the base has the forces of the lowest joint. The motion is that of
+   !> the top relative to the ground. Openings of layered joints are those at the middle of their
+   !> sections; `rest` is the rotation at which they rest under their first axial load.
+   type(channel_type), parameter :: column_channel(14) = [ &
+      channel_type('top_height', 'm'), channel_type('slip', 'm'), channel_type('rotation', 'rad'), &
+      channel_type('opening', 'm'), channel_type('shear', 'N'), channel_type('moment', 'N m'), &
+      channel_type('axial_force', 'N'), channel_type('base_shear', 'N'), channel_type('base_moment', 'N m'), &
+      channel_type('velocity', 'm/s'), channel_type('acceleration', 'm/s2'), &
+      channel_type('ground_acceleration', 'm/s2'), channel_type('opening', 'm'), channel_type('rest', 'rad')]
+
+   !> Rotations of bodies that are differences of numbers this much larger are zero.
+   real(wp), parameter :: no_rotation = 1.0e-9_wp
 
    !> Rotary inertia of a body that does not turn [kg m2]: any positive number.
    real(wp), parameter :: of_held_body = 1.0_wp
 
    type, extends(structure_type) :: column_type
-      !> Number of bodies; the unknowns, as many as springs, are 2 n or, with axial springs, 3 n
-      integer :: n = 0
+      ! The unknowns, as many as springs, are 2 n or, with axial springs, 3 n
       !> Kinds of deformations of a joint: slip, rotation and, with axial springs, opening. Deformations are
       !> kept by kind, (n, kinds)
       integer :: kinds = 2
-      !> `small`, `pdelta` or `finite`
-      integer :: kinematics = small
       !> Whether joints have axial springs and open
       logical :: opens = .false.
       !> Whether the first body is a footing, so that its joint is joint 0, and whether the last body is held
@@ -49,8 +64,6 @@ module rbs_structure_column_column
       real(wp), allocatable :: length(:), mass(:), inertia(:)
       !> Distance of the centroid from the bottom and from the top of its body (n) [m]
       real(wp), allocatable :: lower(:), upper(:)
-      !> Height of the column itself, which drifts are in proportion to: a footing is not part of it [m]
-      real(wp) :: height = 0.0_wp
       !> Height of the joints above the ground (n + 1) [m]; the last is the top
       real(wp), allocatable :: joint_height(:)
       !> Displacement of the top per unknown, for small rotations (unknowns) [1, m, 0]
@@ -60,11 +73,8 @@ module rbs_structure_column_column
       !> Sums over the bodies from i up (n + 1): mass, first and second moment of mass about joint i,
       !> rotary inertia included [kg, kg m, kg m2]
       real(wp), allocatable :: mass_above(:), moment_above(:), inertia_above(:)
-      !> Whether an axial force does second-order work, from the load or from the weight
-      logical :: axially_loaded = .false.
-      !> Axial load at the top, compression positive [N], and acceleration of gravity that gives the bodies
-      !> their weight, 0 without self-weight [m/s2]
-      real(wp) :: axial_load = 0.0_wp, gravity = 0.0_wp
+      !> Acceleration of gravity that gives the bodies their weight, 0 without self-weight [m/s2]
+      real(wp) :: gravity = 0.0_wp
       !> Change of the axial load per lateral force on a static path
       real(wp) :: axial_force_ratio = 0.0_wp
       !> Height at which the axial load acts over the height of the column
@@ -82,18 +92,8 @@ module rbs_structure_column_column
       real(wp), allocatable :: lifted_body(:), lifted_joint(:)
       !> Whether the axial load, and the lateral force, turn with the top body
       logical :: axial_follows = .false., force_follows = .false.
-      !> Damping in proportion to the mass [1/s] and to the stiffness of the joints [s], the initial one
-      !> or that of the present line
-      real(wp) :: mass_damping = 0.0_wp, stiffness_damping = 0.0_wp
-      logical :: tangent_damping = .false.
-      !> Damping ratios of the modes (first modes, or one for all); not allocated without modal damping
-      real(wp), allocatable :: modal_damping(:)
-      !> Whether there is damping at all
-      logical :: damped = .false.
-      !> Springs (unknowns), shear first, and their initial stiffness
-      type(spring_record), allocatable :: spring(:)
-      type(spring_rules) :: rules
-      real(wp), allocatable :: initial_stiffness(:)
+      !> One over the mass or rotary inertia of each body, 0 for a rotation that is held (n)
+      real(wp), allocatable :: inverse_mass(:), inverse_inertia(:)
       !> Number of the spring of a kind in a joint, from the bottom up (3, n); 0: there is none
       integer, allocatable :: at(:, :)
    contains
@@ -102,9 +102,25 @@ module rbs_structure_column_column
       procedure :: forces
       procedure :: axial_forces
       procedure :: axial_force
+      procedure :: axial_rate
       procedure :: index_of
       procedure :: add_stiffness
       procedure :: add_geometric
+      procedure :: accelerations
+      procedure :: speeds
+      procedure :: power_of_loads
+      procedure :: kinetic_energy
+      procedure :: potential_energy
+      procedure :: top_displacement
+      procedure :: top_height
+      procedure :: top_acceleration
+      procedure :: rotations
+      procedure :: angular_momentum
+      procedure :: acceleration_scale
+      procedure :: check_loads
+      procedure :: check_initial
+      procedure :: channels
+      procedure :: fill_row
    end type column_type
 
 contains
@@ -329,6 +345,12 @@ contains
          column%inertias(2*n + i) = column%mass(i)
          column%part(2*n + i) = n + i
       end do
+      column%inverse_mass = 1.0_wp/column%mass
+      column%inverse_inertia = 1.0_wp/column%inertia
+      if (column%held) column%inverse_inertia(n) = 0.0_wp
+      column%work_size = 2*m + n
+      column%base_spring = [column%at(shear, 1)]
+      column%base_factor = [1.0_wp]
       allocate (column%group(merge(3, 2, column%opens)))
       column%group(1) = unknown_group(1, 2*n, 2, 1, n, 1.0_wp)
       column%group(2) = unknown_group(2, 2*n, 2, n + 1, 2*n, column%upper(n))
@@ -417,6 +439,15 @@ contains
       axial_force = self%compression(i) + load(top_axial) + load(vertical)*self%lifted_joint(i)
    end function axial_force
 
+   !> Rate of the axial force at a spring under the slopes of the loads [N/s].
+   pure real(wp) function axial_rate(self, spring, load)
+      class(column_type), intent(in) :: self
+      integer, intent(in) :: spring
+      real(wp), intent(in) :: load(:)
+
+      axial_rate = load(top_axial) + load(vertical)*self%lifted_joint(self%index_of(spring))
+   end function axial_rate
+
    !> Add B' diag(k) B.
    subroutine add_stiffness(self, k, band)
       class(column_type), intent(in) :: self
@@ -434,5 +465,329 @@ contains
 
       call add_axial_stiffness(self%n, self%length, self%lower, self%upper, k, band)
    end subroutine add_geometric
+
+   !> Accelerations of the joints, where the rotations are small.
+   subroutine accelerations(self, d, v, load, axial, f, work, a, of_speeds)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), v(:), load(:), axial(:)
+      real(wp), intent(inout), contiguous :: f(:)
+      !> Forces on the bodies, their accelerations, second-order moments
+      real(wp), intent(inout), contiguous :: work(:)
+      real(wp), intent(out), contiguous :: a(:)
+      real(wp), intent(out) :: of_speeds(2)
+      integer :: i, m, n
+
+      n = self%n
+      m = self%unknowns
+      if (self%opens) then
+         call self%forces(d, load, axial, f, work(:m))
+         associate (force => work(:m), x => work(m + 1:2*m))
+            do i = 1, n
+               x(2*i - 1) = force(2*i - 1)*self%inverse_mass(i) - load(horizontal)
+               x(2*i) = force(2*i)*self%inverse_inertia(i)
+               x(2*n + i) = force(2*n + i)*self%inverse_mass(i) - load(vertical)
+            end do
+            call self%spring_rates(x, a)
+            of_speeds(lateral) = x(2*n - 1) + self%upper(n)*x(2*n)
+         end associate
+      else
+         if (size(axial) > 0) then
+            call second_order_forces(n, self%length, axial, d, f, 1, work(2*m + 1:2*m + n))
+         else
+            work(2*m + 1:2*m + n) = 0.0_wp
+         end if
+         associate (along => work(m + 1:m + n), turning => work(m + n + 1:2*m))
+            call chain_accelerations(n, self%lower, self%upper, self%inverse_mass, self%inverse_inertia, f, &
+                                     work(2*m + 1:), load(lateral), load(horizontal), along, turning, a)
+            of_speeds(lateral) = along(n) + self%upper(n)*turning(n)
+         end associate
+      end if
+      of_speeds(horizontal) = -(load(lateral) - f(1) - self%mass_above(1)*load(horizontal))
+      if (self%mass_damping > 0.0_wp) a = a - self%mass_damping*v
+   end subroutine accelerations
+
+   pure subroutine speeds(self, d, v, speed)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), v(:)
+      real(wp), intent(out) :: speed(2)
+
+      speed(lateral) = inner_product(size(d), self%arm, v)
+      speed(horizontal) = -inner_product(size(d), self%ground_arm, v)
+   end subroutine speeds
+
+   !> Power of lateral force and moving ground, and of what is added to the axial load [W].
+   pure real(wp) function power_of_loads(self, d, v, load) result(watt)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), v(:), load(:)
+      real(wp) :: rotation, turning, rising, body, joint, lifts, speed(2)
+      integer :: i, n
+
+      call self%speeds(d, v, speed)
+      watt = speed(lateral)*load(lateral) + speed(horizontal)*load(horizontal)
+      if (.not. (abs(load(vertical)) > 0.0_wp .or. abs(load(top_axial)) > 0.0_wp)) return
+      lifts = 0.0_wp
+      n = self%n
+      rotation = 0.0_wp
+      turning = 0.0_wp
+      rising = 0.0_wp
+      do i = 1, n
+         body = load(top_axial)*self%axial_lever + load(vertical)*self%lifted_body(i)
+         joint = load(top_axial)*self%axial_lever + load(vertical)*self%lifted_joint(i)
+         if (i == n .and. self%held) joint = 0.0_wp
+         if (self%kinematics /= small) lifts = lifts + joint*(v(i)*rotation + d(i)*turning)
+         rotation = rotation + d(n + i)
+         turning = turning + v(n + i)
+         if (self%kinematics /= small) lifts = lifts + body*self%length(i)*rotation*turning
+         if (self%opens) then
+            rising = rising + v(2*n + i)
+            lifts = lifts - self%mass(i)*load(vertical)*rising
+         end if
+      end do
+      if (self%opens) lifts = lifts - load(top_axial)*rising
+      watt = watt + lifts
+   end function power_of_loads
+
+   pure real(wp) function kinetic_energy(self, d, v) result(energy)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), v(:)
+      real(wp) :: top, turning, centroid, height
+      integer :: i, n
+
+      n = size(d)/self%kinds
+      top = 0.0_wp
+      turning = 0.0_wp
+      energy = 0.0_wp
+      do i = 1, n
+         turning = turning + v(n + i)
+         centroid = top + v(i) + self%lower(i)*turning
+         top = centroid + self%upper(i)*turning
+         energy = energy + 0.5_wp*(self%mass(i)*centroid**2 + self%inertia(i)*turning**2)
+      end do
+      if (.not. self%opens) return
+      height = 0.0_wp
+      do i = 1, n
+         height = height + v(2*n + i)
+         energy = energy + 0.5_wp*self%mass(i)*height**2
+      end do
+   end function kinetic_energy
+
+   !> Potential of the constant axial load and the weight: -sum a_k l_k th_k^2/2 - sum b_k u_k th_{k-1} with
+   !> a = `axial_body`, b = `axial_slip`, and what they do on openings.
+   pure real(wp) function potential_energy(self, d) result(energy)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
+      real(wp) :: rotation
+      integer :: i, n
+
+      n = self%n
+      energy = 0.0_wp
+      if (self%axially_loaded) then
+         rotation = 0.0_wp
+         do i = 1, n
+            energy = energy - self%axial_slip(i)*d(i)*rotation
+            rotation = rotation + d(n + i)
+            energy = energy - 0.5_wp*self%axial_body(i)*self%length(i)*rotation**2
+         end do
+      end if
+      if (self%opens) energy = energy + inner_product(n, self%axial_joint, d(2*n + 1:))
+   end function potential_energy
+
+   pure real(wp) function top_displacement(self, d) result(x)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
+
+      if (size(d) == 2) then
+         x = d(1) + self%length(1)*d(2)
+      else
+         x = inner_product(size(d), self%arm, d)
+      end if
+   end function top_displacement
+
+   !> Height of the top above the ground, to second order [m]: the way on which the axial load does its work.
+   pure real(wp) function top_height(self, d) result(y)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
+      real(wp) :: rotation
+      integer :: i, n
+
+      n = self%n
+      y = self%joint_height(n + 1)
+      if (self%kinematics /= small) then
+         rotation = 0.0_wp
+         do i = 1, n
+            if (i < n .or. .not. self%held) y = y - d(i)*rotation
+            rotation = rotation + d(n + i)
+            y = y - 0.5_wp*self%length(i)*rotation**2
+         end do
+      end if
+      if (self%opens) y = y + sum(d(2*n + 1:))
+   end function top_height
+
+   pure real(wp) function top_acceleration(self, d, v, a) result(acceleration)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), v(:), a(:)
+
+      acceleration = inner_product(min(size(d), size(v)), self%arm, a)
+   end function top_acceleration
+
+   pure subroutine rotations(self, d, rotation)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
+      real(wp), intent(out), contiguous :: rotation(:)
+      real(wp) :: turned
+      integer :: i
+
+      turned = 0.0_wp
+      do i = 1, self%n
+         turned = turned + d(self%n + i)
+         rotation(i) = turned
+      end do
+   end subroutine rotations
+
+   !> Angular momentum about the lowest joint [kg m2/s].
+   pure real(wp) function angular_momentum(self, d, v) result(momentum)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), v(:)
+      real(wp) :: top, turning, centroid
+      integer :: i, n
+
+      n = size(d)/self%kinds
+      momentum = 0.0_wp
+      top = 0.0_wp
+      turning = 0.0_wp
+      do i = 1, n
+         turning = turning + v(n + i)
+         centroid = top + v(i) + self%lower(i)*turning
+         top = centroid + self%upper(i)*turning
+         momentum = momentum + self%mass(i)*centroid*(self%joint_height(i) + self%lower(i)) &
+                    + self%inertia(i)*turning
+      end do
+   end function angular_momentum
+
+   pure real(wp) function acceleration_scale(self, spring, springs, load) result(scale)
+      class(column_type), intent(in) :: self
+      integer, intent(in) :: spring
+      type(spring_array), intent(in) :: springs
+      real(wp), intent(in) :: load(:)
+      real(wp) :: along, about, reach
+      logical :: upright
+      integer :: j
+
+      along = abs(load(lateral))
+      ! Vertical loads leave round-off only where joints balance them, not where they lean.
+      upright = self%opens .or. size(springs%layered) > 0
+      if (upright) along = max(along, abs(self%axial_load + load(top_axial)))
+      about = 0.0_wp
+      do j = 1, springs%count
+         if (self%place(j)%kind == flexure) then
+            about = max(about, abs(springs%force(j)))
+         else
+            along = max(along, abs(springs%force(j)))
+         end if
+      end do
+      reach = maxval(self%length)
+      about = (about + along*reach)/minval(self%inertia)
+      along = along/minval(self%mass) + abs(load(horizontal)) + about*reach
+      if (upright) along = along + abs(load(vertical)) + self%gravity
+      scale = merge(about, along, self%place(spring)%kind == flexure)
+   end function acceleration_scale
+
+   !> Refuse axial loads and vertical motions that do nothing, and what only a static path has.
+   subroutine check_loads(self, acts, error)
+      class(column_type), intent(in) :: self
+      logical, intent(in) :: acts(signals)
+      type(error_type), allocatable, intent(inout) :: error
+
+      if (abs(self%axial_force_ratio) > 0.0_wp) then
+         call fatal_error(error, bad_input, &
+                          'column: axial_force_ratio = '//to_text(self%axial_force_ratio)// &
+                          ' belongs to a static path, which has one lateral force; in a dynamic analysis '// &
+                          'give the axial load as a history, axial_load')
+         return
+      end if
+      if (self%kinematics /= small .or. self%opens .or. any(self%spring%rule == 'layered')) return
+      if (acts(vertical)) then
+         call fatal_error(error, bad_input, "vertical_acceleration: with kinematics = 'small' and joints "// &
+                          "that do not open it does nothing; use 'pdelta' or 'finite', or give axial "// &
+                          'springs or layered joints')
+      else if (acts(top_axial)) then
+         call fatal_error(error, bad_input, "axial_load: with kinematics = 'small' and joints that do "// &
+                          "not open a history of it does nothing; use 'pdelta' or 'finite', or give "// &
+                          'axial springs or layered joints')
+      end if
+   end subroutine check_loads
+
+   !> Refuse an initial state in which a fixed top is turned, or turns.
+   subroutine check_initial(self, name, value, error)
+      class(column_type), intent(in) :: self
+      character(len=*), intent(in) :: name
+      real(wp), intent(in), contiguous :: value(:)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: total
+
+      if (.not. self%held .or. allocated(error)) return
+      associate (relative => value(self%n + 1:2*self%n))
+         total = sum(relative)
+         if (abs(total) <= no_rotation*maxval(abs(relative))) return
+      end associate
+      call fatal_error(error, bad_input, name//": with top = 'fixed' the relative rotations must add up "// &
+                       'to zero, not to '//to_text(total)//'; change that of the last joint')
+   end subroutine check_initial
+
+   pure subroutine channels(self, contents, channel)
+      class(column_type), intent(in) :: self
+      type(row_contents), intent(in) :: contents
+      type(channel_type), allocatable, intent(out) :: channel(:)
+      logical :: held(size(column_channel))
+
+      held = .true.
+      held([4, 7]) = self%opens
+      held(8:9) = contents%in_time .and. self%damped
+      held(10:12) = contents%motion
+      held(13:14) = contents%openings .and. .not. self%opens
+      channel = column_channel
+      channel([2, 3, 4, 5, 6, 7, 13, 14])%count = self%n
+      channel%first = merge(0, 1, self%footing)
+      channel = pack(channel, held)
+   end subroutine channels
+
+   pure subroutine fill_row(self, contents, response, springs, d, row)
+      class(column_type), intent(in) :: self
+      type(row_contents), intent(in) :: contents
+      type(response_type), intent(in) :: response
+      type(spring_array), intent(in) :: springs
+      real(wp), intent(in), contiguous :: d(:)
+      real(wp), intent(out), contiguous :: row(:)
+      real(wp) :: speed(2)
+      integer :: at, i, m, n
+
+      m = size(d)
+      n = self%n
+      row(1) = self%top_height(d)
+      row(2:m + 1) = d
+      row(m + 2:2*m + 1) = springs%f0 + springs%k*(d - springs%d0)
+      at = 2*m + 1
+      if (contents%in_time) then
+         call self%speeds(d, response%v, speed)
+         if (self%damped) then
+            row(at + 1) = response%f(1) - self%mass_damping*speed(horizontal)
+            row(at + 2) = response%f(n + 1)
+            if (self%mass_damping > 0.0_wp) then
+               row(at + 2) = row(at + 2) + self%mass_damping*self%angular_momentum(d, response%v)
+            end if
+            at = at + 2
+         end if
+         if (contents%motion) then
+            row(at + 1:at + 3) = [speed(lateral), self%top_acceleration(d, response%v, response%a), &
+                                  response%ground]
+            at = at + 3
+         end if
+      end if
+      if (.not. contents%openings .or. self%opens) return
+      do i = 1, n
+         row(at + i) = opening_of(springs, self%at(flexure, i), d(self%at(flexure, i)), 0.0_wp)
+         row(at + n + i) = rest_of(springs, self%at(flexure, i))
+      end do
+   end subroutine fill_row
 
 end module rbs_structure_column_column

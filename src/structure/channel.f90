@@ -1,0 +1,42 @@
+!> What rows of a run hold, and what they are filled from.
+module rbs_structure_channel
+   use rbs_base_kinds, only: wp
+   implicit none
+   private
+
+   public :: channel_type, row_contents, energy_type, response_type
+
+   !> A quantity of a row.
+   type :: channel_type
+      character(len=19) :: name = ''
+      !> SI
+      character(len=4) :: unit = ''
+      !> Number of values, 0 for one that has no number; the number of the first one
+      integer :: count = 0, first = 1
+   end type channel_type
+
+   !> What the rows of a run are asked to hold: those of an analysis in time, on demand openings of layered
+   !> joints and how the top moves.
+   type :: row_contents
+      logical :: in_time = .false., openings = .false., motion = .false.
+   end type row_contents
+
+   !> Energies of a moment [J]: work of lateral force and ground motion; motion; springs; damping; potential
+   !> of the axial forces; what is left of the balance.
+   type :: energy_type
+      real(wp) :: input = 0.0_wp, kinetic = 0.0_wp, spring = 0.0_wp, damping = 0.0_wp, axial = 0.0_wp, &
+                  residual = 0.0_wp
+   end type energy_type
+
+   !> The response of a structure at a time, or at a point of a path, without its springs.
+   type :: response_type
+      !> Time [s] or number of the point; displacement of the top [m]; lateral force [N]
+      real(wp) :: time = 0.0_wp, displacement = 0.0_wp, force = 0.0_wp
+      type(energy_type) :: energy
+      !> In time: acceleration of the ground [m/s2]; velocities of the springs, forces with those of the
+      !> damping and, where the rows ask for them, accelerations (springs)
+      real(wp) :: ground = 0.0_wp
+      real(wp), allocatable :: v(:), f(:), a(:)
+   end type response_type
+
+end module rbs_structure_channel
