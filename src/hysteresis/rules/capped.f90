@@ -15,6 +15,7 @@
 !> (`rbs_hysteresis_rules_deterioration`) acts where the force is zero, by an amount that is zero for an
 !> excursion of size zero.
 module rbs_hysteresis_rules_capped
+   use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_check, only: is_given
    use rbs_base_constants, only: unbounded
    use rbs_base_kinds, only: wp
@@ -22,8 +23,7 @@ module rbs_hysteresis_rules_capped
    use rbs_hysteresis_rules_backbone, only: backbone_side
    use rbs_hysteresis_rules_backbone_parameters, only: backbone_parameters
    use rbs_hysteresis_rules_deterioration, only: deterioration_type
-   use rbs_hysteresis_rules_inner_peaks, only: point
-   use rbs_hysteresis_rules_open_turns, only: turn, open_turns
+   use rbs_hysteresis_rules_open_turns, only: point, turn, open_turns
    use rbs_hysteresis_segment, only: segment
    implicit none
    private
@@ -38,6 +38,9 @@ module rbs_hysteresis_rules_capped
 
    !> Lines whose slopes are this close to each other do not meet.
    real(wp), parameter :: parallel = 1.0e-9_wp
+
+   !> More than there can be turns; as a real number it is exact.
+   integer(int64), parameter :: no_turn = 2_int64**53
 
    !> Least share of the unloading stiffness after deterioration.
    real(wp), parameter :: least_stiffness = 1.0e-6_wp
@@ -79,8 +82,8 @@ module rbs_hysteresis_rules_capped
       integer :: branch = virgin, side = 1
       !> Of each side, positive: deformation of the peak, which deterioration moves outward
       real(wp) :: peak(-1:1) = 0.0_wp
-      !> The last turn, counted over both sides, and the oldest of those that the present reloading has closed
-      integer :: time = 0, closed_time = huge(1)
+      !> Turns of both sides so far, and the oldest of those that the present reloading has closed
+      integer(int64) :: turns = 0_int64, closed = no_turn
       !> Work of the flexural spring so far and up to cracking [J], and share of the strength of each side
       !> that its work since has left
       real(wp) :: flexural_work = 0.0_wp, work_at_cracking = 0.0_wp, left_by_hinge(-1:1) = 1.0_wp
@@ -247,7 +250,7 @@ contains
          at = point(s*here%d, s*here%f)
          now%peak(s) = max(now%peak(s), at%d)
          now%worn = max(now%worn, spent_at(at%f))
-         now%turned = turn(at, now%start_at, now%goal)
+         now%turned = turn(at, start=now%start_at, goal=now%goal)
          now%left = branch
          now%left_branch = now%branch
          now%branch = unloading
@@ -270,8 +273,8 @@ contains
             now%work_at_zero = now%work
             call turns_of(-s)%fade(now%turned%at%d)
             ! A turn behind others that were closed takes their place.
-            now%time = modulo(now%time, huge(1) - 1) + 1
-            now%turned%time = min(now%closed_time, now%time)
+            now%turns = now%turns + 1_int64
+            now%turned%number = min(now%closed, now%turns)
             call turns_of(s)%push(now%turned)
             now%way_back = now%turned%at%d - now%entered
             call enter(-s, zero)
@@ -314,7 +317,7 @@ contains
          now%branch = reloading
          now%closed_start = now%start_at
          now%closed_at = now%start_at
-         now%closed_time = huge(1)
+         now%closed = no_turn
          associate (s => now%side, turns => turns_of(now%side))
             do while (turns%count > 0)
                call turns%list(turns%count)%shift(now%start_at, self%k_0, found)
@@ -340,15 +343,15 @@ contains
             now%closed_at = s*here%d
             if (now%to_turn) then
                ! The inner loop is closed.
-               now%closed_time = turns%list(turns%count)%time
-               call turns_of(-s)%let_fade(now%closed_time, s*here%d)
+               now%closed = turns%list(turns%count)%number
+               call turns_of(-s)%let_fade(now%closed, s*here%d)
                now%start_at = turns%list(turns%count)%start
                now%goal = turns%list(turns%count)%goal
                turns%count = turns%count - 1
                now%to_turn = turns%count > 0
                call aim(point(s*here%d, s*here%f))
             else
-               call turns_of(-s)%let_fade(0, s*here%d)
+               call turns_of(-s)%let_fade(0_int64, s*here%d)
                call follow_backbone(s, here)
             end if
          end associate
@@ -537,7 +540,7 @@ contains
 
       self%now = other%now
       do s = -1, 1, 2
-         call self%open(s)%copy(other%open(s))
+         call self%open(s)%copy(other%open(s), they_stay=.false.)
       end do
    end subroutine copy
 
@@ -554,8 +557,8 @@ contains
          call stream%item(now%branch)
          call stream%item(now%side)
          call stream%item(now%peak)
-         call stream%item(now%time)
-         call stream%item(now%closed_time)
+         call stream%item(now%turns)
+         call stream%item(now%closed)
          call stream%item(now%target_left)
          call stream%items(now%flexural_work, now%work_at_cracking)
          call stream%item(now%left_by_hinge)

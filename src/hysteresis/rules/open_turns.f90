@@ -1,13 +1,14 @@
-!> The memory of a spring that reloads: the turns of one side whose inner loops are still open, oldest first.
+!> The memory of a rule that reloads: the points where reloading turned back and whose inner loops are still
+!> open, oldest first.
 module rbs_hysteresis_rules_open_turns
+   use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_constants, only: unbounded
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
-   use rbs_hysteresis_rules_inner_peaks, only: point
    implicit none
    private
 
-   public :: turn, open_turns
+   public :: point, turn, open_turns
 
    !> Most turns that are remembered; beyond that the older half is forgotten, so that memory is bounded in a
    !> vibration whose amplitude decreases for ever.
@@ -20,15 +21,26 @@ module rbs_hysteresis_rules_open_turns
    !> start the line becomes flatter, until it is the one that reloading follows without the turn.
    real(wp), parameter :: rate = 2.0_wp
 
-   !> A point where reloading turned back, and the line that was left there. All values as seen from the side.
+   !> A point of the diagram.
+   type :: point
+      !> Deformation [m or rad] and force [N or N m]
+      real(wp) :: d = 0.0_wp, f = 0.0_wp
+   contains
+      procedure :: serialize => serialize_point
+   end type point
+
+   !> A line of reloading, and the point where it turned back.
    type :: turn
       type(point) :: at
-      !> Deformation at which the line left started from zero force [m or rad]
+      !> Side, +1 or -1, and number of the turn, ascending; 64 bits do not run out
+      integer :: side = 0
+      integer(int64) :: number = 0_int64
+      !> Deformation at which the line started from zero force [m or rad]
       real(wp) :: start = 0.0_wp
-      !> The point that it leads to
+      !> The point that it leads to, the number of that turn (0: it is on the backbone), and its slope
       type(point) :: goal
-      !> When it was left, counted in turns of both sides
-      integer :: time = 0
+      integer(int64) :: goal_number = 0_int64
+      real(wp) :: k = 0.0_wp
       !> Deformation of the other side, as seen from there, behind which this turn fades [m or rad]
       real(wp) :: fades_from = unbounded
    contains
@@ -42,6 +54,8 @@ module rbs_hysteresis_rules_open_turns
       type(turn), allocatable :: list(:)
    contains
       procedure :: push
+      procedure :: newest_of_side
+      procedure :: place_of
       procedure :: forget_inside
       procedure :: let_fade
       procedure :: fade
@@ -96,6 +110,28 @@ contains
       self%list(self%count) = new
    end subroutine push
 
+   !> Place of the newest turn on a side, 0 if there is none.
+   pure integer function newest_of_side(self, side) result(place)
+      class(open_turns), intent(in) :: self
+      integer, intent(in) :: side
+
+      do place = self%count, 1, -1
+         if (self%list(place)%side == side) return
+      end do
+      place = 0
+   end function newest_of_side
+
+   !> Place of the turn with a number, 0 if it has been forgotten.
+   pure integer function place_of(self, number) result(place)
+      class(open_turns), intent(in) :: self
+      integer(int64), intent(in) :: number
+
+      do place = self%count, 1, -1
+         if (self%list(place)%number == number) return
+      end do
+      place = 0
+   end function place_of
+
    !> Forget the turns whose lines started no farther out, on the other side, than a deformation: their loops
    !> lie inside the one that begins there.
    pure subroutine forget_inside(self, start)
@@ -108,17 +144,17 @@ contains
       end do
    end subroutine forget_inside
 
-   !> A loop that began on the other side at a time is closed there: the turns since then lie inside it and
+   !> A loop that began on the other side with a turn is closed there: the turns since then lie inside it and
    !> fade with the way behind.
-   pure subroutine let_fade(self, time, from)
+   pure subroutine let_fade(self, number, from)
       class(open_turns), intent(inout) :: self
-      integer, intent(in) :: time
+      integer(int64), intent(in) :: number
       !> Where it is closed, as seen from the other side
       real(wp), intent(in) :: from
       integer :: i
 
       do i = self%count, 1, -1
-         if (self%list(i)%time < time) exit
+         if (self%list(i)%number < number) exit
          self%list(i)%fades_from = min(self%list(i)%fades_from, from)
       end do
    end subroutine let_fade
@@ -159,44 +195,74 @@ contains
    end subroutine move_with_peak
 
    !> Copy the turns of another list, without an allocation where there is room.
-   pure subroutine copy(self, other)
+   pure subroutine copy(self, other, they_stay)
       class(open_turns), intent(inout) :: self
       type(open_turns), intent(in) :: other
+      !> Whether turns do not change once they are there: where both lists have the same one, those below it
+      !> are the same too
+      logical, intent(in) :: they_stay
+      integer :: i, known
 
-      self%count = other%count
-      if (other%count == 0) return
-      if (allocated(self%list)) then
-         if (size(self%list) < other%count) deallocate (self%list)
-      end if
-      if (.not. allocated(self%list)) allocate (self%list(size(other%list)))
-      self%list(:self%count) = other%list(:self%count)
+      known = merge(min(self%count, other%count), 0, they_stay)
+      call make_room(self, other%count)
+      do i = other%count, 1, -1
+         if (i <= known) then
+            if (same_turn(self%list(i), other%list(i))) exit
+         end if
+         self%list(i) = other%list(i)
+      end do
    end subroutine copy
+
+   pure logical function same_turn(one, other)
+      type(turn), intent(in) :: one, other
+
+      same_turn = one%number == other%number .and. one%side == other%side .and. &
+                  .not. (abs(one%at%d - other%at%d) > 0.0_wp .or. abs(one%at%f - other%at%f) > 0.0_wp)
+   end function same_turn
+
+   !> Room for a number of turns. Those that are there are kept, unless the room becomes larger.
+   pure subroutine make_room(self, count)
+      type(open_turns), intent(inout) :: self
+      integer, intent(in) :: count
+
+      self%count = count
+      if (count == 0) return
+      if (allocated(self%list)) then
+         if (size(self%list) >= count) return
+         deallocate (self%list)
+      end if
+      allocate (self%list(count))
+   end subroutine make_room
+
+   pure subroutine serialize_point(self, stream)
+      class(point), intent(inout) :: self
+      type(stream_type), intent(inout) :: stream
+
+      call stream%items(self%d, self%f)
+   end subroutine serialize_point
 
    pure subroutine serialize_turn(self, stream)
       class(turn), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
 
       call self%at%serialize(stream)
-      call stream%item(self%start)
+      call stream%item(self%side)
+      call stream%item(self%number)
       call self%goal%serialize(stream)
-      call stream%item(self%time)
-      call stream%item(self%fades_from)
+      call stream%item(self%goal_number)
+      call stream%items(self%start, self%k, self%fades_from)
    end subroutine serialize_turn
 
    !> Save or restore the turns; they come back into the room that is there if it is enough.
    pure subroutine serialize_turns(self, stream)
       class(open_turns), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
-      integer :: i
+      integer :: i, count
 
-      call stream%item_count(self%count, most_turns)
-      if (stream%restoring) then
-         if (allocated(self%list)) then
-            if (size(self%list) < self%count) deallocate (self%list)
-         end if
-         if (.not. allocated(self%list) .and. self%count > 0) allocate (self%list(self%count))
-      end if
-      do i = 1, self%count
+      count = self%count
+      call stream%item_count(count, most_turns)
+      if (stream%restoring) call make_room(self, count)
+      do i = 1, count
          call self%list(i)%serialize(stream)
       end do
    end subroutine serialize_turns

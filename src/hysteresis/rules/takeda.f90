@@ -20,7 +20,7 @@ module rbs_hysteresis_rules_takeda
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_base_constants, only: unbounded
-   use rbs_hysteresis_rules_inner_peaks, only: point, reloading_line, inner_peaks
+   use rbs_hysteresis_rules_open_turns, only: point, turn, open_turns
    use rbs_hysteresis_rule, only: rule_type, rule_memory, check_product
    use rbs_hysteresis_segment, only: segment
    implicit none
@@ -67,14 +67,15 @@ module rbs_hysteresis_rules_takeda
       logical :: cracked(-1:1) = .false.
       type(point) :: peak(-1:1)
       real(wp) :: k_r(-1:1) = 0.0_wp
-      !> The present reloading branch
-      type(reloading_line) :: aim
+      !> The present reloading branch, and the number of inner peaks so far
+      type(turn) :: aim
+      integer(int64) :: peaks = 0_int64
    end type takeda_state
 
    type, extends(rule_memory) :: takeda_memory
       type(takeda_state) :: now
       !> Inner peaks whose loops are still open, with the reloading branches that were left there
-      type(inner_peaks) :: open
+      type(open_turns) :: open
    contains
       procedure :: copy
       procedure :: serialize
@@ -162,7 +163,7 @@ contains
    subroutine find_branch(self, now, open, branch, direction)
       type(takeda_rule), intent(in) :: self
       type(takeda_state), intent(inout) :: now
-      type(inner_peaks), intent(inout) :: open
+      type(open_turns), intent(inout) :: open
       type(segment), intent(inout) :: branch
       integer, intent(in) :: direction
       type(point) :: here
@@ -306,18 +307,18 @@ contains
          type(point) :: here
          integer :: place
 
-         here = now%aim%target
-         place = open%place_of(now%aim%target_serial)
+         here = now%aim%goal
+         place = open%place_of(now%aim%goal_number)
          if (place > 0) then
             call resume_reloading(place)
             return
          end if
          open%count = 0
-         if (now%aim%target_serial == 0_int64) then
+         if (now%aim%goal_number == 0_int64) then
             call follow_backbone((now%side), here%d)
          else
             ! The inner peak was so old that it has been forgotten: continue to the backbone.
-            call reload_toward_peak((now%side), here, (now%aim%zero))
+            call reload_toward_peak((now%side), here, (now%aim%start))
          end if
       end subroutine reach_target
 
@@ -332,8 +333,11 @@ contains
             call reload_from_inner(-s, here)
             return
          end if
-         now%aim%line = branch
-         call open%push(s, here, now%aim)
+         now%peaks = now%peaks + 1_int64
+         now%aim%at = here
+         now%aim%side = s
+         now%aim%number = now%peaks
+         call open%push(now%aim)
          now%branch = inner_unloading
          k_in = inner_stiffness(here)
          branch = segment(d0=here%d, f0=here%f, k=k_in)
@@ -357,7 +361,7 @@ contains
          end select
          k_in = min(k_in, k_r)
          ! At ductilities of 1e16 round-off leaves no distance from the zero crossing.
-         way = now%side*(peak%d - now%aim%zero)
+         way = now%side*(peak%d - now%aim%start)
          if (way > 0.0_wp) k_in = max(k_in, now%side*peak%f/way)
       end function inner_stiffness
 
@@ -365,12 +369,11 @@ contains
       subroutine resume_reloading(place)
          integer, intent(in) :: place
 
-         associate (peak => open%peak(place))
-            now%branch = reloading
-            now%side = peak%side
-            now%aim = peak%left
-            branch = now%aim%line%outward(peak%side, near=peak%at%d, far=now%aim%target%d)
-         end associate
+         now%branch = reloading
+         now%aim = open%list(place)
+         now%side = now%aim%side
+         branch = segment(d0=now%aim%goal%d, f0=now%aim%goal%f, k=now%aim%k)
+         branch = branch%outward(now%side, near=now%aim%at%d, far=now%aim%goal%d)
          open%count = place - 1
       end subroutine resume_reloading
 
@@ -385,8 +388,7 @@ contains
          if (place == 0) then
             call reload_toward_peak(s, from, from%d)
          else
-            now%aim = reloading_line(target=open%peak(place)%at, &
-                                     target_serial=open%peak(place)%serial, zero=from%d)
+            now%aim = turn(goal=open%list(place)%at, goal_number=open%list(place)%number, start=from%d)
             call reload(s, from)
          end if
       end subroutine reload_from_inner
@@ -397,7 +399,7 @@ contains
          type(point), intent(in) :: from
          real(wp), intent(in) :: zero
 
-         now%aim = reloading_line(target=now%peak(s), zero=zero)
+         now%aim = turn(goal=now%peak(s), start=zero)
          call reload(s, from)
       end subroutine reload_toward_peak
 
@@ -409,11 +411,12 @@ contains
 
          now%branch = reloading
          now%side = s
-         associate (target => now%aim%target)
+         associate (target => now%aim%goal)
             way = target%d - from%d
             ! If round-off leaves no distance, the target is met at once.
             k = self%k_c
             if (s*way > 0.0_wp) k = (target%f - from%f)/way
+            now%aim%k = k
             branch = segment(d0=target%d, f0=target%f, k=k)
             branch = branch%outward(s, near=from%d, far=s*max(s*target%d, s*from%d))
          end associate
@@ -427,7 +430,7 @@ contains
       select type (other)
       type is (takeda_memory)
          self%now = other%now
-         call self%open%take(other%open)
+         call self%open%copy(other%open, they_stay=.true.)
       end select
    end subroutine copy
 
@@ -445,6 +448,7 @@ contains
          end do
          call stream%item(now%k_r)
          call now%aim%serialize(stream)
+         call stream%item(now%peaks)
       end associate
       call self%open%serialize(stream)
    end subroutine serialize
