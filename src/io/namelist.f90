@@ -58,7 +58,7 @@ contains
 
    !> Read all groups; &units first, as the numbers of the others depend on it.
    subroutine put_groups(scanned, reader, messages)
-      type(nml_scan), intent(inout) :: scanned
+      type(nml_scan), intent(in) :: scanned
       type(group_reader), intent(inout) :: reader
       type(message_list), intent(inout) :: messages
       character(len=8), parameter :: required(3) = ['column  ', 'shear   ', 'flexure ']
@@ -80,7 +80,7 @@ contains
 
    !> Read one group; first the rule of a spring and the shape of a section, which bring keys.
    subroutine put_group(scanned, group, reader, messages)
-      type(nml_scan), intent(inout) :: scanned
+      type(nml_scan), intent(in) :: scanned
       type(nml_group), intent(in) :: group
       type(group_reader), intent(inout) :: reader
       type(message_list), intent(inout) :: messages
@@ -101,7 +101,7 @@ contains
 
    !> Read one entry, `name = values` or `name(i) = value`.
    subroutine put_entry(scanned, group, i, reader, messages)
-      type(nml_scan), intent(inout) :: scanned
+      type(nml_scan), intent(in) :: scanned
       type(nml_group), intent(in) :: group
       !> Number of the entry
       integer, intent(in) :: i
@@ -118,7 +118,7 @@ contains
          call check_twice(scanned, group, i, messages)
          call read_values(scanned, entry, reader%keys(place), number, text, messages)
          if (messages%count > known) return
-         if (reader%keys(place)%kind == text_kind .or. reader%keys(place)%kind == word_kind) then
+         if (is_text(reader%keys(place))) then
             call reader%put_text(place, text, messages)
             return
          end if
@@ -127,6 +127,13 @@ contains
          if (allocated(number)) call reader%put_numbers(place, number)
       end associate
    end subroutine put_entry
+
+   !> Whether the value of a key is a text in quotes.
+   pure logical function is_text(key)
+      type(key_type), intent(in) :: key
+
+      is_text = key%kind == text_kind .or. key%kind == word_kind
+   end function is_text
 
    !> A name (with its subscript) must not appear twice in a group.
    subroutine check_twice(scanned, group, i, messages)
@@ -151,7 +158,7 @@ contains
 
    !> Read the values of an entry, which must be of the kind of the key and not too many.
    subroutine read_values(scanned, entry, key, number, text, messages)
-      type(nml_scan), intent(inout) :: scanned
+      type(nml_scan), intent(in) :: scanned
       type(nml_entry), intent(in) :: entry
       type(key_type), intent(in) :: key
       !> The values; for a word or a text the first one without its quotes
@@ -160,25 +167,21 @@ contains
       type(message_list), intent(inout) :: messages
       character(len=:), allocatable :: place, what
       real(wp) :: value
-      integer :: i, first, last, times, known, total
+      integer :: i, times, total
 
       place = scanned%location(entry%line)//' '
-      known = messages%count
       allocate (number(min(entry%total, key%most)))
-      scanned%at = entry%first
       total = 0
-      do i = 1, entry%values
-         call scanned%skip(' ,')
-         call scanned%take_value(entry%name, times, first, last, messages)
-         associate (word => scanned%text(first:last))
+      do i = entry%first, entry%last
+         associate (word => scanned%text(scanned%word(i)%first:scanned%word(i)%last))
             call read_value(word, key%kind, value, what)
             if (allocated(what)) then
                call messages%add(place//trim(entry%name)//' = '//word(:min(len(word), 40))//' '//what)
                return
             end if
-            if (i == 1 .and. (key%kind == text_kind .or. key%kind == word_kind)) call unquote(word, text)
+            if (i == entry%first .and. is_text(key)) call unquote(word, text)
          end associate
-         times = min(times, size(number) - total)
+         times = min(scanned%word(i)%times, size(number) - total)
          number(total + 1:total + times) = value
          total = total + times
       end do
@@ -279,7 +282,7 @@ contains
    !> The values of all subscripted entries with one name, for the first of them; not allocated for the
    !> other entries, or if values are missing.
    subroutine gather(scanned, group, i, key, number, messages)
-      type(nml_scan), intent(inout) :: scanned
+      type(nml_scan), intent(in) :: scanned
       type(nml_group), intent(in) :: group
       !> Number of the entry
       integer, intent(in) :: i
@@ -288,7 +291,7 @@ contains
       type(message_list), intent(inout) :: messages
       character(len=:), allocatable :: what
       logical, allocatable :: there(:)
-      integer :: j, last, from, to, times
+      integer :: j, last
 
       associate (entry => scanned%entry)
          last = 0
@@ -302,10 +305,9 @@ contains
          there = .false.
          do j = i, group%last
             if (entry(j)%name /= entry(i)%name .or. entry(j)%subscript == 0) cycle
-            scanned%at = entry(j)%first
-            call scanned%skip(' ')
-            call scanned%take_value(entry(j)%name, times, from, to, messages)
-            call read_value(scanned%text(from:to), key%kind, number(entry(j)%subscript), what)
+            associate (word => scanned%word(entry(j)%first))
+               call read_value(scanned%text(word%first:word%last), key%kind, number(entry(j)%subscript), what)
+            end associate
             there(entry(j)%subscript) = .true.
          end do
       end associate

@@ -1,4 +1,4 @@
-!> The first pass over a namelist file: groups and entries, each with its line.
+!> The syntax of a namelist file: groups, entries with their lines, and the words that are their values.
 !>
 !> A Fortran namelist read does not report which name is unknown, does not distinguish a missing group, too
 !> many values and the end of the file, and accepts too few values. Here the syntax is checked, and each value
@@ -13,7 +13,7 @@ module rbs_io_namelist_scan
    public :: nml_entry, nml_group, nml_scan, scan_namelist
 
    character(len=*), parameter :: name_set = &
-      'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_'
+      'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_', digits = '0123456789'
 
    !> Largest repeat count; a larger one is taken for a typing error.
    integer, parameter :: most_repeats = 100000
@@ -24,6 +24,11 @@ module rbs_io_namelist_scan
    !> Largest numbers of groups, and of entries in a group; no case needs as many.
    integer, parameter :: most_groups = 100000, most_entries = 5000
 
+   !> One value: where it stands in the text, quotes included, and its repeat count.
+   type :: nml_word
+      integer :: first = 1, last = 0, times = 1
+   end type nml_word
+
    !> `name = values` or `name(i) = values`.
    type :: nml_entry
       character(len=32) :: name = ''
@@ -31,8 +36,8 @@ module rbs_io_namelist_scan
       integer :: subscript = 0
       !> Line in the file
       integer :: line = 0
-      !> Where its values begin in the text, how many are written, and how many they are with repeats
-      integer :: first = 1, values = 0, total = 0
+      !> Its values are the words `first` to `last` of the scan; how many they are with repeats
+      integer :: first = 1, last = 0, total = 0
    end type nml_entry
 
    !> One `&name ... /`.
@@ -49,16 +54,16 @@ module rbs_io_namelist_scan
       !> The text without comments, in which each line ends with a blank, and the line of each character
       character(len=:), allocatable :: text
       integer, allocatable :: line_of(:)
-      !> Position of the scan
-      integer :: at = 1
-      integer :: groups = 0, entries = 0
+      integer :: groups = 0, entries = 0, words = 0
       type(nml_group), allocatable :: group(:)
       type(nml_entry), allocatable :: entry(:)
+      type(nml_word), allocatable :: word(:)
+      !> Position of the scan
+      integer, private :: at = 1
       logical, private :: failed = .false.
    contains
       procedure :: location
-      procedure :: skip
-      procedure :: take_value
+      procedure, private :: skip
       procedure, private :: letter
       procedure, private :: run_of
       procedure, private :: take_name
@@ -76,14 +81,14 @@ contains
       type(message_list), intent(inout) :: messages
 
       self%path = path
-      allocate (self%group(8), self%entry(64))
+      allocate (self%group(8), self%entry(64), self%word(128))
       call strip_comments(file, self, messages)
       do while (.not. self%failed)
          call self%skip(' ')
          if (self%at > len(self%text)) exit
          if (self%letter() /= '&') then
-            call self%complain("'"//word_at(self)//"' stands outside a group; a group begins with "// &
-                               '&name and ends with /', messages)
+            call self%complain('stands outside a group; a group begins with &name and ends with /', &
+                               messages, after_word=.true.)
             return
          end if
          self%at = self%at + 1
@@ -197,13 +202,13 @@ contains
 
       call self%take_name(entry%name)
       if (entry%name == '') then
-         call self%complain("'"//word_at(self)//"' in &"//group//' is not a name; entries are '// &
-                            'name = value', messages)
+         call self%complain('in &'//group//' is not a name; entries are name = value', messages, &
+                            after_word=.true.)
          return
       end if
       entry%line = self%line_of(self%at - 1)
       call self%skip(' ')
-      if (self%letter() == '(') call take_subscript(self, trim(entry%name), entry%subscript, messages)
+      if (self%letter() == '(') call scan_subscript(self, trim(entry%name), entry%subscript, messages)
       if (self%failed) return
       call self%skip(' ')
       if (self%letter() /= '=') then
@@ -222,16 +227,41 @@ contains
       self%entry(self%entries) = entry
    end subroutine scan_entry
 
+   !> Scan a subscript (i).
+   subroutine scan_subscript(self, name, subscript, messages)
+      type(nml_scan), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      integer, intent(out) :: subscript
+      type(message_list), intent(inout) :: messages
+      character(len=12) :: word
+      integer :: length
+
+      subscript = 0
+      length = index(self%text(self%at:min(self%at + 11, len(self%text))), ')')
+      if (length > 2) then
+         ! Not an associate name: gfortran 12 frees the text of trim(adjustl()) twice.
+         word = adjustl(self%text(self%at + 1:self%at + length - 2))
+         if (len_trim(word) > 0 .and. len_trim(word) < 8 .and. verify(trim(word), digits) == 0) then
+            read (word, '(i8)') subscript
+         end if
+      end if
+      if (subscript < 1) then
+         call self%complain("the subscript of '"//name//"' must be one whole number from 1", messages)
+         return
+      end if
+      self%at = self%at + length
+   end subroutine scan_subscript
+
    !> Scan values up to the next name or the end of the group.
    subroutine scan_values(self, entry, messages)
       type(nml_scan), intent(inout) :: self
       type(nml_entry), intent(inout) :: entry
       type(message_list), intent(inout) :: messages
+      type(nml_word), allocatable :: longer(:)
       logical :: after_comma
-      integer :: times, first, last
 
       after_comma = .true.
-      entry%first = self%at
+      entry%first = self%words + 1
       do
          call self%skip(' ')
          if (self%at > len(self%text) .or. self%letter() == '/') exit
@@ -245,58 +275,57 @@ contains
             cycle
          end if
          if (is_name_ahead(self)) exit
-         call self%take_value(entry%name, times, first, last, messages)
+         if (self%words == size(self%word)) then
+            allocate (longer(2*self%words))
+            longer(:self%words) = self%word
+            call move_alloc(longer, self%word)
+         end if
+         self%words = self%words + 1
+         call scan_word(self, trim(entry%name), self%word(self%words), messages)
          if (self%failed) return
-         entry%values = entry%values + 1
-         entry%total = min(entry%total, huge(1) - most_repeats) + times
+         entry%total = min(entry%total, huge(1) - most_repeats) + self%word(self%words)%times
          after_comma = .false.
       end do
-      if (entry%values == 0) call self%complain("'"//trim(entry%name)//"' has no value", messages)
+      entry%last = self%words
+      if (entry%last < entry%first) call self%complain("'"//trim(entry%name)//"' has no value", messages)
    end subroutine scan_values
 
-   !> One value: a quoted text or a word, perhaps with a repeat count.
-   subroutine take_value(self, name, times, first, last, messages)
-      class(nml_scan), intent(inout) :: self
+   !> Scan one value: a quoted text or a word, perhaps with a repeat count.
+   subroutine scan_word(self, name, word, messages)
+      type(nml_scan), intent(inout) :: self
       character(len=*), intent(in) :: name
-      !> Repeat count
-      integer, intent(out) :: times
-      !> Where the value stands in the text, quotes included
-      integer, intent(out) :: first, last
+      type(nml_word), intent(out) :: word
       type(message_list), intent(inout) :: messages
       integer :: length, star
 
-      times = 1
-      first = self%at
-      last = first
-      if (self%letter() == '''' .or. self%letter() == '"') then
-         length = quoted_length(self%text(first:))
-         if (length == 0) call self%complain("the text of '"//trim(name)//"' has no closing quote", messages)
+      word%first = self%at
+      if (scan(self%letter(), '''"') == 1) then
+         length = quoted_length(self%text(self%at:))
+         if (length == 0) call self%complain("the text of '"//name//"' has no closing quote", messages)
       else
-         length = scan(self%text(first:), ' ,/''"=') - 1
-         if (length < 0) length = len(self%text) - first + 1
+         length = scan(self%text(self%at:), ' ,/''"=') - 1
+         if (length < 0) length = len(self%text) - self%at + 1
          if (length == 0) then
-            call self%complain("'"//self%letter()//"' is not allowed among the values of '"//trim(name)// &
-                               "'", messages)
+            call self%complain("'"//self%letter()//"' is not allowed among the values of '"//name//"'", &
+                               messages)
             return
          end if
-         star = index(self%text(first:first + length - 1), '*')
-         if (star > 0) then
-            times = 0
+         associate (text => self%text(self%at:self%at + length - 1))
+            star = index(text, '*')
+            if (star > 0) word%times = 0
             if (star > 1 .and. star <= 7 .and. star < length) then
-               if (verify(self%text(first:first + star - 2), '0123456789') == 0) then
-                  read (self%text(first:first + star - 2), '(i6)') times
-               end if
+               if (verify(text(:star - 1), digits) == 0) read (text(:star - 1), '(i6)') word%times
             end if
-            if (times < 1 .or. times > most_repeats) then
-               call self%complain("'"//self%text(first:first + length - 1)//"' of '"//trim(name)// &
-                                  "' is not a value; repeats are count*value", messages)
+            if (word%times < 1 .or. word%times > most_repeats) then
+               call self%complain("'"//text//"' of '"//name//"' is not a value; repeats are count*value", &
+                                  messages)
             end if
-            first = first + star
-         end if
+         end associate
+         word%first = self%at + star
       end if
       self%at = self%at + length
-      last = self%at - 1
-   end subroutine take_value
+      word%last = self%at - 1
+   end subroutine scan_word
 
    !> Length of a quoted text with its quotes; a quote within is doubled. 0 if the text is not closed.
    pure integer function quoted_length(text) result(length)
@@ -315,44 +344,16 @@ contains
       length = 0
    end function quoted_length
 
-   !> A subscript (i).
-   subroutine take_subscript(self, name, subscript, messages)
-      type(nml_scan), intent(inout) :: self
-      character(len=*), intent(in) :: name
-      integer, intent(out) :: subscript
-      type(message_list), intent(inout) :: messages
-      character(len=12) :: word
-      integer :: length
-
-      subscript = 0
-      length = index(self%text(self%at:min(self%at + 11, len(self%text))), ')')
-      if (length > 2) then
-         ! Not an associate name: gfortran 12 frees the text of trim(adjustl()) twice.
-         word = adjustl(self%text(self%at + 1:self%at + length - 2))
-         if (len_trim(word) > 0 .and. len_trim(word) < 8 .and. verify(trim(word), '0123456789') == 0) then
-            read (word, '(i8)') subscript
-         end if
-      end if
-      if (subscript < 1) then
-         call self%complain("the subscript of '"//name//"' must be one whole number from 1", messages)
-         return
-      end if
-      self%at = self%at + length
-   end subroutine take_subscript
-
    !> Whether a name with its = (or subscript) is next.
    logical function is_name_ahead(self)
       type(nml_scan), intent(in) :: self
-      character(len=1) :: letter
       integer :: at
 
-      letter = self%letter()
-      is_name_ahead = (letter >= 'a' .and. letter <= 'z') .or. (letter >= 'A' .and. letter <= 'Z')
+      is_name_ahead = scan(lower(self%letter()), name_set(:26)) == 1
       if (.not. is_name_ahead) return
       at = self%at + self%run_of(self%at, name_set)
       at = at + self%run_of(at, ' ')
-      is_name_ahead = at <= len(self%text)
-      if (is_name_ahead) is_name_ahead = scan(self%text(at:at), '=(') > 0
+      is_name_ahead = scan(self%text(at:min(at, len(self%text))), '=(') > 0
    end function is_name_ahead
 
    !> Take a name, in lower case; blank if the next character cannot begin one.
@@ -391,20 +392,6 @@ contains
       if (self%at <= len(self%text)) letter = self%text(self%at:self%at)
    end function letter
 
-   !> The word at the present position, for a message.
-   pure function word_at(self) result(word)
-      type(nml_scan), intent(in) :: self
-      character(len=word_length(self)) :: word
-
-      word = self%text(self%at:self%at + len(word) - 1)
-   end function word_at
-
-   pure integer function word_length(self)
-      type(nml_scan), intent(in) :: self
-
-      word_length = min(scan(self%text(self%at:)//' ', ' ') - 1, 30)
-   end function word_length
-
    !> 'case.nml line 4:', for the start of a message.
    pure function location(self, line) result(text)
       class(nml_scan), intent(in) :: self
@@ -415,13 +402,21 @@ contains
    end function location
 
    !> Report an error of syntax at the present position.
-   subroutine complain(self, what, messages)
+   subroutine complain(self, what, messages, after_word)
       class(nml_scan), intent(inout) :: self
       character(len=*), intent(in) :: what
       type(message_list), intent(inout) :: messages
+      !> Whether the message begins with the word at the present position
+      logical, intent(in), optional :: after_word
+      character(len=:), allocatable :: text
 
       self%failed = .true.
-      call messages%add(self%location(self%line_of(min(self%at, len(self%text))))//' '//what)
+      text = what
+      if (present(after_word)) then
+         text = "'"//self%text(self%at:self%at + min(index(self%text(self%at:)//' ', ' ') - 1, 30) - 1)// &
+                "' "//what
+      end if
+      call messages%add(self%location(self%line_of(min(self%at, len(self%text))))//' '//text)
    end subroutine complain
 
 end module rbs_io_namelist_scan

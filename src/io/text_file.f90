@@ -1,6 +1,7 @@
 !> A text file in memory: its lines, with any line ending, and strict reading of numbers.
 module rbs_io_text_file
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_get_halting_mode, ieee_overflow, &
+                                            ieee_set_flag, ieee_set_halting_mode
    use, intrinsic :: iso_c_binding, only: c_int, c_null_char, c_size_t
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_error, only: error_type, fatal_error, bad_input
@@ -17,8 +18,9 @@ module rbs_io_text_file
    !> Results of `read_real`.
    integer, parameter :: number_ok = 0, number_wrong = 1, number_not_finite = 2
 
-   !> Longest text that is read as a number.
+   !> Longest text that is read as a number, and whole numbers below which all are exact as real numbers.
    integer, parameter :: most_digits = 4096
+   integer(int64), parameter :: most_exact = 2_int64**53
 
    !> How long the writer of a pipe is waited for [ms].
    integer(c_int), parameter :: writer_time = 5000_c_int
@@ -251,51 +253,41 @@ contains
       real(wp), intent(out) :: value
       !> `number_ok`, `number_wrong`, or `number_not_finite` for NaN, infinity and overflow
       integer, intent(out) :: status
-      !> Digits that are kept, and those of the largest number, 1.79769313486231580 e308, rounded down
-      integer, parameter :: most_kept = 18, largest_power = 308
-      integer(int64), parameter :: largest = 179769313486231580_int64
       integer(int64) :: mantissa
-      integer :: i, digit, kept, power, exponent, sign_of_power, first
-      logical :: point, negative, in_exponent, any_digit, exact
+      integer :: i, digit, digits, power, exponent, sign_of_power, first
+      logical :: point, in_exponent, exact
 
       value = 0.0_wp
       status = number_wrong
       if (len(word) > most_digits) return
       mantissa = 0_int64
-      kept = 0
+      digits = 0
       power = 0
       exponent = 0
       sign_of_power = 1
       first = 1
       point = .false.
-      negative = .false.
       in_exponent = .false.
-      any_digit = .false.
       exact = .true.
       do i = 1, len(word)
          digit = iachar(word(i:i)) - iachar('0')
          if (digit >= 0 .and. digit <= 9) then
-            any_digit = .true.
+            digits = digits + 1
             if (in_exponent) then
-               exponent = min(10*exponent + digit, 1000000)
-               cycle
-            end if
-            if (point) power = power - 1
-            if (kept < most_kept) then
+               exponent = min(10*exponent + digit, 2*most_digits)
+            else if (mantissa < most_exact) then
                mantissa = 10_int64*mantissa + digit
-               if (mantissa > 0_int64) kept = kept + 1
+               if (point) power = power - 1
             else
-               power = power + 1
-               exact = exact .and. digit == 0
+               exact = .false.
             end if
-         else if (i == first .and. (word(i:i) == '-' .or. word(i:i) == '+')) then
+         else if (i == first .and. scan(word(i:i), '+-') == 1) then
             if (in_exponent .and. word(i:i) == '-') sign_of_power = -1
-            if (.not. in_exponent) negative = word(i:i) == '-'
          else if (word(i:i) == '.' .and. .not. (point .or. in_exponent)) then
             point = .true.
-         else if (any_digit .and. .not. in_exponent .and. scan(word(i:i), 'eEdD') == 1) then
+         else if (digits > 0 .and. .not. in_exponent .and. scan(word(i:i), 'eEdD') == 1) then
             in_exponent = .true.
-            any_digit = .false.
+            digits = 0
             first = i + 1
          else
             select case (lower(word(1 + scan(word(:1), '+-'):)))
@@ -306,25 +298,20 @@ contains
             return
          end if
       end do
-      if (.not. any_digit) return
+      if (digits == 0) return
       status = number_ok
       power = power + sign_of_power*exponent
-      ! A whole number below 2**53, multiplied or divided by an exact power of ten, is rounded once, which
-      ! gives the nearest number.
-      if (mantissa == 0_int64 .or. (exact .and. mantissa < 2_int64**53 .and. abs(power) <= 22)) then
+      if (mantissa == 0_int64) return
+      if (exact .and. mantissa < most_exact .and. abs(power) <= 22) then
+         ! Multiplied or divided by an exact power of ten it is rounded once, which gives the nearest number.
          value = real(mantissa, wp)
-         if (mantissa > 0_int64 .and. power > 0) value = value*10.0_wp**power
-         if (mantissa > 0_int64 .and. power < 0) value = value/10.0_wp**(-power)
-         if (negative) value = -value
-         return
-      end if
-      ! Checked before the library reads, which would overflow and end a program that traps overflow.
-      power = power + kept - 1
-      if (power > largest_power .or. &
-          (power == largest_power .and. mantissa*10_int64**(most_kept - kept) >= largest)) then
-         status = number_not_finite
-      else if (power > -2*largest_power) then
+         if (power > 0) value = value*10.0_wp**power
+         if (power < 0) value = value/10.0_wp**(-power)
+         if (word(1:1) == '-') value = -value
+      else if (exponent < 2*most_digits) then
          call read_by_library(word, value, status)
+      else if (sign_of_power > 0) then
+         status = number_not_finite
       end if
    end subroutine read_real
 
@@ -333,17 +320,17 @@ contains
       character(len=*), intent(in) :: word
       real(wp), intent(out) :: value
       integer, intent(out) :: status
-      character(len=64) :: buffer
       character(len=12) :: form
+      logical :: stops
       integer :: ios
 
-      if (len(word) <= len(buffer)) then
-         buffer = word
-         read (buffer, '(f64.0)', iostat=ios) value
-      else
-         write (form, '(a, i0, a)') '(f', len(word), '.0)'
-         read (word, form, iostat=ios) value
-      end if
+      ! A number that is too large must not end a program that stops on overflow.
+      call ieee_get_halting_mode(ieee_overflow, stops)
+      call ieee_set_halting_mode(ieee_overflow, .false.)
+      write (form, '(a, i0, a)') '(f', len(word), '.0)'
+      read (word, form, iostat=ios) value
+      call ieee_set_flag(ieee_overflow, .false.)
+      call ieee_set_halting_mode(ieee_overflow, stops)
       status = number_not_finite
       if (ios /= 0) return
       if (ieee_is_finite(value)) status = number_ok
