@@ -16,6 +16,8 @@ module rbs_structure_spring_place
       integer :: member = 1, joint = 0
       !> The spring whose work this one may ask for; 0: none
       integer :: heard = 0
+      !> Number of the joint among those of all members
+      integer :: index = 0
    end type spring_place
 
 contains

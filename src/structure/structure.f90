@@ -49,8 +49,10 @@ module rbs_structure_structure
       integer :: n = 0
       !> `small`, `pdelta` or `finite`
       integer :: kinematics = small
-      !> Height that drifts are in proportion to [m]
-      real(wp) :: height = 0.0_wp
+      !> Lengths of the bodies (n) [m]
+      real(wp), allocatable :: length(:)
+      !> Height that drifts are in proportion to, and that of the top above the ground [m]
+      real(wp) :: height = 0.0_wp, total_height = 0.0_wp
       !> Mass or rotary inertia of each unknown (unknowns) [kg, kg m2]
       real(wp), allocatable :: inertias(:)
       !> Unknowns that supports keep still (unknowns)
@@ -64,11 +66,15 @@ module rbs_structure_structure
       type(spring_record), allocatable :: spring(:)
       type(spring_rules) :: rules
       real(wp), allocatable :: initial_stiffness(:)
+      !> Displacement of the top per deformation, for small rotations: what static paths control (springs)
+      real(wp), allocatable :: arm(:)
       !> The springs whose forces, times the factors beside them, add up to the base shear
       integer, allocatable :: base_spring(:)
       real(wp), allocatable :: base_factor(:)
       !> Axial load at the top that is there from the start, compression positive [N]
       real(wp) :: axial_load = 0.0_wp
+      !> Change of the axial load at the top per lateral force on a static path
+      real(wp) :: axial_force_ratio = 0.0_wp
       !> Whether a constant axial force does second-order work, from the load or from the weight
       logical :: axially_loaded = .false.
       !> Damping in proportion to the mass [1/s] and to the stiffness of the springs [s], the initial one

@@ -60,14 +60,12 @@ module rbs_structure_column_column
       !> Whether the first body is a footing, so that its joint is joint 0, and whether the last body is held
       !> against rotation
       logical :: footing = .false., held = .false.
-      !> Lengths [m], masses [kg] and rotary inertias about the centroid [kg m2] of the bodies (n)
-      real(wp), allocatable :: length(:), mass(:), inertia(:)
+      !> Masses [kg] and rotary inertias about the centroid [kg m2] of the bodies (n)
+      real(wp), allocatable :: mass(:), inertia(:)
       !> Distance of the centroid from the bottom and from the top of its body (n) [m]
       real(wp), allocatable :: lower(:), upper(:)
       !> Height of the joints above the ground (n + 1) [m]; the last is the top
       real(wp), allocatable :: joint_height(:)
-      !> Displacement of the top per unknown, for small rotations (unknowns) [1, m, 0]
-      real(wp), allocatable :: arm(:)
       !> Inertia load per acceleration of the ground, for small rotations (unknowns) [kg, kg m, 0]
       real(wp), allocatable :: ground_arm(:)
       !> Sums over the bodies from i up (n + 1): mass, first and second moment of mass about joint i,
@@ -75,8 +73,6 @@ module rbs_structure_column_column
       real(wp), allocatable :: mass_above(:), moment_above(:), inertia_above(:)
       !> Acceleration of gravity that gives the bodies their weight, 0 without self-weight [m/s2]
       real(wp) :: gravity = 0.0_wp
-      !> Change of the axial load per lateral force on a static path
-      real(wp) :: axial_force_ratio = 0.0_wp
       !> Height at which the axial load acts over the height of the column
       real(wp) :: axial_lever = 1.0_wp
       !> Weight of the bodies (n) [N]
@@ -195,6 +191,7 @@ contains
       do i = 1, n
          column%joint_height(i + 1) = column%joint_height(i) + column%length(i)
       end do
+      column%total_height = column%joint_height(n + 1)
       column%arm(:n) = 1.0_wp
       ! Summed from the top down: the lever arm of an upper joint is not a difference of large heights.
       column%arm(2*n) = column%length(n)
@@ -313,15 +310,17 @@ contains
          column%spring(n + i) = spec%flexure(min(i, size(spec%flexure)))
          ! A shear spring may ask for the work of the flexural one of its joint.
          joint = merge(i - 1, i, column%footing)
-         column%place(i) = spring_place(shear, 1, joint, n + i)
-         column%place(n + i) = spring_place(flexure, 1, joint)
+         column%place(i) = spring_place(shear, 1, joint, n + i, i)
+         column%place(n + i) = spring_place(flexure, 1, joint, index=i)
          if (.not. column%opens) cycle
          column%at(axial, i) = 2*n + i
          column%spring(2*n + i) = spec%axial_spring(min(i, size(spec%axial_spring)))
-         column%place(2*n + i) = spring_place(axial, 1, joint)
+         column%place(2*n + i) = spring_place(axial, 1, joint, index=i)
       end do
-      ! Layered joints share the axial load of load and weight above them.
-      column%spring(n + 1:2*n)%axial_load = column%compression
+      ! Layered joints and axial springs carry the axial load of load and weight above them.
+      do i = n + 1, column%unknowns
+         column%spring(i)%axial_load = column%compression(column%place(i)%index)
+      end do
       call make_rules(column%spring, column%rules)
       column%initial_stiffness = column%rules%initial_stiffness()
    end subroutine set_springs
