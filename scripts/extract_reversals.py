@@ -16,10 +16,11 @@ from pathlib import Path
 
 import numpy as np
 
-from rbsdem.comparison import summarise, turning_points
+from rbsdem.curves.cycles import turning_points
+from rbsdem.curves.metrics import summarise
 from rbsdem.errors import RbsdemError
-from rbsdem.paper import paper_sections
 from rbsdem.peer import HISTORY_FILES, find_history
+from rbsdem.section.paper import paper_sections
 
 THRESHOLD = 0.02
 
@@ -98,7 +99,7 @@ def main() -> int:
     sections = paper_sections()
     summary = [
         "# What the full measured histories of the four tests amount to, in the definitions of",
-        "# rbsdem.comparison: largest absolute force and the displacement at it, largest absolute",
+        "# rbsdem.curves: largest absolute force and the displacement at it, largest absolute",
         "# displacement, work of the force over the whole history, secant stiffness at 70 % of the",
         "# largest force. Written by scripts/extract_reversals.py; sources in data/README.md.",
         "key,rows,peak_force_kN,displacement_at_peak_mm,peak_displacement_mm,energy_kJ,"

@@ -20,7 +20,7 @@ import numpy as np
 
 import rbsdem
 from rbsdem import peer
-from rbsdem.section import MODELS
+from rbsdem.section.model import MODELS
 
 SCORES = ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio")
 CLASSES = (-1.0, 0.05, 0.15, 0.3, 0.45, 1.0)

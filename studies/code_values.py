@@ -18,7 +18,7 @@ import warnings
 import numpy as np
 
 from rbsdem import peer
-from rbsdem.codes.drifts import DRIFTS_AT_LOSS, drift_at_loss, yield_drift
+from rbsdem.checks.drifts import DRIFTS_AT_LOSS, drift_at_loss, yield_drift
 
 CLASSES = ("Flexure", "Flexure-Shear", "Shear")
 

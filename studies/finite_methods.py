@@ -16,7 +16,7 @@ import warnings
 import numpy as np
 
 import rbsdem
-from rbsdem.methods import IMPLICIT
+from rbsdem.solve.methods import IMPLICIT
 
 TIME = np.linspace(0.0, 1.0, 101)
 WAVE = np.sin(20.0 * TIME)

@@ -30,7 +30,7 @@ from scipy.optimize import least_squares
 import rbsdem
 from rbsdem import peer
 from rbsdem.calibration.misfit import Target, forces
-from rbsdem.section import HingeParameters, ModelParameters, parameters
+from rbsdem.section.parameters import HingeParameters, ModelParameters, parameters
 
 
 class Fitted(NamedTuple):

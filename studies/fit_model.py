@@ -73,8 +73,7 @@ import rbsdem
 from rbsdem import peer
 from rbsdem.calibration.misfit import Target, forces
 from rbsdem.errors import RbsdemError
-from rbsdem.section import ModelParameters, parameters
-from rbsdem.section.parameters import VERSIONS
+from rbsdem.section.parameters import VERSIONS, ModelParameters, parameters
 
 
 class Free(NamedTuple):

@@ -20,8 +20,8 @@ from scipy.optimize import minimize
 import rbsdem
 from rbsdem import peer
 from rbsdem.calibration.misfit import Target, forces, rms
-from rbsdem.peer.drawing import draw
-from rbsdem.section import ShearParameters, parameters
+from rbsdem.measured.drawing import draw
+from rbsdem.section.parameters import ShearParameters, parameters
 from rbsdem.section.shear_model import shear_spring
 
 # Bounds of what is fitted; the others keep their values.

@@ -18,7 +18,7 @@ import numpy as np
 import openseespy.opensees as ops
 
 import rbsdem
-from rbsdem import ensembles, motions
+from rbsdem import fragility, motions
 
 HEIGHT, MASS, WEIGHT, RATE = 3.0, 5e4, 4.9e5, 0.5
 HINGE = {"d_y": 0.004, "f_y": 2e5, "d_cap": 0.03, "f_cap": 2.4e5, "d_pc": 0.06}
@@ -102,7 +102,7 @@ def main(number: int) -> None:
         column(),
         records,
         intensity="pga",
-        levels=ensembles.Hunt(resolution=RESOLUTION, points=1, yielding=False),
+        levels=fragility.Hunt(resolution=RESOLUTION, points=1, yielding=False),
         method="newmark",
         dt=STEP,
     )

@@ -21,9 +21,9 @@ from dataclasses import replace
 import numpy as np
 
 import rbsdem
-from rbsdem import ensembles, motions
+from rbsdem import fragility, motions
 
-HUNT = ensembles.Hunt(resolution=5e-4, points=1, yielding=False)
+HUNT = fragility.Hunt(resolution=5e-4, points=1, yielding=False)
 SETTINGS = [
     ("newmark", 0.01),
     ("newmark", 0.005),

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from rbsdem.errors import AccuracyWarning
-from rbsdem.paper import paper_columns, paper_sections
+from rbsdem.section.paper import paper_columns, paper_sections
 
 # K_c, D_c, K_y, D_y, K_u, B_1 of the flexural spring; K_y, D_y, K_u of the shear spring.
 REFERENCE = {

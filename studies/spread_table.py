@@ -54,10 +54,10 @@ from spread_quantiles import LEVEL, Growth, Numbers, Points, Ratios, between, gr
 
 import rbsdem
 from rbsdem import peer
-from rbsdem.comparison import secant_stiffness
-from rbsdem.comparison.metrics import PathPoints
-from rbsdem.section import Scatter, parameters
+from rbsdem.curves.metrics import PathPoints, secant_stiffness
+from rbsdem.section.parameters import parameters
 from rbsdem.section.remote import place_of
+from rbsdem.section.scatter import Scatter
 from rbsdem.section.spread import half_band, near_shear, numbers, path_force, sample
 
 #: What the band has without samples, over the largest force; and what else was tried.

@@ -20,9 +20,10 @@ import numpy as np
 
 import rbsdem
 from rbsdem import plot
-from rbsdem.accuracy import Row, Trade, trade
-from rbsdem.accuracy.figure import draw
-from rbsdem.accuracy.rows import seconds_text
+from rbsdem.methods.measure import trade
+from rbsdem.methods.outcome import Trade
+from rbsdem.methods.rows import Row, seconds_text
+from rbsdem.output.methods_figure import draw
 from rbsdem.peer import shipped_reversals
 
 ROOT = Path(__file__).resolve().parents[1]

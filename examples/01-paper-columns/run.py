@@ -34,7 +34,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rbsdem
-from rbsdem import comparison, plot
+from rbsdem import curves as comparison
+from rbsdem import plot
 from rbsdem.peer import FOLDER_VARIABLE, find_history, measured_loops, shipped_reversals
 
 try:

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import rbsdem
-from rbsdem import ensembles, motions
+from rbsdem import fragility, motions
 
 case = rbsdem.read_case(Path(__file__).with_name("case.nml"))
 records = motions.synthetic(10)
@@ -21,7 +21,7 @@ for record, value in zip(records, found.collapse_intensity[0], strict=True):
 
 limits = {"yield": ("first_yield", None), "1 % drift": 0.01, "collapse": ("collapse", None)}
 curves = found.fragilities(limits)
-hazard = ensembles.Hazard([0.5, 1, 2, 5, 10, 20], [0.1, 0.04, 0.012, 2e-3, 3e-4, 2e-5])
+hazard = fragility.Hazard([0.5, 1, 2, 5, 10, 20], [0.1, 0.04, 0.012, 2e-3, 3e-4, 2e-5])
 print()
 for name, curve in curves.items():
     rate = curve.mean_annual_frequency(hazard)
@@ -29,5 +29,5 @@ for name, curve in curves.items():
 
 if "--no-plot" not in sys.argv:
     found.plot().figure.savefig("ida.png", dpi=150)
-    ensembles.draw_fragilities(curves).figure.savefig("fragility.png", dpi=150)
+    fragility.draw_fragilities(curves).figure.savefig("fragility.png", dpi=150)
     print("wrote ida.png, fragility.png")

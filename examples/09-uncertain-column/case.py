@@ -12,7 +12,16 @@ from dataclasses import replace
 import numpy as np
 
 import rbsdem
-from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties, ensembles, motions, plot
+from rbsdem import (
+    Concrete,
+    Layout,
+    RectangularSection,
+    Steel,
+    Ties,
+    fragility,
+    motions,
+    plot,
+)
 
 RECORDS, COLUMNS = 5, 8
 
@@ -33,22 +42,22 @@ def make(concrete, steel, mass):
 
 median = make(46.5e6, 446e6, 75e3)
 period = 1 / rbsdem.modes(median).frequency[0]
-uncertain = ensembles.Uncertain(
+uncertain = fragility.Uncertain(
     make,
     {
-        "concrete": ensembles.lognormal(46.5e6, 0.15),
-        "steel": ensembles.lognormal(446e6, 0.07),
-        "mass": ensembles.lognormal(75e3, 0.10),
+        "concrete": fragility.lognormal(46.5e6, 0.15),
+        "steel": fragility.lognormal(446e6, 0.07),
+        "mass": fragility.lognormal(75e3, 0.10),
     },
 )
 sample = uncertain.sample(COLUMNS, method="sobol", seed=1)
 records = motions.synthetic(RECORDS)
 settings = {"method": "newmark", "dt": 0.005, "period": period, "collapse_drift": 0.05}
 
-hunt = ensembles.Hunt(points=1, yielding=False)
+hunt = fragility.Hunt(points=1, yielding=False)
 found = rbsdem.ida(sample.columns, records, levels=hunt, **settings)
 alone = rbsdem.ida(median, records, levels=hunt, **settings)
-split = ensembles.variance_split(found.collapse_intensity)
+split = fragility.variance_split(found.collapse_intensity)
 print(f"{COLUMNS} columns, {RECORDS} records, {len(found.runs)} runs, Sa({period:.2f} s)")
 for name in ("record", "model", "residual", "total"):
     print(f"beta of {name:9s} {split.beta[name]:.2f}")

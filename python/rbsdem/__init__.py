@@ -3,19 +3,17 @@
 SI units throughout: N, m, kg, s, rad. Axial load is positive in compression.
 """
 
-from rbsdem import codes, comparison, motions, peer, plot
+from rbsdem import _registered as _registered
+from rbsdem import codes, curves, fragility, motions, peer, plot, springs
 from rbsdem._core import version as _version
-from rbsdem.accuracy import Trade, trade
-from rbsdem.analysis import Matrices, Modes, cyclic, matrices, modes, time_history
-from rbsdem.calibration import Calibration, Parameter, calibrate
-from rbsdem.case import Case, read_case
-from rbsdem.column import Column
-from rbsdem.comparison import Comparison, compare
-from rbsdem.corners import path_of as path_of
-from rbsdem.damping import Damping
-from rbsdem.ends import double_curvature
-from rbsdem.ensembles import Ensemble, cloud, ensemble, ida, stripes
-from rbsdem.envelopes import Envelope, Idealisation, envelope
+from rbsdem.batch.engine import ensemble
+from rbsdem.batch.record import Ensemble
+from rbsdem.calibration.fit import calibrate
+from rbsdem.calibration.outcome import Calibration
+from rbsdem.checks.limit_states import LimitState, LimitStates
+from rbsdem.curves.envelope import Envelope, envelope
+from rbsdem.curves.idealise import Idealisation
+from rbsdem.curves.scores import Comparison, compare
 from rbsdem.errors import (
     AccuracyWarning,
     InputError,
@@ -25,26 +23,24 @@ from rbsdem.errors import (
     RepairWarning,
     SolveError,
 )
-from rbsdem.export import load
-from rbsdem.footing import Footing
-from rbsdem.limit_states import LimitState, LimitStates
-from rbsdem.motions import GroundMotion
-from rbsdem.paper import paper_columns, paper_sections
-from rbsdem.peer import PeerTest, read_peer, read_test
-from rbsdem.protocol import protocol
-from rbsdem.result import Result
-from rbsdem.section import (
-    CircularSection,
-    Concrete,
-    HollowCircularSection,
-    HollowRectangularSection,
-    Layout,
-    RectangularSection,
-    Spiral,
-    Steel,
-    Ties,
-)
-from rbsdem.springs import (
+from rbsdem.many.cloud import cloud
+from rbsdem.many.ida import ida
+from rbsdem.many.stripes import stripes
+from rbsdem.measured.file import PeerTest, read_peer
+from rbsdem.measured.laboratory import read_test
+from rbsdem.methods.measure import trade
+from rbsdem.methods.outcome import Trade
+from rbsdem.model.circular import CircularSection
+from rbsdem.model.column import Column
+from rbsdem.model.damping import Damping
+from rbsdem.model.ends import double_curvature
+from rbsdem.model.footing import Footing
+from rbsdem.model.hollow import HollowCircularSection, HollowRectangularSection
+from rbsdem.model.materials import Concrete, Steel
+from rbsdem.model.parameter import Parameter
+from rbsdem.model.rectangular import RectangularSection
+from rbsdem.model.reinforcement import Layout, Spiral, Ties
+from rbsdem.model.springs import (
     Bilinear,
     Compression,
     ConcreteSpring,
@@ -55,7 +51,15 @@ from rbsdem.springs import (
     SteelSpring,
     Takeda,
 )
-from rbsdem.strains import Gauge, Strains
+from rbsdem.model.strains import Gauge, Strains
+from rbsdem.motions.motion import GroundMotion
+from rbsdem.output.files import load
+from rbsdem.result import Result
+from rbsdem.section.paper import paper_columns, paper_sections
+from rbsdem.solve.analysis import Matrices, Modes, cyclic, matrices, modes, time_history
+from rbsdem.solve.case import Case, read_case
+from rbsdem.solve.corners import path_of as path_of
+from rbsdem.solve.protocol import protocol
 
 __version__ = _version()
 
@@ -109,11 +113,12 @@ __all__ = [
     "cloud",
     "codes",
     "compare",
-    "comparison",
+    "curves",
     "cyclic",
     "double_curvature",
     "ensemble",
     "envelope",
+    "fragility",
     "ida",
     "load",
     "matrices",
@@ -127,6 +132,7 @@ __all__ = [
     "read_case",
     "read_peer",
     "read_test",
+    "springs",
     "stripes",
     "time_history",
     "trade",

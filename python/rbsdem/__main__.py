@@ -12,14 +12,14 @@ from importlib.resources import files
 
 #: Commands that are run by Python, and their modules.
 COMMANDS = {
-    "trade": "rbsdem.accuracy.command",
-    "peer": "rbsdem.peer.command",
-    "predict": "rbsdem.peer.predict_command",
-    "ensemble": "rbsdem.ensembles.command",
-    "ida": "rbsdem.ensembles.ida_command",
-    "completion": "rbsdem.completion",
-    "explore": "rbsdem.explore.command",
-    "report": "rbsdem.explore.report_command",
+    "trade": "rbsdem.cli.trade",
+    "peer": "rbsdem.cli.peer",
+    "predict": "rbsdem.cli.predict",
+    "ensemble": "rbsdem.cli.ensemble",
+    "ida": "rbsdem.cli.ida",
+    "completion": "rbsdem.cli.completion",
+    "explore": "rbsdem.cli.explore",
+    "report": "rbsdem.cli.report",
 }
 
 

@@ -17,15 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rbsdem import _arguments, _rbsdem
-from rbsdem._arguments import (  # noqa: F401  for those that take these from here
-    BEYOND_MEANING,
-    Array,
-    finite_vector,
-    number,
-    switch,
-    vector,
-    whole,
-)
+from rbsdem._arguments import Array, number, switch, vector
 from rbsdem.errors import InputError, SolveError
 
 #: A number that was not given.

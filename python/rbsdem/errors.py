@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rbsdem.analysis import Result
-    from rbsdem.ensembles import Ensemble
+    from rbsdem.batch.record import Ensemble
+    from rbsdem.solve.analysis import Result
 
 __all__ = [
     "AccuracyWarning",
@@ -61,12 +61,12 @@ class Interrupted(KeyboardInterrupt):
     ----------
     message : str
         What was done, and how to go on.
-    ensemble : rbsdem.ensembles.Ensemble, optional
+    ensemble : rbsdem.batch.record.Ensemble, optional
         The runs that were done.
 
     Attributes
     ----------
-    ensemble : rbsdem.ensembles.Ensemble or None
+    ensemble : rbsdem.batch.record.Ensemble or None
         The runs that were done; the status of the others is "".
     """
 

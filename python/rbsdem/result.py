@@ -10,22 +10,22 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from rbsdem import _arguments, _core, _views
-from rbsdem._core import Array
-from rbsdem.column import Column
+from rbsdem import _arguments, _views
+from rbsdem._arguments import Array
 from rbsdem.errors import InputError, SolveError
-from rbsdem.methods import METHODS
-from rbsdem.springs import Layered
-from rbsdem.strains import Gauge, Strains, strains_of
+from rbsdem.model.column import Column
+from rbsdem.model.springs import Layered
+from rbsdem.model.strains import Gauge, Strains, strains_of
+from rbsdem.solve.methods import METHODS
 
 if TYPE_CHECKING:
-    from rbsdem.accuracy.answer import Errors
-    from rbsdem.case import Case
-    from rbsdem.comparison.cycles import HalfCycles
-    from rbsdem.envelopes.envelope import Envelope
-    from rbsdem.envelopes.idealise import Idealisation, Method
-    from rbsdem.limit_states.hinge import Hinge
-    from rbsdem.limit_states.record import LimitStates
+    from rbsdem.checks.hinge import Hinge
+    from rbsdem.checks.limit_states import LimitStates
+    from rbsdem.curves.cycles import HalfCycles
+    from rbsdem.curves.envelope import Envelope
+    from rbsdem.curves.idealise import Idealisation, Method
+    from rbsdem.methods.answer import Errors
+    from rbsdem.solve.case import Case
 
 #: Most steps times bodies of a run that is short enough to be done once more.
 _SHORT = 50_000
@@ -373,7 +373,7 @@ class Result:
         InputError
             If the time is outside of the rows.
         """
-        at = _core.number(time, "time")
+        at = _arguments.number(time, "time")
         path, times = self.path, self.path.time
         if not times.size or not times[0] <= at <= times[-1]:
             span = f"{times[0]:g} to {times[-1]:g}" if times.size else "nothing"
@@ -416,7 +416,7 @@ class Result:
     def half_cycles(self) -> HalfCycles:
         """Return energy, stiffness and damping of each half-cycle.
 
-        See `rbsdem.comparison.half_cycles`.
+        See `rbsdem.curves.half_cycles`.
         """
         found: HalfCycles = _views.view(self, "half_cycles")
         return found
@@ -424,7 +424,7 @@ class Result:
     def strength_loss(self, share: float = 0.2) -> float:
         """Return the displacement at which a share of the strength is lost [m]; NaN if it is not.
 
-        See `rbsdem.comparison.strength_loss`.
+        See `rbsdem.curves.strength_loss`.
         """
         return float(_views.view(self, "strength_loss", share))
 
@@ -553,7 +553,7 @@ class Result:
 
         Returns
         -------
-        rbsdem.accuracy.answer.Errors
+        rbsdem.methods.answer.Errors
             Relative differences of the response (rms and largest), of the base moment, the energy
             and the peak; `largest` is the largest of them.
 

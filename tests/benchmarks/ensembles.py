@@ -24,9 +24,9 @@ from benchmark import record_20_s
 from rows import Row, newest, show
 
 import rbsdem
-from rbsdem.ensembles.inputs import Motion
-from rbsdem.ensembles.measures import core_measures
-from rbsdem.ensembles.tasks import Task, compute
+from rbsdem.batch.inputs import Motion
+from rbsdem.batch.measures import core_measures
+from rbsdem.batch.tasks import Task, compute
 
 #: Runs of the largest ensemble.
 MANY = 1_000_000

@@ -15,8 +15,8 @@ import sys
 import threading
 import time
 
-from rbsdem.explore.server import ExploreServer
-from rbsdem.explore.state import DEFAULT
+from rbsdem.web.server import ExploreServer
+from rbsdem.web.state import DEFAULT
 
 
 def main(requests: int) -> None:

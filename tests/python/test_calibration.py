@@ -18,7 +18,7 @@ from rbsdem.calibration import Parameter, free_names, misfit, paths, undetermine
 from rbsdem.calibration.determined import determine
 from rbsdem.calibration.misfit import POINTS, Misfit, Target
 from rbsdem.calibration.search import COARSE, Search
-from rbsdem.comparison.cycles import half_cycle_numbers
+from rbsdem.curves.cycles import half_cycle_numbers
 from rbsdem.peer import find_history, read_peer
 from rbsdem.springs import ConcreteSpring, Layered, Pinching, SteelSpring
 

@@ -18,8 +18,9 @@ from rich.console import Console
 
 import rbsdem
 from rbsdem import InputError
-from rbsdem.codes import asce_41, ec_8, flexure, quantities, regressions
-from rbsdem.codes.drifts import backbones, drift_at_loss, yield_drift
+from rbsdem.checks import asce_41, ec_8, flexure, regressions
+from rbsdem.checks.drifts import backbones, drift_at_loss, yield_drift
+from rbsdem.codes import quantities
 from rbsdem.section.interaction import nominal_moment
 
 STEEL = rbsdem.Steel(460e6, 575e6, es=200e9)

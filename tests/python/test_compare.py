@@ -12,7 +12,9 @@ import pytest
 from conftest import REPOSITORY
 
 import rbsdem
-from rbsdem.comparison import SCORES, cycles, strength_loss
+from rbsdem.curves import cycles
+from rbsdem.curves.scores import SCORES
+from rbsdem.curves.strength import strength_loss
 from rbsdem.errors import InputError
 
 DEFINITIONS = REPOSITORY.parent / "shared" / "loop_metrics.py"
@@ -244,7 +246,7 @@ def test_energy_of_the_half_cycles_is_that_of_the_path():
     # It ends at a tip, and what is stored there is in the last one.
     h = cycles.half_cycles(d, f)
     assert h.row[-1] == d.size - 1
-    assert h.energy.sum() == pytest.approx(rbsdem.comparison.energy(d, f), rel=1e-12)
+    assert h.energy.sum() == pytest.approx(rbsdem.curves.energy(d, f), rel=1e-12)
 
 
 def test_test_and_model_share_their_tips(curves):

@@ -8,8 +8,9 @@ import subprocess
 
 import pytest
 
-from rbsdem import _core, completion
+from rbsdem import _core
 from rbsdem.__main__ import COMMANDS
+from rbsdem.cli import completion
 
 
 def test_every_command_and_option_of_the_executable_is_known(run_cli):

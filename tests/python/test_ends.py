@@ -11,16 +11,7 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import (
-    Compression,
-    Elastic,
-    Footing,
-    Layered,
-    PeakOriented,
-    SteelSpring,
-    Takeda,
-    peer,
-)
+from rbsdem import Compression, Elastic, Footing, Layered, PeakOriented, SteelSpring, Takeda, peer
 
 pytestmark = pytest.mark.filterwarnings("ignore::rbsdem.AccuracyWarning")
 

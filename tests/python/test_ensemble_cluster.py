@@ -15,7 +15,7 @@ from test_ensembles import column, motion
 
 import rbsdem
 from rbsdem import InputError
-from rbsdem.ensembles import engine
+from rbsdem.batch import engine
 
 distributed = pytest.importorskip("distributed", reason="the extra 'cluster' brings distributed")
 

@@ -11,7 +11,7 @@ from test_ensembles import column, motion, same_as_alone
 
 import rbsdem
 from rbsdem import InputError, motions
-from rbsdem.ensembles import Hunt
+from rbsdem.many.hunt import Hunt
 
 NEWMARK = {"method": "newmark"}
 

@@ -17,8 +17,9 @@ from test_ensembles import column, motion
 
 import rbsdem
 from rbsdem import InputError
-from rbsdem.ensembles import MEASURES, engine, store, threads
-from rbsdem.ensembles.tasks import Task
+from rbsdem.batch import engine, store, threads
+from rbsdem.batch.measures import MEASURES
+from rbsdem.batch.tasks import Task
 
 parquet = pytest.importorskip("pyarrow.parquet", reason="the extra 'ensembles' brings pyarrow")
 
@@ -316,7 +317,7 @@ import sys
 sys.path.insert(0, {tests!r})
 from test_ensembles import column, motion
 import numpy as np, rbsdem
-from rbsdem.ensembles import engine, store, work
+from rbsdem.batch import engine, store, work
 engine._LONGEST = {longest}
 store._BEAT = {beat}
 real = engine.work_through

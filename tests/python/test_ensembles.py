@@ -14,10 +14,9 @@ import pytest
 
 import rbsdem
 from rbsdem import InputError, SolveError
-from rbsdem.ensembles import LIMIT_STATES, MEASURES
-from rbsdem.ensembles.inputs import Motion
-from rbsdem.ensembles.measures import STATUSES, core_measures
-from rbsdem.ensembles.tasks import Task, compute
+from rbsdem.batch.inputs import Motion
+from rbsdem.batch.measures import LIMIT_STATES, MEASURES, STATUSES, core_measures
+from rbsdem.batch.tasks import Task, compute
 
 TIME = 0.01 * np.arange(400)
 

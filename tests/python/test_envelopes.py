@@ -148,7 +148,7 @@ def test_result_speaks_by_the_definitions_of_the_comparison():
     path = COLUMN.height * rbsdem.protocol([0.01, 0.02], points=10)
     result = rbsdem.cyclic(COLUMN, displacement=path)
     path = result.path
-    cycles = rbsdem.comparison.half_cycles(path.displacement, path.force)
+    cycles = rbsdem.curves.half_cycles(path.displacement, path.force)
     assert result.half_cycles().energy == pytest.approx(cycles.energy)
     assert np.isnan(result.strength_loss())
     assert result.idealise("park", -1) == result.envelope(-1).idealise("park")

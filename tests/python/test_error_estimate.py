@@ -18,8 +18,8 @@ import pytest
 import rbsdem
 from rbsdem import InputError
 from rbsdem import __main__ as command
-from rbsdem.accuracy.answer import Answer, errors_of
-from rbsdem.methods import METHODS
+from rbsdem.methods.answer import Answer, errors_of
+from rbsdem.solve.methods import METHODS
 
 COLUMN = rbsdem.paper_columns("pdelta", top_mass=75.9e3)["soesianawati_1"]
 TIME = np.arange(0.0, 3.0, 0.01)

@@ -17,15 +17,15 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem.explore import texts
-from rbsdem.explore.command import main, start_of
-from rbsdem.explore.compute import shown_rows
-from rbsdem.explore.near import Near
-from rbsdem.explore.parts import GALLERY, MODULES, parts
-from rbsdem.explore.report import report_data, write_report
-from rbsdem.explore.report_command import main as report_main
-from rbsdem.explore.server import MOST_STATE, ExploreServer
-from rbsdem.explore.state import DEFAULT
+from rbsdem.cli.explore import main, start_of
+from rbsdem.cli.report import main as report_main
+from rbsdem.web import texts
+from rbsdem.web.compute import shown_rows
+from rbsdem.web.near import Near
+from rbsdem.web.parts import GALLERY, MODULES, parts
+from rbsdem.web.report import report_data, write_report
+from rbsdem.web.server import MOST_STATE, ExploreServer
+from rbsdem.web.state import DEFAULT
 
 #: Numbers of requests; a tab counts on.
 COUNT = itertools.count(1)
@@ -302,7 +302,7 @@ def test_an_error_that_is_no_input_error_is_a_defect_and_says_so(post, monkeypat
     (answer,) = post("sections", state=state(), code="aci318")["columns"]
     assert "A defect of rbsdem, not of the input (ZeroDivisionError" in answer["codes"]["fault"]
     assert answer["code"]["moment"]  # the other panels stand
-    monkeypatch.setattr("rbsdem.explore.compute.cyclic", broken)
+    monkeypatch.setattr("rbsdem.web.compute.cyclic", broken)
     (answer,) = post("loops", state=state(section_width=0.41))["columns"]
     assert "force" not in answer
     assert "A defect of rbsdem" in answer["faults"][0]["text"]

@@ -13,9 +13,9 @@ from xml.etree import ElementTree
 import pytest
 
 import rbsdem
-from rbsdem.explore.report import write_report
-from rbsdem.explore.server import ExploreServer
-from rbsdem.explore.state import DEFAULT
+from rbsdem.web.report import write_report
+from rbsdem.web.server import ExploreServer
+from rbsdem.web.state import DEFAULT
 
 selenium = pytest.importorskip("selenium", reason="selenium is not installed (extra test)")
 from selenium import webdriver  # noqa: E402

@@ -9,18 +9,11 @@ import pytest
 from scipy import integrate, optimize, special, stats
 
 from rbsdem import AccuracyWarning, Column, Elastic, InputError
-from rbsdem.ensembles import (
-    Capacities,
-    Counts,
-    Fragility,
-    Hazard,
-    Uncertain,
-    fit_fragility,
-    lognormal,
-    variance_split,
-)
-from rbsdem.ensembles.lognormal import Bounds, bounds_of_counts, fit_bounds
-from rbsdem.ensembles.regression import fit_line, fit_logistic
+from rbsdem.many.fragility import Capacities, Counts, Fragility, fit_fragility
+from rbsdem.many.hazard import Hazard
+from rbsdem.many.lognormal import Bounds, bounds_of_counts, fit_bounds
+from rbsdem.many.regression import fit_line, fit_logistic
+from rbsdem.many.uncertain import Uncertain, lognormal, variance_split
 
 
 def counts(level, number, failures, paired=False) -> Counts:

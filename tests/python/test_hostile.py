@@ -18,10 +18,11 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import _arguments, comparison, ensembles, motions, peer
+from rbsdem import _arguments, fragility, motions, peer
+from rbsdem import curves as comparison
 from rbsdem.calibration import free_names, undetermined
 from rbsdem.errors import InputError, RbsdemError
-from rbsdem.section import parameters
+from rbsdem.section.parameters import parameters
 
 pytestmark = pytest.mark.filterwarnings("ignore")
 
@@ -101,12 +102,12 @@ ENSEMBLE = rbsdem.ensemble(COLUMN, MOTION, method="newmark")
 LAYERED = rbsdem.cyclic(
     SECTION.column(1.6, axial_load=5e5), displacement=[0.0, 0.01], openings=True
 )
-COUNTS = ensembles.Counts(
+COUNTS = fragility.Counts(
     np.array([1.0, 2.0, 3.0]), np.array([[0, 0, 1, 0], [0, 1, 1, 0], [1, 0, 1, 1]]), True
 )
-FRAGILITY = ensembles.fit_fragility("a", COUNTS)
-HAZARD = ensembles.Hazard([1.0, 2.0], [0.1, 0.01])
-UNCERTAIN = ensembles.Uncertain(lambda k: COLUMN, {"k": ensembles.lognormal(1.0, 0.2)})
+FRAGILITY = fragility.fit_fragility("a", COUNTS)
+HAZARD = fragility.Hazard([1.0, 2.0], [0.1, 0.01])
+UNCERTAIN = fragility.Uncertain(lambda k: COLUMN, {"k": fragility.lognormal(1.0, 0.2)})
 
 CAPPED = {"d_y": 1e-3, "f_y": 1e5, "d_cap": 1e-2, "f_cap": 1.2e5, "d_pc": 0.1}
 HISTORY = {"time": TIME, "ground_acceleration": SHAKEN, "dt": 0.02, "method": "newmark"}
@@ -246,8 +247,8 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         rbsdem.cloud,
         {"column": COLUMN, "motions": [MOTION] * 1, "scales": [0.1, 0.2, 0.3]} | MANY,
     ),
-    "Hunt": (ensembles.Hunt, {}),
-    "Hazard": (ensembles.Hazard, {"intensity": [1.0, 2.0], "frequency": [0.1, 0.01]}),
+    "Hunt": (fragility.Hunt, {}),
+    "Hazard": (fragility.Hazard, {"intensity": [1.0, 2.0], "frequency": [0.1, 0.01]}),
     "Hazard.frequency_of": (
         HAZARD.frequency_of,
         {"mu": 0.0, "beta": 0.4},
@@ -274,12 +275,12 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "section.parameters": (parameters, {}),
     "plot.history": (rbsdem.plot.history, {"result": RESULT}),
     "Uncertain": (
-        ensembles.Uncertain,
-        {"make": lambda k: COLUMN, "variables": {"k": ensembles.lognormal(1.0, 0.2)}},
+        fragility.Uncertain,
+        {"make": lambda k: COLUMN, "variables": {"k": fragility.lognormal(1.0, 0.2)}},
     ),
-    "lognormal": (ensembles.lognormal, {"median": 1.0, "beta": 0.2}),
-    "variance_split": (ensembles.variance_split, {"capacity": np.ones((2, 3))}),
-    "fit_fragility": (ensembles.fit_fragility, {"name": "a", "data": COUNTS}),
+    "lognormal": (fragility.lognormal, {"median": 1.0, "beta": 0.2}),
+    "variance_split": (fragility.variance_split, {"capacity": np.ones((2, 3))}),
+    "fit_fragility": (fragility.fit_fragility, {"name": "a", "data": COUNTS}),
     "calibrate": (
         rbsdem.calibrate,
         {"column": COLUMN, "test": TEST, "free": ["flexure.k"], "evaluations": 3},

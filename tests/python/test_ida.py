@@ -7,7 +7,10 @@ import pytest
 
 import rbsdem
 from rbsdem import InputError, motions
-from rbsdem.ensembles import Hazard, Hunt, draw_fragilities, variance_split
+from rbsdem.many.hazard import Hazard
+from rbsdem.many.hunt import Hunt
+from rbsdem.many.uncertain import variance_split
+from rbsdem.output.ensemble_figure import draw_fragilities
 
 HEIGHT = 2.0
 SETTINGS = {"method": "newmark", "dt": 0.002}
@@ -34,7 +37,7 @@ def omega(column) -> float:
 
 
 @pytest.fixture(scope="module")
-def hunted(column, records) -> rbsdem.ensembles.IDA:
+def hunted(column, records) -> rbsdem.fragility.IDA:
     return rbsdem.ida(column, records, collapse_drift=0.05, **SETTINGS)
 
 
@@ -199,7 +202,7 @@ def test_a_hunt_goes_on_from_its_store(column, records, tmp_path, monkeypatch):
     first = rbsdem.ida(column, records[:2], **options, **SETTINGS)
     more = rbsdem.ida(column, records[:3], **options, **SETTINGS)
     assert np.array_equal(more.upper[:, :2], first.upper)
-    monkeypatch.setattr("rbsdem.ensembles.threads.compute", None)
+    monkeypatch.setattr("rbsdem.batch.threads.compute", None)
     again = rbsdem.ida(column, records[:2], **options, **SETTINGS)
     assert np.array_equal(again.upper, first.upper)
     assert np.array_equal(again.runs.measures["peak_drift"], first.runs.measures["peak_drift"])

@@ -12,8 +12,8 @@ from conftest import REPOSITORY
 
 import rbsdem
 from rbsdem import motions
-from rbsdem.ensembles import ida_command
-from rbsdem.ensembles.ida_command import main
+from rbsdem.cli import ida as ida_command
+from rbsdem.cli.ida import main
 
 CASE = REPOSITORY / "examples" / "08-ida" / "case.nml"
 FEW = ["--method", "newmark", "--levels", "2,6,30"]

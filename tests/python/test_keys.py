@@ -15,8 +15,9 @@ import pytest
 from conftest import REPOSITORY
 
 import rbsdem
-from rbsdem import _core, analysis
-from rbsdem.damping import Damping
+from rbsdem import _core
+from rbsdem.model.damping import Damping
+from rbsdem.solve import analysis
 from rbsdem.springs import SPRINGS
 
 KEYS = _core.keys()

@@ -14,9 +14,8 @@ import pytest
 import rbsdem
 from rbsdem import peer
 from rbsdem.errors import InputError
-from rbsdem.section import parameters, versions
 from rbsdem.section.directions import DIRECTIONS
-from rbsdem.section.parameters import FACTORS, VERSIONS
+from rbsdem.section.parameters import FACTORS, VERSIONS, parameters, versions
 
 SPECIMEN = peer.Specimen(
     name="Square",
@@ -218,8 +217,8 @@ SECTION = rbsdem.RectangularSection(
     0.4,
     0.4,
     rbsdem.Concrete(40e6),
-    layout=rbsdem.section.Layout(8, 0.02, rbsdem.Steel(450e6, 650e6)),
-    ties=rbsdem.section.Ties(0.01, 0.08, rbsdem.Steel(400e6), legs=3),
+    layout=rbsdem.model.reinforcement.Layout(8, 0.02, rbsdem.Steel(450e6, 650e6)),
+    ties=rbsdem.model.reinforcement.Ties(0.01, 0.08, rbsdem.Steel(400e6), legs=3),
     cover=0.02,
 )
 
@@ -243,8 +242,8 @@ def test_a_circular_section_makes_both_models():
     section = rbsdem.CircularSection(
         0.5,
         rbsdem.Concrete(35e6),
-        layout=rbsdem.section.Layout(12, 0.02, steel),
-        spiral=rbsdem.section.Spiral(0.01, 0.06, steel),
+        layout=rbsdem.model.reinforcement.Layout(12, 0.02, steel),
+        spiral=rbsdem.model.reinforcement.Spiral(0.01, 0.06, steel),
         cover=0.025,
     )
     peaks = [

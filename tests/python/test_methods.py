@@ -9,7 +9,7 @@ import pytest
 
 import rbsdem
 from rbsdem import _core
-from rbsdem.methods import IMPLICIT, IN_TIME, METHODS
+from rbsdem.solve.methods import IMPLICIT, IN_TIME, METHODS
 
 ROOT = Path(__file__).resolve().parents[2]
 VALUES = {
@@ -37,7 +37,7 @@ def test_the_docs_have_the_table_of_the_program() -> None:
 def test_names_in_time() -> None:
     assert set(METHODS) == {"static", *IN_TIME}
     assert set(IMPLICIT) == {"newmark", "hht", "generalised_alpha"}
-    assert rbsdem.analysis.METHODS == IN_TIME
+    assert rbsdem.solve.analysis.METHODS == IN_TIME
 
 
 def column(kinematics: str) -> rbsdem.Column:

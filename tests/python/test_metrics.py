@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rbsdem import comparison
+from rbsdem import curves as comparison
 from rbsdem.errors import InputError, RbsdemError, SolveError
 
 SHARED = Path(__file__).resolve().parents[3] / "shared"

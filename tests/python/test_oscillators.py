@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 
 import rbsdem
 from rbsdem import motions
-from rbsdem.ensembles import Hunt
+from rbsdem.many.hunt import Hunt
 
 MASS, HEIGHT, DAMPING = 1e4, 3.0, 0.05
 RECORDS = motions.synthetic(20)

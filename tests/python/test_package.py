@@ -27,8 +27,7 @@ PROMISED = {
 }  # fmt: skip
 
 MODULES = [
-    "analysis", "case", "column", "comparison", "damping", "errors", "paper",
-    "peer", "plot", "springs",
+    "codes", "curves", "errors", "fragility", "motions", "peer", "plot", "springs",
 ]  # fmt: skip
 
 ELASTIC = rbsdem.Elastic(1e6)

@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import comparison, peer
+from rbsdem import curves as comparison
+from rbsdem import peer
 from rbsdem._data import text as data_text
 from rbsdem.errors import InputError
-from rbsdem.paper import KEYS, paper_columns, paper_sections
 from rbsdem.section.model import CONCRETE_DENSITY
+from rbsdem.section.paper import KEYS, paper_columns, paper_sections
 
 ROOT = Path(__file__).resolve().parents[2]
 HISTORIES = ROOT.parent / "shared" / "peer"

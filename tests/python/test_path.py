@@ -16,7 +16,7 @@ import pytest
 from numpy.typing import NDArray
 
 import rbsdem
-from rbsdem import comparison
+from rbsdem import curves as comparison
 
 Array = NDArray[np.float64]
 

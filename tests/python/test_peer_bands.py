@@ -13,8 +13,9 @@ import pytest
 
 import rbsdem
 from rbsdem import peer
+from rbsdem.cli import peer as command
+from rbsdem.cli import predict as predict_command
 from rbsdem.errors import AccuracyWarning, InputError
-from rbsdem.peer import command, predict_command
 
 HEADER = (
     "peer_id,file,name,author,year,section,L_mm,b_mm,h_mm,cover_mm,fc_MPa,axial_kN,n_long,"

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rbsdem import peer
-from rbsdem.peer import command
+from rbsdem.cli import peer as command
 
 LENGTH, LOAD, BOTTOM = 1.6, 1.2e6, 0.3
 

@@ -17,9 +17,10 @@ import numpy as np
 import pytest
 
 from rbsdem import peer
+from rbsdem.cli import peer as command
 from rbsdem.errors import InputError
-from rbsdem.peer import command
-from rbsdem.peer.journal import Journal
+from rbsdem.measured import processes
+from rbsdem.measured.journal import Journal
 
 ROW = {
     "peer_id": "1", "file": "a.csv", "name": "Me 1990 No. 1", "author": "Me", "year": "1990",
@@ -165,9 +166,9 @@ def test_second_start_goes_on(tests, tmp_path, monkeypatch):
     first = peer.predict(tests[:3], "paper", journal=path)
     assert first.resumed == 0
     done = []
-    one = peer.processes.predict_one
+    one = processes.predict_one
     monkeypatch.setattr(
-        peer.processes, "predict_one", lambda s, *a, **o: done.append(s.peer_id) or one(s, *a, **o)
+        processes, "predict_one", lambda s, *a, **o: done.append(s.peer_id) or one(s, *a, **o)
     )
     whole = peer.predict(tests, "paper", journal=path)
     assert done == [4]
@@ -225,7 +226,8 @@ def test_journal_is_refused(tests, tmp_path):
 # The command, whose workers wait in their second test.
 WAITING = """
 import os, pathlib, sys, time
-from rbsdem.peer import command, processes
+from rbsdem.cli import peer as command
+from rbsdem.measured import processes
 
 one = processes.predict_one
 

@@ -21,8 +21,9 @@ import pytest
 
 import rbsdem
 from rbsdem import peer
+from rbsdem.cli import peer as command
 from rbsdem.errors import InputError
-from rbsdem.peer import command, pictures
+from rbsdem.output import pictures
 
 HEADER = (
     "peer_id,file,name,author,year,section,L_mm,b_mm,h_mm,cover_mm,fc_MPa,axial_kN,n_long,"
@@ -59,7 +60,8 @@ def deadly(specimen: peer.Specimen) -> rbsdem.Column:
 # The command with a model that does not come to an end on its third test.
 ENDLESS = """
 import itertools, pathlib, sys, time
-from rbsdem.peer import command, one
+from rbsdem.cli import peer as command
+from rbsdem.measured import one
 
 make = one.column_of
 count = itertools.count()
@@ -163,7 +165,7 @@ def test_an_early_end_keeps_what_was_reached(table, monkeypatch):
         broken = replace(result, summary={**result.summary, "status": "failed"})
         raise rbsdem.SolveError("step 150: no", broken)
 
-    monkeypatch.setattr("rbsdem.peer.one.cyclic", half)
+    monkeypatch.setattr("rbsdem.measured.one.cyclic", half)
     row = peer.predict_one(table[0], good)
     assert (row.status, row.error) == ("stopped", "step 150: no")
     assert row.comparison.rows == 150
@@ -199,7 +201,7 @@ def test_processes_give_the_same(table):
 
 
 def test_a_process_that_dies_is_rows_too(folder, monkeypatch):
-    monkeypatch.setattr("rbsdem.peer.processes._CHUNK", 2)
+    monkeypatch.setattr("rbsdem.measured.processes._CHUNK", 2)
     table = peer.read_specimens(folder)
     found = peer.predict(table, deadly, jobs=2)
     # Its neighbours go on.

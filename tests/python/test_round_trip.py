@@ -12,7 +12,7 @@ import pytest
 from strategies import Rng, accepted, any_column, rules, spring
 
 import rbsdem
-from rbsdem.section import parameters
+from rbsdem.section.parameters import parameters
 
 # The same column is made at every level of kinematics, and masses without weight are tried.
 pytestmark = pytest.mark.filterwarnings(

@@ -40,7 +40,7 @@ INPUTS = {
 LEAST_JUMP = 0.04
 
 
-def column(**given: float) -> rbsdem.section.LayeredColumn:
+def column(**given: float) -> rbsdem.section.model.LayeredColumn:
     """Return a column with three rows of bars, the middle one at any height."""
     v = {name: middle for name, (*_, middle) in INPUTS.items()} | given
     steel = rbsdem.Steel(v["fy"], v["fu"])
@@ -64,7 +64,7 @@ def column(**given: float) -> rbsdem.section.LayeredColumn:
     return section.column(v["height"], axial_load=v["axial_load"])
 
 
-def predicted(made: rbsdem.section.LayeredColumn) -> dict[str, float]:
+def predicted(made: rbsdem.section.model.LayeredColumn) -> dict[str, float]:
     """Return strengths, stiffnesses and springs of a column."""
     recipe, shear = made.recipe, made.shear[0]
     section, joint, place = recipe.section, recipe.joint, (recipe.height, made.axial_load)
@@ -137,7 +137,7 @@ def test_predicted_loops_do_not_jump(name, place):
         squat = column(**{"height": 0.8, "bar": 0.025, "spacing": 0.2, name: moved})
         path = 0.8 * np.linspace(0.0, 0.06, 300)
         force = rbsdem.cyclic(squat, displacement=path).force
-        lost = rbsdem.comparison.strength_loss(path, force)
+        lost = rbsdem.curves.strength_loss(path, force)
         found.append((force.max(), lost))
     for near in found:
         np.testing.assert_allclose(near, found[1], rtol=1e-5)

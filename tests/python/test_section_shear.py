@@ -15,16 +15,11 @@ from scipy.optimize import least_squares
 
 import rbsdem
 from rbsdem import _core
-from rbsdem.section import (
-    CircularSection,
-    Concrete,
-    Layout,
-    RectangularSection,
-    Spiral,
-    Steel,
-    Ties,
-    strength,
-)
+from rbsdem.model.circular import CircularSection
+from rbsdem.model.materials import Concrete, Steel
+from rbsdem.model.rectangular import RectangularSection
+from rbsdem.model.reinforcement import Layout, Spiral, Ties
+from rbsdem.section import strength
 from rbsdem.section.shear_diagram import shear_diagram
 from rbsdem.section.shear_spring import closed_form_shear, fit_shear_spring
 

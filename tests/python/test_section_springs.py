@@ -11,7 +11,7 @@ import pytest
 
 import rbsdem
 from rbsdem import AccuracyWarning, InputError, Layout, RectangularSection
-from rbsdem.paper import KEYS, paper_columns, paper_sections
+from rbsdem.section.paper import KEYS, paper_columns, paper_sections
 
 mpl.use("Agg")
 

@@ -10,7 +10,7 @@ import pytest
 
 import rbsdem
 from rbsdem import peer
-from rbsdem.section import parameters
+from rbsdem.section.parameters import parameters
 from rbsdem.section.shear_model import cracked_shear_stiffness, shear_spring
 from rbsdem.section.strength import shear_strength_mcft, shear_strength_sezen
 
@@ -43,7 +43,7 @@ SQUAT = replace(
 STIFFNESS = 7e8
 
 
-def section(specimen: peer.Specimen) -> rbsdem.section.Section:
+def section(specimen: peer.Specimen) -> rbsdem.model.section.Section:
     return peer.draw(specimen).section()
 
 
@@ -157,7 +157,7 @@ def test_the_number_of_bodies_does_not_matter(specimen):
 
 
 def test_parameters_of_the_shear_spring_can_be_calibrated():
-    def values(column: rbsdem.section.LayeredColumn) -> tuple[float, float]:
+    def values(column: rbsdem.section.model.LayeredColumn) -> tuple[float, float]:
         given = column.recipe.parameters
         return given.shear.strength, given.hinge.steel_strength
 

@@ -11,12 +11,12 @@ import pytest
 
 from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties
 from rbsdem.errors import AccuracyWarning, InputError
-from rbsdem.protocol import protocol
-from rbsdem.section import Interval, Scatter, parameters
+from rbsdem.section.parameters import parameters
 from rbsdem.section.remote import Middle
-from rbsdem.section.scatter import SCATTER
+from rbsdem.section.scatter import SCATTER, Scatter
 from rbsdem.section.sobol import sobol
-from rbsdem.section.spread import near_shear, path_force
+from rbsdem.section.spread import Interval, near_shear, path_force
+from rbsdem.solve.protocol import protocol
 
 SECTION = RectangularSection(
     0.4,

@@ -17,13 +17,15 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem.accuracy import Trade, scene, trade
-from rbsdem.accuracy import command as trade_command
-from rbsdem.accuracy.answer import Answer, Setting, errors_of
-from rbsdem.accuracy.path import at_times, common_interval, reversals
-from rbsdem.accuracy.physics import split_bodies
-from rbsdem.accuracy.rows import seconds_text
-from rbsdem.accuracy.scene import make_scene
+from rbsdem.cli import trade as trade_command
+from rbsdem.methods import scene
+from rbsdem.methods.answer import Answer, Setting, errors_of
+from rbsdem.methods.measure import trade
+from rbsdem.methods.outcome import Trade
+from rbsdem.methods.path import at_times, common_interval, reversals
+from rbsdem.methods.physics import split_bodies
+from rbsdem.methods.rows import seconds_text
+from rbsdem.methods.scene import make_scene
 
 LENGTH, MASS = 1.6, 614.4
 SHEAR, BENDING = 7.0387e8, 2.5428e8
@@ -165,7 +167,7 @@ def test_settings_of_all_kinds_are_there(shaken):
             assert row.error == max(row.response_rms, row.moment, row.energy, row.peak)
             assert row.response_rms <= row.response_max
     chosen = next(row for row in shaken.rows if row.setting.method == "auto")
-    assert chosen.reason.split(":")[0] in rbsdem.analysis.METHODS
+    assert chosen.reason.split(":")[0] in rbsdem.solve.analysis.METHODS
 
 
 def test_a_step_beyond_the_limit_stays_in_the_table(shaken):

@@ -4,10 +4,9 @@ The parameters are paths into the column, such as ``flexure.k_y``, or those that
 a recipe offers. Needs scipy (``pip install "rbsdem[calibrate]"``).
 """
 
-from rbsdem.calibration import view as view
 from rbsdem.calibration.fit import calibrate, free_names, undetermined
 from rbsdem.calibration.outcome import Calibration, Fitted
-from rbsdem.parameter import Parameter, Recipe
+from rbsdem.model.parameter import Parameter, Recipe
 
 __all__ = [
     "Calibration",

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _arguments, _core
-from rbsdem._core import Array
+from rbsdem import _arguments
+from rbsdem._arguments import Array
 from rbsdem.calibration.determined import (
     Determined,
     determine,
@@ -26,10 +26,10 @@ from rbsdem.calibration.names import Parameters, free_parameters
 from rbsdem.calibration.outcome import Calibration, Fitted
 from rbsdem.calibration.progress import telling
 from rbsdem.calibration.search import Search, need_scipy
-from rbsdem.column import Column
-from rbsdem.comparison import Comparison, compare
+from rbsdem.curves.scores import Comparison, compare
 from rbsdem.errors import AccuracyWarning, InputError
-from rbsdem.parameter import Parameter
+from rbsdem.model.column import Column
+from rbsdem.model.parameter import Parameter
 
 __all__ = ["calibrate", "free_names", "undetermined"]
 
@@ -163,7 +163,7 @@ def calibrate(
     parameters = Parameters(column)
     chosen = free_parameters(parameters, free, bounds)
     need_scipy()
-    progress = _core.switch(progress, "calibrate: progress")
+    progress = _arguments.switch(progress, "calibrate: progress")
     showing = telling(evaluations) if progress else nullcontext(lambda done, best: None)
     # Warnings about the many columns of the search do not help the user.
     with warnings.catch_warnings(), showing as told:
@@ -202,9 +202,9 @@ def _check(loss: str, seed: int, jobs: int, evaluations: int, seconds: float | N
     _arguments.choice(loss, "calibrate: loss", LOSSES)
     for name, value in (("seed", seed), ("jobs", jobs), ("evaluations", evaluations)):
         least = 0 if name == "seed" else 1
-        if _core.whole(value, f"calibrate: {name}") < least:
+        if _arguments.whole(value, f"calibrate: {name}") < least:
             raise InputError(f"calibrate: {name} = {value} must be {least} or more")
-    if seconds is not None and not 0 < _core.number(seconds, "calibrate: seconds") < math.inf:
+    if seconds is not None and not 0 < _arguments.number(seconds, "calibrate: seconds") < math.inf:
         raise InputError(f"calibrate: seconds = {seconds} must be a positive number")
 
 

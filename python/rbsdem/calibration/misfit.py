@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from rbsdem import _core
-from rbsdem._core import Array
-from rbsdem.analysis import cyclic
-from rbsdem.column import Column
-from rbsdem.comparison.cycles import half_cycle_numbers
-from rbsdem.comparison.metrics import N_POINTS, PathPoints, work
+from rbsdem import _arguments
+from rbsdem._arguments import Array
+from rbsdem.curves.cycles import half_cycle_numbers
+from rbsdem.curves.metrics import N_POINTS, PathPoints, work
 from rbsdem.errors import InputError, SolveError
-from rbsdem.parameter import Parameter
+from rbsdem.model.column import Column
+from rbsdem.model.parameter import Parameter
+from rbsdem.solve.analysis import cyclic
 
 #: Points along the path of displacement at which the error is taken, as in a comparison.
 POINTS = N_POINTS
@@ -229,8 +229,8 @@ def _loop(test: Any) -> tuple[Array, Array]:
             f"calibrate: test: a {type(test).__name__} has no displacement and force; give a "
             "measured test, or a pair of arrays [m, N]"
         ) from None
-    d = _core.finite_vector(displacement, "calibrate: displacement of the test")
-    f = _core.finite_vector(force, "calibrate: force of the test")
+    d = _arguments.finite_vector(displacement, "calibrate: displacement of the test")
+    f = _arguments.finite_vector(force, "calibrate: force of the test")
     if d.size != f.size:
         raise InputError(
             f"calibrate: the test has {d.size} displacements and {f.size} forces; they must be "

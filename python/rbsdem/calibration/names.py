@@ -7,11 +7,11 @@ from dataclasses import replace
 from difflib import get_close_matches
 from typing import Any
 
-from rbsdem import _core
+from rbsdem import _arguments
 from rbsdem.calibration import paths
-from rbsdem.column import Column, checked_column
 from rbsdem.errors import InputError
-from rbsdem.parameter import Parameter, is_recipe
+from rbsdem.model.column import Column, checked_column
+from rbsdem.model.parameter import Parameter, is_recipe
 
 #: Largest number of names in a message.
 _MANY = 30
@@ -135,7 +135,7 @@ def _pair(name: str, pair: Any) -> tuple[float, float]:
     except (TypeError, ValueError):
         raise InputError(f"calibrate: bounds of {name} = {pair!r} must be (low, high)") from None
     about = f"calibrate: bounds of {name}"
-    return _core.number(low, about), _core.number(high, about)
+    return _arguments.number(low, about), _arguments.number(high, about)
 
 
 def _within(

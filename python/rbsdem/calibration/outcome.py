@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rbsdem import _views
-from rbsdem._core import Array
-from rbsdem.column import Column
-from rbsdem.comparison import Comparison
+from rbsdem._arguments import Array
+from rbsdem.curves.scores import Comparison
+from rbsdem.model.column import Column
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 
 from rbsdem import _core
-from rbsdem.column import Column
-from rbsdem.parameter import Parameter
-from rbsdem.springs import Spring
+from rbsdem.model.column import Column
+from rbsdem.model.parameter import Parameter
+from rbsdem.model.springs import Spring
 
 #: Parameters of springs are searched within this factor, unless their rule sets other bounds.
 REACH = 5.0

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from rbsdem._core import Array
+from rbsdem._arguments import Array
 from rbsdem.calibration.misfit import REFUSED, Misfit, rms
 
 #: Points of the hypercube for each free parameter, and the least number of points.

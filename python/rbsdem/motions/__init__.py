@@ -1,6 +1,5 @@
 """Ground motions: records read, measured, scaled and joined, and synthetic ones."""
 
-from rbsdem.motions import figure as figure
 from rbsdem.motions.motion import STANDARD_GRAVITY, GroundMotion
 from rbsdem.motions.read import read_motion, read_motions
 from rbsdem.motions.shaping import corrected, resampled, sequence

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _arguments, _core, _views
-from rbsdem._core import Array
+from rbsdem import _arguments, _views
+from rbsdem._arguments import Array
 from rbsdem._files import whole_file
 from rbsdem.errors import InputError
 from rbsdem.motions.spectrum import Spectrum, response_spectrum
@@ -56,13 +56,13 @@ class GroundMotion:
         who = f"motion {name}" if _arguments.text(name, "motion: name") else "motion"
         faults, values, step = [], np.empty(0), 0.0
         try:
-            values = np.array(_core.finite_vector(acceleration, f"{who}: acceleration"))
+            values = np.array(_arguments.finite_vector(acceleration, f"{who}: acceleration"))
             if values.size < 2:
                 faults.append(f"{who}: acceleration has {values.size} values; give two or more")
         except InputError as error:
             faults.append(str(error))
         try:
-            step = _core.number(dt, f"{who}: dt")
+            step = _arguments.number(dt, f"{who}: dt")
             if not 0 < step <= _LONGEST_STEP:
                 faults.append(f"{who}: dt = {step:g} s must be above 0 and at most 10 s")
         except InputError as error:
@@ -120,7 +120,7 @@ class GroundMotion:
         start, end : float, optional
             Parts of the Arias intensity [%] between which the time counts: 5 and 95, or 5 and 75.
         """
-        low, high = _core.number(start, "start"), _core.number(end, "end")
+        low, high = _arguments.number(start, "start"), _arguments.number(end, "end")
         if not 0 <= low < high <= 100:
             raise InputError(
                 f"duration: start = {low:g} and end = {high:g} must be percentages, start < end"
@@ -149,7 +149,7 @@ class GroundMotion:
 
     def sa(self, period: float, damping: float = 0.05) -> float:
         """Return the pseudo-spectral acceleration at a period [m/s2]."""
-        value = _core.number(period, "period")
+        value = _arguments.number(period, "period")
         return float(self.spectrum([value], damping).pseudo_acceleration[0])
 
     def sa_avg(self, periods: ArrayLike, damping: float = 0.05) -> float:
@@ -183,9 +183,11 @@ class GroundMotion:
         if sum(value is not None for value in (factor, pga, sa)) != 1:
             raise InputError("scaled: give exactly one of factor, pga and sa")
         if factor is not None:
-            return replace(self, acceleration=self.acceleration * _core.number(factor, "factor"))
+            return replace(
+                self, acceleration=self.acceleration * _arguments.number(factor, "factor")
+            )
         if pga is not None:
-            wanted, name, has = _core.number(pga, "pga"), "pga", self.pga
+            wanted, name, has = _arguments.number(pga, "pga"), "pga", self.pga
         else:
             try:
                 period, wanted = sa  # type: ignore[misc]
@@ -193,7 +195,7 @@ class GroundMotion:
                 raise InputError(
                     f"scaled: sa = {sa!r} must be a period in s and an acceleration in m/s2"
                 ) from None
-            wanted, name = _core.number(wanted, "sa"), f"Sa({period:g} s)"
+            wanted, name = _arguments.number(wanted, "sa"), f"Sa({period:g} s)"
             has = self.sa(period, damping)
         if not (math.isfinite(wanted) and wanted > 0):
             raise InputError(f"scaled: {name} = {wanted:g} m/s2 must be above 0")
@@ -215,7 +217,7 @@ class GroundMotion:
             file.write((head + "".join(f"{t!r},{a!r}\n" for t, a in rows)).encode())
 
     def plot(self, ax: Any = None, **line: Any) -> Any:
-        """Draw the acceleration over time; see `rbsdem.motions.figure.draw_motion`."""
+        """Draw the acceleration over time; see `rbsdem.output.motion_figure.draw_motion`."""
         return _views.view(self, "plot", ax, **line)
 
     def _husid(self) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from rbsdem import _arguments, _core
+from rbsdem import _arguments
 from rbsdem.errors import InputError
 from rbsdem.motions.at2 import is_at2, read_at2
 from rbsdem.motions.motion import GroundMotion
@@ -55,7 +55,7 @@ def read_motion(
             raise InputError(f"{name}: dt = {dt} was given, and an AT2 file has its own; remove it")
         return read_at2(lines, name, stem, units)
     if dt is not None:
-        dt = _core.number(dt, "dt")
+        dt = _arguments.number(dt, "dt")
     return read_table(lines, name, stem, units, dt)
 
 

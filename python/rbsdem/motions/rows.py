@@ -7,7 +7,7 @@ import re
 
 import numpy as np
 
-from rbsdem._core import Array
+from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.units import UNITS, agreed_unit, unit_named

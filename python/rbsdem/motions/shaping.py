@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from rbsdem import _arguments, _core
-from rbsdem._core import Array
+from rbsdem import _arguments
+from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 from rbsdem.motions.motion import GroundMotion, checked_motion
 
@@ -30,7 +30,7 @@ def corrected(motion: GroundMotion, degree: int = 1) -> GroundMotion:
         Degree of the polynomial in the acceleration: 0 takes off a constant, 1 a straight line.
     """
     checked_motion(motion)
-    wanted = _core.whole(degree, "degree")
+    wanted = _arguments.whole(degree, "degree")
     if not 0 <= wanted <= min(_MOST_DEGREE, motion.acceleration.size - 2):
         raise InputError(f"corrected: degree = {degree} must be from 0 to {_MOST_DEGREE}")
     tau = np.linspace(0.0, 1.0, motion.acceleration.size)
@@ -57,7 +57,7 @@ def resampled(motion: GroundMotion, dt: float) -> GroundMotion:
         New step [s].
     """
     checked_motion(motion)
-    step = _core.number(dt, "dt")
+    step = _arguments.number(dt, "dt")
     if not 0 < step <= motion.length:
         raise InputError(
             f"resampled: dt = {step:g} s must be above 0 and at most the length of the motion, "
@@ -92,7 +92,7 @@ def sequence(
     parts = [checked_motion(motion) for motion in given]
     if not parts:
         raise InputError("sequence: there are no motions; give at least one")
-    pause = _core.number(rest, "rest")
+    pause = _arguments.number(rest, "rest")
     if not 0 <= pause <= 1e6:
         raise InputError(f"sequence: rest = {pause:g} s must be 0 or more")
     dt = parts[0].dt

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _core, _views
-from rbsdem._core import Array
+from rbsdem import _arguments, _core, _views
+from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 
 _MOST_DAMPING = 10.0
@@ -66,7 +66,7 @@ def response_spectrum(
     """Return the spectrum of accelerations [m/s2] at steps dt [s]; see `GroundMotion.spectrum`."""
     if periods is None:
         periods = np.geomspace(0.02, 10.0, 100)
-    period = _core.finite_vector(periods, "periods")
+    period = _arguments.finite_vector(periods, "periods")
     if period.size == 0:
         raise InputError("periods is empty; give at least one natural period in s")
     allowed = (period == 0) | ((period >= _SHORTEST) & (period <= _LONGEST))
@@ -76,7 +76,7 @@ def response_spectrum(
             f"periods: value {first + 1} of {period.size} is {period[first]:g} s; natural periods "
             f"are 0 or from {_SHORTEST:g} to {_LONGEST:g} s"
         )
-    ratio = _core.number(damping, "damping")
+    ratio = _arguments.number(damping, "damping")
     if not 0 <= ratio <= _MOST_DAMPING:
         raise InputError(
             f"damping = {ratio:g} must be from 0 to {_MOST_DAMPING:g}; it is a ratio, not a "

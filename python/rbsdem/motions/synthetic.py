@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rbsdem import _core
-from rbsdem._core import Array
+from rbsdem import _arguments
+from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 from rbsdem.motions.motion import STANDARD_GRAVITY, GroundMotion
 
@@ -41,8 +41,8 @@ def synthetic(n: int = 20, seed: int = 1, dt: float = 0.01) -> tuple[GroundMotio
     dt : float, optional
         Step [s], at most 0.05.
     """
-    number, start = _core.whole(n, "n"), _core.whole(seed, "seed")
-    step = _core.number(dt, "dt")
+    number, start = _arguments.whole(n, "n"), _arguments.whole(seed, "seed")
+    step = _arguments.number(dt, "dt")
     if not 1 <= number <= _MOST:
         raise InputError(f"synthetic: n = {n} must be from 1 to {_MOST}")
     if start < 0:

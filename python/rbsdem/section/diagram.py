@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rbsdem import _core, _views
-from rbsdem._core import Array
+from rbsdem import _arguments, _core, _views
+from rbsdem._arguments import Array
 from rbsdem.errors import InputError
-from rbsdem.section.materials import Tension
+from rbsdem.model.materials import Tension
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from rbsdem.section.section import Section
+    from rbsdem.model.section import Section
 
 __all__ = [
     "Confinement",
@@ -187,8 +187,8 @@ def make_diagram(
         "confined": confined,
         "yielding": rules[0],
         "ultimate": rules[1],
-        "eps_yield": _core.number(strains[0], "diagram: eps_yield"),
-        "eps_cover": _core.number(strains[1], "diagram: eps_cover"),
+        "eps_yield": _arguments.number(strains[0], "diagram: eps_yield"),
+        "eps_cover": _arguments.number(strains[1], "diagram: eps_cover"),
     }
     events, end, lost = _find(section, settings)
     if furthest is None:
@@ -196,10 +196,10 @@ def make_diagram(
         if events.ultimate:
             furthest = min(furthest, 1.15 * events.ultimate.curvature)
     else:
-        furthest = _core.number(furthest, "furthest")
+        furthest = _arguments.number(furthest, "furthest")
         if not 0.0 < furthest * section.depth <= 1.0:
             raise InputError(f"furthest = {furthest} 1/m must be above zero and below 1/depth")
-    points = _core.whole(points, "points")
+    points = _arguments.whole(points, "points")
     if not 2 <= points <= _MOST_POINTS:
         raise InputError(f"points = {points} must be from 2 to {_MOST_POINTS}")
     named = [point.curvature for point in (*_points(events), end) if point.curvature <= furthest]

@@ -12,13 +12,13 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from rbsdem.errors import InputError
-from rbsdem.section.materials import Steel
-from rbsdem.springs import ConcreteSpring, Layered, SteelSpring, unchecked
-from rbsdem.strains import Gauge
+from rbsdem.model.materials import Steel
+from rbsdem.model.springs import ConcreteSpring, Layered, SteelSpring, unchecked
+from rbsdem.model.strains import Gauge
 
 if TYPE_CHECKING:
+    from rbsdem.model.section import Section
     from rbsdem.section.parameters import HingeParameters
-    from rbsdem.section.section import Section
 
 __all__ = ["HingeJoint", "hinge_joint"]
 

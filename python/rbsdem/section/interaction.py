@@ -20,16 +20,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core, _views
-from rbsdem._core import Array
+from rbsdem._arguments import Array
 from rbsdem.errors import InputError
+from rbsdem.model.springs import Layered, SteelSpring
 from rbsdem.section.diagram import largest_moment
-from rbsdem.springs import Layered, SteelSpring
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from rbsdem.section.materials import Steel
-    from rbsdem.section.section import Section
+    from rbsdem.model.materials import Steel
+    from rbsdem.model.section import Section
 
 __all__ = [
     "Code",
@@ -181,7 +181,7 @@ def joint_interaction(
         With `code` "joint".
     """
     count = _points(points)
-    turned = _core.number(rotation, "interaction: rotation")
+    turned = _arguments.number(rotation, "interaction: rotation")
     if not 0.0 < turned <= 1.0:
         raise InputError(f"interaction: rotation = {turned:g} rad must be above 0, up to 1")
     loads = np.linspace(*joint_loads(joint, closing), count)
@@ -215,7 +215,7 @@ _MOST_POINTS = 10_000
 
 
 def _points(points: int) -> int:
-    count = _core.whole(points, "interaction: points")
+    count = _arguments.whole(points, "interaction: points")
     if not 5 <= count <= _MOST_POINTS:
         raise InputError(f"interaction: points = {count} must be from 5 to {_MOST_POINTS}")
     return count

@@ -16,10 +16,12 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem.column import Column, without_notes
-from rbsdem.ends import double_curvature, turned
 from rbsdem.errors import AccuracyWarning, InputError
-from rbsdem.parameter import Parameter
+from rbsdem.model.column import Column, without_notes
+from rbsdem.model.ends import double_curvature, turned
+from rbsdem.model.parameter import Parameter
+from rbsdem.model.springs import Elastic, Layered, Spring, Takeda, check_springs, unchecked
+from rbsdem.model.strains import Gauge
 from rbsdem.section.directions import DIRECTIONS
 from rbsdem.section.hinge import HingeJoint, hinge_joint
 from rbsdem.section.interaction import InteractionDiagram, joint_interaction
@@ -29,11 +31,9 @@ from rbsdem.section.scatter import Scatter
 from rbsdem.section.shear_model import shear_limits, shear_spring
 from rbsdem.section.spread import Spread, spread
 from rbsdem.section.spring_fit import fit_springs
-from rbsdem.springs import Elastic, Layered, Spring, Takeda, check_springs, unchecked
-from rbsdem.strains import Gauge
 
 if TYPE_CHECKING:
-    from rbsdem.section.section import Section
+    from rbsdem.model.section import Section
 
 __all__ = [
     "CONCRETE_DENSITY",
@@ -78,7 +78,7 @@ def model_name(
     model : str
         "layered" or "paper", which has no fitted parameters.
     version, model_parameters
-        As for `rbsdem.section.Section.column`.
+        As for `Section.column`.
 
     Raises
     ------
@@ -105,10 +105,10 @@ def make_column(
     restrained: int | None = None,
     round_core: bool = False,
 ) -> Column:
-    """Make the column of a section; `rbsdem.section.Section.column` says what the arguments are."""
+    """Make the column of a section; `Section.column` says what the arguments are."""
     check_model(model)
     height = column_length(height, "height")
-    axial_load = _core.number(axial_load, "axial_load")
+    axial_load = _arguments.number(axial_load, "axial_load")
     if mass is None:
         mass = section.gross_area * height * CONCRETE_DENSITY
     common = {
@@ -151,7 +151,7 @@ def make_column(
 
 
 def _count(n: int, least: int) -> int:
-    n = _core.whole(n, "n")
+    n = _arguments.whole(n, "n")
     if n < least:
         more = ": the layered model needs a joint above the hinge" if least == 2 else ""
         raise InputError(f"n = {n}{more}; give {least} or more")
@@ -224,7 +224,7 @@ class LayeredModel:
     parameters : ModelParameters
         Parameters of the model with their version.
     restrained, round_core
-        As for `rbsdem.section.Section.column`.
+        As for `Section.column`.
     """
 
     section: Section
@@ -420,11 +420,9 @@ class LayeredColumn(Column):
 
     def __post_init__(self) -> None:
         if not isinstance(self.recipe, LayeredModel):
-            raise InputError(
-                "a LayeredColumn is made by rbsdem.section.Section.column or rbsdem.peer.column"
-            )
+            raise InputError("a LayeredColumn is made by Section.column or rbsdem.peer.column")
         self._check_size()
-        load = _core.number(self.axial_load, "column: axial_load")
+        load = _arguments.number(self.axial_load, "column: axial_load")
         if load != self.recipe.axial_load:
             self._draw_again(load)
         try:

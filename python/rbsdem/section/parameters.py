@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass, fields, replace
 from difflib import get_close_matches
 
-from rbsdem import _arguments, _core
+from rbsdem import _arguments
 from rbsdem.errors import InputError
 from rbsdem.section.directions import DIRECTIONS, factors
 
@@ -287,7 +287,7 @@ class ModelParameters:
         """
         hinge, shear = {}, {}
         for name in [name for name in FACTORS if name in values]:
-            factor = _core.number(values.pop(name), f"parameters: {name}")
+            factor = _arguments.number(values.pop(name), f"parameters: {name}")
             for one in FACTORS[name][0]:
                 values[one] = factor * values.get(one, getattr(self.hinge, one))
         along = {name: _above_zero(values.pop(name), name) for name in DIRECTIONS if name in values}
@@ -305,7 +305,7 @@ class ModelParameters:
 
 
 def _above_zero(value: float, name: str) -> float:
-    factor = _core.number(value, f"parameters: {name}")
+    factor = _arguments.number(value, f"parameters: {name}")
     if not 0 < factor < math.inf:
         raise InputError(f"parameters: {name} = {factor:g} is a factor; it must be above zero")
     return factor
@@ -314,7 +314,7 @@ def _above_zero(value: float, name: str) -> float:
 def _take(given: HingeParameters | ShearParameters, what: str) -> None:
     """Make every value a float."""
     for field in fields(given):
-        value = _core.number(getattr(given, field.name), f"{what}: {field.name}")
+        value = _arguments.number(getattr(given, field.name), f"{what}: {field.name}")
         if value - value != 0:
             raise InputError(f"{what}: {field.name} = {value} must be a finite number")
         object.__setattr__(given, field.name, value)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from rbsdem import _core
+from rbsdem import _arguments
 from rbsdem.errors import InputError
 
 if TYPE_CHECKING:
-    from rbsdem.section.section import Section
+    from rbsdem.model.section import Section
 
 __all__ = ["RANGE", "axial_load_note", "carried_load", "column_length", "outside"]
 
@@ -49,7 +49,7 @@ def column_length(value: Any, name: str) -> float:
     InputError
         If it is not a number, or no length of a column in metres.
     """
-    length = _core.number(value, name)
+    length = _arguments.number(value, name)
     if _SHORTEST <= length <= _LONGEST:
         return length
     hint = "1600 mm is 1.6"
@@ -110,7 +110,7 @@ def carried_load(value: Any, section: Section, *, tension: bool = True) -> float
         If it is not a finite number, or beyond the capacity of the section without bending and
         confinement.
     """
-    load = _core.number(value, "axial_load")
+    load = _arguments.number(value, "axial_load")
     if not math.isfinite(load):
         raise InputError(f"axial_load = {load} N must be a finite number")
     least, most = section.axial_capacity

@@ -8,16 +8,16 @@ from dataclasses import fields, replace
 from typing import Any
 
 from rbsdem import _core
-from rbsdem.column import Column
 from rbsdem.errors import AccuracyWarning, InputError
-from rbsdem.section.circular import CircularSection
-from rbsdem.section.hollow import HollowCircularSection, HollowRectangularSection
-from rbsdem.section.materials import Concrete, Steel
+from rbsdem.model.circular import CircularSection
+from rbsdem.model.column import Column
+from rbsdem.model.hollow import HollowCircularSection, HollowRectangularSection
+from rbsdem.model.materials import Concrete, Steel
+from rbsdem.model.rectangular import RectangularSection
+from rbsdem.model.reinforcement import Layout, Spiral, Ties
+from rbsdem.model.section import Section
 from rbsdem.section.model import LayeredColumn, LayeredModel
 from rbsdem.section.parameters import VERSIONS, ModelParameters, parameters
-from rbsdem.section.rectangular import RectangularSection
-from rbsdem.section.reinforcement import Layout, Spiral, Ties
-from rbsdem.section.section import Section
 
 __all__ = ["SHAPES", "Groups", "layered_column", "recipe_of"]
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from rbsdem.section.strength import shear_sizes
 
 if TYPE_CHECKING:
-    from rbsdem.section.section import Section
+    from rbsdem.model.section import Section
 
 __all__ = ["PROPERTIES", "Middle", "place_of"]
 

@@ -13,16 +13,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _core, _views
-from rbsdem._core import Array
+from rbsdem import _arguments, _core, _views
+from rbsdem._arguments import Array
 from rbsdem.errors import InputError
-from rbsdem.section.materials import Tension
+from rbsdem.model.materials import Tension
 from rbsdem.section.ranges import column_length
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from rbsdem.section.section import Section
+    from rbsdem.model.section import Section
     from rbsdem.section.shear_spring import ShearSpring
 
 __all__ = [
@@ -206,32 +206,32 @@ def shear_diagram(
         If a value is refused, or the section cannot carry the axial load.
     """
     if curvature is None:
-        points = _core.whole(points, "points")
+        points = _arguments.whole(points, "points")
         if points < 2:
             raise InputError(f"points = {points} must be 2 or more")
         last = _FURTHEST / section.depth
         if furthest is not None:
-            last = _core.number(furthest, "furthest")
+            last = _arguments.number(furthest, "furthest")
             if not 0.0 < last * section.depth <= 1.0:
                 raise InputError(f"furthest = {last} 1/m must be above zero and below 1/depth")
         path = last * np.linspace(0.0, 1.0, points + 1)[1:] ** 2
     else:
-        path = _core.finite_vector(curvature, "curvature")
+        path = _arguments.finite_vector(curvature, "curvature")
         if path.size and np.max(path) * section.depth > 1.0:
             raise InputError(
                 f"curvature: {np.max(path)} 1/m makes strains above 1 over the depth; curvatures "
                 f"are in 1/m: 10 mrad/m is 0.01"
             )
-    load = _core.number(axial_load, "axial_load")
+    load = _arguments.number(axial_load, "axial_load")
     span = column_length(length, "length")
     settings = {
         "length": span,
         "axial_load": load,
         "tension": tension,
         "confined": section._confined(confined),
-        "coupled": _core.switch(coupled, "coupled"),
-        "layers": _core.whole(layers, "layers"),
-        "knee": _core.number(knee, "knee"),
+        "coupled": _arguments.switch(coupled, "coupled"),
+        "layers": _arguments.whole(layers, "layers"),
+        "knee": _arguments.number(knee, "knee"),
     }
     run = _core.section_shear(section._statement, settings, path)
     return ShearDiagram(

@@ -12,17 +12,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rbsdem.section.strength import (
-    shear_sizes,
-    shear_strength_mcft,
-    shear_strength_sezen,
-)
-from rbsdem.springs import Pinching, unchecked
+from rbsdem.model.springs import Pinching, unchecked
+from rbsdem.section.strength import shear_sizes, shear_strength_mcft, shear_strength_sezen
 
 if TYPE_CHECKING:
+    from rbsdem.model.section import Section
     from rbsdem.section.hinge import HingeJoint
     from rbsdem.section.parameters import ShearParameters
-    from rbsdem.section.section import Section
 
 __all__ = ["cracked_shear_stiffness", "shear_limits", "shear_spring"]
 

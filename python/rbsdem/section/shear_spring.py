@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rbsdem.errors import InputError
+from rbsdem.model.springs import Bilinear
 from rbsdem.section.shear_diagram import KNEE, ShearDiagram, ShearPoint, shear_diagram
 from rbsdem.section.strength import shear_strength_mcft
-from rbsdem.springs import Bilinear
 
 if TYPE_CHECKING:
-    from rbsdem.section.section import Section
+    from rbsdem.model.section import Section
 
 __all__ = ["ShearSpring", "closed_form_shear", "fit_shear_spring"]
 

@@ -7,7 +7,7 @@ from statistics import NormalDist
 
 import numpy as np
 
-from rbsdem._core import Array
+from rbsdem._arguments import Array
 
 __all__ = ["sobol"]
 

@@ -21,17 +21,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _core, _views
-from rbsdem._core import Array
+from rbsdem import _arguments, _views
+from rbsdem._arguments import Array
 from rbsdem._files import write_csv
-from rbsdem.analysis import cyclic
-from rbsdem.column import Column
-from rbsdem.comparison import strength_loss
-from rbsdem.comparison.metrics import PathPoints, work
+from rbsdem.curves.metrics import PathPoints, work
+from rbsdem.curves.strength import strength_loss
 from rbsdem.errors import AccuracyWarning, InputError, SolveError
+from rbsdem.model.column import Column
 from rbsdem.section.remote import place_of
 from rbsdem.section.scatter import SCATTER, Scatter
 from rbsdem.section.sobol import sobol
+from rbsdem.solve.analysis import cyclic
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -190,7 +190,7 @@ class Spread:
         test : array_like of shape (m,), or a test
             Forces in the rows of the path [N].
         """
-        force = _core.finite_vector(getattr(test, "force", test), "test")
+        force = _arguments.finite_vector(getattr(test, "force", test), "test")
         if force.size != self.force.size:
             raise InputError(
                 f"spread: the test has {force.size} rows and the prediction {self.force.size}; "
@@ -242,7 +242,7 @@ def spread(
     scatter: Scatter | None = None,
 ) -> Spread:
     """Predict a path with its band; see `rbsdem.section.model.LayeredColumn.spread`."""
-    number = _core.whole(samples, "samples")
+    number = _arguments.whole(samples, "samples")
     if not LEAST <= number <= MOST:
         raise InputError(f"samples = {samples} must be {LEAST} to {MOST}; 16 are enough")
     remarks = column.outside
@@ -253,7 +253,7 @@ def spread(
         scatter = SCATTER[found.version]
         if found.changed:
             remarks = (*remarks, f"the band is that of {found.version}, whose parameters changed")
-    d = _core.finite_vector(displacement, "displacement")
+    d = _arguments.finite_vector(displacement, "displacement")
     if d.size < 2 or not np.any(np.diff(d)):
         raise InputError("spread: the displacement does not change; give a path")
     if remarks:

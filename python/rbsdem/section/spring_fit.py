@@ -7,17 +7,17 @@ import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rbsdem import _core, _views
+from rbsdem import _arguments, _core, _views
 from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.model.springs import Bilinear, Takeda, for_whole_column
 from rbsdem.section.diagram import Events, make_point
 from rbsdem.section.ranges import axial_load_note, column_length
 from rbsdem.section.shear_spring import ShearSpring, closed_form_shear, fit_shear_spring
-from rbsdem.springs import Bilinear, Takeda, for_whole_column
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rbsdem.section.section import Section
+    from rbsdem.model.section import Section
 
 __all__ = ["SHEAR", "YIELD_RULES", "SectionSprings", "fit_springs"]
 
@@ -175,7 +175,7 @@ def fit_springs(
         "eps_cover": eps_cover,
     }
     settings = {
-        name: None if value is None else _core.number(value, f"springs: {name}")
+        name: None if value is None else _arguments.number(value, f"springs: {name}")
         for name, value in numbers.items()
     }
     words = {"yield_rule": yield_rule, "ultimate": ultimate}

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rbsdem.errors import InputError
+from rbsdem.model.reinforcement import share_in_tension
 from rbsdem.section.ranges import column_length
-from rbsdem.section.reinforcement import share_in_tension
 
 if TYPE_CHECKING:
-    from rbsdem.section.section import Section
+    from rbsdem.model.section import Section
 
 __all__ = [
     "ShearSizes",

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 from rbsdem import _core
 
 if TYPE_CHECKING:
-    from rbsdem.section.section import Section
+    from rbsdem.model.section import Section
 
 __all__ = ["Strip", "Strips", "cut"]
 

@@ -1,0 +1,240 @@
+"""Columns, motions and scales as the engine takes them, checked all at once."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+from unicodedata import category
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rbsdem import _arguments
+from rbsdem._arguments import Array
+from rbsdem.errors import InputError
+from rbsdem.model.column import Column, checked_column
+from rbsdem.result import Result
+from rbsdem.solve.state_file import state_of
+
+__all__ = [
+    "AT_REST",
+    "Motion",
+    "named_columns",
+    "named_motions",
+    "scale_array",
+    "states_of_columns",
+]
+
+#: More faults than this are only counted.
+MOST_FAULTS = 25
+
+#: The state of a column at rest.
+AT_REST: Array = np.empty(0)
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Times [s] and accelerations [m/s2] of a motion of the ground, under a name."""
+
+    name: str | int
+    time: Array
+    acceleration: Array
+
+
+def raise_faults(faults: list[str]) -> None:
+    """Raise `InputError` with a line for each fault, if there is any."""
+    if not faults:
+        return
+    more = len(faults) - MOST_FAULTS
+    text = "\n".join(faults[:MOST_FAULTS])
+    raise InputError(text + (f"\nand {more} more" if more > 0 else ""))
+
+
+def named_columns(columns: Any, faults: list[str]) -> tuple[list[str | int], list[Column]]:
+    """Return names and columns; without names they are numbered from 0."""
+    if isinstance(columns, Column):
+        columns = [columns]
+    names, items = _named(columns, "columns", "Column", faults)
+    for name, item in zip(names, items, strict=True):
+        try:
+            checked_column(item)
+        except InputError as error:
+            faults.append(f"column {name!r}: {error}")
+    _check_names(names, "columns", "Column", faults)
+    if not names and not faults:
+        faults.append("columns is empty; give at least one Column")
+    return names, items
+
+
+def named_motions(motions: Any, faults: list[str]) -> tuple[int, list[Motion]]:
+    """Return how many motions are given, and those that are right.
+
+    A motion is an object with time and acceleration, or a pair of times (or one step) and
+    accelerations. Without names of their own they are numbered from 0.
+    """
+    if hasattr(motions, "acceleration") or _is_pair(motions):
+        motions = [motions]
+    own = not isinstance(motions, Mapping)
+    names, items = _named(motions, "motions", "motion", faults)
+    if own:
+        names = [_own_name(item, name) for name, item in zip(names, items, strict=True)]
+    found = []
+    for name, item in zip(names, items, strict=True):
+        try:
+            found.append(_motion(name, item))
+        except InputError as error:
+            faults.append(f"motion {name!r}: {error}")
+    _check_names(names, "motions", "motion", faults)
+    if not names and not faults:
+        faults.append("motions is empty; give at least one motion")
+    return len(names), found
+
+
+def _named(given: Any, what: str, one: str, faults: list[str]) -> tuple[list[str | int], list[Any]]:
+    if isinstance(given, Mapping):
+        return list(given.keys()), list(given.values())
+    try:
+        items = list(given)
+    except TypeError:
+        faults.append(f"{what} = {type(given).__name__} must be a {one}, or several of them")
+        return [], []
+    return list(range(len(items))), items
+
+
+def _check_names(names: list[str | int], what: str, one: str, faults: list[str]) -> None:
+    """Add a fault for names that a table cannot have, or could not tell apart."""
+    for name in names:
+        if isinstance(name, bool) or not isinstance(name, (str, int, np.integer)):
+            faults.append(f"{what}: the name {name!r} must be a text or a whole number")
+        elif any(category(letter) in ("Cc", "Cs") for letter in str(name)):
+            faults.append(f"{what}: the name {name!r} has characters that no file takes")
+    count = Counter(map(str, names))
+    for name in sorted(name for name, number in count.items() if number > 1):
+        faults.append(f"{what}: two are called {name!r}; give them other names, as {{name: {one}}}")
+
+
+def _own_name(item: Any, number: str | int) -> str | int:
+    name = getattr(item, "name", None)
+    return name if isinstance(name, str) and name else number
+
+
+def _is_pair(item: Any) -> bool:
+    """Return whether an item is a pair of times, or a step, and as many accelerations."""
+    if not isinstance(item, tuple) or len(item) != 2:
+        return False
+    return all(isinstance(part, (float, int, np.ndarray, list)) for part in item)
+
+
+def _motion(name: str | int, item: Any) -> Motion:
+    if hasattr(item, "time") and hasattr(item, "acceleration"):
+        given_time, given = item.time, item.acceleration
+    elif _is_pair(item):
+        given_time, given = item
+    else:
+        raise InputError(
+            f"a {type(item).__name__} is not a motion; give a GroundMotion, or a pair of times (or "
+            "one step) [s] and accelerations [m/s2]"
+        )
+    acceleration = _arguments.finite_vector(given, "acceleration")
+    if isinstance(given_time, (int, float)):
+        step = _arguments.number(given_time, "step")
+        if not step > 0:
+            raise InputError(f"step = {step} s must be above zero")
+        given_time = step * np.arange(acceleration.size)
+    time = _arguments.finite_vector(given_time, "time")
+    if time.size != acceleration.size:
+        raise InputError(
+            f"{acceleration.size} accelerations for {time.size} times; give one for each"
+        )
+    if time.size < 2:
+        raise InputError(f"{time.size} point(s); give two or more")
+    back = np.flatnonzero(~(np.diff(time) > 0))
+    if back.size:
+        at = int(back[0])
+        raise InputError(
+            f"time: value {at + 2} of {time.size}, {time[at + 1]} s, does not come after the one "
+            f"before, {time[at]} s; times must ascend strictly"
+        )
+    return Motion(name, time, acceleration)
+
+
+def states_of_columns(initial: Any, names: list[str | int], faults: list[str]) -> list[Array]:
+    """Return the state that the runs of each column begin in; an empty one is at rest.
+
+    `initial` is one state for all columns, a sequence with one for each, or a mapping by their
+    names; None among them is at rest.
+    """
+    if initial is None:
+        return [AT_REST] * len(names)
+    if isinstance(initial, (str, os.PathLike, Result, np.ndarray)):
+        return [_state(initial, "", faults)] * len(names)
+    if isinstance(initial, Mapping):
+        unknown = [name for name in initial if name not in names]
+        if unknown:
+            faults.append(
+                f"initial: {unknown[0]!r} is no column; they are {', '.join(map(repr, names[:20]))}"
+            )
+        given = [initial.get(name) for name in names]
+    else:
+        try:
+            given = list(initial)
+        except TypeError:
+            return [_state(initial, "", faults)] * len(names)
+        if len(given) != len(names):
+            faults.append(
+                f"initial: {len(given)} states for {len(names)} columns; give one for each, or one "
+                "for all"
+            )
+            return [AT_REST] * len(names)
+    return [
+        AT_REST if state is None else _state(state, f"column {name!r}: ", faults)
+        for name, state in zip(names, given, strict=True)
+    ]
+
+
+def _state(initial: Any, who: str, faults: list[str]) -> Array:
+    try:
+        return state_of(initial, "ensemble")
+    except InputError as error:
+        faults.append(f"{who}{error}")
+        return AT_REST
+
+
+def scale_array(scales: ArrayLike, columns: int, motions: int, faults: list[str]) -> Array:
+    """Return the scales for each column and motion, shape (columns, motions, k); NaN: no run."""
+    try:
+        given = _arguments.vector(scales, "scales", shape="any")
+    except InputError as error:
+        faults.append(str(error))
+        return np.ones((columns, motions, 1))
+    if given.ndim == 0:
+        given = given[None]
+    shape = columns, motions, given.shape[-1]
+    try:
+        full = np.broadcast_to(given, shape)
+    except ValueError:
+        faults.append(
+            f"scales has shape {given.shape}; it must be (k,), ({motions}, k) with a row for each "
+            f"motion, or ({columns}, {motions}, k)"
+        )
+        return np.ones((columns, motions, 1))
+    if given.ndim > 3:
+        faults.append(f"scales has {given.ndim} dimensions; it can have three")
+    wrong = given[np.isinf(given) | (np.abs(given) > _arguments.BEYOND_MEANING)]
+    if wrong.size:
+        faults.append(f"scales: {wrong[0]} must be a finite number, or NaN for no run")
+    elif np.isnan(given).all():
+        faults.append("scales: no run is asked for; give at least one number")
+    return full
+
+
+def check_jobs(jobs: Any, faults: list[str]) -> None:
+    """Add a fault if the number of threads is not one."""
+    try:
+        if jobs is not None and _arguments.whole(jobs, "jobs") < 1:
+            faults.append(f"jobs = {jobs} must be 1 or more")
+    except InputError as error:
+        faults.append(str(error))

@@ -1,0 +1,104 @@
+"""The measures of a run, and its fates."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any, TypeAlias
+
+from rbsdem import _arguments, _core
+from rbsdem.checks.criteria import WATCHED
+from rbsdem.errors import InputError
+from rbsdem.result import Result
+
+__all__ = ["LIMIT_STATES", "MEASURES", "STATUSES", "Measure", "checked_measures"]
+
+#: A measure of the user: a function of the `Result` of a run.
+Measure: TypeAlias = Callable[[Result], float]
+
+#: The fates of a run, in the order of their numbers in the Fortran part; "" is a run that was not
+#: started because the ensemble was broken off.
+STATUSES: tuple[str, ...] = ("", "completed", "collapsed", "axial_failure", "failed")
+
+#: What each measure is; "drift" is a displacement of the top over the height.
+MEASURES = {
+    "peak_drift": "largest drift in size",
+    "residual_drift": "drift at the end of the record, in size",
+    "peak_displacement": "largest displacement of the top, with its sign [m]",
+    "residual_displacement": "displacement of the top at the end [m]",
+    "peak_base_shear": "largest shear force at the base, with its sign [N]",
+    "peak_rotation": "largest absolute rotation of a body, in size [rad]",
+    "input_energy": "work of the ground motion [J]",
+    "spring_energy": "energy of the springs at the end, stored and dissipated [J]",
+    "damping_energy": "energy of the damping [J]",
+    "energy_residual": "largest error of the energy balance [J]",
+    "relative_energy_residual": "the same over the largest energy",
+    "first_yield": "time at which a bar or a flexural spring first yields [s]; NaN: none does",
+    "end_time": "time at which the run ended [s]",
+    "time_step": "step [s]",
+    "steps": "number of steps",
+    "events": "how often a spring left its line",
+    "cut_steps": "steps cut at an event, for accuracy, or because they did not converge",
+    "lost_joint": "number of the joint that lost its axial load, as in a `Result`; NaN: none did",
+}
+
+#: Limit states that are measures too if they are asked for: the time at which each is first reached
+#: [s], NaN if it is not; see `rbsdem.Result.limit_states`.
+LIMIT_STATES = {name: what for name, what in WATCHED.items() if name != "first_yield"}
+
+#: Measures that are whole numbers.
+COUNTS = ("steps", "events", "cut_steps")
+
+
+@cache
+def core_measures() -> tuple[str, ...]:
+    """Return the names of the measures that the Fortran part returns, in its order."""
+    return _core.measures()
+
+
+def limit_states_among(names: Sequence[str]) -> tuple[str, ...]:
+    """Return the limit states among names, but the first yield, which is kept anyway."""
+    return tuple(name for name in LIMIT_STATES if name in names)
+
+
+def measures_in_a_list(measures: Any) -> list[Any]:
+    """Return measures, of which one may stand alone, as a list."""
+    if isinstance(measures, str) or callable(measures):
+        return [measures]
+    return _arguments.several(measures, "measures", "names and functions")
+
+
+def checked_measures(
+    measures: Sequence[str | Measure] | None,
+) -> tuple[tuple[str, ...], dict[str, Measure]]:
+    """Return the names of the measures that are kept, and the functions by their names.
+
+    Raises
+    ------
+    InputError
+        For a name that is not known, and for functions without a name of their own.
+    """
+    if measures is None:
+        return tuple(MEASURES), {}
+    measures = measures_in_a_list(measures)
+    names: list[str] = []
+    functions: dict[str, Measure] = {}
+    for measure in measures:
+        name: Any = measure if isinstance(measure, str) else getattr(measure, "__name__", None)
+        if isinstance(measure, str):
+            if measure not in MEASURES and measure not in LIMIT_STATES:
+                raise InputError(
+                    f"measures: {measure!r} is not known; it is one of {', '.join(MEASURES)}, a "
+                    f"limit state ({', '.join(LIMIT_STATES)}), or a function of a Result"
+                )
+            names.append(name)
+        elif callable(measure) and isinstance(name, str) and name.isidentifier():
+            if name in functions or name in MEASURES or name in LIMIT_STATES:
+                raise InputError(f"measures: two are called {name!r}; give one another name")
+            functions[name] = measure
+        else:
+            raise InputError(
+                f"measures: {_arguments.shown(measure)} is neither the name of a measure nor a "
+                "function with a name of its own"
+            )
+    return tuple(dict.fromkeys(names)), functions

@@ -1,0 +1,280 @@
+"""Runs at known intensities, collected from one or several ensembles."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rbsdem import _arguments, _views
+from rbsdem._arguments import Array
+from rbsdem.batch.engine import ensemble
+from rbsdem.batch.intensity import Intensity
+from rbsdem.batch.tasks import FAULT_OF_MEASURE
+from rbsdem.checks.criteria import WATCHED
+from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.model.column import Column, checked_column
+from rbsdem.motions.motion import GroundMotion
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: Measures of a run that are kept unless others are asked for.
+MEASURES = ("peak_drift", "residual_drift", "peak_base_shear", "peak_rotation", "first_yield")
+#: Fates that are a collapse.
+COLLAPSES = ("collapsed", "axial_failure")
+#: Fates that count as one.
+LOST = (*COLLAPSES, "failed")
+_AGAIN = "rk45"
+#: Least intensity [m/s2] from which a motion is scaled.
+_LEAST_UNIT = 1e-20
+
+
+@dataclass(frozen=True, eq=False)
+class Runs:
+    """Runs with their intensities.
+
+    Attributes
+    ----------
+    columns : dict
+        Columns by name.
+    motions : dict
+        Motions by name, at scale 1.
+    measure : Intensity
+        The intensity measure.
+    column, motion : ndarray of int, shape (runs,)
+        Places of column and motion of each run.
+    intensity, scale : ndarray, shape (runs,)
+        Intensity [m/s2] of the scaled motion, and its scale.
+    status : ndarray of str, shape (runs,)
+        "completed", "collapsed", "axial_failure" or "failed".
+    measures : dict of ndarray, shape (runs,)
+        Measures of the response by name.
+    """
+
+    columns: Mapping[str | int, Column]
+    motions: Mapping[str, GroundMotion]
+    measure: Intensity
+    column: NDArray[np.int_]
+    motion: NDArray[np.int_]
+    intensity: Array
+    scale: Array
+    status: NDArray[np.str_]
+    measures: dict[str, Array]
+
+    def __len__(self) -> int:
+        """Return the number of runs."""
+        return self.intensity.size
+
+    @property
+    def collapsed(self) -> NDArray[np.bool_]:
+        """Whether a run ended in a collapse, or could not be continued, shape (runs,)."""
+        return np.isin(self.status, LOST)
+
+    def response(self, edp: str) -> Array:
+        """Return a measure of the response, infinite where the column collapsed, shape (runs,).
+
+        Parameters
+        ----------
+        edp : str
+            Name of the measure; "collapse" is 0 or infinity, a limit state such as "first_yield" 1
+            where it was reached, else 0.
+        """
+        if edp == "collapse":
+            return np.where(self.collapsed, np.inf, 0.0)
+        if edp not in self.measures:
+            raise InputError(
+                f"edp = {edp!r} is not one of collapse, {', '.join(self.measures)}; ask for it "
+                "with measures="
+            )
+        values = self.measures[edp]
+        if edp in WATCHED:
+            if not np.isfinite(values).any():
+                raise InputError(
+                    f"edp = {edp!r}: it was reached in no run, or the columns have no such limit "
+                    "state; give a drift as the limit state"
+                )
+            values = np.isfinite(values).astype(float)
+        return np.where(self.collapsed, np.inf, np.abs(values))
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """A row for each run, as a DataFrame of pandas."""
+        return _views.view(self, "table")
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write a row for each run as csv."""
+        _views.view(self, "to_csv", path)
+
+    def to_parquet(self, path: str | os.PathLike[str]) -> None:
+        """Write a row for each run as Parquet; needs pyarrow."""
+        _views.view(self, "to_parquet", path)
+
+
+@dataclass(eq=False)
+class Collector:
+    """Makes runs, and keeps what comes of them.
+
+    Attributes
+    ----------
+    columns, motions, measure
+        As in `Runs`.
+    names : tuple of str
+        Measures of the response.
+    settings : dict
+        Keywords of `rbsdem.ensemble`.
+    """
+
+    columns: Mapping[str | int, Column]
+    motions: Mapping[str, GroundMotion]
+    measure: Intensity
+    names: Sequence[Any]
+    settings: dict[str, Any]
+    parts: list[dict[str, Any]] = field(default_factory=list)
+    unit: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.unit = np.array([self.measure.of(motion) for motion in self.motions.values()])
+        units = zip(self.motions, self.unit, strict=True)
+        bad = [name for name, value in units if not value > _LEAST_UNIT]
+        if bad:
+            raise InputError(
+                f"motions without intensity {self.measure.label}, above {_LEAST_UNIT:g}: "
+                f"{', '.join(bad)}"
+            )
+
+    def run(self, levels: Array) -> NDArray[np.bool_]:
+        """Run at levels of intensity, shape (columns, motions, k), NaN for no run.
+
+        Returns
+        -------
+        ndarray of bool, shape (columns, motions, k)
+            Whether the column collapsed; False where there is no run.
+        """
+        scales = levels / self.unit[:, None]
+        found = self._ensemble(scales, self.settings)
+        status, values = found.status.copy(), {n: v.copy() for n, v in found.measures.items()}
+        failed = np.flatnonzero(status == "failed")
+        if failed.size and self.settings.get("method") != _AGAIN:
+            # A method that adapts its step may get through where a fixed one does not.
+            again = np.full(levels.shape, np.nan)
+            places = np.flatnonzero(~np.isnan(scales).ravel())[failed]
+            again.ravel()[places] = scales.ravel()[places]
+            own = {n: v for n, v in self.settings.items() if n in _KEPT} | {"method": _AGAIN}
+            if own.get("store") is not None:
+                own["store"] /= _AGAIN
+            second = self._ensemble(again, own)
+            status[failed] = second.status
+            for name, numbers in values.items():
+                numbers[failed] = second.measures[name]
+        self.parts.append(
+            {
+                "column": found.column,
+                "motion": found.motion,
+                "scale": found.scale,
+                "intensity": found.scale * self.unit[found.motion],
+                "status": status,
+                **{f"measure {name}": numbers for name, numbers in values.items()},
+            }
+        )
+        collapsed = np.zeros(levels.shape, dtype=bool)
+        collapsed.ravel()[np.flatnonzero(~np.isnan(scales).ravel())] = np.isin(status, LOST)
+        return collapsed
+
+    def run_unshaken(self, who: str) -> None:
+        """Run without motion, where columns begin in states that other analyses ended in.
+
+        These runs are the beginnings of the curves, which else begin in the origin.
+        """
+        if self.settings.get("initial") is None:
+            return
+        collapsed = self.run(np.zeros((len(self.columns), len(self.motions), 1)))
+        for column in np.flatnonzero(collapsed.any(axis=(1, 2))):
+            raise InputError(
+                f"{who}: column {list(self.columns)[column]!r} collapses from its initial state "
+                "without any motion; check initial and collapse_drift"
+            )
+
+    def _ensemble(self, scales: Array, settings: dict[str, Any]) -> Any:
+        found = ensemble(
+            dict(self.columns),
+            dict(self.motions),
+            scales=scales,
+            measures=list(self.names),
+            **settings,
+        )
+        for text in found.errors.values():
+            # Else the runs would count as collapses.
+            if text.startswith(FAULT_OF_MEASURE):
+                raise InputError(f"{text}; where it has no value it can return nan")
+        return found
+
+    def finish(self) -> Runs:
+        """Return all runs, by column, motion and intensity."""
+        whole = {name: np.concatenate([p[name] for p in self.parts]) for name in self.parts[0]}
+        order = np.lexsort((whole["intensity"], whole["motion"], whole["column"]))
+        whole = {name: values[order] for name, values in whole.items()}
+        failed = int((whole["status"] == "failed").sum())
+        if failed:
+            warnings.warn(
+                f"{failed} of {order.size} runs failed by two methods and count as collapses; "
+                "their status in the table is 'failed'",
+                AccuracyWarning,
+                stacklevel=4,
+            )
+        start = len("measure ")
+        return Runs(
+            dict(self.columns),
+            dict(self.motions),
+            self.measure,
+            whole["column"].astype(int),
+            whole["motion"].astype(int),
+            whole["intensity"],
+            whole["scale"],
+            whole["status"],
+            {name[start:]: v for name, v in whole.items() if name.startswith("measure ")},
+        )
+
+
+#: Settings that a second attempt by another method keeps.
+_KEPT = ("collapse_drift", "initial", "jobs", "progress", "store")
+
+
+def columns_by_name(columns: Any, who: str) -> dict[str | int, Column]:
+    """Return columns under their names; one column, a sequence, or a mapping."""
+    if isinstance(columns, Column):
+        return {"column": columns}
+    if isinstance(columns, Mapping):
+        items = list(columns.items())
+    else:
+        try:
+            items = list(enumerate(columns))
+        except TypeError:
+            items = [(0, columns)]
+    if not items:
+        raise InputError(f"{who}: columns is empty; give at least one Column")
+    faults = []
+    for name, column in items:
+        try:
+            checked_column(column, f"{who}: {name}: ")
+        except InputError as error:
+            faults.append(str(error))
+    if faults:
+        raise InputError("\n".join(faults))
+    return dict(items)
+
+
+def checked_drift(collapse_drift: float) -> float:
+    """Return the drift that counts as a collapse."""
+    drift = _arguments.number(collapse_drift, "collapse_drift")
+    if not 0 < drift < 1:
+        raise InputError(
+            f"collapse_drift = {drift:g} must be above 0 and below 1; it is a displacement over "
+            "the height"
+        )
+    return drift

@@ -1,0 +1,262 @@
+"""The work of an ensemble in pieces: what a piece needs, how it is done, what comes of it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rbsdem import _core
+from rbsdem._arguments import Array
+from rbsdem.batch.inputs import AT_REST, Motion
+from rbsdem.batch.measures import STATUSES, Measure, core_measures
+from rbsdem.checks.criteria import criteria, watches
+from rbsdem.errors import RbsdemError
+from rbsdem.model.column import Column
+from rbsdem.model.springs import Layered
+from rbsdem.solve.analysis import time_history, without_notes
+
+__all__ = ["Piece", "Plan", "Task", "TaskResult", "compute", "cut", "watched"]
+
+Integers = NDArray[np.int32]
+
+#: First run of a task, and the one after its last.
+Piece: TypeAlias = tuple[int, int]
+
+#: Watches for a rotation that no joint reaches.
+_NO_WATCH: Array = np.array(
+    [(1, 1, 0.0, side, 0.0, np.finfo(np.float64).max) for side in (1.0, -1.0)]
+)
+
+#: Runs of a task at the most: each takes about 1 kB while the task lasts.
+_MOST_RUNS = 16384
+
+_FAILED = STATUSES.index("failed")
+
+#: How the error of a run begins whose measure raised one.
+FAULT_OF_MEASURE = "measure "
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """Runs that are done at one go, with all that they need; it can be sent to another process.
+
+    `initial` are the states that the runs of each column begin in; an empty one is at rest, no list
+    that all are.
+    """
+
+    columns: list[Column]
+    motions: list[Motion]
+    settings: dict[str, Any]
+    column: Integers
+    motion: Integers
+    scale: Array
+    functions: dict[str, Measure] = field(default_factory=dict)
+    states: tuple[str, ...] = ()
+    initial: list[Array] = field(default_factory=list)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the measures, those of functions left out."""
+        return core_measures() + self.states
+
+    def __len__(self) -> int:
+        """Return the number of runs."""
+        return self.scale.size
+
+
+@dataclass(frozen=True, eq=False)
+class TaskResult:
+    """Fates (runs,), measures (measures, runs), those of functions by name, errors by run.
+
+    `seconds` is the time that the task took.
+    """
+
+    fates: NDArray[np.int8]
+    values: Array
+    extra: dict[str, Array]
+    errors: dict[int, str]
+    seconds: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """All runs of an ensemble: columns x motions x scales, without those whose scale is NaN."""
+
+    columns: list[Column]
+    motions: list[Motion]
+    settings: dict[str, Any]
+    functions: dict[str, Measure]
+    column: Integers
+    motion: Integers
+    scale: Array
+    states: tuple[str, ...] = ()
+    initial: list[Array] = field(default_factory=list)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the measures, those of functions left out."""
+        return core_measures() + self.states
+
+    def only(self, runs: NDArray[np.int_]) -> Plan:
+        """Return the plan of some of the runs."""
+        return replace(
+            self, column=self.column[runs], motion=self.motion[runs], scale=self.scale[runs]
+        )
+
+    def task(self, first: int, last: int) -> Task:
+        """Return the runs from first to before last."""
+        columns, column = np.unique(self.column[first:last], return_inverse=True)
+        motions, motion = np.unique(self.motion[first:last], return_inverse=True)
+        return Task(
+            [self.columns[i] for i in columns],
+            [self.motions[j] for j in motions],
+            self.settings,
+            column.astype(np.int32),
+            motion.astype(np.int32),
+            self.scale[first:last],
+            self.functions,
+            self.states,
+            [self.initial[i] for i in columns] if self.initial else [],
+        )
+
+
+def cut(seconds: Array, longest: Callable[[], float]) -> Iterator[Piece]:
+    """Yield the tasks of runs that are expected to take some seconds each (runs,).
+
+    `longest` is asked before each task for its expected seconds; one run is the least.
+    """
+    # By their middles, so that a last run does not stand alone for the round-off of a sum.
+    middle = np.cumsum(seconds) - 0.5 * seconds
+    first = 0
+    while first < seconds.size:
+        end = middle[first] - 0.5 * seconds[first] + longest()
+        last = min(int(np.searchsorted(middle, end)), first + _MOST_RUNS)
+        piece = first, max(first + 1, last)
+        yield piece
+        first = piece[1]
+
+
+def expected(plan: Plan) -> tuple[Array, Integers, list[tuple[int, str]]]:
+    """Return the seconds expected of a run, whether lanes take it, what is wrong with columns.
+
+    The first two have shape (motions, columns).
+    """
+    return _core.plan_ensemble(
+        [column._statement for column in plan.columns],
+        _core.settings(plan.settings),
+        [_NO_WATCH] * len(plan.columns),
+        _before(plan),
+        [(motion.time, motion.acceleration) for motion in plan.motions],
+    )
+
+
+def compute(task: Task, control: Integers | None = None, kernel: int = 0) -> TaskResult:
+    """Do the runs of a task.
+
+    `control` is shared with the thread that waits: it sets the first number to end the task before
+    its next run, and reads in the second how many runs are done.
+    """
+    begin = time.monotonic()
+    control = np.zeros(2, dtype=np.int32) if control is None else control
+    fates, values, errors = _core.run_ensemble(
+        [column._statement for column in task.columns],
+        _core.settings(task.settings),
+        [watched(column, task.states) for column in task.columns],
+        _before(task),
+        [(motion.time, motion.acceleration) for motion in task.motions],
+        (task.column, task.motion, task.scale),
+        control,
+        len(task.names),
+        kernel,
+    )
+    _name_joints(task, values)
+    extra = {name: np.full(len(task), np.nan) for name in task.functions}
+    if extra:
+        _call_functions(task, control, fates, errors, extra)
+    seconds = time.monotonic() - begin
+    return TaskResult(fates.astype(np.int8), values, extra, errors, seconds)
+
+
+def _before(work: Plan | Task) -> list[Array]:
+    """Return the states that the runs of each column begin in."""
+    return work.initial or [AT_REST] * len(work.columns)
+
+
+def _name_joints(task: Task, values: Array) -> None:
+    """Give the joints that were lost the numbers by which columns know them; NaN: none was.
+
+    The solver counts them from the ground, from 1, a footing's included.
+    """
+    lost = values[core_measures().index("lost_joint")]
+    lost[lost == 0] = np.nan
+    for run in np.flatnonzero(lost > 0):
+        lost[run] = task.columns[task.column[run]].joint_numbers[int(lost[run]) - 1]
+
+
+def _call_functions(
+    task: Task,
+    control: Integers,
+    fates: Integers,
+    errors: dict[int, str],
+    extra: dict[str, Array],
+) -> None:
+    """Fill the measures of functions, each run with its history, which is then dropped."""
+    for run in np.flatnonzero(fates):
+        if control[0]:
+            fates[run:] = 0
+            return
+        if fates[run] == _FAILED:
+            continue
+        try:
+            with without_notes():
+                result = one_run(
+                    task.columns[task.column[run]],
+                    task.motions[task.motion[run]],
+                    float(task.scale[run]),
+                    task.settings,
+                    task.initial[task.column[run]] if task.initial else AT_REST,
+                )
+        except RbsdemError as error:
+            fates[run], errors[int(run)] = _FAILED, str(error)
+            continue
+        for name, function in task.functions.items():
+            try:
+                extra[name][run] = _number(function(result))
+            except Exception as error:  # A fault in a measure is that of a run and ends no batch.
+                fates[run] = _FAILED
+                errors[int(run)] = f"{FAULT_OF_MEASURE}{name}: {type(error).__name__}: {error}"
+
+
+def _number(value: Any) -> float:
+    if isinstance(value, (str, bytes)):
+        raise TypeError(f"{value!r:.40} is a text; return a number")
+    return float(value)
+
+
+def one_run(
+    column: Column, motion: Motion, scale: float, settings: dict[str, Any], initial: Array
+) -> Any:
+    """Return the `Result` of one run, with its history; an empty state is at rest."""
+    layered = any(isinstance(spring, Layered) for spring in column.joints("flexure"))
+    return time_history(
+        column,
+        motion.time,
+        ground_acceleration=scale * motion.acceleration,
+        initial=initial if initial.size else None,
+        openings=layered,
+        **settings,
+    )
+
+
+def watched(column: Column, states: tuple[str, ...]) -> Array:
+    """Return what runs of a column are watched for, as `_core.run_ensemble` takes it."""
+    numbers = {name: number for number, name in enumerate(("first_yield", *states), 1)}
+    found = criteria(column, numbers)
+    if not found:
+        return _NO_WATCH
+    return watches(column, found, [numbers[each.name] for each in found])

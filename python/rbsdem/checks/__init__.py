@@ -1,0 +1,1 @@
+"""Limit states along a response, and values of codes."""

@@ -1,0 +1,282 @@
+"""A response beside codes and regressions: one row a quantity, one column a source."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from rbsdem import _arguments, _views
+from rbsdem._arguments import Array
+from rbsdem._views import view_of
+from rbsdem.checks.code_drawing import Quantities, quantities
+from rbsdem.checks.code_values import CodeValues
+from rbsdem.checks.drifts import Backbone, backbones, drift_at_loss, yield_drift
+from rbsdem.curves.curve import Curve, loop_pair
+from rbsdem.curves.envelope import envelope
+from rbsdem.curves.metrics import summarise
+from rbsdem.curves.strength import strength_loss
+from rbsdem.errors import InputError
+from rbsdem.model.column import Column
+from rbsdem.result import Result
+from rbsdem.section.model import LayeredColumn
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from rich.table import Table
+
+__all__ = ["SOURCES", "CodeComparison", "Quantity"]
+
+#: The columns of the table, in order.
+SOURCES = ("test", "model", "ASCE 41", "EC 8-3", "Elwood", "Haselton", "Berry", "Goodnight")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One quantity by all sources.
+
+    Attributes
+    ----------
+    name : str
+        "stiffness", "yield_drift", "largest_force", "shear_strength", "spalling", "bar_buckling",
+        "strength_loss" or "axial_failure".
+    meaning, unit : str
+        What it is, and its unit: "N/m", "N" or "drift".
+    values : dict of str to float
+        By the names of `SOURCES`; NaN or missing where a source says nothing.
+    """
+
+    name: str
+    meaning: str
+    unit: str
+    values: dict[str, float]
+
+
+class CodeComparison:
+    """A response, perhaps a test, and what codes and regressions say of the same column.
+
+    Parameters
+    ----------
+    values : CodeValues
+        Of the codes.
+    result : Result
+        The response.
+    test : Curve or None
+        A measured loop.
+    """
+
+    def __init__(self, values: CodeValues, result: Result, test: Curve | None) -> None:
+        self.values = values
+        self.result = result
+        self.test = None if test is None else _loop(test)
+        self.backbones: list[Backbone] = backbones(values)
+        self._rows = {row.name: row for row in _rows(self)}
+
+    @property
+    def span(self) -> float:
+        """Shear span of the codes [m]."""
+        return 1e-3 * self.values.quantities.span
+
+    @property
+    def leaning(self) -> float:
+        """Axial load that leans with the column [N]; 0 without second-order effects."""
+        return 0.0 if self.result.column.kinematics == "small" else self.values.quantities.load
+
+    def __getitem__(self, name: str) -> dict[str, float]:
+        """Return a quantity by source; `KeyError` if there is none of that name."""
+        return self._rows[name].values
+
+    def __iter__(self) -> Iterator[Quantity]:
+        return iter(self._rows.values())
+
+    def table(self) -> Table:
+        """Return a table of rich: forces in kN, stiffness in kN/mm, drifts in per cent."""
+        found: Table = _views.view(self, "table")
+        return found
+
+    def to_pandas(self) -> Any:
+        """Return a DataFrame in SI: a row a quantity, a column a source; needs pandas."""
+        return _views.view(self, "to_pandas")
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the loop, the test if there is one, the backbones, and drifts of damage."""
+        axes: Axes = _views.view(self, "plot", ax)
+        return axes
+
+    def __repr__(self) -> str:
+        return f"CodeComparison({', '.join(b.name for b in self.backbones)} beside {self.result})"
+
+
+@view_of(CodeValues, "compare")
+def compare(values: CodeValues, result: Result, test: Curve | None) -> CodeComparison:
+    """Return the comparison; see `CodeValues.compare`."""
+    _check_same(values.quantities, result.column)
+    return CodeComparison(values, result, test)
+
+
+def _check_same(q: Quantities, column: Column) -> None:
+    """Refuse a response of another column: span, axial load, and section where it is known."""
+    span = column.height / (2 if column.top == "fixed" else 1)
+    load = column.axial_load
+    if column.kinematics == "small" and load == 0:
+        load = q.load  # It does nothing there, and need not be stated.
+    found = replace(q, span=1e3 * span, load=load)
+    if isinstance(column, LayeredColumn) and column.recipe is not None:
+        found = quantities(column.recipe.section, span, load)
+    other = [
+        f"{name} = {theirs:g}, here {ours:g}"
+        for name, ours in vars(q).items()
+        if not (ours == (theirs := getattr(found, name)) or _near(ours, theirs))
+    ]
+    if other:
+        raise InputError(
+            "compare: the response is of another column (N, mm, MPa): "
+            f"{'; '.join(other)}; take code_values of its section, shear span and axial load"
+        )
+
+
+def _near(one: float, other: float) -> bool:
+    return math.isclose(one, other, rel_tol=1e-9) or (math.isnan(one) and math.isnan(other))
+
+
+def _loop(curve: Curve) -> tuple[Array, Array]:
+    d, f = loop_pair(curve, "the test")
+    return _arguments.finite_vector(d, "displacement"), _arguments.finite_vector(f, "force")
+
+
+def _rows(found: CodeComparison) -> list[Quantity]:
+    """Return all quantities, those of the codes where they cover the column."""
+    measured = _measured(found)
+    rows = []
+    for name, (meaning, unit, codes) in _QUANTITIES.items():
+        values = dict(measured.get(name, {}))
+        for source, value in codes.items():
+            try:
+                values[source] = value(found)
+            except ValueError:  # This source does not cover the column.
+                continue
+        known = {s: values[s] for s in SOURCES if math.isfinite(values.get(s, math.nan))}
+        rows.append(Quantity(name, meaning, unit, known))
+    return rows
+
+
+def _measured(found: CodeComparison) -> dict[str, dict[str, float]]:
+    """Return what the test and the model say, by quantity and source."""
+    result, height = found.result, found.result.column.height
+    loops = {"model": loop_pair(result, "the model")}
+    if found.test is not None:
+        loops["test"] = found.test
+    names = ("stiffness", "yield_drift", "largest_force", "strength_loss")
+    rows: dict[str, dict[str, float]] = {name: {} for name in names}
+    for source, (d, f) in loops.items():
+        loop = summarise(d, f)
+        rows["stiffness"][source] = loop.stiffness
+        rows["largest_force"][source] = loop.peak_force
+        rows["strength_loss"][source] = strength_loss(d, f) / height
+        rows["yield_drift"][source] = _idealised(d, f) / height
+    states = result.limit_states()
+    for name in ("spalling", "bar_buckling", "axial_failure"):
+        rows[name] = {"model": states.drift(name)}
+    return rows
+
+
+def _idealised(d: Array, f: Array) -> float:
+    """Return the displacement at yield of the side with the larger force, else the other [m]."""
+    sides: tuple[Literal[1, -1], ...] = (1, -1) if f[np.argmax(np.abs(f))] > 0 else (-1, 1)
+    for side in sides:
+        try:
+            return envelope((d, f), side).idealise("asce_41").yield_displacement
+        except InputError:  # The loop has no such envelope.
+            continue
+    return math.nan
+
+
+def _at_yield(found: CodeComparison, drift: float) -> float:
+    """Return the secant stiffness to yield [N/m]."""
+    force = found.values["yield.shear"] - found.leaning * drift
+    return force / (drift * found.result.column.height)
+
+
+def _value(name: str) -> Callable[[CodeComparison], float]:
+    return lambda found: found.values[name]
+
+
+def _yield(name: str) -> Callable[[CodeComparison], float]:
+    return lambda found: yield_drift(found.values, name)
+
+
+def _secant(drift: Callable[[CodeComparison], float]) -> Callable[[CodeComparison], float]:
+    return lambda found: _at_yield(found, drift(found))
+
+
+def _largest(name: str) -> Callable[[CodeComparison], float]:
+    def value(found: CodeComparison) -> float:
+        line = next((each for each in found.backbones if each.name == name), None)
+        return math.nan if line is None else float(line.force(found.span, found.leaning).max())
+
+    return value
+
+
+def _loss(name: str) -> Callable[[CodeComparison], float]:
+    return lambda found: drift_at_loss(found.values, name)
+
+
+_YIELD = {
+    "ASCE 41": _yield("asce_41.stiffness"),
+    "EC 8-3": _value("ec_8.yield"),
+    "Elwood": _yield("elwood.stiffness"),
+    "Haselton": _yield("haselton.stiffness"),
+}
+
+#: Meaning, unit, and the values of codes by source.
+_QUANTITIES: dict[str, tuple[str, str, dict[str, Callable[[CodeComparison], float]]]] = {
+    "stiffness": (
+        "secant stiffness (codes: to yield)",
+        "N/m",
+        {source: _secant(drift) for source, drift in _YIELD.items()},
+    ),
+    "yield_drift": ("drift at yield, idealised", "drift", _YIELD),
+    "largest_force": (
+        "largest lateral force",
+        "N",
+        {name: _largest(name) for name in ("ASCE 41", "EC 8-3", "Elwood", "Haselton")},
+    ),
+    "shear_strength": (
+        "shear strength",
+        "N",
+        {
+            "ASCE 41": _value("asce_41.shear"),
+            "EC 8-3": _value("ec_8.shear"),
+            "Elwood": _value("sezen.shear"),
+        },
+    ),
+    "spalling": ("drift at spalling", "drift", {"Berry": _value("berry.spalling")}),
+    "bar_buckling": (
+        "drift at bar buckling",
+        "drift",
+        {"Berry": _value("berry.buckling"), "Goodnight": _value("goodnight.drift")},
+    ),
+    "strength_loss": (
+        "drift at a loss of 20 %",
+        "drift",
+        {
+            "ASCE 41": _loss("ASCE 41-17, yield + a"),
+            "EC 8-3": _loss("EN 1998-3, theta_um (A.1)"),
+            "Elwood": _loss("Elwood, Moehle 2005, shear"),
+            "Haselton": _loss("Haselton, one push: cap + 0.2 post-cap"),
+        },
+    ),
+    "axial_failure": (
+        "drift at axial failure",
+        "drift",
+        {
+            "ASCE 41": lambda found: (
+                yield_drift(found.values, "asce_41.stiffness") + found.values["asce_41.b"]
+            ),
+            "Elwood": _value("elwood.axial_drift"),
+        },
+    ),
+}

@@ -1,0 +1,269 @@
+"""What a column is watched for: limit states as linear criteria on the joints' deformations.
+
+A strain of a layered hinge is linear in the rotation and the opening of its joint, and a spring
+leaves its line at a deformation. So one list serves the rows of a result and the runs of an
+ensemble, which keep no rows.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rbsdem._arguments import Array
+from rbsdem._views import view_of
+from rbsdem.checks.code_drawing import quantities
+from rbsdem.checks.regressions import goodnight_buckling_strain
+from rbsdem.errors import InputError
+from rbsdem.model.column import Column
+from rbsdem.model.section import Section
+from rbsdem.model.springs import Layered, Spring
+from rbsdem.model.strains import Gauge
+from rbsdem.result import Result
+from rbsdem.section.model import LayeredColumn
+
+__all__ = ["WATCHED", "Criterion", "buckling_strain", "criteria", "watches"]
+
+#: The limit states that criteria find, and what each is.
+WATCHED: dict[str, str] = {
+    "cracking": "the section cracks, or a spring leaves its first line",
+    "first_yield": "the first bar, or a flexural spring, yields",
+    "nominal_moment": "the extreme fibre is at the strain of the nominal moment",
+    "hoop_yield": "the core is at the peak of its confined strength, where its hoops yield",
+    "spalling": "the cover spalls",
+    "bar_buckling": "a bar is stretched so far that it buckles on reversal",
+    "hoop_fracture": "the core is at the strain at which its hoops fracture",
+    "bar_fracture": "a bar in tension breaks",
+    "cap": "a flexural spring is at its largest moment, from which on it falls",
+    "shear_cracking": "a shear spring leaves its first line",
+    "shear_yield": "a shear spring yields",
+    "shear_failure": "a shear spring is at its largest force, from which on it falls",
+}
+
+
+#: Limit states of springs by the landmarks at which they are reached.
+_TURNS = {"cracking": "cracking", "yield": "first_yield", "cap": "cap"}
+_SLIPS = {"cracking": "shear_cracking", "yield": "shear_yield", "cap": "shear_failure"}
+
+_OF_BARS = ("first_yield", "bar_buckling", "bar_fracture")
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """A limit state is reached where a sum of a joint's deformations is at a threshold.
+
+    Attributes
+    ----------
+    name : str
+        The limit state, one of `WATCHED`.
+    joint : int
+        The joint, from 1 at the ground.
+    threshold : float
+        A strain, a rotation [rad] or a slip [m].
+    source : str
+        Where the threshold comes from.
+    slip, rotation, opening : float
+        Factors of the slip, of the rotation with that at rest, and of the opening.
+    """
+
+    name: str
+    joint: int
+    threshold: float
+    source: str
+    slip: float = 0.0
+    rotation: float = 0.0
+    opening: float = 0.0
+
+    def values(self, result: Result) -> Array:
+        """Return what is compared with the threshold, shape (rows,)."""
+        at = result.column.place_of(self.joint)
+        if self.slip:
+            return np.asarray(self.slip * result.slip[:, at])
+        turned = result.rotation[:, at]
+        if not self.opening:
+            return np.asarray(self.rotation * turned)
+        if result.rest is not None:
+            turned = turned + result.rest[:, at]
+        return np.asarray(self.rotation * turned + self.opening * result.opening[:, at])
+
+
+def criteria(column: Column, names: Collection[str] = tuple(WATCHED)) -> Sequence[Criterion]:
+    """Return the criteria of a column; a state may have several, of which the first counts.
+
+    Parameters
+    ----------
+    column : Column
+        The column.
+    names : collection of str, optional
+        The limit states that are wanted.
+    """
+    if set(WATCHED) <= set(names):
+        # Once for all analyses, as a frozen column does not change.
+        if "_criteria" not in column.__dict__:
+            object.__setattr__(column, "_criteria", tuple(_criteria(column, names)))
+        every: tuple[Criterion, ...] = column.__dict__["_criteria"]
+        return every
+    return _criteria(column, names)
+
+
+def _criteria(column: Column, names: Collection[str]) -> list[Criterion]:
+    found: list[Criterion] = []
+    for joint, spring in zip(column.joint_numbers, column.joints("flexure"), strict=True):
+        if joint == 0:  # A footing is not the column.
+            continue
+        if isinstance(spring, Layered):
+            found += _of_layers(column, joint, spring, names)
+        else:
+            found += _of_spring(joint, spring, _TURNS, "rotation")
+    for joint, spring in zip(column.joint_numbers, column.joints("shear"), strict=True):
+        if joint > 0:
+            found += _of_spring(joint, spring, _SLIPS, "slip")
+    return [criterion for criterion in found if criterion.name in names]
+
+
+@view_of(Column, "watches")
+def all_watches(column: Column, openings: bool) -> Array:
+    """Return what a run is watched for: all criteria, those of openings only if they are kept.
+
+    Each counts for itself. A run without openings is told of the others, but cannot reach them.
+    """
+    found = criteria(column)
+    numbers = watches(column, found, range(1, len(found) + 1))
+    if not openings:
+        numbers[[bool(each.opening) for each in found], 5] = np.finfo(np.float64).max
+        numbers[:, 4] = 0.0
+    return numbers
+
+
+def watches(column: Column, found: Sequence[Criterion], states: Iterable[int]) -> Array:
+    """Return criteria in numbers, shape (criteria, 6), as the Fortran part watches for them.
+
+    Parameters
+    ----------
+    column : Column
+        The column.
+    found : sequence of Criterion
+        Its criteria, or some of them.
+    states : iterable of int
+        The number of the limit state of each.
+    """
+    # The rows of a run count the joints from the ground, a footing's included.
+    at = {joint: place for place, joint in enumerate(column.joint_numbers, 1)}
+    rows = [
+        (state, at[c.joint], c.slip, c.rotation, c.opening, c.threshold)
+        for state, c in zip(states, found, strict=True)
+    ]
+    return np.array(rows, dtype=float).reshape(-1, 6)
+
+
+def _of_spring(
+    joint: int, spring: Spring, names: Mapping[str, str], what: str
+) -> Iterator[Criterion]:
+    """Yield where a spring leaves its lines, to either side."""
+    kind = f"{type(spring).__name__}{' shear' if what == 'slip' else ''}"
+    for mark in spring.landmarks():
+        source = f"{mark.source} of the {kind} spring of joint {joint}"
+        side = float(mark.side)
+        yield Criterion(names[mark.name], joint, mark.deformation, source, **{what: side})
+
+
+def _of_layers(
+    column: Column, joint: int, spring: Layered, names: Collection[str]
+) -> Iterator[Criterion]:
+    if column.opens:  # Its openings are those of axial springs.
+        return
+    gauge = column.gauge(joint)
+    if gauge is not None and isinstance(column, LayeredColumn) and column.recipe is not None:
+        section = column.recipe.section
+        yield from _of_bars(section, column, joint, (spring, gauge), "bar_buckling" in names)
+        if not set(names) <= set(_OF_BARS):
+            yield from _of_fibres(section, joint, gauge)
+        return
+    for y, layer in spring.layers:
+        for mark in layer.landmarks():
+            if mark.name == "yield" and mark.side > 0:
+                source = (
+                    f"{mark.source} of a {type(layer).__name__} layer of joint {joint}, in tension"
+                )
+                at = mark.deformation
+                yield Criterion("first_yield", joint, at, source, rotation=y, opening=1.0)
+
+
+def _of_fibres(section: Section, joint: int, gauge: Gauge) -> Iterator[Criterion]:
+    """Yield strains of the concrete of a hinge that knows its drawing."""
+    law, core = section.concrete_law, section.confinement
+    half = 0.5 * section.depth
+    length = next(
+        length for part, length in zip(gauge.part, gauge.length, strict=True) if part != "bar"
+    )
+
+    def strain(name: str, y: float, at: float, source: str, sign: float = 1.0) -> Criterion:
+        turn, open_ = sign * y / length, sign / length
+        return Criterion(name, joint, float(at), source, rotation=turn, opening=open_)
+
+    for y in (half, -half):
+        if law["ft"] > 0:  # Without tensile strength there is nothing to crack.
+            source = "f_t/E_c at the extreme fibre, over the length of the hinge"
+            yield strain("cracking", y, law["ft"] / law["ec"], source)
+        source = "0.003 at the extreme fibre (ACI 318-19, 22.2.2.1)"
+        yield strain("nominal_moment", y, 0.003, source, -1.0)
+        source = "eps_spall of the concrete"
+        yield strain("spalling", y, section.concrete.eps_spall, source, -1.0)
+        if core is None:
+            continue
+        edge = math.copysign(0.5 * core.depth, y)
+        source = "eps_cc at the edge of the core (Mander, Priestley, Park 1988)"
+        yield strain("hoop_yield", edge, core.eps_cc, source, -1.0)
+        source = "eps_cu at the edge of the core (Priestley, Seible, Calvi 1996, eq 5.14)"
+        yield strain("hoop_fracture", edge, core.eps_cu, source, -1.0)
+
+
+def _of_bars(
+    section: Section, column: Column, joint: int, layers: tuple[Layered, Gauge], buckling: bool
+) -> Iterator[Criterion]:
+    """Yield strains of the bars of a hinge that knows its drawing."""
+    spring, gauge = layers
+    buckles = buckling_strain(section, column) if buckling else math.inf
+    outer: dict[tuple[float, float, float], list[float]] = {}
+    layers_of_bars = [
+        (y, over)
+        for (y, _), part, over in zip(spring.layers, gauge.part, gauge.length, strict=True)
+        if part == "bar"
+    ]
+    # They are in the order of the bars: at one place there may be bars of several steels.
+    for (y, over), (_, _, steel) in zip(layers_of_bars, section.bars, strict=True):
+        outer.setdefault((steel.fy / steel.es, steel.eps_u, over), []).append(y)
+    for (yields, breaks, over), places in outer.items():
+        # Plane sections: of equal bars the outermost ones are stretched most.
+        for y in dict.fromkeys((max(places), min(places))):
+            for name, at, source in (
+                ("first_yield", yields, "f_y/E_s of a bar in tension"),
+                ("bar_fracture", breaks, "eps_u of a bar in tension"),
+                (
+                    "bar_buckling",
+                    buckles,
+                    "tensile strain before bars buckle on reversal (Goodnight, Kowalsky, Nau 2016)",
+                ),
+            ):
+                if math.isfinite(at):
+                    yield Criterion(
+                        name, joint, float(at), source, rotation=y / over, opening=1.0 / over
+                    )
+
+
+def buckling_strain(section: Section, column: Column) -> float:
+    """Return the tensile strain beyond which bars buckle on reversal; infinite if not known.
+
+    It is known of solid sections with hoops and bars near both faces, in compression.
+    """
+    if section.hollow or section.ties is None:
+        return math.inf
+    span = column.height / (2 if column.top == "fixed" else 1)
+    try:
+        given = quantities(section, span, column.axial_load)
+    except InputError:
+        return math.inf
+    return max(goodnight_buckling_strain(given), 0.01)

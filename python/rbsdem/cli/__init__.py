@@ -1,0 +1,1 @@
+"""The commands of the executable that are written in Python."""

@@ -1,0 +1,282 @@
+"""Curves in numbers: peaks, energy, stiffness, and points along the path of a test.
+
+The definitions are those of `rbsdem.curves`. Every function takes plain arrays in any
+consistent units (SI inside rbsdem); row i of each array is the same moment of the test.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rbsdem import _arguments
+from rbsdem._arguments import Array
+from rbsdem.curves.curve import columns
+from rbsdem.errors import InputError
+
+__all__ = [
+    "N_POINTS",
+    "STIFFNESS_LEVEL",
+    "Loop",
+    "PathPoints",
+    "energy",
+    "loop_of",
+    "ratio",
+    "resample",
+    "rms",
+    "secant_stiffness",
+    "summarise",
+    "work",
+]
+
+N_POINTS = 2000
+"""Points along the path at which the error between two curves is taken."""
+
+STIFFNESS_LEVEL = 0.7
+"""Share of its peak force at which the secant stiffness of a curve is taken."""
+
+
+@dataclass(frozen=True, slots=True)
+class Loop:
+    """One force-displacement curve in numbers; NaN for a curve without rows.
+
+    Attributes
+    ----------
+    peak_force : float
+        Largest absolute force, unsigned [N].
+    displacement_at_peak : float
+        Displacement at the first row with that force, signed [m].
+    peak_displacement : float
+        Largest absolute displacement, unsigned [m].
+    energy : float
+        Work of the force over the path [J].
+    stiffness : float
+        Secant from the origin to the first crossing of 70 % of the peak force [N/m]; NaN if that
+        point is at no displacement, or at a displacement of the other sign.
+    """
+
+    peak_force: float
+    displacement_at_peak: float
+    peak_displacement: float
+    energy: float
+    stiffness: float
+
+
+#: Points along a path at the most.
+_MOST_POINTS = 10_000_000
+
+
+class PathPoints:
+    """Points spaced evenly along the path of what drives a model.
+
+    The path is the sum of the absolute steps of the driver. Of rows without a step only the first
+    counts.
+
+    Parameters
+    ----------
+    driver : array_like, shape (rows,)
+        What drives the model: the displacement, or the force.
+    n : int, default 2000
+        How many points.
+    name : str
+        What messages call the driver.
+
+    Attributes
+    ----------
+    path : ndarray, shape (n,)
+        The path at the points.
+    row_path : ndarray, shape (rows,)
+        The path at the rows.
+    before : ndarray of int, shape (n,)
+        Row from which each point is interpolated.
+
+    Raises
+    ------
+    InputError
+        If a value is not a finite number, there are fewer than two rows or points, or the driver
+        never moves.
+    """
+
+    def __init__(self, driver: ArrayLike, n: int = N_POINTS, name: str = "driver") -> None:
+        (d,) = columns((name,), driver)
+        if not 2 <= _arguments.whole(n, "resample: n") <= _MOST_POINTS:
+            raise InputError(f"resample: n = {n} points must be from 2 to {_MOST_POINTS}")
+        self.row_path = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(d)))))
+        if not self.row_path[-1] > 0:
+            raise InputError(f"{name} is {d[0]:g} in every row; a loop needs a {name} that changes")
+        self.path = np.linspace(0.0, self.row_path[-1], n)
+        rows = np.flatnonzero(np.concatenate(([True], np.diff(self.row_path) > 0)))
+        interval = np.searchsorted(self.row_path[rows], self.path, side="right") - 1
+        interval = np.clip(interval, 0, rows.size - 2)
+        self.before, self._after = rows[interval], rows[interval + 1]
+        start = self.row_path[self.before]
+        self._share = (self.path - start) / (self.row_path[self._after] - start)
+
+    def __call__(self, curve: Array) -> Array:
+        """Return a curve at the points, interpolated linearly between its rows.
+
+        Parameters
+        ----------
+        curve : ndarray, shape (rows,)
+            A value for each row of the driver.
+        """
+        before = curve[self.before]
+        return before + self._share * (curve[self._after] - before)
+
+    def reached(self, rows: int) -> np.ndarray:
+        """Return which points lie within the first `rows` rows, as an array of bool."""
+        end = self.row_path[rows - 1] if rows else -1.0
+        return self.path <= end * (1 + 1e-12)
+
+
+def summarise(displacement: ArrayLike, force: ArrayLike) -> Loop:
+    """Put one force-displacement curve into numbers.
+
+    Parameters
+    ----------
+    displacement, force : array_like, shape (rows,)
+        The curve, row by row [m, N].
+
+    Returns
+    -------
+    Loop
+        Peaks, energy and stiffness.
+
+    Raises
+    ------
+    InputError
+        If the arrays differ in length or a value is not a finite number.
+    """
+    d, f = columns(("displacement", "force"), displacement, force, least=0)
+    return loop_of(d, f)
+
+
+def loop_of(d: Array, f: Array) -> Loop:
+    """Do the same as `summarise` for arrays that are known to be sound."""
+    if not d.size:
+        return Loop(math.nan, math.nan, math.nan, math.nan, math.nan)
+    at = int(np.argmax(np.abs(f)))
+    return Loop(
+        peak_force=float(abs(f[at])),
+        displacement_at_peak=float(d[at]),
+        peak_displacement=float(np.max(np.abs(d))),
+        energy=float(work(d, f)[-1]),
+        stiffness=_secant(d, f, STIFFNESS_LEVEL),
+    )
+
+
+def energy(displacement: ArrayLike, force: ArrayLike) -> float:
+    """Return the work of the force over the path, by the trapezium rule [J].
+
+    Parameters
+    ----------
+    displacement, force : array_like, shape (rows,)
+        The curve, row by row [m, N].
+
+    Returns
+    -------
+    float
+        The work; over a closed loop, the energy dissipated.
+
+    Raises
+    ------
+    InputError
+        If the arrays differ in length, hold fewer than two rows, or a value is not a finite number.
+    """
+    return float(work(*columns(("displacement", "force"), displacement, force))[-1])
+
+
+def work(d: Array, f: Array) -> Array:
+    """Return the work of the force up to each row, by the trapezium rule, shape (rows,) [J]."""
+    return np.concatenate(([0.0], np.cumsum(0.5 * (f[1:] + f[:-1]) * np.diff(d))))
+
+
+def secant_stiffness(
+    displacement: ArrayLike, force: ArrayLike, *, level: float = STIFFNESS_LEVEL
+) -> float:
+    """Return the slope from the origin to the first point at a share of the peak force [N/m].
+
+    Parameters
+    ----------
+    displacement, force : array_like, shape (rows,)
+        The curve, row by row [m, N].
+    level : float, default 0.7
+        Share of the largest absolute force of the curve, above 0 and up to 1. Everything that
+        rbsdem reports takes 0.7.
+
+    Returns
+    -------
+    float
+        The stiffness; NaN if the point is at no displacement or at one of the other sign, or if
+        there is no force at all.
+
+    Raises
+    ------
+    InputError
+        If the arrays differ in length, hold fewer than two rows, a value is not a finite number,
+        or `level` is outside its range.
+    """
+    d, f = columns(("displacement", "force"), displacement, force)
+    level = _arguments.number(level, "level")
+    if not 0 < level <= 1:
+        raise InputError(f"level = {level}; give a share of the peak force above 0 and up to 1")
+    return _secant(d, f, level)
+
+
+def resample(
+    driver: ArrayLike, *curves: ArrayLike, n: int = N_POINTS, name: str = "driver"
+) -> tuple[Array, ...]:
+    """Interpolate curves at points spaced evenly along the path of what drives them.
+
+    Parameters
+    ----------
+    driver : array_like, shape (rows,)
+        What drives the model; its path is the sum of its absolute steps.
+    *curves : array_like, shape (rows,)
+        What to interpolate. Of rows without a step of the driver only the first counts.
+    n : int, default 2000
+        How many points.
+    name : str
+        What messages call the driver.
+
+    Returns
+    -------
+    tuple of ndarray, shape (n,)
+        The path at the points, then each curve there.
+
+    Raises
+    ------
+    InputError
+        If lengths differ, a value is not a finite number, the driver never moves, or n is below 2.
+    """
+    names = (name, *(f"curve {i + 1}" for i in range(len(curves))))
+    d, *ys = columns(names, driver, *curves)
+    points = PathPoints(d, n, name)
+    return (points.path, *(points(y) for y in ys))
+
+
+def rms(values: Array) -> float:
+    """Return the root mean square of the values."""
+    return float(np.sqrt(np.mean(values * values)))
+
+
+def ratio(model: float, test: float) -> float:
+    """Return model over test; NaN if the test has 0."""
+    return model / test if test != 0 else math.nan
+
+
+def _secant(d: Array, f: Array, level: float) -> float:
+    size = np.abs(f)
+    target = level * float(np.max(size))
+    if not target > 0:
+        return math.nan
+    i = int(np.argmax(size >= target))
+    at, force = float(d[i]), float(f[i])
+    if i > 0:
+        # The row before lies below the target on both sides of zero force.
+        force = float(np.sign(f[i])) * target
+        at = float(d[i - 1] + (force - f[i - 1]) / (f[i] - f[i - 1]) * (d[i] - d[i - 1]))
+    return force / at if at != 0 and force / at > 0 else math.nan

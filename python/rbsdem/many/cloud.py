@@ -1,0 +1,318 @@
+"""Cloud analysis: records as they are, and a regression of the response on the intensity."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rbsdem import _arguments, _views
+from rbsdem._arguments import Array
+from rbsdem._optional import need_scipy
+from rbsdem.batch.intensity import Name, make_intensity, motions_by_name
+from rbsdem.batch.limits import is_switch
+from rbsdem.batch.measures import Measure, measures_in_a_list
+from rbsdem.batch.runs import Collector, Runs, checked_drift, columns_by_name
+from rbsdem.errors import InputError
+from rbsdem.many.fragile import Fragile
+from rbsdem.many.fragility import Fragility
+from rbsdem.many.hazard import Hazard
+from rbsdem.many.regression import Logistic, PowerLaw, fit_line, fit_logistic
+from rbsdem.model.column import Column
+from rbsdem.motions.motion import GroundMotion
+from rbsdem.solve.analysis import Method
+
+_FEWEST = 3
+_REACH = 6.0
+_GRID = 2401
+
+
+@dataclass(frozen=True, eq=False)
+class CloudData:
+    """What a fragility of a cloud was fitted to.
+
+    Attributes
+    ----------
+    log_intensity : ndarray, shape (n,)
+        Logarithms of the intensities.
+    log_response : ndarray, shape (n,)
+        Logarithms of the responses; infinite where the column collapsed.
+    log_limit : float
+        Logarithm of the limit state; infinite for the collapse.
+    """
+
+    log_intensity: Array
+    log_response: Array
+    log_limit: float
+
+    @property
+    def collapsed(self) -> NDArray[np.bool_]:
+        """Which runs collapsed, shape (n,)."""
+        return ~np.isfinite(self.log_response)
+
+    @property
+    def size(self) -> int:
+        """Number of runs."""
+        return self.log_intensity.size
+
+    def parts(self) -> tuple[PowerLaw | None, Logistic | None]:
+        """Return the line through the runs without collapse, and the curve of the collapses."""
+        stands = ~self.collapsed
+        line = None
+        if np.isfinite(self.log_limit):
+            line = fit_line(self.log_intensity[stands], self.log_response[stands])
+        logistic = None
+        if self.collapsed.any():
+            logistic = fit_logistic(self.log_intensity, self.collapsed)
+        return line, logistic
+
+    def curve(self, parts: tuple[PowerLaw | None, Logistic | None], log_intensity: Array) -> Array:
+        """Return P(C) + (1 - P(C)) P(EDP > limit | no C) (Jalayer et al. 2017)."""
+        special = need_scipy("special")
+        line, logistic = parts
+        lost = np.zeros_like(log_intensity)
+        if logistic is not None:
+            lost = logistic.probability(log_intensity)
+        if line is None:
+            return lost
+        mean = line.a + line.b * log_intensity
+        return np.asarray(lost + (1 - lost) * special.ndtr((mean - self.log_limit) / line.sigma))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CloudFragility(Fragility):
+    """The fragility curve of a cloud, which is lognormal only where no run collapsed.
+
+    `theta` is its median, `beta` half the distance of the logarithms of its 16 and 84 % points;
+    their covariance is that of bootstrap samples.
+    """
+
+    def probability(self, intensity: ArrayLike) -> Array:
+        """Return the probability of the limit state at intensities."""
+        with np.errstate(divide="ignore"):
+            u = np.log(np.asarray(intensity, dtype=float))
+        return np.asarray(self.data.curve(self.data.parts(), u))
+
+    def samples(self, n: int = 1000, seed: int = 1) -> tuple[Array, Array]:
+        """Return theta and beta of bootstrap samples of the runs, each of shape (n,)."""
+        ends = [_theta_beta(data, data.parts()) for data in self._draws(n, seed)]
+        found = np.array([end for end in ends if np.isfinite(end).all()]).reshape(-1, 2)
+        return found[:, 0], found[:, 1]
+
+    def band(
+        self, intensity: ArrayLike, level: float = 0.9, n: int = 1000, seed: int = 1
+    ) -> tuple[Array, Array]:
+        """Return the confidence band of the curve by the bootstrap; see `Fragility.band`."""
+        if not 0 < _arguments.number(level, "level") < 1:
+            raise InputError(f"band: level = {level} must be above 0 and below 1")
+        u = np.log(np.atleast_1d(np.asarray(intensity, dtype=float)))
+        curves = [data.curve(data.parts(), u) for data in self._draws(n, seed)]
+        ends = np.quantile(curves, [0.5 - level / 2, 0.5 + level / 2], axis=0)
+        return ends[0], ends[1]
+
+    def mean_annual_frequency(self, hazard: Hazard) -> float:
+        """Return how often a year the limit state is reached.
+
+        From the first point of the hazard on: below it the logistic curve of the collapses has a
+        tail that no run supports.
+        """
+        if not isinstance(hazard, Hazard):
+            raise InputError(
+                f"hazard = {hazard!r} must be a Hazard; Hazard(intensity, frequency) makes one"
+            )
+        first = float(np.log(hazard.intensity[0]))
+        u = np.linspace(first, max(first, float(np.log(self.theta))) + _REACH, 4 * _GRID)
+        rate = hazard.exceeded(np.exp(u))
+        middle = self.data.curve(self.data.parts(), 0.5 * (u[1:] + u[:-1]))
+        return float((middle * -np.diff(rate)).sum())
+
+    def _draws(self, n: int, seed: int) -> list[CloudData]:
+        number = _arguments.whole(n, "n")
+        if number < 10:
+            raise InputError(f"samples: n = {n} must be 10 or more")
+        random = np.random.default_rng(_arguments.whole(seed, "seed"))
+        found = []
+        for _ in range(number):
+            draw = random.integers(0, self.data.size, self.data.size)
+            data = replace(
+                self.data,
+                log_intensity=self.data.log_intensity[draw],
+                log_response=self.data.log_response[draw],
+            )
+            stands = np.unique(data.log_intensity[~data.collapsed])
+            if stands.size >= _FEWEST or not np.isfinite(data.log_limit):
+                found.append(data)
+        return found
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Cloud(Fragile[CloudFragility]):
+    """Runs of records as they are.
+
+    Attributes
+    ----------
+    runs : Runs
+        All runs with their intensity, fate and measures.
+    seconds : float
+        Wall time.
+    """
+
+    runs: Runs
+    seconds: float
+
+    def regression(self, edp: str = "peak_drift") -> PowerLaw:
+        """Return the line through ln EDP over ln IM of the runs without collapse."""
+        line = self._data(edp, 1.0).parts()[0]
+        assert line is not None
+        return line
+
+    def collapse_regression(self) -> Logistic:
+        """Return the logistic curve of the collapses over ln IM."""
+        logistic = self._data("collapse", np.inf).parts()[1]
+        assert logistic is not None
+        return logistic
+
+    def fragility(self, edp: str = "peak_drift", threshold: float | None = None) -> CloudFragility:
+        """Return the fragility curve of a limit state, collapses included (Jalayer et al. 2017).
+
+        The parameters are those of `IDA.fragility`; of measures without threshold there is only
+        "collapse", as the others have no size to regress.
+
+        Raises
+        ------
+        InputError
+            If there are too few runs for a line.
+        """
+        return self._one(edp, threshold)
+
+    def _fit(self, name: str, measure: str, limit: float, beta: float | None) -> CloudFragility:
+        if beta is not None:
+            raise InputError(
+                f"fragility of {name}: the spread of a cloud is that of its runs; leave beta out"
+            )
+        data = self._data(measure, limit)
+        theta, beta = _theta_beta(data, data.parts())
+        if not np.isfinite([theta, beta]).all():
+            slope = next(part for part in data.parts() if part is not None)
+            value = slope.b if isinstance(slope, PowerLaw) else slope.c1
+            raise InputError(
+                f"fragility of {name}: the response hardly grows with the intensity (slope "
+                f"{value:.2g} over logarithms); add weaker and stronger records, as by scales"
+            )
+        label = self.runs.measure.label
+        found = CloudFragility(name, theta, beta, np.zeros((2, 2)), data, label)
+        samples = np.array(found.samples(200))
+        return replace(found, covariance=np.cov(samples))
+
+    def plot(self, ax: Any = None, **line: Any) -> Any:
+        """Draw the runs and the line through them; see `rbsdem.output.ensemble_figure`."""
+        return _views.view(self, "plot", ax, **line)
+
+    def _data(self, measure: str, limit: float) -> CloudData:
+        collapse = measure == "collapse"
+        if is_switch(measure) and not collapse:
+            raise InputError(f"cloud: {measure} has no size to regress; use stripes or ida")
+        response = self.runs.response(measure)
+        x = np.log(self.runs.intensity)
+        kept = np.isinf(response) | (response > 0) | collapse
+        stands = np.unique(x[kept & np.isfinite(response)])
+        if not collapse and stands.size < _FEWEST:
+            raise InputError(
+                f"cloud: {stands.size} intensities without collapse; a line needs three or more"
+            )
+        if collapse and not np.isinf(response).any():
+            raise InputError("cloud: no run collapsed; add stronger records, or scale them")
+        with np.errstate(divide="ignore"):
+            logs = np.zeros_like(response) if collapse else np.log(response)
+        logs = np.where(np.isinf(response), np.inf, logs)
+        return CloudData(x[kept], logs[kept], np.inf if collapse else float(np.log(limit)))
+
+    def __repr__(self) -> str:
+        return (
+            f"Cloud({self.runs.measure.label}: {len(self.runs)} runs, "
+            f"{int(self.runs.collapsed.sum())} collapses; {self.seconds:.3g} s)"
+        )
+
+
+def cloud(
+    column: Column | Sequence[Column] | Mapping[str, Column],
+    motions: GroundMotion | Sequence[GroundMotion] | Mapping[str, GroundMotion],
+    *,
+    scales: ArrayLike = 1.0,
+    intensity: Name = "sa_t1",
+    period: float | None = None,
+    damping: float = 0.05,
+    collapse_drift: float = 0.1,
+    measures: Sequence[str | Measure] = ("peak_drift", "residual_drift", "peak_base_shear"),
+    method: Method = "auto",
+    dt: float | None = None,
+    initial: Any = None,
+    jobs: int | None = None,
+    progress: bool = False,
+) -> Cloud:
+    """Run records as they are, or by a factor of each.
+
+    Parameters
+    ----------
+    column : Column, or sequence or mapping of Column
+        The column, or several, which are all run with every motion.
+    motions : GroundMotion, or sequence or mapping of GroundMotion
+        The records, many and of different strength.
+    scales : array_like, shape () or (motions,), optional
+        Factors of the records.
+    intensity, period, damping, collapse_drift, measures, method, dt, initial : optional
+        As for `rbsdem.ida`.
+    jobs, progress : optional
+        As for `rbsdem.ida`.
+
+    Returns
+    -------
+    Cloud
+        Regression, fragilities, figure.
+
+    Raises
+    ------
+    InputError
+        Before the first run, with all that is wrong.
+    """
+    begin = time.perf_counter()
+    columns = columns_by_name(column, "cloud")
+    found = motions_by_name(motions)
+    factors = _arguments.finite_vector(scales, "scales", shape="1 or m")
+    if factors.size not in (1, len(found)) or not (factors > 0).all():
+        raise InputError(
+            f"scales: {factors.size} factors for {len(found)} motions; give one, or one for each, "
+            "above 0"
+        )
+    measure = make_intensity(intensity, next(iter(columns.values())), period, damping)
+    settings: dict[str, Any] = {
+        "method": method,
+        "dt": dt,
+        "collapse_drift": checked_drift(collapse_drift),
+        "initial": initial,
+        "jobs": jobs,
+        "progress": progress,
+    }
+    work = Collector(columns, found, measure, measures_in_a_list(measures), settings)
+    levels = np.broadcast_to((factors * work.unit)[:, None], (len(columns), len(found), 1))
+    work.run(levels.copy())
+    return Cloud(work.finish(), time.perf_counter() - begin)
+
+
+def _theta_beta(
+    data: CloudData, parts: tuple[PowerLaw | None, Logistic | None]
+) -> tuple[float, float]:
+    """Return median and spread of the curve; NaN where it does not reach 16, 50 and 84 %."""
+    middle = float(np.median(data.log_intensity))
+    u = np.linspace(middle - _REACH, middle + _REACH, _GRID)
+    p = data.curve(parts, u)
+    # 15.87 and 84.13 %, so that a lognormal curve has its own spread.
+    ends = need_scipy("special").ndtr(np.array([-1.0, 0.0, 1.0]))
+    if not (p[0] < ends[0] and p[-1] > ends[2]) or (np.diff(p) < -1e-12).any():
+        return np.nan, np.nan
+    low, mid, high = np.interp(ends, p, u)
+    return float(np.exp(mid)), float(0.5 * (high - low))

@@ -1,0 +1,362 @@
+"""Fragility curves: the probability of a limit state over the intensity of the motion."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rbsdem import _arguments, _views
+from rbsdem._arguments import Array
+from rbsdem._optional import need_scipy
+from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.many.hazard import Hazard
+from rbsdem.many.lognormal import Bounds, bounds_of_counts, fit_bounds, fit_points
+
+#: Bounds of a capacity that differ by less than this count as one value, their geometric mean.
+NARROW = 1.05
+#: Share of bootstrap samples without a curve beyond which one is warned.
+_LOST = 0.1
+#: Bootstrap samples at the most.
+_MOST_SAMPLES = 100_000
+
+
+@dataclass(frozen=True, eq=False)
+class Counts:
+    """What a fragility was fitted to: runs at levels of intensity.
+
+    Attributes
+    ----------
+    intensity : ndarray, shape (k,)
+        The levels.
+    failed : ndarray, shape (k, n)
+        1 where a run reached the limit state, 0 where it did not, NaN where there is no run; a
+        column for each record.
+    paired : bool
+        Whether a column is the same record at all levels. The bootstrap then draws records, else
+        it draws runs at each level.
+    """
+
+    intensity: Array
+    failed: Array
+    paired: bool
+
+    @property
+    def number(self) -> NDArray[np.int_]:
+        """Runs at each level, shape (k,)."""
+        return np.asarray(np.isfinite(self.failed).sum(axis=1))
+
+    @property
+    def failures(self) -> NDArray[np.int_]:
+        """Runs at each level that reached the limit state, shape (k,)."""
+        return np.asarray(np.nansum(self.failed, axis=1).astype(int))
+
+    def bounds(self) -> Bounds:
+        """Return what is known of the capacities."""
+        return bounds_of_counts(self.intensity, self.number, self.failures)
+
+    def fit_samples(
+        self, random: np.random.Generator, n: int, beta: float | None = None
+    ) -> tuple[Array, Array]:
+        """Return mean and spread of the logarithm for n bootstrap samples, each of shape (n,)."""
+        number, drawn = self.number, None
+        if self.paired:
+            failed = self.failed[:, random.integers(0, self.size, (n, self.size))]
+            number = np.isfinite(failed).sum(axis=-1).T
+            drawn = np.nansum(failed, axis=-1).T
+        else:
+            share = self.failures / np.maximum(number, 1)
+            drawn = random.binomial(number, share, (n, self.intensity.size))
+        return fit_bounds(bounds_of_counts(self.intensity, number, drawn), beta)[:2]
+
+    @property
+    def size(self) -> int:
+        """Number of records."""
+        return int(self.failed.shape[1])
+
+
+@dataclass(frozen=True, eq=False)
+class Capacities:
+    """What a fragility was fitted to: the intensity at which each record reaches the limit state.
+
+    Attributes
+    ----------
+    lower, upper : ndarray, shape (n,)
+        Bounds of the capacity of each record; equal where it is known, the upper one infinite
+        where it was not reached.
+    """
+
+    lower: Array
+    upper: Array
+
+    @property
+    def known(self) -> bool:
+        """Whether all capacities are known to within 5 %."""
+        return bool((self.upper <= NARROW * self.lower).all())
+
+    @property
+    def values(self) -> Array:
+        """Geometric means of the bounds, shape (n,); infinite where it was not reached."""
+        return np.sqrt(self.lower * self.upper)
+
+    def bounds(self) -> Bounds:
+        """Return what is known of the capacities."""
+        return self._bounds(np.arange(self.size))
+
+    def fit_samples(
+        self, random: np.random.Generator, n: int, beta: float | None = None
+    ) -> tuple[Array, Array]:
+        """Return mean and spread of the logarithm for n bootstrap samples, each of shape (n,)."""
+        draws = random.integers(0, self.size, (n, self.size))
+        if self.known and beta is None:
+            return fit_points(self.values[draws])
+        return fit_bounds(self._bounds(draws), beta)[:2]
+
+    def _bounds(self, draws: NDArray[np.int_]) -> Bounds:
+        known = self.known
+        with np.errstate(divide="ignore"):
+            low, high = (
+                np.log((self.values if known else end)[draws]) for end in (self.lower, self.upper)
+            )
+        return Bounds(low, high, np.ones(draws.shape))
+
+    @property
+    def size(self) -> int:
+        """Number of records."""
+        return self.lower.size
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Fragility:
+    """A lognormal fragility curve.
+
+    Attributes
+    ----------
+    name : str
+        The limit state.
+    theta : float
+        Median capacity, in the unit of the intensity (m/s2 for accelerations).
+    beta : float
+        Standard deviation of the logarithm of the capacity.
+    covariance : ndarray, shape (2, 2)
+        Of the estimates of theta and beta, from the curvature of the likelihood.
+    data : Counts or Capacities
+        What it was fitted to.
+    intensity_name : str
+        Name of the intensity, for figures.
+    stated : bool
+        Whether beta was stated, and theta alone fitted.
+    """
+
+    name: str
+    theta: float
+    beta: float
+    covariance: Array
+    data: Any
+    intensity_name: str = ""
+    stated: bool = False
+
+    def probability(self, intensity: ArrayLike) -> Array:
+        """Return the probability of the limit state at intensities."""
+        special = need_scipy("special")
+        with np.errstate(divide="ignore"):
+            z = (
+                np.log(_arguments.vector(intensity, "intensity", shape="any") / self.theta)
+                / self.beta
+            )
+        return np.asarray(special.ndtr(z))
+
+    def samples(self, n: int = 1000, seed: int = 1) -> tuple[Array, Array]:
+        """Return theta and beta of bootstrap samples of the records, each of shape (n,).
+
+        Samples that do not determine a curve are left out.
+
+        Warns
+        -----
+        AccuracyWarning
+            If these are more than a tenth.
+
+        Raises
+        ------
+        InputError
+            If these are more than half.
+        """
+        number = _arguments.whole(n, "n")
+        if not 10 <= number <= _MOST_SAMPLES:
+            raise InputError(f"samples: n = {n} must be from 10 to {_MOST_SAMPLES}")
+        random = np.random.default_rng(_arguments.seed(seed))
+        mu, beta = self.data.fit_samples(random, number, self.beta if self.stated else None)
+        good = np.isfinite(mu)
+        lost = 1.0 - float(good.mean())
+        if lost > _LOST:
+            text = (
+                f"fragility of {self.name}: {100 * lost:.0f} % of the bootstrap samples do not "
+                "determine beta; add levels or records, or state beta"
+            )
+            if lost > 0.5:
+                raise InputError(text)
+            warnings.warn(f"{text}. The others are the band", AccuracyWarning, stacklevel=3)
+        return np.exp(mu[good]), beta[good]
+
+    def band(
+        self, intensity: ArrayLike, level: float = 0.9, n: int = 1000, seed: int = 1
+    ) -> tuple[Array, Array]:
+        """Return the confidence band of the curve by the bootstrap.
+
+        Parameters
+        ----------
+        intensity : array_like, shape (m,)
+            Intensities.
+        level : float, optional
+            Confidence.
+        n, seed : int, optional
+            Number of samples, and the seed of their draws.
+
+        Returns
+        -------
+        tuple of ndarray, shape (m,)
+            Lower and upper bound of the probability.
+        """
+        if not 0 < _arguments.number(level, "level") < 1:
+            raise InputError(f"band: level = {level} must be above 0 and below 1")
+        special = need_scipy("special")
+        theta, beta = self.samples(n, seed)
+        with np.errstate(divide="ignore"):
+            u = np.log(_arguments.vector(intensity, "intensity", shape="1 or m"))
+        curves = special.ndtr((u - np.log(theta)[:, None]) / beta[:, None])
+        ends = np.quantile(curves, [0.5 - level / 2, 0.5 + level / 2], axis=0)
+        return ends[0], ends[1]
+
+    def mean_annual_frequency(self, hazard: Hazard) -> float:
+        """Return how often a year the limit state is reached at a site.
+
+        Parameters
+        ----------
+        hazard : Hazard
+            Of the same intensity, in the same unit.
+
+        Warns
+        -----
+        AccuracyWarning
+            If more than a tenth comes from intensities beyond the points of the hazard.
+        """
+        if not isinstance(hazard, Hazard):
+            raise InputError(
+                f"hazard = {hazard!r} must be a Hazard; Hazard(intensity, frequency) makes one"
+            )
+        return hazard.frequency_of(float(np.log(self.theta)), self.beta)
+
+    def plot(self, ax: Any = None, **line: Any) -> Any:
+        """Draw the curve with its band and its data; see `rbsdem.output.ensemble_figure`."""
+        return _views.view(self, "plot", ax, **line)
+
+    def __repr__(self) -> str:
+        se = np.sqrt(np.diag(self.covariance))
+        return (
+            f"Fragility({self.name!r}, theta={self.theta:.4g} +- {se[0]:.2g}, "
+            f"beta={self.beta:.3g} {'stated' if self.stated else f'+- {se[1]:.2g}'})"
+        )
+
+
+def fit_fragility(
+    name: str,
+    data: Counts | Capacities,
+    intensity_name: str = "",
+    beta: float | None = None,
+) -> Fragility:
+    """Return the lognormal curve of largest likelihood.
+
+    Parameters
+    ----------
+    name : str
+        The limit state.
+    data : Counts or Capacities
+        Runs at levels (Baker 2015, eq 11), or capacities of records: mean and standard deviation of
+        their logarithms (Baker 2015, eqs 1 and 2) where all are known, else the largest likelihood
+        of their bounds.
+    intensity_name : str, optional
+        Name of the intensity.
+    beta : float, optional
+        Standard deviation of the logarithm of the capacity, stated where the data do not determine
+        it; the median alone is then fitted.
+
+    Raises
+    ------
+    InputError
+        If no run reached the limit state, or all did, at every level, or the data do not determine
+        beta: runs of which at most one level has both outcomes, and bounds that have a value in
+        common, or touch. The message gives between what the median lies.
+    """
+    who = f"fragility of {_arguments.text(name, 'fragility: name')}: "
+    _arguments.text(intensity_name, "fragility: intensity_name")
+    if not isinstance(data, (Counts, Capacities)):
+        raise InputError(f"{who}data = {_arguments.shown(data)} must be Counts or Capacities")
+    if beta is not None:
+        beta = _arguments.number(beta, "beta")
+        if not 0 < beta < np.inf:
+            raise InputError(f"{who}beta = {beta:g} must be above 0 and finite, as 0.4")
+    _check(who, data, beta)
+    if isinstance(data, Capacities) and data.known and beta is None:
+        mu, spread = (float(value) for value in fit_points(data.values))
+        n = data.size
+        covariance = np.diag([spread**2 / n, spread**2 / (2 * (n - 1))])
+    else:
+        bounds = data.bounds()
+        found = fit_bounds(bounds, beta)
+        mu, spread, covariance = float(found[0]), float(found[1]), found[2]
+        if np.isinf(spread):
+            raise InputError(
+                f"{who}the share of the runs that reach it does not grow with the intensity; add "
+                "levels or records"
+            )
+        if np.isnan(mu):
+            raise InputError(who + _undetermined(bounds))
+    to_theta = np.diag([np.exp(mu), 1.0])
+    return Fragility(
+        name,
+        float(np.exp(mu)),
+        spread,
+        np.asarray(to_theta @ covariance @ to_theta),
+        data,
+        intensity_name,
+        beta is not None,
+    )
+
+
+def _check(who: str, data: Counts | Capacities, beta: float | None) -> None:
+    """Refuse data without any curve."""
+    if data.size < 2:
+        raise InputError(f"{who}{data.size} records; give two or more")
+    if isinstance(data, Counts):
+        failed, runs = int(data.failures.sum()), int(data.number.sum())
+        if failed in (0, runs):
+            which, other = ("no run reached", "higher") if failed == 0 else ("all reached", "lower")
+            raise InputError(
+                f"{who}{which} the limit state, of {runs}; add {other} levels of intensity"
+            )
+        if (data.number > 0).sum() < 2 and beta is None:
+            raise InputError(f"{who}one level does not give a curve; give two or more")
+    elif not ((data.lower >= 0) & (data.upper >= data.lower)).all():
+        raise InputError(f"{who}bounds of capacities must be 0 or more, the lower one first")
+    elif not np.isfinite(data.upper).any():
+        raise InputError(
+            f"{who}no record reached the limit state; raise the highest level of intensity"
+        )
+    elif not (data.lower > 0).any():
+        raise InputError(
+            f"{who}all records reached the limit state at the lowest level; give lower ones"
+        )
+
+
+def _undetermined(bounds: Bounds) -> str:
+    low, high = (float(np.exp(end)) for end in bounds.gap())
+    if np.isnan(low):
+        return "the fit has not come to an end; give intensities within a few powers of ten"
+    where = f"above {low:.4g}" if np.isinf(high) else f"between {low:.4g} and {high:.4g}"
+    return (
+        "the data do not determine beta, as a step fits them as well as any curve; the median is "
+        f"{where}. Add levels there, or state beta, as fragility(..., beta=0.4)"
+    )

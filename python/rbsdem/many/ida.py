@@ -1,0 +1,345 @@
+"""Incremental dynamic analysis."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rbsdem import _arguments, _views
+from rbsdem._arguments import Array
+from rbsdem.batch.intensity import Name, checked_levels, make_intensity, motions_by_name
+from rbsdem.batch.limits import is_switch, limit_states
+from rbsdem.batch.measures import Measure, measures_in_a_list
+from rbsdem.batch.runs import MEASURES, Collector, Runs, checked_drift, columns_by_name
+from rbsdem.errors import InputError
+from rbsdem.many.fragile import Fragile
+from rbsdem.many.fragility import Capacities, Fragility, fit_fragility
+from rbsdem.many.hunt import Hunt, hunt_and_fill
+from rbsdem.model.column import Column
+from rbsdem.motions.motion import GroundMotion
+from rbsdem.solve.analysis import Method
+
+#: Settings that change nothing in the answer.
+_OF_THE_RUN = ("initial", "jobs", "progress", "store")
+#: Percentages of the fractile curves.
+FRACTILES = (16.0, 50.0, 84.0)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class IDA(Fragile[Fragility]):
+    """Curves of response over intensity, one for each column and motion.
+
+    Attributes
+    ----------
+    runs : Runs
+        All runs with their intensity, fate and measures.
+    lower, upper : ndarray, shape (columns, motions)
+        Bounds of the collapse intensity [m/s2]: the highest run below it without, and the lowest
+        with a collapse (infinite if there was none).
+    settings : dict
+        How it was run.
+    seconds : float
+        Wall time.
+    """
+
+    runs: Runs
+    lower: Array
+    upper: Array
+    settings: dict[str, Any]
+    seconds: float
+
+    @property
+    def collapse_intensity(self) -> Array:
+        """Geometric means of the bounds [m/s2], shape (columns, motions); infinite if none."""
+        return np.where(self.lower > 0, np.sqrt(self.lower * self.upper), self.upper)
+
+    def curve(
+        self, motion: str | int, column: str | int = 0, edp: str = "peak_drift"
+    ) -> tuple[Array, Array]:
+        """Return intensities and responses under one motion, from the origin upwards.
+
+        Parameters
+        ----------
+        motion, column : str or int
+            Name, or place from 0.
+        edp : str, optional
+            Measure of the response; it is infinite where the column collapsed.
+        """
+        c = _place(column, list(self.runs.columns), "column")
+        m = _place(motion, list(self.runs.motions), "motion")
+        return self._curve(c, m, self.runs.response(edp))
+
+    def fractiles(
+        self, levels: ArrayLike | None = None, edp: str = "peak_drift"
+    ) -> tuple[Array, Array]:
+        """Return the 16, 50 and 84 % fractiles of the response at intensities.
+
+        Parameters
+        ----------
+        levels : array_like, shape (k,), optional
+            Intensities [m/s2]; by default 50 up to the highest of the runs.
+        edp : str, optional
+            Measure of the response.
+
+        Returns
+        -------
+        tuple of ndarray
+            The levels (k,), and the fractiles (3, k), infinite where that part has collapsed.
+        """
+        at = (
+            np.linspace(0, self.runs.intensity.max(), 51)[1:]
+            if levels is None
+            else checked_levels(levels)
+        )
+        response = self.runs.response(edp)
+        values = np.array([_at(at, *self._curve(c, m, response)) for c, m in self._pairs()])
+        return at, np.percentile(values, FRACTILES, axis=0, method="inverted_cdf")
+
+    def capacities(self, edp: str = "collapse", threshold: float | None = None) -> Capacities:
+        """Return the intensities at which the curves reach a limit state.
+
+        Parameters
+        ----------
+        edp : str, optional
+            As for `fragility`.
+        threshold : float, optional
+            Value of the measure at the limit state.
+        """
+        ((measure, limit),) = limit_states(edp, threshold).values()
+        return self._capacities(measure, limit)
+
+    def _capacities(self, measure: str, limit: float) -> Capacities:
+        if measure == "collapse":
+            return Capacities(self.lower.ravel(), self.upper.ravel())
+        response = self.runs.response(measure)
+        smooth = not is_switch(measure)
+        ends = [_crossing(*self._curve(c, m, response), limit, smooth) for c, m in self._pairs()]
+        lower, upper = np.array(ends).T
+        if (upper == 0).any():
+            at = float(response[self.runs.intensity == 0].max())
+            raise InputError(
+                f"{measure}: {limit:g} is reached in the initial state already, without any motion "
+                f"({at:.3g}); give a limit beyond it"
+            )
+        return Capacities(lower, upper)
+
+    def fragility(
+        self, edp: str = "collapse", threshold: float | None = None, *, beta: float | None = None
+    ) -> Fragility:
+        """Return the fragility curve of a limit state.
+
+        Parameters
+        ----------
+        edp : str, optional
+            Measure of the response, as "peak_drift"; "collapse" and limit states, as "first_yield",
+            have no threshold.
+        threshold : float, optional
+            Value of the measure at the limit state.
+        beta : float, optional
+            Standard deviation of the logarithm of the capacity, stated where the runs do not
+            determine it; the median alone is then fitted.
+
+        Raises
+        ------
+        InputError
+            If no record reached it, or the runs do not determine beta: one value lies within the
+            bounds of all capacities, or they touch. The message gives between what the median lies.
+        """
+        return self._one(edp, threshold, beta)
+
+    def _fit(self, name: str, measure: str, limit: float, beta: float | None) -> Fragility:
+        data = self._capacities(measure, limit)
+        return fit_fragility(name, data, self.runs.measure.label, beta)
+
+    def plot(self, ax: Any = None, **line: Any) -> Any:
+        """Draw all curves and their fractiles; see `rbsdem.output.ensemble_figure`."""
+        return _views.view(self, "plot", ax, **line)
+
+    def _pairs(self) -> list[tuple[int, int]]:
+        return list(np.ndindex(self.lower.shape))
+
+    def _curve(self, column: int, motion: int, response: Array) -> tuple[Array, Array]:
+        """Return the curve from the origin to the first collapse."""
+        own = (self.runs.column == column) & (self.runs.motion == motion)
+        level, values = self.runs.intensity[own], response[own]
+        kept = level <= self.upper[column, motion] * (1 + 1e-12)
+        level, values = level[kept], values[kept]
+        if level.size and level[0] == 0:
+            return level, values
+        return np.concatenate([[0.0], level]), np.concatenate([[0.0], values])
+
+    def __repr__(self) -> str:
+        found = self.collapse_intensity[np.isfinite(self.upper)]
+        middle = f", median collapse at {np.median(found):.4g} m/s2" if found.size else ""
+        return (
+            f"IDA({self.runs.measure.label}: {self.lower.size} curves, {len(self.runs)} runs, "
+            f"{found.size} collapses{middle}; {self.seconds:.3g} s)"
+        )
+
+
+def ida(
+    column: Column | Sequence[Column] | Mapping[str, Column],
+    motions: GroundMotion | Sequence[GroundMotion] | Mapping[str, GroundMotion],
+    *,
+    intensity: Name = "sa_t1",
+    levels: ArrayLike | Literal["hunt"] | Hunt = "hunt",
+    period: float | None = None,
+    damping: float = 0.05,
+    collapse_drift: float = 0.1,
+    measures: Sequence[str | Measure] = MEASURES,
+    method: Method = "auto",
+    dt: float | None = None,
+    tolerance: float | None = None,
+    events: Literal["step", "located"] | None = None,
+    rho_infinity: float | None = None,
+    allow_unstable: bool = False,
+    max_seconds: float | None = None,
+    initial: Any = None,
+    jobs: int | None = None,
+    progress: bool = False,
+    store: str | os.PathLike[str] | None = None,
+) -> IDA:
+    """Run an incremental dynamic analysis: every motion at growing intensity.
+
+    Parameters
+    ----------
+    column : Column, or sequence or mapping of Column
+        The column; several, as from `Uncertain`, are all run with every motion.
+    motions : GroundMotion, or sequence or mapping of GroundMotion
+        The records, whose own scale does not matter.
+    intensity : {"sa_t1", "pga", "sa_avg"}, optional
+        Intensity measure [m/s2]: pseudo-spectral acceleration at the first period, peak
+        acceleration, or geometric mean of spectral accelerations from 0.2 to 3 first periods.
+    levels : array_like, "hunt" or Hunt, optional
+        Intensities of the runs [m/s2], or a search for the collapse of each record, whose
+        settings are those of `Hunt`.
+    period : float, optional
+        Period of the intensity [s], by default the first one of the (first) column, uncracked.
+    damping : float, optional
+        Damping ratio of the spectrum.
+    collapse_drift : float, optional
+        Displacement of the top over the height that counts as a collapse.
+    measures : sequence, optional
+        What is kept of each run, as for `rbsdem.ensemble`.
+    initial : Result, path, or sequence or mapping of them, optional
+        The state that all runs of a column begin in, as for `rbsdem.ensemble`: what an aftershock
+        finds. The curves begin at what the column does in it without motion.
+    method, dt, tolerance, events, rho_infinity, allow_unstable, max_seconds : optional
+        As for `rbsdem.ensemble`. A run that fails is tried again with "rk45"; one that fails
+        twice counts as a collapse, with a warning.
+    jobs, progress : optional
+        As for `rbsdem.ensemble`.
+    store : path, optional
+        Folder that keeps the runs, as for `rbsdem.ensemble`; a second start, with more records too,
+        goes on from there.
+
+    Returns
+    -------
+    IDA
+        Curves, collapse intensities, fractiles, fragilities, figure.
+
+    Raises
+    ------
+    InputError
+        Before the first run, with all that is wrong.
+    """
+    begin = time.perf_counter()
+    columns = columns_by_name(column, "ida")
+    found = motions_by_name(motions)
+    measure = make_intensity(intensity, next(iter(columns.values())), period, damping)
+    settings: dict[str, Any] = {
+        "method": method,
+        "dt": dt,
+        "tolerance": tolerance,
+        "events": events,
+        "rho_infinity": rho_infinity,
+        "allow_unstable": _arguments.switch(allow_unstable, "allow_unstable"),
+        "max_seconds": max_seconds,
+        "collapse_drift": checked_drift(collapse_drift),
+        "initial": initial,
+        "jobs": jobs,
+        "progress": progress,
+        "store": None if store is None else _arguments.path(store, "store"),
+    }
+    names = _with_drift(measures)
+    hunt = _hunt(levels)
+    work = Collector(columns, found, measure, names, settings)
+    shape = len(columns), len(found)
+    work.run_unshaken("ida")
+    if hunt is not None:
+        lower, upper = hunt_and_fill(work, hunt)
+    else:
+        at = checked_levels(levels)
+        collapsed = work.run(np.broadcast_to(at, (*shape, at.size)).copy())
+        lower, upper = _first(at, collapsed)
+    about = {
+        n: v
+        for n, v in settings.items()
+        if v is not None and v is not False and n not in _OF_THE_RUN
+    }
+    about["levels"] = "hunt" if hunt is not None else "given"
+    return IDA(work.finish(), lower, upper, about, time.perf_counter() - begin)
+
+
+def _hunt(levels: Any) -> Hunt | None:
+    if isinstance(levels, Hunt):
+        return levels
+    if isinstance(levels, str):
+        if levels != "hunt":
+            raise InputError(f"levels = {levels!r} must be 'hunt' or intensities in m/s2")
+        return Hunt()
+    return None
+
+
+def _with_drift(measures: Sequence[str | Measure]) -> list[Any]:
+    given = measures_in_a_list(measures)
+    kept = any(isinstance(measure, str) and measure == "peak_drift" for measure in given)
+    return given if kept else ["peak_drift", *given]
+
+
+def _first(levels: Array, collapsed: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """Return the level below and at the first collapse of each curve."""
+    with_end = np.concatenate([collapsed, np.ones((*collapsed.shape[:-1], 1), bool)], axis=-1)
+    place = with_end.argmax(axis=-1)
+    return np.concatenate([[0.0], levels])[place], np.concatenate([levels, [np.inf]])[place]
+
+
+def _at(levels: Array, level: Array, response: Array) -> Array:
+    """Return the response at levels: linear between runs, infinite from the collapse on."""
+    last = int(np.argmax(~np.isfinite(response))) if np.isinf(response).any() else response.size
+    found = np.interp(levels, level[:last], response[:last], right=np.nan)
+    if last < response.size:
+        # Between the last run without and the first with a collapse the response stays.
+        found = np.where(levels > level[last - 1], response[last - 1], found)
+        return np.where(levels >= level[last], np.inf, found)
+    # No collapse: what was not run is not known to be lower than the last run.
+    return np.where(np.isnan(found), np.inf, found)
+
+
+def _crossing(level: Array, response: Array, limit: float, smooth: bool) -> tuple[float, float]:
+    """Return bounds of the intensity at which a curve first reaches a value."""
+    reached = np.flatnonzero(response >= limit)
+    if not reached.size:
+        return float(level[-1]), np.inf
+    i = int(reached[0])
+    if i == 0:
+        return 0.0, 0.0
+    low, high = float(level[i - 1]), float(level[i])
+    if not (smooth and np.isfinite(response[i])):
+        return low, high
+    part = (limit - response[i - 1]) / (response[i] - response[i - 1])
+    return (low + part * (high - low),) * 2
+
+
+def _place(key: str | int, names: list[Any], what: str) -> int:
+    if key in names:
+        return names.index(key)
+    if isinstance(key, int) and 0 <= _arguments.whole(key, what) < len(names):
+        return key
+    raise InputError(f"{what} = {key!r} is not one of {', '.join(map(str, names[:20]))}")

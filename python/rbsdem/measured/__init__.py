@@ -1,0 +1,1 @@
+"""Measured tests: files, drawings, predictions."""

@@ -1,0 +1,326 @@
+"""Which measured tests are doubtful, by rules that know no model of the column.
+
+A rule is sure or it is a hint. Sure doubts are mended, or the test is set aside, where scores are
+given a second time; hints are for a reader. The error of a model decides nothing.
+
+**What the force is** (sure; by series, because a laboratory treats its tests alike). Where the
+axial load weighs, its moment 0.3 of that of the force or more, the medians of these tests decide:
+
+- labelled as not net (codes 1 and 3), but the envelope falls by 0.95 P/L or more, and over the
+  outer 60 % of the drift the base moment loses 0.3 or more by the label and less than 0.2 as net:
+  the code is 2;
+- labelled as net (2, or none), but the envelope falls by less than half of P/L, the base moment
+  grows by more than 0.15 by the label, and as effective it does not fall by more than 0.1: it is 1.
+
+Single tests that do, from a share of 0.2 on, have a hint; for those labelled as net it is enough
+that the envelope falls by less than 0.9 P/L, and that the moment falls by less than 0.1 as labelled
+and by less than 0.35 as effective.
+
+**The same history twice** (sure): the database gives one history to two tests.
+
+**Twins** (sure if there are three or more): flexural tests of a series with the same sizes, length,
+bars, ties and axial load ratio, whose strength over that of their section is more than 15 % from
+their median. Of two that differ nobody knows which is right: a hint.
+
+**Strength** (hint): base moment of a flexural test below 0.75 or above 1.5 of the section's.
+**Stiffness** (hint): at half the force stiffer than 1.3 times the uncracked gross cantilever, which
+cannot be, or softer than a tenth. **Symmetry** (hint): one side 1.25 times the other.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import statistics
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rbsdem import _views
+from rbsdem._files import write_csv
+from rbsdem.errors import RbsdemError
+from rbsdem.measured.columns import checked_specimen
+from rbsdem.measured.indicators import Indicators, indicators
+from rbsdem.measured.specimen import Specimen
+from rbsdem.measured.specimens import Specimens
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+__all__ = ["Checked", "Doubt", "check"]
+
+#: Share of the second-order moment from which the force tells what it is: surely, as a hint.
+_WEIGHS, _HINTS = 0.3, 0.2
+#: Largest difference of twins, and of what makes them twins: sizes, axial load ratio.
+_TWINS, _ALIKE, _ALIKE_LOAD = 0.15, 0.02, 0.02
+_SAME = (
+    "length",
+    "width",
+    "depth",
+    "corner_diameter",
+    "intermediate_diameter",
+    "transverse_diameter",
+    "transverse_spacing",
+    "shear_legs",
+)
+_STRENGTH = (0.75, 1.5)
+_STIFFNESS = (0.1, 1.3)
+_SYMMETRY = 1.25
+
+
+@dataclass(frozen=True, slots=True)
+class Doubt:
+    """One doubt about one test.
+
+    Attributes
+    ----------
+    specimen : Specimen
+        The test.
+    about : str
+        "force", "history", "twins", "strength", "stiffness" or "symmetry".
+    sure : bool
+        Whether it counts in the second score.
+    why : str
+        Values and limits.
+    code : int or None
+        The P-Delta code that mends it; None where nothing does.
+    """
+
+    specimen: Specimen
+    about: str
+    sure: bool
+    why: str
+    code: int | None = None
+
+
+@dataclass(frozen=True)
+class Checked:
+    """Tests with their indicators and doubts.
+
+    Attributes
+    ----------
+    indicators : tuple of Indicators
+        One for each test that has a history that can be read, in their order.
+    doubts : tuple of Doubt
+        In the order of the tests.
+    """
+
+    indicators: tuple[Indicators, ...]
+    doubts: tuple[Doubt, ...]
+
+    def of(self, specimen: Specimen) -> tuple[Doubt, ...]:
+        """Return the doubts about a test.
+
+        Parameters
+        ----------
+        specimen : Specimen
+            The test.
+        """
+        return tuple(doubt for doubt in self.doubts if doubt.specimen is specimen)
+
+    def mended(self) -> Specimens:
+        """Return the tests with what is surely wrong mended, without those that nothing mends."""
+        kept = []
+        for one in self.indicators:
+            sure = [doubt for doubt in self.of(one.specimen) if doubt.sure]
+            if any(doubt.code is None for doubt in sure):
+                continue
+            codes = [doubt.code for doubt in sure]
+            kept.append(replace(one.specimen, pdelta_code=codes[0]) if codes else one.specimen)
+        return Specimens(kept)
+
+    def table(self) -> Table:
+        """Return the doubts as a table of rich."""
+        return _views.view(self, "table")
+
+    def records(self) -> list[dict[str, Any]]:
+        """Return a dict for each test: its indicators and its doubts."""
+        rows = []
+        for one in self.indicators:
+            s, doubts = one.specimen, self.of(one.specimen)
+            rows.append(
+                {
+                    "name": s.name,
+                    "file": s.file or "",
+                    "series": s.series,
+                    "pdelta_code": s.pdelta_code,
+                    **{name: getattr(one, name) for name in _NUMBERS},
+                    "sure": "; ".join(doubt.why for doubt in doubts if doubt.sure),
+                    "hints": "; ".join(doubt.why for doubt in doubts if not doubt.sure),
+                    "code_instead": next((d.code for d in doubts if d.sure and d.code), None),
+                }
+            )
+        return rows
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write `records` as csv, whole or not at all.
+
+        Parameters
+        ----------
+        path : path
+            File to write.
+        """
+        rows = self.records()
+        head = list(rows[0]) if rows else []
+        write_csv(path, [head, *(list(row.values()) for row in rows)])
+
+
+_NUMBERS = (
+    "second_order_share",
+    "slope",
+    "growth_labelled",
+    "growth_net",
+    "growth_effective",
+    "strength",
+    "stiffness",
+    "symmetry",
+)
+
+
+def check(specimens: Iterable[Specimen]) -> Checked:
+    """Look for tests whose labels contradict their loops; no model of a column enters.
+
+    Parameters
+    ----------
+    specimens : iterable of Specimen
+        The tests, as from `rbsdem.peer.read_specimens`; those without a history are left out.
+        Rules by series and by twins see only these.
+
+    Returns
+    -------
+    Checked
+        Indicators and doubts. `Checked.mended` returns the tests for the second score.
+    """
+    found = []
+    for specimen in specimens:
+        try:
+            found.append(indicators(checked_specimen(specimen)))
+        except RbsdemError:
+            continue
+    doubts: dict[int, list[Doubt]] = {id(one): [] for one in found}
+    _force(found, doubts)
+    _twins(found, doubts)
+    for one in found:
+        doubts[id(one)] += _alone(one)
+    return Checked(tuple(found), tuple(doubt for one in found for doubt in doubts[id(one)]))
+
+
+class _Middle(NamedTuple):
+    """What says whether a force is net."""
+
+    slope: float
+    growth_labelled: float
+    growth_net: float
+    growth_effective: float
+
+
+def _not_net(one: _Middle) -> bool:
+    """Whether a force that is labelled as not net is net."""
+    return one.slope <= -0.95 and one.growth_labelled <= -0.3 and one.growth_net >= -0.2
+
+
+def _is_net(one: _Middle) -> bool:
+    """Whether a force that is labelled as net is not."""
+    return one.slope >= -0.5 and one.growth_labelled > 0.15 and one.growth_effective >= -0.1
+
+
+def _force(found: list[Indicators], doubts: dict[int, list[Doubt]]) -> None:
+    """Find series whose force is not what their label says."""
+    groups: dict[tuple[str, bool], list[Indicators]] = {}
+    for one in found:
+        code = one.specimen.pdelta_code
+        if code != 4:
+            groups.setdefault((one.specimen.series, code in (1, 3)), []).append(one)
+    for (_, effective), members in groups.items():
+        wrong = _not_net if effective else _is_net
+        perhaps = _not_net if effective else _is_net_perhaps
+        telling = [one for one in members if one.second_order_share >= _WEIGHS]
+        sure = bool(telling) and wrong(_middle(telling))
+        for one in members:
+            if sure or (one.second_order_share >= _HINTS and perhaps(_middle([one]))):
+                doubts[id(one)].append(_doubt_of_force(one, effective, sure=sure))
+
+
+def _middle(members: list[Indicators]) -> _Middle:
+    """Return the medians of some tests; comparisons with NaN are false."""
+
+    def median(name: str) -> float:
+        values = [getattr(one, name) for one in members]
+        known = [value for value in values if math.isfinite(value)]
+        return statistics.median(known) if known else math.nan
+
+    return _Middle(*(median(name) for name in _Middle._fields))
+
+
+def _is_net_perhaps(one: _Middle) -> bool:
+    return one.slope >= -0.9 and one.growth_labelled > -0.1 and one.growth_effective > -0.35
+
+
+def _doubt_of_force(one: Indicators, effective: bool, *, sure: bool) -> Doubt:
+    code = one.specimen.pdelta_code
+    label = "no P-Delta code" if code is None else f"P-Delta code {code}"
+    instead, growth = (2, one.growth_net) if effective else (1, one.growth_effective)
+    return Doubt(
+        one.specimen,
+        "force",
+        sure,
+        f"{label}, but the envelope falls by {-one.slope:.2f} P/L and the base moment changes by "
+        f"{one.growth_labelled:+.2f}; with code {instead} by {growth:+.2f}",
+        instead,
+    )
+
+
+def _twins(found: list[Indicators], doubts: dict[int, list[Doubt]]) -> None:
+    """Find tests that are stronger or weaker than others that are alike."""
+    for one in found:
+        if not one.strength > 0:
+            continue
+        others = [
+            other.strength
+            for other in found
+            if other is not one and other.strength > 0 and _alike(one.specimen, other.specimen)
+        ]
+        if not others:
+            continue
+        # With three or more the test is one of those that say what is usual.
+        usual = others if len(others) == 1 else [one.strength, *others]
+        factor = one.strength / statistics.median(usual)
+        if 1 / (1 + _TWINS) <= factor <= 1 + _TWINS:
+            continue
+        number = f"the median of {len(usual)} twins" if len(others) > 1 else "its twin"
+        why = f"{factor:.2f} times as strong as {number}, relative to their sections"
+        doubts[id(one)].append(Doubt(one.specimen, "twins", len(others) > 1, why))
+
+
+def _alike(one: Specimen, other: Specimen) -> bool:
+    """Whether two tests are twins."""
+    if one.series != other.series or one.section != other.section:
+        return False
+    if one.failure_mode != "Flexure" or other.failure_mode != "Flexure":
+        return False
+    if one.longitudinal_number != other.longitudinal_number:
+        return False
+    if abs(one.axial_load_ratio - other.axial_load_ratio) > _ALIKE_LOAD:
+        return False
+    pairs = [(getattr(one, name), getattr(other, name)) for name in _SAME]
+    return all(a == b or (a and b and abs(a - b) <= _ALIKE * abs(a)) for a, b in pairs)
+
+
+def _alone(one: Indicators) -> list[Doubt]:
+    """Return the doubts about a test that need no other."""
+    s, doubts = one.specimen, []
+    if s.duplicate_of is not None:
+        why = f"its history is that of test {s.duplicate_of} of the database"
+        doubts.append(Doubt(s, "history", True, why))
+    low, high = _STRENGTH
+    if s.failure_mode == "Flexure" and (one.strength < low or one.strength > high):
+        why = f"base moment {one.strength:.2f} of the section's, not {low:g} to {high:g}"
+        doubts.append(Doubt(s, "strength", False, why))
+    low, high = _STIFFNESS
+    if one.stiffness < low or one.stiffness > high:
+        why = f"{one.stiffness:.2f} times as stiff as the uncracked column, not {low:g} to {high:g}"
+        doubts.append(Doubt(s, "stiffness", False, why))
+    if one.symmetry > _SYMMETRY:
+        why = f"one side {one.symmetry:.2f} times as strong as the other"
+        doubts.append(Doubt(s, "symmetry", False, why))
+    return doubts

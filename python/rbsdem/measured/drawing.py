@@ -1,0 +1,420 @@
+"""The section of a specimen, as it would be drawn.
+
+What the table does not report is filled in by rules, each named in `Drawing.assumed`:
+
+- bars of a face stand at equal distances between the corner bars; if the faces do not add up to the
+  number of bars, the areas of the intermediate bars make up for it (bundled bars);
+- bars of a round section stand at equal angles, one on the axis of loading; an odd number stands
+  half as drawn and half mirrored, so that both directions of loading are equal;
+- an octagon is taken as the circle of its depth (5 % less concrete, the same core);
+- ultimate stress not reported: 1.5 times the yield stress (the table has none for spirals);
+- yield stress not reported: 420 MPa (Grade 60) of longitudinal bars, theirs for transverse bars;
+- cover not reported: 0.05 times the depth; across the loading: that along it;
+- transverse bars without diameter or spacing: there are none.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass, field
+from typing import Any
+
+from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.measured.specimen import Specimen
+from rbsdem.model.circular import CircularSection
+from rbsdem.model.materials import Concrete, Steel
+from rbsdem.model.rectangular import RectangularSection
+from rbsdem.model.reinforcement import Spiral, Ties
+from rbsdem.model.section import Section
+
+__all__ = ["DEFAULT_YIELD_STRESS", "ULTIMATE_OVER_YIELD", "Drawing", "DrawnBar", "draw"]
+
+ULTIMATE_OVER_YIELD = 1.5
+"""Ultimate over yield stress where it is not reported."""
+
+DEFAULT_YIELD_STRESS = 420e6
+"""Yield stress of longitudinal bars where it is not reported [Pa]."""
+
+_COVER_SHARE = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnBar:
+    """A longitudinal bar, or several at the same depth.
+
+    Attributes
+    ----------
+    y : float
+        From mid-depth, in the direction of loading [m].
+    area : float
+        [m2].
+    yield_stress, ultimate_stress : float
+        [Pa].
+    """
+
+    y: float
+    area: float
+    yield_stress: float
+    ultimate_stress: float
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """A section with all that an analysis needs, in SI units.
+
+    Attributes
+    ----------
+    shape : str
+        "rectangular", "circular", or "square with spiral".
+    width, depth : float
+        Depth in the direction of loading; both the diameter of a circle [m].
+    concrete_strength : float
+        Cylinder strength [Pa].
+    bars : tuple of DrawnBar
+        Longitudinal bars.
+    bar_diameter : float
+        Of the corner bars, which stand for all in bond and buckling [m].
+    cover, side_cover : float
+        Clear, to the outer edge of the transverse bars, along and across the direction of loading
+        [m].
+    tie_diameter, tie_spacing : float
+        Of the transverse bars [m]; 0 if there are none.
+    tie_yield_stress, tie_ultimate_stress : float
+        Of the transverse bars [Pa].
+    legs, side_legs : float
+        Transverse bars that cross the section along and across the direction of loading. The table
+        has only the former; the latter is taken as the same.
+    restrained : int
+        Longitudinal bars that are held in a corner or by a tie, of those around the perimeter.
+    assumed : tuple of str
+        What the table did not report.
+    """
+
+    shape: str
+    width: float
+    depth: float
+    concrete_strength: float
+    bars: tuple[DrawnBar, ...]
+    bar_diameter: float
+    cover: float
+    side_cover: float
+    tie_diameter: float
+    tie_spacing: float
+    tie_yield_stress: float
+    tie_ultimate_stress: float
+    legs: float
+    side_legs: float
+    restrained: int
+    assumed: tuple[str, ...] = ()
+
+    def section(self, **changes: Any) -> Section:
+        """Return the section for analysis.
+
+        Parameters
+        ----------
+        **changes
+            Other arguments of `rbsdem.RectangularSection` or `rbsdem.CircularSection`, as
+            ``concrete=...`` or ``strips=...``.
+
+        Returns
+        -------
+        rbsdem.model.section.Section
+            Laws by the strengths; of a square section with a spiral, the spiral as hoops of two
+            legs.
+
+        Raises
+        ------
+        InputError
+            If the section is refused.
+        """
+        stresses = {(bar.yield_stress, bar.ultimate_stress) for bar in self.bars}
+        steels = {pair: _steel(*pair) for pair in stresses}
+        given: dict[str, Any] = {
+            "concrete": Concrete(self.concrete_strength),
+            "bars": [
+                (bar.y, bar.area, steels[bar.yield_stress, bar.ultimate_stress])
+                for bar in self.bars
+            ],
+            "cover": self.cover,
+            "bar_diameter": self.bar_diameter,
+        }
+        tie = self.tie_diameter, self.tie_spacing
+        tie_steel = _steel(self.tie_yield_stress, self.tie_ultimate_stress)
+        if self.shape == "circular":
+            given["spiral"] = Spiral(*tie, tie_steel) if tie[0] else None
+            return CircularSection(self.depth, **{**given, **changes})
+        legs = {"legs": self.legs, "legs_across": self.side_legs}
+        given["ties"] = Ties(*tie, tie_steel, **legs) if tie[0] else None
+        given["side_cover"] = self.side_cover
+        return RectangularSection(self.width, self.depth, **{**given, **changes})
+
+    @property
+    def steel_area(self) -> float:
+        """Area of all longitudinal bars [m2]."""
+        return sum(bar.area for bar in self.bars)
+
+
+@dataclass
+class _Sheet:
+    """A specimen and the assumptions made while its section is drawn."""
+
+    specimen: Specimen
+    assumed: list[str] = field(default_factory=list)
+
+    def known(self, name: str, otherwise: float, said: str) -> float:
+        """Return a property, or what is assumed for it."""
+        value = getattr(self.specimen, name)
+        if value is not None:
+            return float(value)
+        self.assumed.append(f"{name}: {said}")
+        return otherwise
+
+    def guessed(self, name: str, otherwise: float, said: str) -> float:
+        """Return a property that a prediction depends on much, or what is assumed, with a warning.
+
+        Parameters
+        ----------
+        name, otherwise, said
+            As for `known`.
+        """
+        if getattr(self.specimen, name) is None:
+            self.warn(f"{name} is not given; taken as {said}")
+        return self.known(name, otherwise, said)
+
+    def warn(self, what: str) -> None:
+        """Warn of an assumption."""
+        warnings.warn(f"{self.specimen.name}: {what}", AccuracyWarning, stacklevel=4)
+
+
+def draw(specimen: Specimen) -> Drawing:
+    """Draw the section of a specimen.
+
+    Parameters
+    ----------
+    specimen : Specimen
+        The test.
+
+    Returns
+    -------
+    Drawing
+        Bars, ties and cover; what was assumed.
+
+    Raises
+    ------
+    InputError
+        If the shape is not known, a value is not plausible in SI units, the numbers of bars
+        contradict each other, or the bars have no diameter or do not fit.
+
+    Warns
+    -----
+    AccuracyWarning
+        If a yield stress is not reported, and where bars beyond those of the faces are taken as
+        bundled.
+    """
+    _check(specimen)
+    _check_bars(specimen)
+    sheet = _Sheet(specimen)
+    shape = {
+        "rectangular": "rectangular",
+        "circular": "circular",
+        "octagonal": "circular",
+        "square(spiral table)": "square with spiral",
+    }.get(specimen.section)
+    if shape is None:
+        raise InputError(
+            f"{specimen.name}: section = {specimen.section!r} is not known; there are rectangular, "
+            "circular, octagonal and square(spiral table)"
+        )
+    tie = specimen.transverse_diameter if specimen.transverse_spacing else None
+    if tie is None:
+        sheet.assumed.append("no transverse bars: no diameter or spacing")
+    cover = sheet.known("cover", _COVER_SHARE * specimen.depth, "0.05 of the depth")
+    side_cover = specimen.cover_perpendicular or cover
+    if shape != "rectangular":
+        # For a spiral the table gives the cover to its centre.
+        cover = side_cover = max(cover - (tie or 0.0) / 2, 0.0)
+    diameter = specimen.corner_diameter or specimen.intermediate_diameter
+    if diameter is None:
+        raise InputError(f"{specimen.name}: no diameter of the longitudinal bars; it is needed")
+    corner, intermediate = _steels(sheet)
+    if shape == "rectangular":
+        bars = _rectangle(sheet, cover + (tie or 0.0), diameter, corner, intermediate)
+    else:
+        bars = _round(specimen, cover + (tie or 0.0), diameter, corner)
+    tie_yield = corner[0]
+    if tie:
+        tie_yield = sheet.guessed("transverse_yield_stress", corner[0], "that of longitudinal bars")
+    legs = specimen.shear_legs if specimen.shear_legs and tie else 2.0 if tie else 0.0
+    return Drawing(
+        shape=shape,
+        width=specimen.width,
+        depth=specimen.depth,
+        concrete_strength=specimen.concrete_strength,
+        bars=tuple(bars),
+        bar_diameter=diameter,
+        cover=cover,
+        side_cover=side_cover,
+        tie_diameter=tie or 0.0,
+        tie_spacing=(specimen.transverse_spacing or 0.0) if tie else 0.0,
+        tie_yield_stress=tie_yield,
+        tie_ultimate_stress=specimen.transverse_ultimate_stress or ULTIMATE_OVER_YIELD * tie_yield,
+        legs=legs,
+        side_legs=legs,
+        restrained=_restrained(specimen),
+        assumed=tuple(sheet.assumed),
+    )
+
+
+def _check_bars(specimen: Specimen) -> None:
+    """Refuse numbers of bars that contradict each other, as fewer in all than on the faces."""
+    whole = specimen.longitudinal_number
+    counts = {
+        "longitudinal_number": whole,
+        "intermediate_perpendicular": specimen.intermediate_perpendicular,
+        "intermediate_parallel": specimen.intermediate_parallel,
+    }
+    for name, count in counts.items():
+        if count is not None and (count != round(count) or count < 0):
+            raise InputError(
+                f"{specimen.name}: {name} = {count:g} bars must be a whole number, 0 or more"
+            )
+    if specimen.section != "rectangular":
+        return
+    across, along = specimen.intermediate_perpendicular, specimen.intermediate_parallel
+    if across is None or along is None:
+        if whole < 4:
+            raise InputError(
+                f"{specimen.name}: longitudinal_number = {whole} bars, but a rectangular section "
+                "has one in each of its four corners; count all of them"
+            )
+        return
+    # More bars than there are places stand in bundles.
+    drawn = 4 + 2 * (across + along)
+    if whole < drawn or (whole > drawn == 4):
+        raise InputError(
+            f"{specimen.name}: longitudinal_number = {whole} contradicts the bars of the faces: "
+            f"4 in the corners, 2 x {across} (intermediate_perpendicular) and 2 x {along} "
+            f"(intermediate_parallel) are {drawn}; correct one of them"
+        )
+
+
+# Plausible ranges in SI units, with a hint for values in other units.
+_RANGES = {
+    "length": (0.05, 100.0, "m", "1600 mm is 1.6"),
+    "width": (0.02, 20.0, "m", "400 mm is 0.4"),
+    "depth": (0.02, 20.0, "m", "400 mm is 0.4"),
+    "concrete_strength": (2e6, 300e6, "Pa", "40 MPa is 40e6"),
+    "axial_load": (-1e9, 1e9, "N", "700 kN is 700e3"),
+    "corner_yield_stress": (50e6, 3e9, "Pa", "450 MPa is 450e6"),
+    "intermediate_yield_stress": (50e6, 3e9, "Pa", "450 MPa is 450e6"),
+    "transverse_yield_stress": (50e6, 3e9, "Pa", "450 MPa is 450e6"),
+    "longitudinal_ultimate_stress": (50e6, 4e9, "Pa", "600 MPa is 600e6"),
+    "transverse_diameter": (1e-3, 0.1, "m", "10 mm is 0.010"),
+    "transverse_spacing": (2e-3, 10.0, "m", "80 mm is 0.080"),
+    "longitudinal_number": (1, 10000, "bars", "count all of them"),
+    "corner_diameter": (1e-3, 0.1, "m", "16 mm is 0.016"),
+    "intermediate_diameter": (1e-3, 0.1, "m", "16 mm is 0.016"),
+    "cover": (0.0, 1.0, "m", "20 mm is 0.020"),
+    "cover_perpendicular": (0.0, 1.0, "m", "20 mm is 0.020"),
+    "shear_legs": (0.0, 1000.0, "bars", "count those that cross the section along the loading"),
+}
+
+
+def _check(specimen: Specimen) -> None:
+    """Refuse values outside their plausible ranges, all of them at once."""
+    faults = []
+    for name, (low, high, unit, remedy) in _RANGES.items():
+        value = getattr(specimen, name)
+        if value is not None and not low <= value <= high:
+            faults.append(
+                f"{specimen.name}: {name} = {value:g} {unit} must be between {low:g} and {high:g}; "
+                f"{remedy}"
+            )
+    if faults:
+        raise InputError("\n".join(faults))
+
+
+def _steel(yield_stress: float, ultimate_stress: float) -> Steel:
+    """Return a steel; a very strong one has no plateau."""
+    plain = Steel.__dataclass_fields__
+    es, hardening = plain["es"].default, plain["eps_sh"].default
+    return Steel(yield_stress, ultimate_stress, eps_sh=max(hardening, 1.001 * yield_stress / es))
+
+
+def _steels(sheet: _Sheet) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return yield and ultimate stress of corner and intermediate bars."""
+    specimen = sheet.specimen
+    corner = sheet.guessed("corner_yield_stress", DEFAULT_YIELD_STRESS, "Grade 60, 420 MPa")
+    intermediate = specimen.intermediate_yield_stress or corner
+    ultimate = specimen.longitudinal_ultimate_stress
+    if ultimate is None or ultimate <= corner:
+        sheet.assumed.append("longitudinal_ultimate_stress: 1.5 times the yield stress")
+        ultimate = ULTIMATE_OVER_YIELD * corner
+    # The table has only the ultimate stress of the corner bars.
+    return (corner, ultimate), (intermediate, max(ultimate * intermediate / corner, intermediate))
+
+
+def _rectangle(
+    sheet: _Sheet,
+    to_bars: float,
+    diameter: float,
+    corner: tuple[float, float],
+    intermediate: tuple[float, float],
+) -> list[DrawnBar]:
+    specimen = sheet.specimen
+    across, along = specimen.intermediate_perpendicular, specimen.intermediate_parallel
+    if across is None or along is None:
+        sheet.assumed.append("bars of the faces: as equal as possible")
+        along = max(specimen.longitudinal_number - 4, 0) // 4
+        across = max(specimen.longitudinal_number - 4 - 2 * along, 0) // 2
+    inner = specimen.intermediate_diameter or diameter
+    between = 2 * (across + along)
+    share = (specimen.longitudinal_number - 4) / between if between else 0.0
+    if between and specimen.longitudinal_number != 4 + between:
+        said = f"areas of the {between} bars between the corners: times {share:.4g}"
+        sheet.assumed.append(said)
+        sheet.warn(
+            f"longitudinal_number = {specimen.longitudinal_number} with bundled bars; {said}"
+        )
+    area = max(share, 0.0) * math.pi / 4 * inner**2
+    edge = specimen.depth / 2 - to_bars
+    y_corner, y_inner = edge - diameter / 2, edge - inner / 2
+    if min(y_corner, y_inner) <= 0:
+        raise InputError(
+            f"{specimen.name}: bars of {diameter * 1e3:g} mm behind a cover of "
+            f"{to_bars * 1e3:g} mm do not fit into a depth of {specimen.depth * 1e3:g} mm"
+        )
+    corner_area = math.pi / 4 * diameter**2
+    bars = [DrawnBar(y, 2 * corner_area, *corner) for y in (-y_corner, y_corner)]
+    if across:
+        bars += [DrawnBar(y, across * area, *intermediate) for y in (-y_inner, y_inner)]
+    step = 2 * y_corner / (along + 1)
+    bars += [DrawnBar(-y_corner + (i + 1) * step, 2 * area, *intermediate) for i in range(along)]
+    return sorted(bars, key=lambda bar: bar.y)
+
+
+def _round(
+    specimen: Specimen, to_bars: float, diameter: float, steel: tuple[float, float]
+) -> list[DrawnBar]:
+    radius = specimen.depth / 2 - to_bars - diameter / 2
+    if radius <= 0:
+        raise InputError(
+            f"{specimen.name}: bars of {diameter * 1e3:g} mm behind a cover of "
+            f"{to_bars * 1e3:g} mm do not fit into a depth of {specimen.depth * 1e3:g} mm"
+        )
+    n = specimen.longitudinal_number
+    area = math.pi / 4 * diameter**2
+    ys = [radius * math.cos(2 * math.pi * i / n) for i in range(n)]
+    if n % 2:
+        ys, area = [*ys, *(-y for y in ys)], area / 2
+    return sorted((DrawnBar(y, area, *steel) for y in ys), key=lambda bar: bar.y)
+
+
+def _restrained(specimen: Specimen) -> int:
+    """Return how many bars are held: all in a spiral; else corners and those at inner legs."""
+    n = specimen.longitudinal_number
+    if specimen.section != "rectangular" or not specimen.shear_legs:
+        return n if specimen.section != "rectangular" else min(4, n)
+    # Each leg beyond two holds a bar on both faces, along and across.
+    return min(n, 4 + 4 * round(specimen.shear_legs - 2))

@@ -1,0 +1,376 @@
+"""A laboratory's own file of a test: displacement and force, read, checked and made comparable."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from rbsdem import _arguments, _core
+from rbsdem._arguments import Array
+from rbsdem.errors import InputError
+from rbsdem.measured.layout import UNITS, Layout, find_layout
+from rbsdem.measured.measured import MeasuredTest, net_force, top_displacement
+
+__all__ = ["read_test"]
+
+_QUANTITIES = ("displacement", "force")
+
+# What the force column is, by the P-Delta code of the database.
+_CODES = {
+    1: "the base moment over the length, with P-Delta in it",
+    2: "the net horizontal force on the column",
+    3: "the actuator's force, of which the leaning axial ram takes a part",
+    4: "the actuator's force, to which the leaning axial ram adds a part",
+}
+
+# How columns are often called; the first that fits one column only is taken.
+_WORDS = {
+    "displacement": ("displacement", "disp", "deflection", "drift", "delta", "d", "u", "x"),
+    "force": ("force", "load", "shear", "f", "v", "p", "h"),
+}
+
+# What the largest values of a test of a column may be, and where the doubt begins.
+_PLAUSIBLE = {"displacement": (5e-4, 1.5, "m"), "force": (500.0, 5e7, "N")}
+_LENGTHS, _SMALLEST_LOAD = (0.1, 30.0), 3000.0
+_LARGEST_DRIFT, _SMALLEST_DRIFT = 0.4, 5e-4
+
+# A first row beyond this part of the largest value is an offset; a smaller area is none.
+_OFFSET = 0.05
+_AREA = 0.02
+
+# Bytes that are read to find the layout.
+_BEGINNING = 1_000_000
+
+
+def read_test(
+    path: str | os.PathLike[str],
+    *,
+    columns: Sequence[str | int] | Mapping[str, str | int] | None = None,
+    units: Sequence[str] | Mapping[str, str] | None = None,
+    pdelta_code: Literal[1, 2, 3, 4] | None = None,
+    length: float | None = None,
+    axial_load: float | None = None,
+    measured_length: float | None = None,
+    top_length: float | None = None,
+    bottom_length: float | None = None,
+    separator: str | None = None,
+    decimal: str | None = None,
+    header: int | None = None,
+    zero: bool | None = None,
+    force_sign: Literal[1, -1] = 1,
+    checks: bool = True,
+    name: str | None = None,
+) -> MeasuredTest:
+    """Read a test from a laboratory's own csv or text file, check it, and find the net force.
+
+    Separator, decimal point, lines above the numbers, names and units are found in the file, or
+    stated. What comes back goes where a test of the database goes: `rbsdem.compare`,
+    `rbsdem.calibrate`, `rbsdem.plot.loop`, and `cyclic(column, displacement=test.displacement)`.
+
+    Parameters
+    ----------
+    path : path
+        Text with a row of numbers a line. Above them there may be any lines; the last may have the
+        names of the columns, or their names and below them their units.
+    columns : pair or mapping, optional
+        Columns of displacement and force, by name or by number from 1: ``("LVDT 3", 5)`` or
+        ``{"displacement": "LVDT 3", "force": 5}``. By default they are found by their names, or are
+        the two columns of a file that has no more.
+    units : pair or mapping, optional
+        Their units: "m", "mm", "cm", "in" and "N", "kN", "MN", "kip". By default those that the
+        file gives in the names (``d_mm``, ``Force [kN]``) or below them.
+    pdelta_code : {1, 2, 3, 4}
+        What the force column is; every test needs it, since P-Delta is in some forces and not in
+        others:
+
+        1. the base moment over the length ("effective force", P-Delta is part of it);
+        2. the net horizontal force on the column, or P-Delta was already taken out;
+        3. the force of the horizontal actuator, where the ram of the axial load leans with the top
+           and its horizontal part takes part of it: the shear is smaller;
+        4. as 3, where the ram leans the other way: the shear is larger.
+    length : float, optional
+        From the base to the lateral force, that of the equivalent cantilever [m]. Needed for codes
+        1 and 3, and for drifts.
+    axial_load : float, optional
+        Compression positive [N]. Needed for codes 1, 3 and 4.
+    measured_length : float, optional
+        Height at which the displacement was measured [m]; by default the length.
+    top_length, bottom_length : float, optional
+        From the column's ends to the hinges of the axial ram [m]; code 4 needs the first.
+    separator, decimal : str, optional
+        What stands between two values: ",", ";", a tab or a blank; and before decimals: "." or ",".
+    header : int, optional
+        Lines above the first row of numbers.
+    zero : bool, optional
+        True takes the first row off all others; False accepts an offset of the first row.
+    force_sign : {1, -1}, optional
+        -1 turns the forces round.
+    checks : bool, optional
+        False leaves out the checks of size, sign, order and offset.
+    name : str, optional
+        Name of the test; by default that of the file.
+
+    Returns
+    -------
+    MeasuredTest
+        Displacement of the top [m] and net horizontal force F_H [N]; `length` and `axial_load` are
+        NaN if they were not given.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, if column, unit or code are not known, or if a check fails: the
+        largest values are not those of a test of a column, the force acts against the displacement,
+        the columns are exchanged (their loop runs backward), or the first row is not near zero.
+        The message names the value and the remedy.
+
+    See Also
+    --------
+    read_peer : the same reader for files in the format of the database.
+    rbsdem.peer.net_force : the formulas of the codes.
+
+    Notes
+    -----
+    The area ½∮(F dd - d dF) of a loop is the energy that the column takes up and is positive. If
+    columns are exchanged it is negative; if the sign of one column is wrong, so is that of the
+    correlation of the two.
+    """
+    where = _arguments.file(path)
+    code = _code(pdelta_code, length, axial_load)
+    if force_sign not in (1, -1):
+        raise InputError(f"force_sign = {force_sign!r} must be 1 or -1")
+    layout = find_layout(
+        _beginning(where), where, separator=separator, decimal=decimal, header=header
+    )
+    chosen = _columns(columns, layout, where)
+    given = _units(units, chosen, layout, where)
+    read, d, f = _core.read_history(
+        where, *given, (layout.separator, layout.decimal, layout.skip), (chosen[0], chosen[1])
+    )
+    f = force_sign * f
+    if zero:
+        d, f = d - d[0], f - f[0]
+    if checks:
+        _check_units(length, axial_load)
+        _check_sizes(d, f, given, length, where)
+        _check_offset(d, f, zero, where)
+        _check_order(d, f, where)
+    lengths = {"length": math.nan if length is None else length, "measured_length": measured_length}
+    try:
+        load = math.nan if axial_load is None else _arguments.number(axial_load, "axial_load")
+        force = net_force(
+            d,
+            f,
+            code=code,
+            axial_load=load,
+            top_length=top_length,
+            bottom_length=bottom_length,
+            **lengths,
+        )
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from error
+    top = 0.0 if code == 4 else top_length or 0.0
+    return MeasuredTest(
+        name=name or Path(read).stem,
+        displacement=d.copy() if length is None else top_displacement(d, **lengths),
+        force=force,
+        measured_displacement=d,
+        measured_force=f,
+        length=lengths["length"],
+        axial_load=load,
+        pdelta_code=code,
+        axial_height=lengths["length"] + top,
+    )
+
+
+def _code(code: int | None, length: float | None, axial_load: float | None) -> int:
+    """Return the P-Delta code, if it is one and what it needs is there."""
+    if isinstance(code, bool) or not isinstance(code, int) or code not in _CODES:
+        missing = "is needed" if code is None else f"= {_arguments.shown(code)} is not known"
+        codes = "; ".join(f"{key}: {text}" for key, text in _CODES.items())
+        raise InputError(f"pdelta_code {missing}. It says what the force column is: {codes}")
+    for value, needed, what in (
+        (length, (1, 3), "length (from the base to the lateral force, m)"),
+        (axial_load, (1, 3, 4), "axial_load (N)"),
+    ):
+        if value is None and code in needed:
+            raise InputError(f"pdelta_code = {code} ({_CODES[code]}) needs {what}")
+    if length is not None and not 0 < _arguments.number(length, "length") < math.inf:
+        raise InputError(f"length = {length} m must be positive")
+    return code
+
+
+def _beginning(where: str) -> str:
+    if not os.path.isfile(where):
+        what = "is no ordinary file" if os.path.exists(where) else "is not there"
+        raise InputError(f"{where}: {what}; give the path of a text file")
+    try:
+        with open(where, "rb") as file:
+            raw = file.read(_BEGINNING)
+    except OSError as error:
+        raise InputError(f"{where}: {error.strerror}; check path and permissions") from error
+    if b"\0" in raw:
+        raise InputError(f"{where}: is no text file; save it as csv or text in UTF-8")
+    # A last line that is cut off says nothing.
+    text = raw.decode("utf-8-sig", "replace")
+    return text if len(raw) < _BEGINNING else text[: text.rfind("\n") + 1]
+
+
+def _pair(given: object, what: str, examples: str) -> tuple[object, object]:
+    """Return what is given for displacement and force."""
+    if isinstance(given, Mapping):
+        strange = [key for key in given if key not in _QUANTITIES]
+        if strange:
+            raise InputError(f"{what}: {strange[0]!r} is neither 'displacement' nor 'force'")
+        return given.get("displacement"), given.get("force")
+    if isinstance(given, Sequence) and not isinstance(given, str) and len(given) == 2:
+        return given[0], given[1]
+    raise InputError(f"{what} = {given!r} must be two, for displacement and force: {examples}")
+
+
+def _columns(given: object, layout: Layout, where: str) -> list[int]:
+    """Return the numbers of the columns of displacement and force."""
+    pair: tuple[object, object] = (None, None)
+    if given is not None:
+        pair = _pair(given, "columns", 'columns=("LVDT 3", "load") or columns=(1, 2)')
+    found = [_column(value, q, layout, where) for value, q in zip(pair, _QUANTITIES, strict=True)]
+    if None in found and layout.columns == 2 and found.count(None) == 1:
+        found = [3 - int(found[1 - i] or 0) if n is None else n for i, n in enumerate(found)]
+    elif found == [None, None] and layout.columns == 2 and not _has_time(layout):
+        found = [1, 2]
+    for number, quantity in zip(found, _QUANTITIES, strict=True):
+        if number is None:
+            raise InputError(
+                f"{where}: which column is the {quantity}? There are {layout.describe()}; say "
+                "columns=(displacement, force), by name or by number from 1"
+            )
+    if found[0] == found[1]:
+        raise InputError(f"columns: displacement and force are both column {found[0]} of {where}")
+    return [int(number) for number in found if number is not None]
+
+
+def _column(value: object, quantity: str, layout: Layout, where: str) -> int | None:
+    names = [name.lower() for name in layout.names]
+    if value is None:
+        for word in _WORDS[quantity]:
+            # One letter is a name only if it stands alone, or before its unit.
+            long = len(word) > 1
+            fit = [
+                i
+                for i, name in enumerate(names, 1)
+                if (word in name if long else _bare(name) == word)
+                and not ("time" in name or ("axial" in name and quantity == "force"))
+            ]
+            if len(fit) == 1:
+                return fit[0]
+        return None
+    if isinstance(value, str):
+        fit = [i for i, name in enumerate(names, 1) if value.strip().lower() in (name, _bare(name))]
+        if len(fit) == 1:
+            return fit[0]
+        several = "is the name of more than one column" if fit else "is not there"
+        raise InputError(
+            f"{where}: column {value!r} {several}; there are {layout.describe()}; "
+            "a number from 1 is taken as well"
+        )
+    number = _arguments.whole(value, f"columns: {quantity}")
+    if not 1 <= number <= layout.columns:
+        raise InputError(
+            f"columns: {quantity} = {number}, but {where} has {layout.describe()}, counted from 1"
+        )
+    return number
+
+
+def _bare(name: str) -> str:
+    """Return a name without the unit at its end."""
+    for mark in ("[", "(", "_", " "):
+        name = name.split(mark, maxsplit=1)[0] if mark in name[1:] else name
+    return name.strip()
+
+
+def _has_time(layout: Layout) -> bool:
+    return any(name.lower().startswith("time") or name.lower() == "t" for name in layout.names)
+
+
+def _units(given: object, chosen: list[int], layout: Layout, where: str) -> tuple[str, str]:
+    """Return the units of displacement and force."""
+    pair: tuple[object, object] = (None, None)
+    if given is not None:
+        pair = _pair(given, "units", 'units=("mm", "kN")')
+    found = []
+    for value, number, quantity in zip(pair, chosen, _QUANTITIES, strict=True):
+        unit = layout.units[number - 1] if value is None else str(value)
+        known = {name.lower(): name for name in UNITS[quantity]}
+        if unit.lower() not in known:
+            has = f"has the unit {unit!r}" if unit else "has no unit"
+            named = layout.names[number - 1] or str(number)
+            raise InputError(
+                f"{where}: the {quantity}, column {named!r}, {has}; say "
+                f"units=(displacement, force), the {quantity} in {', '.join(known.values())}"
+            )
+        found.append(known[unit.lower()])
+    return found[0], found[1]
+
+
+def _check_units(length: float | None, axial_load: float | None) -> None:
+    if length is not None and not _LENGTHS[0] <= length <= _LENGTHS[1]:
+        raise InputError(
+            f"length = {length} m; a column has {_LENGTHS[0]} to {_LENGTHS[1]} m. Give metres, or "
+            "say checks=False"
+        )
+    if axial_load is not None and 0 < abs(axial_load) < _SMALLEST_LOAD:
+        raise InputError(
+            f"axial_load = {axial_load} N is less than {_SMALLEST_LOAD:.0f} N. Give newtons, 0 if "
+            "there is none, or say checks=False"
+        )
+
+
+def _check_sizes(
+    d: Array, f: Array, units: tuple[str, str], length: float | None, where: str
+) -> None:
+    for values, unit, quantity in zip((d, f), units, _QUANTITIES, strict=True):
+        largest = float(np.max(np.abs(values)))
+        low, high, si = _PLAUSIBLE[quantity]
+        if length is not None and quantity == "displacement":
+            low, high = _SMALLEST_DRIFT * length, _LARGEST_DRIFT * length
+        if not low <= largest <= high:
+            raise InputError(
+                f"{where}: the largest {quantity} is {largest:.4g} {si}, read in {unit}; a test of "
+                f"a column has {low:.3g} to {high:.3g} {si}. Check units=({units[0]!r}, "
+                f"{units[1]!r}), columns and length, or say checks=False"
+            )
+
+
+def _check_offset(d: Array, f: Array, zero: bool | None, where: str) -> None:
+    if zero is not None:
+        return
+    for values, quantity, si in ((d, "displacement", "m"), (f, "force", "N")):
+        share = abs(values[0]) / float(np.max(np.abs(values)))
+        if share > _OFFSET:
+            raise InputError(
+                f"{where}: the first {quantity} is {values[0]:.4g} {si}, {100 * share:.0f} % of "
+                "the largest; say zero=True to take the first row off all others, or zero=False if "
+                "the test does begin there"
+            )
+
+
+def _check_order(d: Array, f: Array, where: str) -> None:
+    together = float(np.dot(d, f))
+    area = 0.5 * float(np.sum(f[:-1] * np.diff(d) - d[:-1] * np.diff(f)))
+    size = float(np.max(np.abs(d)) * np.max(np.abs(f)))
+    if together < 0:
+        raise InputError(
+            f"{where}: the force acts against the displacement; the sign of one of them is turned "
+            "round, say force_sign=-1 (or checks=False if it is meant so)"
+        )
+    if area < -_AREA * size:
+        raise InputError(
+            f"{where}: the loop runs backward and gives energy ({area:.4g} J); displacement and "
+            "force are exchanged: say columns=(displacement, force) the other way round (or "
+            "checks=False if it is meant so)"
+        )

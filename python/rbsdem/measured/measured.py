@@ -1,0 +1,183 @@
+"""A test to compare a model with: its displacement and its net horizontal force."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rbsdem import _arguments
+from rbsdem._arguments import Array
+from rbsdem.errors import InputError
+
+__all__ = ["PDELTA_CODES", "MeasuredTest", "net_force"]
+
+PDELTA_CODES = {
+    1: "Feff provided (base moment over length)",
+    2: "shear provided",
+    3: "rotation of the axial ram decreases the shear",
+    4: "rotation of the axial ram increases the shear",
+}
+"""What the force column of a test means, by the P-Delta code of the database (manual, 3.3)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MeasuredTest:
+    """A measured history with its net horizontal force.
+
+    Attributes
+    ----------
+    name : str
+        Name of the test.
+    displacement : ndarray, shape (m,)
+        Displacement of the top of the equivalent cantilever, where the lateral force acts [m]; it
+        drives a column. One that was measured at another height is scaled by the heights.
+    force : ndarray, shape (m,)
+        Net horizontal force F_H [N], the lateral force of a model with P-Delta.
+    measured_displacement, measured_force : ndarray, shape (m,)
+        Columns of the file [m, N].
+    length : float
+        Length of the equivalent cantilever [m].
+    axial_load : float
+        Axial load, compression positive [N].
+    pdelta_code : int or None
+        Code by which `force` was found; None, where the report does not give it, is taken as 2.
+    axial_height : float
+        Height at which the axial load acts, at the hinge of its ram [m].
+    """
+
+    name: str
+    displacement: Array
+    force: Array
+    measured_displacement: Array
+    measured_force: Array
+    length: float
+    axial_load: float
+    pdelta_code: int | None
+    axial_height: float
+
+    @property
+    def height(self) -> float:
+        """The length, under the name it has in `rbsdem.Column` [m]."""
+        return self.length
+
+    @property
+    def drift(self) -> Array:
+        """Displacement over length, shape (m,)."""
+        return self.displacement / self.length
+
+    @property
+    def base_moment(self) -> Array:
+        """Moment at the base, with that of the axial load in the displaced position [N m].
+
+        F_H L + P d (L + L_top)/L, d at the top: exact where the axial load stays vertical.
+        """
+        lever = self.axial_height / self.length
+        return self.force * self.length + self.axial_load * lever * self.displacement
+
+
+def top_displacement(
+    displacement: ArrayLike, *, length: float, measured_length: float | None = None
+) -> Array:
+    """Return the displacement of the top from the measured one.
+
+    Parameters
+    ----------
+    displacement : array_like, shape (m,)
+        As in the file [m].
+    length : float
+        Of the equivalent cantilever [m].
+    measured_length : float, optional
+        Height at which the displacement was measured [m]; by default the length.
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        d L/L_meas [m], as in the manual's rules for P-Delta: the column stays straight above its
+        hinge.
+    """
+    d = _arguments.finite_vector(displacement, "displacement")
+    return d * (length / (measured_length or length))
+
+
+def net_force(
+    displacement: ArrayLike,
+    force: ArrayLike,
+    *,
+    code: int | None,
+    axial_load: float,
+    length: float,
+    measured_length: float | None = None,
+    top_length: float | None = None,
+    bottom_length: float | None = None,
+) -> Array:
+    """Return the net horizontal force from the force column of a test.
+
+    Parameters
+    ----------
+    displacement, force : array_like, shape (m,)
+        The history as in its file [m, N], the displacement where it was measured.
+    code : {1, 2, 3, 4} or None
+        P-Delta code of the test; None, where the report does not give it, is taken as 2.
+    axial_load : float
+        Compression positive [N].
+    length : float
+        Of the equivalent cantilever [m].
+    measured_length : float, optional
+        Height at which `displacement` was measured [m]; by default the length.
+    top_length, bottom_length : float, optional
+        From the column's ends to the hinges of the axial ram [m]; by default 0.
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        Net horizontal force F_H [N].
+
+    Raises
+    ------
+    InputError
+        If there is no such code, or if code 4 comes without `top_length`.
+
+    Notes
+    -----
+    Berry, Parrish and Eberhard (2004), PEER Structural Performance Database User's Manual, 3.3.
+    With F the force column, d the displacement, P the axial load: F_H = F - P d/L_meas (code 1), F
+    (code 2), F - P sin(atan(d (L + L_top)/L_meas/(L + L_top + L_bottom))) (code 3), F + P d/L_top
+    (code 4).
+    """
+    d = _arguments.finite_vector(displacement, "displacement")
+    f = _arguments.finite_vector(force, "force")
+    if d.shape != f.shape:
+        raise InputError(f"displacement has {d.size} rows, force {f.size}; they must be equal")
+    if code is not None:
+        code = _arguments.whole(code, "code")
+    axial_load, length = (
+        _arguments.number(axial_load, "axial_load"),
+        _arguments.number(length, "length"),
+    )
+    measured, top, bottom = (
+        default if value is None else _arguments.number(value, name)
+        for name, value, default in (
+            ("measured_length", measured_length, length),
+            ("top_length", top_length, 0.0),
+            ("bottom_length", bottom_length, 0.0),
+        )
+    )
+    measured = measured or length
+    if code in (None, 2):
+        return f.copy()
+    if code == 1:
+        return f - axial_load * d / measured
+    if code == 3:
+        whole = length + top + bottom
+        return f - axial_load * np.sin(np.arctan(d * (length + top) / measured / whole))
+    if code == 4:
+        if not top > 0:
+            raise InputError(
+                f"top_length = {top_length}: P-Delta code 4 needs the length from the top of the "
+                "column to the hinge of the axial ram"
+            )
+        return f + axial_load * d / top
+    known = ", ".join(f"{key} ({text})" for key, text in PDELTA_CODES.items())
+    raise InputError(f"P-Delta code {code!r} is not known; there are {known}, and None")

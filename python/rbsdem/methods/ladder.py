@@ -1,0 +1,299 @@
+"""The settings to try, from coarse to fine, within a budget of wall time."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time as clock
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rbsdem import _arguments
+from rbsdem.errors import InputError, RbsdemError
+from rbsdem.methods.answer import Run, Setting
+from rbsdem.methods.path import common_interval
+from rbsdem.methods.scene import Scene
+from rbsdem.model.column import Column
+from rbsdem.solve.analysis import METHODS, time_history
+from rbsdem.solve.methods import IMPLICIT
+from rbsdem.solve.methods import METHODS as FACTS
+
+#: Levels of kinematics, each with more physics than the one before.
+LEVELS = ("small", "pdelta", "finite")
+
+#: Rungs of a ladder: steps are halved, tolerances divided by ten.
+RK4_RUNGS, IMPLICIT_RUNGS, TOLERANCES = 7, 8, range(4, 11)
+
+#: Cost of a step of rk45 in steps of rk4; its longest stable step as a share of that of rk4; and
+#: the tolerance below which accuracy, not stability, limits the step.
+PAIR_COST, PAIR_SHARE, PAIR_TOLERANCE = 7 / 4, FACTS["rk45"].limit_share, 1e-8
+
+
+class Budget:
+    """Wall time that may be used.
+
+    Parameters
+    ----------
+    seconds : float
+        The whole budget [s].
+    """
+
+    def __init__(self, seconds: float) -> None:
+        self.seconds = seconds
+        self.begin = clock.perf_counter()
+
+    def used(self) -> float:
+        """Return the time used so far [s]."""
+        return clock.perf_counter() - self.begin
+
+    def left(self, share: float = 1.0) -> float:
+        """Return what is left of a share of the budget, counted from the start [s]."""
+        return share * self.seconds - self.used()
+
+
+@dataclass(frozen=True)
+class Probe:
+    """Costs and limits of a scene in time, from a first look at it.
+
+    Attributes
+    ----------
+    duration, interval : float
+        Time from the first to the last row of the loading, and between two rows [s].
+    regular : bool
+        Whether the interval divides all intervals of the loading.
+    limit : float
+        Longest stable step of rk4 [s].
+    explicit, implicit : float
+        Wall time of a step of rk4 and of an implicit step [s]; infinite if the method fails.
+    """
+
+    duration: float
+    interval: float
+    regular: bool
+    limit: float
+    explicit: float
+    implicit: float
+
+    def seconds(self, setting: Setting) -> float:
+        """Return an estimate of the wall time of a setting [s]."""
+        rows = self.duration / self.interval
+        if setting.method in ("auto", "rk45"):
+            tolerance = setting.tolerance or 1e-6
+            shortest = PAIR_SHARE * self.limit * min((tolerance / PAIR_TOLERANCE) ** 0.2, 1.0)
+            pair = PAIR_COST * self.explicit * max(self.duration / shortest, rows)
+            if setting.method == "rk45":
+                return pair
+            implicit = self.implicit * rows
+            return min(pair, implicit) if setting.kinematics == "finite" else implicit
+        step = self.explicit if setting.method == "rk4" else self.implicit
+        return step * self.duration / setting.dt if setting.dt else 0.0
+
+
+def probe(scene: Scene) -> Probe:
+    """Return limit of stability and cost of a step, from short runs.
+
+    Raises
+    ------
+    InputError
+        If the scene cannot be solved, as with an axial load above the critical one.
+    """
+    time = scene.time
+    interval, regular = common_interval(time)
+    level = scene.column.kinematics
+    first = _beginning(scene, min(1e-6 * interval, time[1] - time[0]))
+    keywords = first.keywords(Setting("rk4", level), scene.column)
+    limit = _stable_step(first, keywords)
+    steps = min(300.0, (time[-1] - time[0]) / (0.5 * limit))
+    short = _beginning(scene, 0.5 * limit * max(steps, 1.0))
+    explicit = _seconds(short, Setting("rk4", level, dt=0.5 * limit)) / max(steps, 1.0)
+    rows = min(100, time.size - 1)
+    short = _beginning(scene, float(time[rows] - time[0]))
+    try:
+        implicit = _seconds(short, Setting("newmark", level, dt=interval)) / rows
+    except RbsdemError:
+        implicit = math.inf
+    duration = float(time[-1] - time[0])
+    return Probe(duration, interval, regular, limit, explicit, implicit)
+
+
+def _stable_step(scene: Scene, keywords: dict[str, Any]) -> float:
+    return float(time_history(scene.column, scene.time, **keywords).summary["stable_step"])
+
+
+def _beginning(scene: Scene, duration: float) -> Scene:
+    """Return the first part of the scene, up to a duration [s]."""
+    end = min(scene.time[0] + duration, scene.time[-1])
+    kept = np.append(scene.time[scene.time < end], end)
+    loads = {name: np.interp(kept, scene.time, load) for name, load in scene.loads.items()}
+    return dataclasses.replace(scene, time=kept, loads=loads)
+
+
+def _seconds(scene: Scene, setting: Setting) -> float:
+    begin = clock.perf_counter()
+    scene.solve(setting)
+    return clock.perf_counter() - begin
+
+
+def dividing_steps(look: Probe, longest: float) -> Iterator[float]:
+    """Yield steps that divide the interval of the loading, each half of the one before.
+
+    If no interval divides all of the loading, the steps begin at the longest.
+    """
+    if look.regular:
+        parts = max(math.ceil(look.interval / longest * (1 - 1e-12)), 1)
+        while True:
+            yield look.interval / parts
+            parts *= 2
+    step = min(longest, look.interval)
+    while True:
+        yield step
+        step /= 2
+
+
+def ladders(scene: Scene, look: Probe | None, methods: Sequence[str]) -> list[list[Setting]]:
+    """Return the settings to try, a list for each family from coarse to fine.
+
+    Levels of kinematics below that of the column have a few settings each.
+    """
+    level = scene.column.kinematics
+    found = []
+    if scene.static:
+        parts = (0, 1, 2, 4, 8) if level == "finite" else (0, 1, 4)
+        found.append([Setting("static", level, parts=p) for p in parts])
+        lower = LEVELS[: LEVELS.index(level)]
+        return found + [[Setting("static", lower_level, parts=1)] for lower_level in lower]
+    found = _families(look, methods, level)
+    for lower_level in LEVELS[: LEVELS.index(level)]:
+        for family in _families(look, methods, lower_level):
+            if family[0].events == "located" or family[0].method in ("hht", "generalised_alpha"):
+                continue
+            # Every second of the coarse rungs: the error is soon that of the kinematics.
+            stable = [s for s in family if s.method != "rk4" or s.dt <= look.limit]
+            found.append(stable[1:6:2] if family[0].tolerance else stable[:5:2])
+    return found
+
+
+def _families(look: Probe, methods: Sequence[str], level: str) -> list[list[Setting]]:
+    found = []
+    if "rk4" in methods:
+        for events in ("step", "located"):
+            steps = dividing_steps(look, look.limit)
+            family = [
+                Setting("rk4", level, dt=next(steps), events=events) for _ in range(RK4_RUNGS)
+            ]
+            if events == "step" and look.regular and look.interval > family[0].dt:
+                # A step beyond the limit, to show what happens.
+                parts = int(0.8 * round(look.interval / family[0].dt))
+                family.insert(0, dataclasses.replace(family[0], dt=look.interval / max(parts, 1)))
+            found.append(family)
+    if "rk45" in methods:
+        found.append([Setting("rk45", level, tolerance=10.0**-e) for e in TOLERANCES])
+    if "auto" in methods:
+        found.append([Setting("auto", level)])
+    for method in IMPLICIT:
+        if method in methods:
+            steps = dividing_steps(look, look.interval)
+            found.append([Setting(method, level, dt=next(steps)) for _ in range(IMPLICIT_RUNGS)])
+    return found
+
+
+def own_setting(column: Column, given: Mapping[str, Any]) -> Setting:
+    """Return the setting that a user gives by the keywords of `time_history`.
+
+    Raises
+    ------
+    InputError
+        If a keyword does not belong to a setting.
+    """
+    known = ("method", "dt", "tolerance", "events", "rho_infinity")
+    for name in given:
+        if name not in known:
+            raise InputError(
+                f"trade: setting: {name!r} is not known; it is one of {', '.join(known)}"
+            )
+    fields = {"method": "rk4", **given}
+    if fields["method"] == "rk4":
+        fields.setdefault("events", "step")
+    return Setting(kinematics=column.kinematics, own=True, **fields)
+
+
+def checked_methods(methods: Sequence[str] | None) -> tuple[str, ...]:
+    """Return the methods to try; all of them if none is named.
+
+    Raises
+    ------
+    InputError
+        If a method is not known.
+    """
+    if methods is None:
+        return METHODS
+    wanted = (methods,) if isinstance(methods, str) else methods
+    wanted = tuple(_arguments.several(wanted, "trade: methods", "names"))
+    for method in wanted:
+        _arguments.choice(method, "trade: method", METHODS)
+    if not wanted:
+        raise InputError("trade: methods is empty; name one, or leave it out to try all")
+    return wanted
+
+
+def predicted(last: Run | None, setting: Setting, look: Probe | None) -> float:
+    """Return an estimate of the wall time of a setting [s], if possible from a coarser run."""
+    if last is None or not last.seconds > 0:
+        return 0.0 if look is None else look.seconds(setting)
+    if setting.dt and last.setting.dt:
+        return last.seconds * last.setting.dt / setting.dt
+    if setting.tolerance and last.setting.tolerance:
+        return last.seconds * (last.setting.tolerance / setting.tolerance) ** 0.2
+    if setting.parts and last.setting.parts:
+        return last.seconds * setting.parts / last.setting.parts
+    return last.seconds
+
+
+def too_expensive(cost: float, left: float) -> str:
+    """Return the reason for not running a setting."""
+    return f"would take about {cost:.2g} s; {max(left, 0):.2g} s of the budget are left for it"
+
+
+def climb(
+    scene: Scene,
+    families: list[list[Setting]],
+    look: Probe | None,
+    budget: Budget,
+    share: float,
+    repeats: int,
+    told: Callable[[str], None],
+) -> list[Run]:
+    """Run all families rung by rung, coarse settings first, as far as the budget allows.
+
+    The first setting of a family that is too expensive stands in the list with its reason; the
+    finer ones do not.
+    """
+    runs: dict[Setting, Run] = {}
+    last: dict[int, Run | None] = dict.fromkeys(range(len(families)))
+    ended: set[int] = set()
+    patience = share * budget.seconds / 40
+    for rung in range(max(map(len, families))):
+        for place, family in enumerate(families):
+            if rung >= len(family) or place in ended:
+                continue
+            setting = family[rung]
+            told(str(setting))
+            cost = predicted(last[place], setting, look)
+            if cost > budget.left(share):
+                reason = too_expensive(cost, budget.left(share))
+                runs[setting] = Run(setting, None, status="skipped", reason=reason)
+                ended.add(place)
+                continue
+            run = scene.run(setting, repeats, seconds=patience)
+            runs[setting] = run
+            if run.status == "refused":
+                # The first step of rk4 may be beyond the limit. Any other reason holds for finer
+                # steps too.
+                if setting.method != "rk4" or rung > 0:
+                    ended.add(place)
+            else:
+                last[place] = run
+    return [runs[setting] for family in families for setting in family if setting in runs]

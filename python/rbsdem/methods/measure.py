@@ -1,0 +1,195 @@
+"""The function `trade`: settings, reference and physics of one case, within a budget."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from rbsdem import _arguments
+from rbsdem.errors import InputError, SolveError
+from rbsdem.methods.answer import Run
+from rbsdem.methods.ladder import Budget, checked_methods, climb, ladders, own_setting, probe
+from rbsdem.methods.outcome import Trade
+from rbsdem.methods.physics import Physics, find_physics
+from rbsdem.methods.progress import telling
+from rbsdem.methods.reference import Reference, find_reference
+from rbsdem.methods.rows import Row, choose, make_rows, third_method
+from rbsdem.methods.scene import Scene, make_scene
+from rbsdem.model.column import Column
+from rbsdem.model.springs import Spring
+from rbsdem.motions.acting import acting
+from rbsdem.motions.motion import GroundMotion
+
+__all__ = ["trade"]
+
+#: Shares of the budget at which the settings, and then the reference, have to be done.
+SETTINGS_SHARE, REFERENCE_SHARE = 0.4, 0.75
+
+
+def trade(
+    column: Column,
+    time: ArrayLike | None = None,
+    *,
+    force: ArrayLike | None = None,
+    ground_acceleration: ArrayLike | GroundMotion | None = None,
+    displacement: ArrayLike | None = None,
+    vertical_acceleration: ArrayLike | GroundMotion | None = None,
+    axial_load: ArrayLike | None = None,
+    initial: Mapping[str, ArrayLike] | None = None,
+    methods: Sequence[str] | None = None,
+    setting: Mapping[str, Any] | None = None,
+    tolerance: float | None = None,
+    budget: float = 60.0,
+    digits: float = 8.0,
+    axial_spring: Spring | None = None,
+    collapse_drift: float | None = None,
+    repeats: int = 3,
+    progress: bool = False,
+) -> Trade:
+    """Measure what accuracy costs in a case, and which physics it needs.
+
+    The case is run over methods, steps or tolerances, ways of locating events and the levels of
+    kinematics up to that of the column. Each answer is compared with a reference on which two
+    methods agree. Then single parts of the model are switched off, or on. All runs are made in this
+    process, one after the other.
+
+    Parameters
+    ----------
+    column : Column
+        The column. Its kinematics are those of the reference.
+    time : array_like, shape (m,), optional
+        Times of the loading [s]. Without it and without a `GroundMotion` the path is static.
+    force : array_like, shape (m,), optional
+        Lateral force at the top [N]; without time it drives the static path.
+    ground_acceleration, vertical_acceleration : array_like or GroundMotion, optional
+        Accelerations of the ground [m/s2], shape (m,).
+    axial_load : array_like, shape (m,), optional
+        Axial load, in addition to that of the column [N].
+    initial : mapping, optional
+        State at the start, as for `rbsdem.time_history`.
+    displacement : array_like, shape (m,), optional
+        Displacement of the top that drives a static path [m]; the response is then the force.
+    methods : sequence of str, optional
+        The methods in time to try; by default all of them.
+    setting : mapping, optional
+        A further setting to measure: "method", "dt", "tolerance", "events", "rho_infinity" as for
+        `rbsdem.time_history`.
+    tolerance : float, optional
+        Relative error allowed. The cheapest setting within it is named, and a part of the model
+        matters if it changes the answer by more.
+    budget : float, optional
+        Wall time [s]. A run that would not fit is left out, and the table says so; a run that has
+        begun is finished.
+    digits : float, optional
+        Digits to which the two methods of the reference should agree.
+    axial_spring : Spring, optional
+        Axial spring of the joints. If the joints of the column do not open, it shows whether
+        their opening matters.
+    collapse_drift : float, optional
+        As for `rbsdem.time_history`.
+    repeats : int, optional
+        Runs of each setting; the median of their wall times counts. Very short runs are repeated
+        more often, long ones less.
+    progress : bool, optional
+        Show the progress on stderr; needs rich.
+
+    Returns
+    -------
+    Trade
+        Tables, figure and choice.
+
+    Raises
+    ------
+    InputError
+        For bad input, also where no setting can solve the case.
+    SolveError
+        If every setting fails.
+    ImportError
+        If progress is asked for without rich.
+    """
+    _check(tolerance, budget, digits, repeats)
+    wanted = checked_methods(methods)
+    if axial_spring is not None and not isinstance(axial_spring, Spring):
+        raise InputError(f"trade: axial_spring = {axial_spring!r} must be a spring")
+    loads = {
+        "displacement": displacement,
+        "force": force,
+        "ground_acceleration": ground_acceleration,
+        "vertical_acceleration": vertical_acceleration,
+        "axial_load": axial_load,
+    }
+    time, loads = acting(time, loads, "trade")
+    scene = make_scene(column, time, loads, initial, collapse_drift)
+    clock = Budget(budget)
+    with _telling(progress, clock) as told:
+        told("first look")
+        look = None if scene.static else probe(scene)
+        families = ladders(scene, look, wanted)
+        if setting is not None and not scene.static:
+            families.insert(0, [own_setting(column, setting)])
+        runs = climb(scene, families, look, clock, SETTINGS_SHARE, repeats, told)
+        _need_one(runs)
+        reference = find_reference(scene, look, runs, clock, REFERENCE_SHARE, digits, told)
+        known = reference if isinstance(reference, Reference) else None
+        physics = find_physics(scene, look, known, runs, clock, tolerance, axial_spring, told)
+    notes = [f"reference: {reference}"] if known is None else []
+    if isinstance(physics, str):
+        notes.append(f"physics: {physics}")
+    rows = make_rows(runs, known)
+    return Trade(
+        rows,
+        known,
+        None if tolerance is None else choose(rows, runs, tolerance),
+        physics if isinstance(physics, Physics) else None,
+        scene.response_name,
+        clock.used(),
+        budget,
+        tuple(notes + _notes(scene, rows, known)),
+    )
+
+
+def _check(tolerance: float | None, budget: float, digits: float, repeats: int) -> None:
+    if tolerance is not None and not 0 < _arguments.number(tolerance, "trade: tolerance") < 1:
+        raise InputError(f"trade: tolerance = {tolerance!r} must be above 0 and below 1")
+    if not 0 < _arguments.number(budget, "trade: budget") < math.inf:
+        raise InputError(f"trade: budget = {budget!r} must be a positive number of seconds")
+    if not 0 < _arguments.number(digits, "trade: digits") <= 15:
+        raise InputError(f"trade: digits = {digits!r} must be above 0 and at most 15")
+    if _arguments.whole(repeats, "trade: repeats") < 1:
+        raise InputError(f"trade: repeats = {repeats!r} must be a whole number, 1 or more")
+
+
+def _telling(progress: bool, clock: Budget) -> AbstractContextManager[Callable[[str], None]]:
+    wanted = _arguments.switch(progress, "trade: progress")
+    return telling(clock) if wanted else nullcontext(lambda text: None)
+
+
+def _need_one(runs: Sequence[Run]) -> None:
+    """Raise the error of the last run if no setting has an answer."""
+    if any(run.answer is not None for run in runs):
+        return
+    for status, error in (("failed", SolveError), ("refused", InputError)):
+        for run in reversed(runs):
+            if run.status == status:
+                raise error(f"trade: no setting solves the case; {run.setting}: {run.reason}")
+    raise InputError(f"trade: the budget is too small for any setting; {runs[0].reason}")
+
+
+def _notes(scene: Scene, rows: Sequence[Row], reference: Reference | None) -> list[str]:
+    """Return remarks that the table does not show."""
+    notes = []
+    third = third_method(rows, reference)
+    if third is not None:
+        notes.append(
+            f"a method of another kind, {third.setting}, comes to within {third.error:.1e} of the "
+            "reference"
+        )
+    if any(row.status == "skipped" for row in rows):
+        notes.append("some settings did not fit into the budget; a larger one tries them")
+    if scene.static and scene.column.kinematics != "finite":
+        notes.append("the static path is exact; errors come from the points that are left out")
+    return notes

@@ -1,0 +1,318 @@
+"""Which parts of the model matter: the answer with one part switched on or off."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from rbsdem.errors import InputError
+from rbsdem.methods.answer import Answer, Run, Setting, errors_of
+from rbsdem.methods.ladder import LEVELS, Budget, Probe, predicted, too_expensive
+from rbsdem.methods.reference import Reference
+from rbsdem.methods.scene import VERTICAL, Scene
+from rbsdem.model.column import Column, without_notes
+from rbsdem.model.damping import Damping
+from rbsdem.model.springs import Spring
+from rbsdem.solve.methods import IMPLICIT
+
+#: Share of the rotary inertia that stays when it is taken off: a body without any has no equation
+#: of motion.
+LITTLE_INERTIA = 0.01
+
+#: Changes larger than this matter if the user gives no tolerance.
+USUAL_TOLERANCE = 0.01
+
+#: Cost of twice the bodies: twice the work of a step, and a stable step of less than half.
+TWICE_THE_BODIES = 6
+
+#: How often short runs are repeated for their wall times.
+REPEATS = 3
+
+#: Tolerance of rk45 for the comparisons.
+FINE = 1e-8
+
+
+@dataclass(frozen=True)
+class Effect:
+    """The change of the answer by one part of the model.
+
+    Attributes
+    ----------
+    part : str
+        The part that was changed.
+    peak, moment, energy : float
+        Relative change of the peak response, of the peak base moment and of the energy that springs
+        and damping have taken by the end (the last relative to its largest value).
+    residual : float
+        Change of the response at the end over the peak response.
+    history : float
+        Root mean square change of the response over its peak.
+    time_ratio : float
+        Wall time over that of the model as given.
+    status, reason : str
+        As for a setting.
+    matters : bool or None
+        Whether peak, moment, energy or residual changes by more than the tolerance; None if the
+        comparison could not be made.
+    """
+
+    part: str
+    peak: float = math.nan
+    residual: float = math.nan
+    moment: float = math.nan
+    energy: float = math.nan
+    history: float = math.nan
+    time_ratio: float = math.nan
+    status: str = "completed"
+    reason: str = ""
+    matters: bool | None = None
+
+    @property
+    def largest(self) -> float:
+        """Largest of the absolute changes of peak, residual, moment and energy."""
+        return max(abs(self.peak), abs(self.residual), abs(self.moment), abs(self.energy))
+
+
+@dataclass(frozen=True)
+class Physics:
+    """All effects, and the setting they were computed with.
+
+    Attributes
+    ----------
+    effects : tuple of Effect
+        One for each part of the model.
+    setting : str
+        The setting of all runs.
+    resolution : float
+        Error of that setting; smaller changes mean nothing.
+    tolerance : float
+        Changes larger than this matter.
+    """
+
+    effects: tuple[Effect, ...]
+    setting: str
+    resolution: float
+    tolerance: float
+
+
+class Variant(NamedTuple):
+    """A model with one part changed: its name, how to make it, a load that is left out."""
+
+    name: str
+    make: Callable[[], Column]
+    without: str = ""
+
+
+def split_bodies(column: Column) -> Column:
+    """Return the column with every body cut in two and the same flexibility.
+
+    The flexibility of each joint is shared by the joint at the bottom of its body and a new one at
+    half of the body's height. Each has springs of twice the stiffness and half the deformations, so
+    that both together slip, rotate and open under a given force as the one did. What changes is the
+    place along the height where the column rotates.
+    """
+
+    def twice(values: object) -> list | None:
+        return None if values is None else [v / 2 for v in values for _ in range(2)]
+
+    def springs(given: object) -> object:
+        if given is None:
+            return None
+        if isinstance(given, Spring):
+            return given.split(2)
+        return [spring.split(2) for spring in given for _ in range(2)]
+
+    return dataclasses.replace(
+        column,
+        n=2 * column.n,
+        lengths=twice(column.lengths),
+        masses=twice(column.masses),
+        rotary_inertia=_halves_inertia(column),
+        shear=springs(column.shear),
+        flexure=springs(column.flexure),
+        axial_spring=springs(column.axial_spring),
+    )
+
+
+def _halves_inertia(column: Column) -> list[float] | None:
+    """Return rotary inertias of the half bodies about their centroids; two make the given one."""
+    if column.rotary_inertia is None:
+        return None
+    n = column.n
+    lengths, masses = bodies(column)
+    given = list(column.rotary_inertia)
+    given = given * n if len(given) == 1 else given
+    # Two masses m/2, each l/4 from the middle; very compact bodies keep the share of a rod.
+    halves = [
+        max(0.5 * inertia - m * length**2 / 32, inertia / 8)
+        for inertia, m, length in zip(given, masses, lengths, strict=True)
+    ]
+    return [half for half in halves for _ in range(2)]
+
+
+def bodies(column: Column) -> tuple[list[float], list[float]]:
+    """Return lengths [m] and masses [kg] of the bodies."""
+    n = column.n
+    lengths = list(column.lengths or [column.height / n] * n)
+    masses = column.masses or [column.mass * length / column.height for length in lengths]
+    return lengths, list(masses)
+
+
+def _little_inertia(column: Column) -> Column:
+    lengths, masses = bodies(column)
+    depth = column.depth
+    given = column.rotary_inertia or [
+        m * (length**2 + depth**2) / 12 for m, length in zip(masses, lengths, strict=True)
+    ]
+    few = [LITTLE_INERTIA * value for value in given]
+    return dataclasses.replace(column, rotary_inertia=few, depth=0.0, top_inertia=0.0)
+
+
+def variants(scene: Scene, axial: Spring | None) -> Iterator[Variant]:
+    """Yield the models to compare with; each has one part changed."""
+    column, moving = scene.column, not scene.static
+    straight = {"axial_follows": False, "force_follows": False}
+    switches: list[tuple[object, str, dict[str, object]]] = [
+        (column.axial_load, "no axial load", {"axial_load": 0.0}),
+        (column.self_weight, "no self-weight", {"self_weight": False}),
+        (any(getattr(column, name) for name in straight), "loads keep direction", straight),
+        (column.axial_spring, "joints do not open", {"axial_spring": None}),
+        (axial and not column.axial_spring, "joints open", {"axial_spring": axial}),
+        (moving and column.top_mass, "no top mass", {"top_mass": 0.0, "top_inertia": 0.0}),
+        (moving and column.top_inertia, "no inertia of top", {"top_inertia": 0.0}),
+        (moving and column.depth, "bodies without depth", {"depth": 0.0}),
+        (moving and column.damping, "no damping", {"damping": None}),
+    ]
+    for level in LEVELS:
+        if level != column.kinematics:
+            yield Variant(f"kinematics {level}", _replacing(column, {"kinematics": level}))
+    for there, name, fields in switches:
+        if there:
+            yield Variant(name, _replacing(column, fields))
+    for name in VERTICAL:
+        if name in scene.loads:
+            yield Variant(f"no {name}", lambda: column, name)
+    if moving:
+        yield Variant(f"rotary inertia x {LITTLE_INERTIA:g}", lambda: _little_inertia(column))
+        if isinstance(column.damping, Damping) and column.damping.stiffness:
+            tangent = not column.damping.tangent
+            other = dataclasses.replace(column.damping, tangent=tangent)
+            name = f"damping of {'tangent' if tangent else 'initial'} stiffness"
+            yield Variant(name, _replacing(column, {"damping": other}))
+    if column.top == "free" and column.footing is None:
+        yield Variant(f"{2 * column.n} bodies", lambda: split_bodies(column))
+
+
+def _replacing(column: Column, fields: dict[str, object]) -> Callable[[], Column]:
+    return lambda: dataclasses.replace(column, **fields)
+
+
+def find_physics(
+    scene: Scene,
+    look: Probe | None,
+    reference: Reference | None,
+    runs: list[Run],
+    budget: Budget,
+    tolerance: float | None,
+    axial: Spring | None,
+    told: Callable[[str], None],
+) -> Physics | str:
+    """Return the effect of each part of the model, or the reason why it is not known."""
+    several = list(variants(scene, axial))
+    weight = len(several) + TWICE_THE_BODIES + 1
+    base = _base(scene, look, reference, runs, budget.left() / weight)
+    if isinstance(base, str):
+        return base
+    resolution = math.nan
+    if reference is not None:
+        resolution = max(errors_of(base.answer, reference.answer).largest, reference.resolution)
+    limit = USUAL_TOLERANCE if tolerance is None else tolerance
+    effects = []
+    for variant in several:
+        told(f"physics: {variant.name}")
+        effects.append(_effect(scene, variant, base, look, budget, limit))
+    return Physics(tuple(effects), str(base.setting), resolution, limit)
+
+
+def _base(
+    scene: Scene, look: Probe | None, reference: Reference | None, runs: list[Run], seconds: float
+) -> Run | str:
+    """Return the run of the model as given, with which the others are compared.
+
+    A fine run if the budget allows it, else the most accurate one that it allows. A method that
+    chooses its step is preferred: a fixed step may be too long for a variant.
+    """
+    level = scene.column.kinematics
+    if scene.static:
+        fine = Setting("static", level, parts=4 if level == "finite" else 1)
+    else:
+        fine = Setting("rk45", level, tolerance=FINE)
+    if predicted(None, fine, look) < seconds:
+        run = scene.run(fine, REPEATS, seconds=seconds / REPEATS)
+        if run.answer is not None:
+            return run
+    done = [run for run in runs if run.answer is not None and run.setting.kinematics == level]
+    done = [run for run in done if run.seconds < seconds]
+    # An implicit step suits any variant; a fixed explicit step may be beyond the limit.
+    for methods in (("rk45",), IMPLICIT, ("rk4", "static", "auto")):
+        able = [run for run in done if run.setting.method in methods]
+        if able and reference is not None:
+            return min(able, key=lambda run: errors_of(run.answer, reference.answer).largest)
+        if able:
+            return able[-1]
+    return "the budget allows no setting for the comparisons; give more of it"
+
+
+def _effect(
+    scene: Scene,
+    variant: Variant,
+    base: Run,
+    look: Probe | None,
+    budget: Budget,
+    tolerance: float,
+) -> Effect:
+    """Return the effect of one change of the model."""
+    try:
+        with without_notes():
+            column = variant.make()
+    except InputError as error:
+        return Effect(variant.name, status="refused", reason=str(error))
+    loads = {load: values for load, values in scene.loads.items() if load != variant.without}
+    other = dataclasses.replace(scene, loads=loads)
+    setting = dataclasses.replace(base.setting, kinematics=column.kinematics)
+    cost = base.seconds if setting.method == base.setting.method else look.seconds(setting)
+    if column.n > scene.column.n:
+        cost *= TWICE_THE_BODIES
+    if cost > budget.left():
+        return Effect(variant.name, status="skipped", reason=too_expensive(cost, budget.left()))
+    run = other.run(setting, REPEATS, column, base.seconds)
+    while run.status == "refused" and setting.method == "rk4" and setting.dt > base.setting.dt / 64:
+        # The step is beyond the stability limit of this model.
+        setting = dataclasses.replace(setting, dt=setting.dt / 2)
+        run = other.run(setting, REPEATS, column, base.seconds)
+    if run.answer is None:
+        return Effect(variant.name, status=run.status, reason=run.reason)
+    return _compare(variant.name, run, base, tolerance)
+
+
+def _compare(name: str, run: Run, base: Run, tolerance: float) -> Effect:
+    old, new = base.answer, run.answer
+
+    def change(quantity: Callable[[Answer], float], scale: float) -> float:
+        return (quantity(new) - quantity(old)) / scale if scale > 0 else 0.0
+
+    effect = Effect(
+        name,
+        peak=change(lambda a: a.peak, old.peak),
+        residual=change(lambda a: a.residual, old.peak),
+        moment=change(lambda a: a.peak_moment, old.peak_moment),
+        energy=change(lambda a: a.energy, old.largest_energy),
+        history=errors_of(new, old).response_rms,
+        time_ratio=run.seconds / base.seconds,
+        status=run.status,
+    )
+    ends = new.response.size == old.response.size
+    return dataclasses.replace(effect, matters=bool(effect.largest > tolerance or not ends))

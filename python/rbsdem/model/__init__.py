@@ -1,0 +1,1 @@
+"""Drawing, springs, column: data and checks."""

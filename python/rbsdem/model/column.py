@@ -1,0 +1,405 @@
+"""The column: rigid bodies joined by springs."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from numpy.typing import ArrayLike
+
+from rbsdem import _arguments, _core
+from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.model.damping import Damping
+from rbsdem.model.footing import Footing
+from rbsdem.model.springs import Layered, Spring, classes_for, layer_springs, whole_column
+from rbsdem.model.strains import Gauge
+
+#: Standard acceleration of gravity [m/s2].
+STANDARD_GRAVITY = 9.80665
+
+#: Levels of kinematics.
+Kinematics = Literal["small", "pdelta", "finite"]
+
+#: What the top of a column can do.
+Top = Literal["free", "fixed"]
+
+#: Whether notes on new columns are told. A context variable, as columns are made in threads too.
+_TELLING: ContextVar[bool] = ContextVar("_TELLING", default=True)
+
+_NUMBERS = (
+    "height",
+    "axial_load",
+    "axial_force_ratio",
+    "gravity",
+    "top_mass",
+    "top_inertia",
+    "depth",
+)
+_SWITCHES = ("self_weight", "axial_follows", "force_follows")
+#: Bodies of a column at the most.
+MOST_BODIES: int = next(
+    key["most"] for key in _core.keys()["groups"]["column"] if key["name"] == "n"
+)
+_PLACES = ("shear", "flexure", "axial_spring")
+_LISTS = ("lengths", "masses", "rotary_inertia")
+
+
+@contextmanager
+def without_notes() -> Iterator[None]:
+    """Make columns without a word on what does nothing in them, where that is known and meant."""
+    token = _TELLING.set(False)
+    try:
+        yield
+    finally:
+        _TELLING.reset(token)
+
+
+@dataclass(frozen=True, repr=False)
+class Column:
+    """A column of `n` rigid bodies on `n` joints; joint i is at the bottom of body i.
+
+    Its ends may be others than a rigid ground and a free top. Where the top is fixed against
+    rotation there is one joint more, n + 1, between the last body and what holds it. A footing
+    stands on a joint of its own, joint 0.
+
+    Parameters
+    ----------
+    height : float
+        Height of the column [m].
+    mass : float or None
+        Mass of the column [kg], spread in proportion to the lengths; None if `masses` are given.
+    shear, flexure : Spring or sequence of Spring
+        Springs of the joints: one for every joint, or one for each from joint 1 up (n of them, or
+        n + 1 with a fixed top).
+    n : int, optional
+        Number of bodies, up to 10000.
+    axial_load : float, optional
+        Axial load at the top, compression positive [N]. It acts with `kinematics` "pdelta" and
+        "finite", and at every level on axial springs and layered joints.
+    axial_force_ratio : float, optional
+        How the axial load follows the lateral force F on a static path, N = axial_load + ratio F,
+        as in an exterior column of a frame; positive where a push to +x compresses the column.
+    axial_height : float, optional
+        Height at which the axial load acts [m], by default that of the column. The load leans with
+        the column: its second-order moments are in proportion to this height. `kinematics`
+        "pdelta" only.
+    kinematics : {"small", "pdelta", "finite"}, optional
+        "small" is linear in slips and rotations (paper, eqs 1-3, 5); "pdelta" adds the second-order
+        work of the axial load; "finite" has exact rotations (paper, eq 4 corrected, for any n).
+    lengths, masses : array_like, shape (n,), optional
+        Lengths [m], adding up to the height, and masses [kg] of the bodies.
+    self_weight : bool, optional
+        Whether the weight of the bodies acts too.
+    gravity : float, optional
+        Acceleration of gravity for the weight [m/s2].
+    axial_spring : Spring or sequence of Spring, optional
+        Axial springs of the joints, opening and tension positive: `Elastic`, `Bilinear` or
+        `Compression`. Without them the joints do not open.
+    top_mass, top_inertia : float, optional
+        Mass lumped at the top [kg] and its rotary inertia about the top [kg m2]. Its weight must be
+        part of `axial_load`.
+    depth : float, optional
+        Depth of the section [m]; it adds m depth^2/12 to the rotary inertia of every body.
+    rotary_inertia : float or array_like, shape (n,), optional
+        Rotary inertia of the bodies about their centroids [kg m2], one value for all or one for
+        each, in place of m (l^2 + depth^2)/12.
+    axial_follows, force_follows : bool, optional
+        Whether the axial load, and the lateral force, turn with the top body; `kinematics` "finite"
+        only.
+    damping : float or Damping, optional
+        Viscous damping; a number is the damping ratio of every mode.
+    top : {"free", "fixed"}, optional
+        "fixed" holds the top against rotation, while it moves along and down: a column in double
+        curvature. `height` is then the whole length between the two ends, and a dynamic analysis
+        needs a `top_mass`.
+    footing : Footing, optional
+        A footing on springs, between the ground and the column.
+    model : str, optional
+        The model that made the column and the version of its parameters ("layered 2026.2"). It has
+        no effect on the analysis.
+
+    Raises
+    ------
+    InputError
+        With a line for everything that is wrong.
+
+    Warns
+    -----
+    AccuracyWarning
+        If the axial load or the weight does nothing with `kinematics` "small", or if a mass at the
+        top has no weight because the axial load is zero.
+    """
+
+    height: float
+    mass: float | None
+    shear: Spring | Sequence[Spring]
+    flexure: Spring | Sequence[Spring]
+    n: int = 1
+    axial_load: float = 0.0
+    kinematics: Kinematics = "small"
+    lengths: ArrayLike | None = None
+    masses: ArrayLike | None = None
+    self_weight: bool = False
+    gravity: float = STANDARD_GRAVITY
+    axial_spring: Spring | Sequence[Spring] | None = None
+    top_mass: float = 0.0
+    top_inertia: float = 0.0
+    depth: float = 0.0
+    rotary_inertia: ArrayLike | None = None
+    axial_follows: bool = False
+    force_follows: bool = False
+    damping: float | Damping | None = None
+    axial_height: float | None = None
+    axial_force_ratio: float = 0.0
+    model: str = ""
+    top: Top = "free"
+    footing: Footing | None = None
+
+    def __post_init__(self) -> None:
+        def put(name: str, value: Any) -> None:
+            object.__setattr__(self, name, value)
+
+        put("n", _arguments.whole(self.n, "column: n"))
+        for name in _NUMBERS:
+            put(name, _arguments.number(getattr(self, name), f"column: {name}"))
+        for name in _SWITCHES:
+            put(name, _arguments.switch(getattr(self, name), f"column: {name}"))
+        if self.mass is not None:
+            put("mass", _arguments.number(self.mass, "column: mass"))
+        if self.axial_height is not None:
+            put("axial_height", _arguments.number(self.axial_height, "column: axial_height"))
+        for name in _LISTS:
+            if getattr(self, name) is not None:
+                put(name, _parts(getattr(self, name), name))
+        if self.footing is not None:
+            _arguments.instance(self.footing, "column: footing", Footing)
+        for name in ("kinematics", "model", "top"):
+            _arguments.text(getattr(self, name), f"column: {name}")
+        joints = self.n + (self.top == "fixed")
+        put("shear", _springs(self.shear, "shear", joints))
+        put("flexure", _springs(self.flexure, "flexure", joints))
+        if self.axial_spring is not None:
+            put("axial_spring", _springs(self.axial_spring, "axial_spring", joints))
+        for name in ("shear", "flexure"):
+            _refuse_whole(getattr(self, name), name, joints)
+        if self.damping is not None and not isinstance(self.damping, Damping):
+            put("damping", Damping(modal=_arguments.number(self.damping, "column: damping")))
+        # Once for all analyses, as a frozen column does not change.
+        put("_statement", self._state())
+        notes = _core.check_column(self._statement)
+        for note in notes if _TELLING.get() else ():
+            warnings.warn(note, AccuracyWarning, stacklevel=4)
+
+    def __repr__(self) -> str:
+        kinds = [type(spring).__name__ for spring in dict.fromkeys(self.joints("flexure"))]
+        return (
+            f"Column(height={self.height:g}, n={self.n}, kinematics={self.kinematics!r}, "
+            f"axial_load={self.axial_load:g}, flexure: {', '.join(dict.fromkeys(kinds))})"
+        )
+
+    @property
+    def unknowns(self) -> int:
+        """Number of joint deformations: two a joint, or three where the joints open."""
+        return (2 if self.axial_spring is None else 3) * len(self.joint_numbers)
+
+    @property
+    def joint_numbers(self) -> range:
+        """Numbers of the joints from the ground up, as the columns of a result hold them.
+
+        They are 1 to n; 0 comes before them where the column stands on a footing, n + 1 after them
+        where the top is fixed.
+        """
+        return range(int(self.footing is None), self.n + 1 + (self.top == "fixed"))
+
+    @property
+    def _prismatic(self) -> bool:
+        """Whether its sections are to stay the same way up at both ends of a double curvature."""
+        return False
+
+    @property
+    def opens(self) -> bool:
+        """Whether the joints have axial springs and open."""
+        return self.axial_spring is not None
+
+    @property
+    def damped(self) -> bool:
+        """Whether the column has viscous damping."""
+        return isinstance(self.damping, Damping) and self.damping.acts
+
+    def place_of(self, joint: int) -> int:
+        """Return the column of a joint in the arrays of a result.
+
+        Parameters
+        ----------
+        joint : int
+            One of `joint_numbers`.
+
+        Raises
+        ------
+        InputError
+            If there is no such joint.
+        """
+        numbers = self.joint_numbers
+        if _arguments.whole(joint, "joint") not in numbers:
+            last = f"n = {self.n}" if self.top == "free" else f"n + 1 = {self.n + 1}"
+            raise InputError(f"joint = {joint} must be from {numbers[0]} to {last}")
+        return numbers.index(joint)
+
+    def joints(self, name: Literal["shear", "flexure", "axial_spring"]) -> tuple[Spring, ...]:
+        """Return the springs of one kind, one for each of `joint_numbers`.
+
+        Parameters
+        ----------
+        name : {"shear", "flexure", "axial_spring"}
+            Which springs. Without axial springs the result for them is empty.
+        """
+        springs = getattr(self, _arguments.choice(name, "joints: name", _PLACES))
+        if springs is None:
+            return ()
+        if isinstance(springs, Spring):
+            springs = (springs,) * (self.n + (self.top == "fixed"))
+        beneath = () if self.footing is None else (getattr(self.footing, name),)
+        return (*beneath, *springs)
+
+    def gauge(self, joint: int) -> Gauge | None:
+        """Return what the layers of a joint stand for, and over which lengths; None if not known.
+
+        It is known of the hinge of a column that was made from its drawing.
+
+        Parameters
+        ----------
+        joint : int
+            The joint, from 1 at the ground to n.
+        """
+        return None
+
+    def to_namelist(self) -> str:
+        """Return the column as groups of a case file, from which the same column comes back."""
+        return _core.to_namelist(self._groups())
+
+    def _groups(self) -> _core.Statement:
+        """Return all that a case file has of the column."""
+        return self._statement
+
+    def _state(self) -> _core.Statement:
+        """Return the keys of the column, as the groups of a case file."""
+        own: dict[str, Any] = {"n": self.n, "kinematics": str(self.kinematics)}
+        own |= {name: getattr(self, name) for name in (*_NUMBERS, "mass", "axial_height", *_LISTS)}
+        own |= {name: True for name in _SWITCHES if getattr(self, name)}
+        own |= {"model": _core.Text(self.model)} if self.model else {}
+        own |= {"top": str(self.top)} if self.top != "free" else {}
+        own |= self.footing.keys() if self.footing is not None else {}
+        parts = [_core.group("column", own)]
+        if self.damping is not None:
+            parts.append(self.damping.statement())
+        ids: dict[Spring, int] = {}
+        for name in ("shear", "flexure", "axial_spring"):
+            beneath = None if self.footing is None else getattr(self.footing, name)
+            parts += _springs_statement(getattr(self, name), beneath, name, ids)
+        if ids:
+            parts.append(layer_springs(ids))
+        numbers = [number for part in parts for number in part.numbers]
+        return _core.Statement("\n".join(part.text for part in parts), numbers)
+
+
+def _springs_statement(
+    springs: Spring | Sequence[Spring] | None,
+    beneath: Spring | None,
+    name: str,
+    ids: dict[Spring, int],
+) -> Iterator[_core.Statement]:
+    """Yield the springs of one kind, equal springs once, with the joints that have them."""
+    stated: list[tuple[Spring, dict[str, Any]]] = []
+    if beneath is not None:
+        stated.append((beneath, {"joint": [0]}))
+    if isinstance(springs, Spring):
+        stated.append((springs, {}))
+    elif springs is not None:
+        joints: dict[Spring, list[int]] = {}
+        for number, spring in enumerate(springs, 1):
+            joints.setdefault(spring, []).append(number)
+        stated += [(spring, {"joint": numbers}) for spring, numbers in joints.items()]
+    for spring, place in stated:
+        yield spring.statement(name, **place)
+        if isinstance(spring, Layered):
+            yield spring.layers_statement(ids, **place)
+
+
+def _parts(values: ArrayLike, name: str) -> tuple[float, ...]:
+    """Return one number for each body; for rotary inertia one number for all is allowed."""
+    shape = "1 or m" if name == "rotary_inertia" else "m"
+    parts = _arguments.vector(values, f"column: {name}", shape=shape)
+    if parts.size == 0:
+        raise InputError(f"column: {name} is empty; give one for each of the n bodies")
+    return tuple(parts.tolist())
+
+
+def _refuse_whole(springs: Spring | Sequence[Spring], name: str, n: int) -> None:
+    """Refuse springs of a whole column in the wrong place, or in several joints."""
+    joints = (springs,) if isinstance(springs, Spring) else springs
+    places = [place for place in map(whole_column, joints) if place]
+    number = len(places) * (n if isinstance(springs, Spring) else 1)
+    for place in places:
+        if place != name:
+            raise InputError(
+                f"column: {name} is the {place} spring of a section; give it as {place}="
+            )
+    if number > 1:
+        split = f", or give {name}.split({n})" if name == "shear" else ""
+        raise InputError(
+            f"column: {name} is the spring of a whole column, from section.springs, but stands in "
+            f"{number} joints; section.column(height, axial_load=..., model='paper', n={n}) "
+            f"shares it among them{split}"
+        )
+
+
+def _springs(springs: Any, name: str, n: int) -> Spring | tuple[Spring, ...]:
+    """Return one spring if all joints have equal ones, otherwise a tuple of springs."""
+    if isinstance(springs, Spring):
+        return springs
+    try:
+        several = tuple(springs)
+    except Exception:  # Of any class of the caller.
+        several = (springs,)
+    for spring in several:
+        if not isinstance(spring, Spring):
+            names = ", ".join(classes_for("axial" if name == "axial_spring" else name))
+            raise InputError(
+                f"column: {name} = {_arguments.shown(spring)} must be a spring ({names}) or a "
+                "sequence of them"
+            )
+    if not several:
+        raise InputError(f"column: {name} is empty; give one spring, or one for each joint")
+    if len(several) != n and n > 0:
+        raise InputError(
+            f"column: {name} has {len(several)} springs for n = {n} joints; "
+            "give one, or one for each joint"
+        )
+    if all(spring == several[0] for spring in several[1:]):
+        return several[0]
+    return several
+
+
+def checked_column(column: object, who: str = "") -> Column:
+    """Return a column, or raise `InputError` with what makes one.
+
+    Parameters
+    ----------
+    column : object
+        What was given as a column.
+    who : str, optional
+        What the message starts with.
+    """
+    if isinstance(column, Column):
+        return column
+    given = _arguments.shown(column)
+    remedy = ""
+    if hasattr(column, "column"):
+        remedy = "; its method column(height, axial_load=...) makes one"
+    elif hasattr(column, "flexure") and hasattr(column, "shear"):
+        remedy = "; Column(height, mass, springs.shear, springs.flexure) makes one of springs"
+    raise InputError(f"{who}column = {given} must be a Column{remedy}")

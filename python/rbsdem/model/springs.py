@@ -1,0 +1,741 @@
+"""Joint springs: a rule and its parameters.
+
+Deformation and force are slip [m] and shear [N], or rotation [rad] and moment [N m]; the units
+below are those of a shear spring.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import MISSING, dataclass, fields, replace
+from functools import cache
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rbsdem import _arguments, _core
+from rbsdem._arguments import Array
+from rbsdem.errors import InputError
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+
+AnySpring = TypeVar("AnySpring", bound="Spring")
+
+#: Classes of springs by the name of their rule.
+SPRINGS: dict[str, type[Spring]] = {}
+
+LandmarkName = Literal["cracking", "yield", "cap"]
+
+_SIDES: tuple[Literal[1, -1], ...] = (1, -1)
+
+
+class Landmark(NamedTuple):
+    """A point of the virgin curve of a spring that limit states are told by.
+
+    Attributes
+    ----------
+    name : str
+        "cracking", where the first line ends before yield; "yield"; or "cap", from which on the
+        force falls.
+    side : int
+        1, or -1 for negative deformations.
+    deformation : float
+        In size, above 0 [m or rad].
+    source : str
+        The parameters that it follows from.
+    """
+
+    name: LandmarkName
+    side: Literal[1, -1]
+    deformation: float
+    source: str
+
+
+@dataclass(frozen=True)
+class Spring:
+    """Base of all springs."""
+
+    #: Name of the rule in the Fortran part.
+    rule: ClassVar[str] = ""
+
+    def __init_subclass__(cls) -> None:
+        """Enter the class in the list of springs under its rule."""
+        SPRINGS[cls.rule] = cls
+
+    def __post_init__(self) -> None:
+        if not self.rule:
+            raise TypeError(f"Spring is the base of {', '.join(classes_for(''))}; use one of them")
+        for field, may_lack in _numbers(type(self)):
+            given = getattr(self, field)
+            if type(given) is not float and not (given is None and may_lack):
+                given = _arguments.number(given, f"{self.rule} spring: {field}")
+                object.__setattr__(self, field, given)
+        for field in _words(type(self)):
+            _arguments.text(getattr(self, field), f"{self.rule} spring: {field}")
+        self._check()
+
+    def _check(self) -> None:
+        """Raise `InputError` if the rule does not allow the parameters."""
+        _core.check_spring(self.statement("flexure"), 0.0)
+
+    def landmarks(self) -> list[Landmark]:
+        """Return where the virgin spring cracks, yields and caps; each rule says it of itself."""
+        raise NotImplementedError(f"{type(self).__name__} does not say where it cracks and yields")
+
+    def statement(self, group: str, **place: Any) -> _core.Statement:
+        """Return the keys of the spring as a group of a case.
+
+        Parameters
+        ----------
+        group : str
+            "shear", "flexure", "axial_spring" or "layer_spring".
+        **place
+            Keys that place the spring: `joint` or `id`.
+        """
+        if "_own" not in self.__dict__:
+            own = {"rule": self.rule} | {name: getattr(self, name) for name in _names(type(self))}
+            object.__setattr__(self, "_own", _core.group("", own))
+        own = self.__dict__["_own"]
+        head = _core.group(group, place) if place else _core.Statement(group, [])
+        return _core.Statement(head.text + own.text, head.numbers + own.numbers)
+
+    def split(self, n: int) -> Self:
+        """Return one of n equal springs that in series are equivalent to this one.
+
+        Parameters
+        ----------
+        n : int
+            Number of springs; each has n times the stiffness and 1/n of the deformations.
+
+        Raises
+        ------
+        InputError
+            If `n` is not a whole number of 1 or more.
+        """
+        if _arguments.whole(n, "split: n") < 1:
+            raise InputError(f"split: n = {n} must be 1 or more")
+        keys = _core.keys()["rules"][self.rule]["keys"]
+        changes: dict[str, Any] = {}
+        for key in keys:
+            value = getattr(self, key["name"])
+            if value is not None and key.get("unit") == "stiffness":
+                changes[key["name"]] = value * n
+            elif value is not None and key.get("unit") == "deformation":
+                changes[key["name"]] = value / n
+        return replace(self, **changes)
+
+    def response(self, deformation: ArrayLike) -> Array:
+        """Return the force along a path of deformation.
+
+        The path starts at the virgin state (zero) and goes straight from point to point; the force
+        at a point is exact and does not depend on points in between.
+
+        Parameters
+        ----------
+        deformation : array_like, shape (m,)
+            Deformations in sequence [m or rad].
+
+        Returns
+        -------
+        ndarray, shape (m,)
+            Forces [N or N m].
+
+        Raises
+        ------
+        InputError
+            If the array does not have one dimension, or contains a value that is not finite.
+        """
+        return self._response(deformation, 0.0)
+
+    def _response(self, deformation: ArrayLike, axial_load: float) -> Array:
+        path = _arguments.finite_vector(deformation, "deformation")
+        if path.size == 0:
+            return np.empty(0)
+        return _core.spring_response(self.statement("flexure"), axial_load, path)
+
+
+def for_whole_column(spring: AnySpring, place: str) -> AnySpring:
+    """Mark a new spring as the one of a whole column, which several joints have to share.
+
+    Parameters
+    ----------
+    spring : Spring
+        The spring; those made from it by `Spring.split` or ``dataclasses.replace`` are unmarked.
+    place : str
+        "shear" or "flexure".
+
+    Returns
+    -------
+    Spring
+        The same spring.
+    """
+    object.__setattr__(spring, "_whole_column", place)
+    return spring
+
+
+def whole_column(spring: Spring) -> str:
+    """Return the place of a spring that is for a whole column; empty for the spring of a joint."""
+    return str(spring.__dict__.get("_whole_column", ""))
+
+
+def classes_for(place: str) -> list[str]:
+    """Return the names of the classes whose springs may stand in a place.
+
+    Parameters
+    ----------
+    place : str
+        "shear", "flexure", "axial" or "layer"; empty: anywhere.
+    """
+    rules = _core.keys()["rules"]
+    return [
+        kind.__name__
+        for rule, kind in SPRINGS.items()
+        if not place or place in rules[rule]["places"].split()
+    ]
+
+
+def _both_sides(name: LandmarkName, at: float, source: str) -> list[Landmark]:
+    """Return a landmark of a rule whose two sides are alike."""
+    return [Landmark(name, 1, at, source), Landmark(name, -1, at, source)]
+
+
+@cache
+def _names(kind: type[Spring]) -> tuple[str, ...]:
+    """Return the names of the parameters of a rule, in the order of its class."""
+    return tuple(field.name for field in fields(kind) if field.name != "layers")
+
+
+@cache
+def _numbers(kind: type[Spring]) -> tuple[tuple[str, bool], ...]:
+    """Return the parameters of a rule that are numbers, and whether they may be None."""
+    return tuple(
+        (field.name, field.default is None)
+        for field in fields(kind)
+        if field.name not in ("inner", "layers")
+    )
+
+
+@cache
+def _words(kind: type[Spring]) -> tuple[str, ...]:
+    """Return the names of the parameters that are words."""
+    keys = _core.keys()["rules"][kind.rule]["keys"]
+    return tuple(key["name"] for key in keys if key["kind"] == "word")
+
+
+@cache
+def _defaults(kind: type[Spring]) -> dict[str, Any]:
+    """Return the parameters of a rule that have a default."""
+    return {field.name: field.default for field in fields(kind) if field.default is not MISSING}
+
+
+def unchecked(kind: type[AnySpring], **values: Any) -> AnySpring:
+    """Make a spring without asking its rule: a model makes twenty, and their column asks for all.
+
+    Parameters
+    ----------
+    kind : type
+        A class of springs without `inner`.
+    **values
+        Its parameters; those without a default must be there.
+
+    Returns
+    -------
+    Spring
+        The spring. Whoever makes it has to check it, see `check_springs`.
+    """
+    whole = {**_defaults(kind), **values}
+    for name, _ in _numbers(kind):
+        if type(whole[name]) is not float and whole[name] is not None:
+            whole[name] = float(whole[name])
+    spring = object.__new__(kind)
+    spring.__dict__.update(whole)
+    return spring
+
+
+def check_springs(springs: Iterable[Spring]) -> None:
+    """Raise `InputError` for the first spring, or layer of one, that its rule does not allow."""
+    for spring in dict.fromkeys(springs):
+        if isinstance(spring, Layered):
+            check_springs(layer for _, layer in spring.layers)
+        spring._check()
+
+
+@dataclass(frozen=True)
+class Elastic(Spring):
+    """Spring on one straight line.
+
+    Parameters
+    ----------
+    k : float
+        Stiffness [N/m].
+    """
+
+    rule: ClassVar[str] = "elastic"
+    k: float
+
+    def landmarks(self) -> list[Landmark]:
+        """Return nothing: it neither cracks nor yields."""
+        return []
+
+
+@dataclass(frozen=True)
+class Bilinear(Spring):
+    """Bilinear spring with kinematic hardening (paper, table 1).
+
+    Parameters
+    ----------
+    k : float
+        Initial stiffness [N/m].
+    d_y : float
+        Yield deformation [m].
+    k_post : float
+        Stiffness after yield [N/m], from 0 to below `k`.
+
+    Raises
+    ------
+    InputError
+        If a parameter is outside the rule.
+    """
+
+    rule: ClassVar[str] = "bilinear"
+    k: float
+    d_y: float
+    k_post: float
+
+    def landmarks(self) -> list[Landmark]:
+        """Return yield."""
+        return _both_sides("yield", self.d_y, "d_y")
+
+
+@dataclass(frozen=True)
+class Takeda(Spring):
+    """Trilinear Takeda spring with degradation factors (paper, table 1 and eq 7).
+
+    Parameters
+    ----------
+    k_c : float
+        Uncracked stiffness [N/m].
+    d_c : float
+        Cracking deformation [m].
+    k_y : float
+        Cracked stiffness [N/m], below `k_c`.
+    d_y : float
+        Yield deformation [m], above `d_c`.
+    k_u : float
+        Stiffness after yield [N/m], from 0 to `k_y`.
+    b0 : float, optional
+        Exponent of the outer unloading stiffness K_r = K_0 (d_y/|D_m|)^b0.
+    b1 : float, optional
+        Factor of the inner unloading stiffness. With the default of 1 it is K_r (Takeda 1970).
+    inner : {"kc", "kr", "one"}, optional
+        Inner unloading stiffness: b1 k_c, b1 K_r, or K_r. It is always kept between the secant to
+        the zero crossing of the excursion and K_r.
+
+    Raises
+    ------
+    InputError
+        If a parameter is outside the rule.
+    """
+
+    rule: ClassVar[str] = "takeda"
+    k_c: float
+    d_c: float
+    k_y: float
+    d_y: float
+    k_u: float
+    b0: float = 0.4
+    b1: float = 1.0
+    inner: Literal["kc", "kr", "one"] = "kc"
+
+    def landmarks(self) -> list[Landmark]:
+        """Return cracking and yield."""
+        return _both_sides("cracking", self.d_c, "d_c") + _both_sides("yield", self.d_y, "d_y")
+
+
+@dataclass(frozen=True)
+class PeakOriented(Spring):
+    """Spring with a capped backbone, peak-oriented reloading and cyclic deterioration.
+
+    Ibarra, Medina, Krawinkler 2005 (Earthquake Eng. Struct. Dyn. 34, 1489-1511), with a cracking
+    point and an unloading stiffness that may decrease with ductility. ``docs/rules.md`` describes
+    its lines.
+
+    Parameters
+    ----------
+    d_y, f_y : float
+        Yield point [m], [N].
+    d_cap, f_cap : float
+        Capping point, the largest force [m], [N]; from `d_y`, `f_y` on.
+    d_pc : float
+        Deformation from the cap to where the softening line reaches zero force [m].
+    f_res : float, optional
+        Residual force, at which softening ends [N]; from 0 to below `f_y`.
+    d_u : float, optional
+        Deformation beyond which the force falls to zero [m]. By default it never does.
+    d_c, f_c : float, optional
+        Cracking point [m], [N]. With the default of 0 the spring is elastic up to yield.
+    b0 : float, optional
+        Exponent of the unloading stiffness K_0 (d_y/|D_m|)^b0, K_0 = (f_c + f_y)/(d_c + d_y).
+    lambda_s, lambda_c, lambda_k, lambda_a : float, optional
+        Dissipated energy at which deterioration is complete, over f_y d_y (mean of both sides): of
+        the strength, of the softening line, of the unloading stiffness, of the target of reloading.
+        0 means no deterioration.
+    c : float, optional
+        Exponent of deterioration: an excursion that dissipates E reduces the quantity by the share
+        (E/(lambda f_y d_y - sum E))^c.
+    lambda_h, s_min : float, optional
+        For shear springs: the strength falls to the share s_min + (1 - s_min)/(1 + W/(lambda_h f_y
+        d_y)), W the work of the flexural spring of the same joint since cracking. 0 means that it
+        does not.
+    fade : float, optional
+        How the strength falls with the energy share x = (E/(lambda_s f_y d_y))^c: its rate is minus
+        its power `fade`. 0: evenly, to nothing at x = 1; 1: exp(-x); 2: 1/(1 + x).
+    d_y_neg, f_y_neg, d_cap_neg, f_cap_neg, d_pc_neg, f_res_neg, d_u_neg, d_c_neg, f_c_neg : float
+        The backbone of the negative side, as positive numbers. A value that is not given is that of
+        the positive side.
+
+    Raises
+    ------
+    InputError
+        If a parameter is outside the rule.
+    """
+
+    rule: ClassVar[str] = "peak_oriented"
+    d_y: float
+    f_y: float
+    d_cap: float
+    f_cap: float
+    d_pc: float
+    f_res: float = 0.0
+    d_u: float | None = None
+    d_c: float = 0.0
+    f_c: float = 0.0
+    b0: float = 0.0
+    lambda_s: float = 0.0
+    lambda_c: float = 0.0
+    lambda_k: float = 0.0
+    lambda_a: float = 0.0
+    c: float = 1.0
+    d_y_neg: float | None = None
+    f_y_neg: float | None = None
+    d_cap_neg: float | None = None
+    f_cap_neg: float | None = None
+    d_pc_neg: float | None = None
+    f_res_neg: float | None = None
+    d_u_neg: float | None = None
+    d_c_neg: float | None = None
+    f_c_neg: float | None = None
+    lambda_h: float = 0.0
+    s_min: float = 0.0
+    fade: float = 0.0
+
+    def landmarks(self) -> list[Landmark]:
+        """Return cracking, where the spring has it, yield and cap of each side."""
+        found: list[Landmark] = []
+        keys: dict[LandmarkName, str]
+        keys = {"cracking": "d_c", "yield": "d_y", "cap": "d_cap"}
+        for name, key in keys.items():
+            for side in _SIDES:
+                # A side without values of its own has those of the other.
+                own = f"{key}_neg"
+                known = own if side < 0 and getattr(self, own) is not None else key
+                if getattr(self, known) > 0:
+                    found.append(Landmark(name, side, getattr(self, known), known))
+        return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pinching(PeakOriented):
+    """Peak-oriented spring with pinched reloading, for shear cracks and slip of bars.
+
+    Parameters
+    ----------
+    kappa_f : float
+        Force at the break of the reloading line, over that of the straight line to the peak there;
+        above 0, up to 1.
+    kappa_d : float
+        The break is at the deformation (1 - kappa_d) times the permanent deformation of the peak;
+        above 0, up to 1.
+    d_y, f_y, d_cap, f_cap, d_pc, f_res, d_u, d_c, f_c, b0 : float
+        As for `PeakOriented`, by keyword.
+    lambda_s, lambda_c, lambda_k, lambda_a, c, lambda_h, s_min, fade : float, optional
+        As for `PeakOriented`.
+    d_y_neg, f_y_neg, d_cap_neg, f_cap_neg, d_pc_neg, f_res_neg, d_u_neg, d_c_neg, f_c_neg : float
+        As for `PeakOriented`.
+
+    Raises
+    ------
+    InputError
+        If a parameter is outside the rule.
+    """
+
+    rule: ClassVar[str] = "pinching"
+    kappa_f: float
+    kappa_d: float
+
+
+@dataclass(frozen=True)
+class Compression(Spring):
+    """Axial spring that carries compression only: an open joint without tension.
+
+    Parameters
+    ----------
+    k : float
+        Stiffness in compression [N/m]. Opening and tension are positive: the force is k (w + gap)
+        for w < -gap and 0 otherwise.
+    gap : float, optional
+        Closing before the faces touch [m].
+
+    Raises
+    ------
+    InputError
+        If the stiffness is not positive, or the gap is negative.
+    """
+
+    rule: ClassVar[str] = "compression"
+    k: float
+    gap: float = 0.0
+
+    def landmarks(self) -> list[Landmark]:
+        """Return nothing: a contact that opens has not failed."""
+        return []
+
+
+@dataclass(frozen=True)
+class ConcreteSpring(Spring):
+    """Concrete across a joint: crushes in compression, opens without tension, closes gradually.
+
+    For axial springs and the layers of `Layered`. Opening and tension are positive, so compression
+    is at negative deformations; the parameters are given as positive numbers.
+
+    Parameters
+    ----------
+    k : float
+        Initial stiffness [N/m].
+    f_peak, d_peak : float
+        Largest compression [N] and the closing there [m]. The curve up to it is that of Popovics
+        (1973), so `f_peak` must be below k d_peak.
+    k_soft : float
+        Slope of softening beyond the peak [N/m], as a positive number.
+    f_res : float, optional
+        Residual force after softening [N].
+    plastic : float, optional
+        Factor of the plastic closing of Karsan and Jirsa (1969).
+    contact : float, optional
+        Share of the force at unloading at which a closing crack is fully closed, below 1.
+    misfit : float, optional
+        Share of the widest opening at which the faces of a closing crack touch, below 1.
+    wear : float, optional
+        Share of the strength that is lost each time the crack closes and opens again, below 1.
+    friction : float, optional
+        Share of the force by which the path of opening is below that of closing, once the spring
+        was closed by `d_peak` or more; below 1.
+    seating : float, optional
+        Share of the early touch that opening does not follow, because faces that were pressed
+        together fit; 0 to 1.
+
+    Raises
+    ------
+    InputError
+        If a parameter is outside the rule.
+    """
+
+    rule: ClassVar[str] = "concrete"
+    k: float
+    f_peak: float
+    d_peak: float
+    k_soft: float
+    f_res: float = 0.0
+    plastic: float = 1.0
+    contact: float = 0.0
+    misfit: float = 0.0
+    wear: float = 0.0
+    friction: float = 0.0
+    seating: float = 0.0
+
+    def landmarks(self) -> list[Landmark]:
+        """Return the cap, at its largest compression."""
+        return [Landmark("cap", -1, self.d_peak, "d_peak")]
+
+
+@dataclass(frozen=True)
+class SteelSpring(Spring):
+    """Steel that yields round: elements side by side, each of which slips at a limit of its own.
+
+    Iwan 1966, with limits that follow the plastic reach and the roundness of Menegotto and Pinto
+    (1973). It depends continuously on its path, and closed loops never create energy.
+    ``docs/rules.md`` has its lines. Below, d_y = f_y/k, and the plastic reach is the range of the
+    deformation so far, which is at least that from -d_y to d_y, less 2 d_y.
+
+    Parameters
+    ----------
+    k : float
+        Elastic stiffness [N/m].
+    f_y : float
+        Yield force [N].
+    k_post : float
+        Stiffness of hardening [N/m], from 0 to below `k`.
+    r0, cr1, cr2 : float, optional
+        Roundness R = r0 (1 - cr1 q/(cr2 + q)) of branches, q the plastic reach over d_y; cr1 is
+        below 1. The virgin curve is sharp.
+    isotropic_hardening, hardening_reach : float, optional
+        The strength grows by the share isotropic_hardening (q/(2 hardening_reach))^0.8, on the
+        virgin curve too.
+    f_u : float, optional
+        Force at which hardening ends [N], not below `f_y`. The default is none.
+    plateau : float, optional
+        Length of the yield plateau over d_y; needs `f_u`.
+    endurance : float, optional
+        Plastic deformation over d_y, added up while the reach does not grow, at which half of the
+        strength is left; 0: it stays. Not below the widest limit of an element, about 10.
+    d_buckle : float, optional
+        Tensile deformation from which on the bar bows when it is compressed again [m].
+    buckling : float, optional
+        Compression after an elongation d beyond `d_buckle` counts 1 + buckling (d/d_buckle - 1)
+        times in `endurance`.
+
+    Raises
+    ------
+    InputError
+        If a parameter is outside the rule.
+    """
+
+    rule: ClassVar[str] = "steel"
+    k: float
+    f_y: float
+    k_post: float
+    r0: float = 20.0
+    cr1: float = 0.925
+    cr2: float = 0.15
+    isotropic_hardening: float = 0.0
+    hardening_reach: float = 1.0
+    f_u: float | None = None
+    plateau: float = 0.0
+    endurance: float = 0.0
+    d_buckle: float | None = None
+    buckling: float = 0.0
+
+    def landmarks(self) -> list[Landmark]:
+        """Return yield; where hardening ends, the force does not fall."""
+        return _both_sides("yield", self.f_y / self.k, "f_y/k")
+
+
+@dataclass(frozen=True, repr=False)
+class Layered(Spring):
+    """A joint made of layers: normal springs across it that share the axial load of the column.
+
+    For flexural springs. Layer i opens by w + y_i theta; the opening w at the middle of the section
+    follows from the equilibrium of the axial load. Positive rotation opens layers at positive y.
+
+    Parameters
+    ----------
+    layers : sequence of (float, Spring)
+        Distance of each layer from the middle of the section [m] and its spring, one of a rule that
+        suits layers: `ConcreteSpring`, `SteelSpring`, `Elastic` and others. At least two.
+
+    Raises
+    ------
+    InputError
+        If a layer is outside its rule.
+    """
+
+    rule: ClassVar[str] = "layered"
+    layers: Sequence[tuple[float, Spring]]
+
+    def __post_init__(self) -> None:
+        try:
+            layers = tuple((y, spring) for y, spring in self.layers)
+        except (TypeError, ValueError):
+            raise InputError(
+                "layered spring: layers must be a sequence of pairs of a distance [m] and a spring"
+            ) from None
+        for number, (_, spring) in enumerate(layers, 1):
+            if not isinstance(spring, Spring):
+                raise InputError(
+                    f"layered spring: layer {number} has {spring!r}; it must be a spring "
+                    f"({', '.join(classes_for('layer'))})"
+                )
+        layers = tuple(
+            (_arguments.number(y, f"layered spring: y of layer {number}"), spring)
+            for number, (y, spring) in enumerate(layers, 1)
+        )
+        object.__setattr__(self, "layers", layers)
+        super().__post_init__()
+
+    def __repr__(self) -> str:
+        return f"Layered({len(self.layers)} layers)"
+
+    def _check(self) -> None:
+        # The column checks whether the layers can carry its axial load.
+        _core.check_spring(self._alone(), 0.0)
+
+    def landmarks(self) -> list[Landmark]:
+        """Return nothing: at which rotation a layer yields depends on the axial load."""
+        return []
+
+    def _alone(self) -> _core.Statement:
+        """Return the spring with its layers, as a case of one joint."""
+        ids: dict[Spring, int] = {}
+        layers = self.layers_statement(ids)
+        return self.statement("flexure") + layer_springs(ids) + layers
+
+    def layers_statement(self, ids: dict[Spring, int], **place: Any) -> _core.Statement:
+        """Return the layers as a group of a case.
+
+        Parameters
+        ----------
+        ids : dict
+            Ids of the springs of layers; new springs are added.
+        **place
+            `joint`, unless all joints have these layers.
+        """
+        # Most layers have one and the same spring: what it is equal to is asked once.
+        known: dict[int, int] = {}
+        numbers = []
+        for _, spring in self.layers:
+            number = known.get(id(spring))
+            if number is None:
+                number = known[id(spring)] = ids.setdefault(spring, len(ids) + 1)
+            numbers.append(number)
+        return _core.group("layers", place | {"y": [y for y, _ in self.layers], "spring": numbers})
+
+    def split(self, n: int) -> Self:
+        """Return one of n equal springs in series: the layers are split and keep their places."""
+        return replace(self, layers=tuple((y, spring.split(n)) for y, spring in self.layers))
+
+    def response(self, deformation: ArrayLike, axial_load: float = 0.0) -> Array:
+        """Return the moment along a path of rotation under a constant axial load.
+
+        Parameters
+        ----------
+        deformation : array_like, shape (m,)
+            Rotations in sequence [rad].
+        axial_load : float, optional
+            Axial load that the layers share, compression positive [N].
+
+        Returns
+        -------
+        ndarray, shape (m,)
+            Moments [N m]; NaN from where the layers can no longer carry the axial load.
+
+        Raises
+        ------
+        InputError
+            If the layers cannot carry the axial load, or a rotation is not finite.
+        """
+        return self._response(deformation, _arguments.number(axial_load, "axial_load"))
+
+    def _response(self, deformation: ArrayLike, axial_load: float) -> Array:
+        path = _arguments.finite_vector(deformation, "deformation")
+        return _core.spring_response(self._alone(), axial_load, path)
+
+
+def layer_springs(ids: dict[Spring, int]) -> _core.Statement:
+    """Return the springs of layers as groups of a case, each once, with their ids."""
+    parts = [spring.statement("layer_spring", id=number) for spring, number in ids.items()]
+    return _core.Statement(
+        "\n".join(part.text for part in parts), [x for part in parts for x in part.numbers]
+    )

@@ -1,0 +1,189 @@
+"""Figures of incremental dynamic analyses, stripes, clouds and fragility curves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rbsdem._views import view_of
+from rbsdem.batch.runs import Runs
+from rbsdem.errors import InputError
+from rbsdem.many.cloud import Cloud
+from rbsdem.many.fragility import Capacities, Counts, Fragility
+from rbsdem.many.ida import IDA
+from rbsdem.many.stripes import Stripes
+from rbsdem.output.style import MODEL_LINE, axes_or_new, line_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_RECORD: dict[str, Any] = {"color": "0.72", "linewidth": 0.5}
+_POINT: dict[str, Any] = {"color": "0.35", "marker": ".", "linestyle": "none", "markersize": 4}
+_COLLAPSE: dict[str, Any] = {"color": "#c0392b", "marker": "x", "linestyle": "none"}
+_STYLES = ("--", "-", "--")
+#: Colours of several curves in one figure.
+_COLOURS = ("#1f77b4", "#2ca02c", "#e67e22", "#c0392b", "#6c3483", "#000000")
+
+
+@view_of(IDA, "plot")
+def draw_ida(found: IDA, ax: Axes | None = None, edp: str = "peak_drift", **line: Any) -> Axes:
+    """Draw the curve of every record, its collapse, and the 16, 50 and 84 % fractiles.
+
+    Parameters
+    ----------
+    found : IDA
+        The analysis.
+    ax : matplotlib Axes, optional
+        Axes to draw on; by default new ones.
+    edp : str, optional
+        Measure of the response.
+    **line
+        Keywords of the lines of the fractiles.
+    """
+    percent = 100.0 if edp.endswith("drift") else 1.0
+    with axes_or_new(ax, (4.2, 3.2)) as drawn:
+        for column, motion in np.ndindex(found.lower.shape):
+            level, response = found.curve(motion, list(found.runs.columns)[column], edp)
+            stands = np.isfinite(response)
+            drawn.plot(percent * response[stands], level[stands], **_RECORD)
+            if not stands.all():
+                last = percent * response[stands][-1]
+                drawn.plot([last], [level[stands][-1]], **_COLLAPSE, markersize=3)
+        level, fractiles = found.fractiles(edp=edp)
+        for values, style, name in zip(fractiles, _STYLES, ("16 %", "50 %", "84 %"), strict=True):
+            stands = np.isfinite(values)
+            given = line_of({**MODEL_LINE, "linestyle": style, "label": name}, line)
+            drawn.plot(
+                np.concatenate([[0.0], percent * values[stands]]),
+                np.concatenate([[0.0], level[stands]]),
+                **given,
+            )
+        if ax is None:
+            _label_response(drawn, edp, found.runs)
+            drawn.set_ylim(bottom=0)
+            drawn.set_xlim(left=0)
+            drawn.legend()
+    return drawn
+
+
+@view_of(Stripes, "plot")
+def draw_stripes(
+    found: Stripes, ax: Axes | None = None, edp: str = "peak_drift", **line: Any
+) -> Axes:
+    """Draw the response of every run over its level; collapses stand at the right edge."""
+    with axes_or_new(ax, (4.2, 3.2)) as drawn:
+        _points(drawn, found.runs, edp, line)
+        if ax is None:
+            _label_response(drawn, edp, found.runs)
+    return drawn
+
+
+@view_of(Cloud, "plot")
+def draw_cloud(found: Cloud, ax: Axes | None = None, edp: str = "peak_drift", **line: Any) -> Axes:
+    """Draw the runs in logarithmic scales, and the line through those without collapse."""
+    percent = 100.0 if edp.endswith("drift") else 1.0
+    with axes_or_new(ax, (4.2, 3.2)) as drawn:
+        _points(drawn, found.runs, edp, {})
+        fit = found.regression(edp)
+        x = np.geomspace(found.runs.intensity.min(), found.runs.intensity.max(), 50)
+        middle = fit.a + fit.b * np.log(x)
+        for shift, style in zip((-1, 0, 1), _STYLES, strict=True):
+            given = line_of({**MODEL_LINE, "linestyle": style}, line)
+            drawn.plot(percent * np.exp(middle + shift * fit.sigma), x, **given)
+        if ax is None:
+            _label_response(drawn, edp, found.runs)
+            drawn.set(xscale="log", yscale="log")
+    return drawn
+
+
+@view_of(Fragility, "plot")
+def draw_fragility(
+    found: Fragility, ax: Axes | None = None, level: float = 0.9, **line: Any
+) -> Axes:
+    """Draw the curve, its confidence band and the data that it was fitted to.
+
+    Parameters
+    ----------
+    found : Fragility
+        The curve.
+    ax : matplotlib Axes, optional
+        Axes to draw on; by default new ones.
+    level : float, optional
+        Confidence of the band; 0 draws none.
+    **line
+        Keywords of the curve.
+    """
+    width = max(found.beta, 0.05)
+    x = found.theta * np.exp(np.linspace(-2.8 * width, 2.8 * width, 200))
+    with axes_or_new(ax, (4.2, 3.2)) as drawn:
+        curve = drawn.plot(
+            x, found.probability(x), **line_of({**MODEL_LINE, "label": found.name}, line)
+        )[0]
+        if level:
+            # Where the bootstrap determines no band none is drawn.
+            with suppress(InputError):
+                low, high = found.band(x, level)
+                drawn.fill_between(x, low, high, color=curve.get_color(), alpha=0.15, linewidth=0)
+        at, share = _shares(found)
+        drawn.plot(at, share, **_POINT | {"color": curve.get_color()})
+        if ax is None:
+            drawn.set(xlabel=found.intensity_name, ylabel="Probability", ylim=(0, 1.02))
+            drawn.set_xlim(left=0)
+            drawn.set_title(f"{found.name}: θ = {found.theta:.3g}, β = {found.beta:.2f}")
+    return drawn
+
+
+def draw_fragilities(
+    found: Mapping[str, Fragility], ax: Axes | None = None, level: float = 0.9
+) -> Axes:
+    """Draw the curves of several limit states in one figure.
+
+    Parameters
+    ----------
+    found : mapping of Fragility
+        The curves by name.
+    ax : matplotlib Axes, optional
+        Axes to draw on; by default new ones.
+    level : float, optional
+        Confidence of the bands; 0 draws none.
+    """
+    with axes_or_new(ax, (4.2, 3.2)) as drawn:
+        for number, (name, one) in enumerate(found.items()):
+            label = f"{name}: θ = {one.theta:.3g}, β = {one.beta:.2f}"
+            colour = _COLOURS[number % len(_COLOURS)]
+            draw_fragility(one, drawn, level, label=label, color=colour)
+        if ax is None and found:
+            drawn.set(xlabel=next(iter(found.values())).intensity_name, ylabel="Probability")
+            drawn.set_ylim(0, 1.02)
+            drawn.set_xlim(left=0)
+            drawn.legend()
+    return drawn
+
+
+def _shares(found: Fragility) -> tuple[Any, Any]:
+    """Return intensities, and the share of runs that reached the limit state there."""
+    if isinstance(found.data, Counts):
+        return found.data.intensity, found.data.failures / found.data.number
+    if isinstance(found.data, Capacities):
+        values = np.sort(found.data.values[np.isfinite(found.data.values)])
+        return values, (np.arange(values.size) + 0.5) / found.data.size
+    return np.empty(0), np.empty(0)
+
+
+def _points(ax: Axes, runs: Runs, edp: str, line: dict[str, Any]) -> None:
+    percent = 100.0 if edp.endswith("drift") else 1.0
+    response = percent * runs.response(edp)
+    stands = np.isfinite(response)
+    ax.plot(response[stands], runs.intensity[stands], **line_of(_POINT, line))
+    if not stands.all():
+        edge = 1.1 * response[stands].max() if stands.any() else 1.0
+        right = np.full((~stands).sum(), edge)
+        ax.plot(right, runs.intensity[~stands], **_COLLAPSE, markersize=4, label="collapse")
+
+
+def _label_response(ax: Axes, edp: str, runs: Runs) -> None:
+    name = edp.replace("_", " ").capitalize()
+    ax.set(xlabel=f"{name} (%)" if edp.endswith("drift") else name, ylabel=runs.measure.label)

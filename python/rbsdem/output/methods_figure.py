@@ -1,0 +1,145 @@
+"""A trade as a figure: error against wall time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rbsdem import plot
+from rbsdem._files import write_figure
+from rbsdem._views import view_of
+from rbsdem.errors import InputError
+from rbsdem.methods.ladder import LEVELS
+from rbsdem.methods.outcome import Trade
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from rbsdem.methods.rows import Row
+
+#: Marker, filling and gray of each method; located events are filled.
+MARKS: dict[tuple[str, str | None], dict[str, Any]] = {
+    ("rk4", "step"): {"marker": "o", "color": "black", "markerfacecolor": "white"},
+    ("rk4", "located"): {"marker": "o", "color": "black"},
+    ("rk45", None): {"marker": "D", "color": "0.25"},
+    ("newmark", None): {"marker": "s", "color": "0.45", "markerfacecolor": "white"},
+    ("hht", None): {"marker": "^", "color": "0.45", "markerfacecolor": "white"},
+    ("generalised_alpha", None): {"marker": "v", "color": "0.45"},
+    ("auto", None): {"marker": "*", "color": "black"},
+    ("static", None): {"marker": "o", "color": "black"},
+}
+
+OWN = {"marker": "x", "color": "black"}
+
+NAMES = {"generalised_alpha": "generalised-alpha", "rk4": "RK4", "rk45": "RK5(4)", "hht": "HHT"}
+
+#: Lines of the column's own level of kinematics, and of those below it.
+DASHES = ("-", (0, (4, 1.5)), (0, (1, 1.5)))
+
+#: Errors beyond this are not worth the room.
+TOP = 10.0
+
+
+@view_of(Trade, "plot")
+def draw(trade: Trade, ax: Axes | None = None, **line: Any) -> Axes:
+    """Draw error against wall time."""
+    done = [row for row in trade.rows if math.isfinite(row.error)]
+    if not done or trade.reference is None:
+        raise InputError("trade: there is no setting with an error to draw; see notes")
+    floor = max(trade.reference.resolution, 1e-16)
+    with plot.axes_or_new(ax, (5.2, 3.6)) as drawn:
+        front = sorted((row for row in done if row.pareto), key=lambda row: row.seconds)
+        drawn.plot(
+            *_points(front, floor),
+            drawstyle="steps-post",
+            color="0.8",
+            linewidth=5,
+            solid_capstyle="butt",
+            zorder=1,
+            label="Pareto front",
+        )
+        families = dict.fromkeys(row.setting.family for row in done)
+        # The column's own is the highest.
+        levels = [level for level in reversed(LEVELS) if any(f[2] == level for f in families)]
+        for family in families:
+            method, events, level, _, own = family
+            rows = [row for row in done if row.setting.family == family]
+            label = NAMES.get(method, method.capitalize())
+            if events:
+                label += ", located" if events == "located" else ", step"
+            if len(levels) > 1:
+                label += f" ({level})"
+            mark = MARKS[method, events]
+            if own:
+                label, mark = "as given", OWN
+            default = {
+                "label": label,
+                "linewidth": 0.6,
+                "linestyle": DASHES[levels.index(level)],
+                "markersize": 4,
+                "markeredgewidth": 0.7,
+                "zorder": 3,
+            }
+            drawn.plot(*_points(rows, floor), **plot.line_of({**default, **mark}, line))
+        _dress(drawn, trade, floor)
+    return drawn
+
+
+def _points(rows: Sequence[Row], floor: float) -> tuple[list[float], list[float]]:
+    return [row.seconds for row in rows], [max(row.error, floor) for row in rows]
+
+
+def _dress(ax: Axes, trade: Trade, floor: float) -> None:
+    ax.set_xscale("log")
+    ax.set_yscale("log")
+    ax.set_xlabel("Wall time (s)")
+    ax.set_ylabel("Relative error")
+    low, high = ax.get_ylim()
+    low, high = min(low, floor / 3), min(high, TOP)
+    # Down to the axis, also where panels share it.
+    ax.axhspan(1e-300, floor, color="0.94", linewidth=0, zorder=0)
+    ax.text(
+        0.985,
+        floor,
+        "agreement of the reference",
+        transform=ax.get_yaxis_transform(),
+        fontsize="small",
+        color="0.4",
+        ha="right",
+        va="top",
+    )
+    ax.set_ylim(low, high)
+    if trade.choice is not None:
+        ax.axhline(trade.choice.tolerance, color="0.6", linewidth=0.6, linestyle=(0, (4, 3)))
+        if trade.choice.row is not None:
+            row = trade.choice.row
+            ax.plot(
+                [row.seconds],
+                [max(row.error, floor)],
+                marker="o",
+                markersize=10,
+                markerfacecolor="none",
+                color="black",
+                linestyle="none",
+                label="chosen",
+                zorder=4,
+            )
+    ax.tick_params(which="both", top=True, right=True)
+    ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small", handlelength=2.2)
+
+
+def save(trade: Trade, path: Path, title: str) -> Path | None:
+    """Write the figure; return None if there is nothing to draw, or nothing to draw it with."""
+    try:
+        ax = draw(trade)
+    except (ImportError, InputError):
+        return None
+    import matplotlib.pyplot as plt  # noqa: PLC0415
+
+    with plot.style():
+        ax.set_title(title, loc="left")
+        write_figure(ax.figure.savefig, path, dpi=200)
+    plt.close(ax.figure)
+    return path

@@ -1,0 +1,67 @@
+"""Measured histories of column tests: the PEER Structural Performance Database.
+
+The histories belong to the database and are no part of rbsdem; a user gets them there
+(https://nisee.berkeley.edu/spd/) and names the folder. Of the paper's four columns the reversal
+points come with rbsdem.
+"""
+
+from rbsdem.measured.bands import band
+from rbsdem.measured.batch import predict, predict_one
+from rbsdem.measured.columns import column
+from rbsdem.measured.doubts import Checked, Doubt, check
+from rbsdem.measured.drawing import Drawing, DrawnBar, draw
+from rbsdem.measured.file import PeerTest, read_peer
+from rbsdem.measured.indicators import Indicators, indicators
+from rbsdem.measured.laboratory import read_test
+from rbsdem.measured.measured import PDELTA_CODES, MeasuredTest, net_force
+from rbsdem.measured.nearest import Neighbour, nearest, properties
+from rbsdem.measured.prediction import Prediction
+from rbsdem.measured.predictions import Group, Predictions, Quartiles
+from rbsdem.measured.shipped import (
+    FOLDER_VARIABLE,
+    HISTORY_FILES,
+    Reversals,
+    find_history,
+    measured_loops,
+    shipped_reversals,
+)
+from rbsdem.measured.specimen import Observed, Specimen
+from rbsdem.measured.specimens import Specimens, read_specimens
+
+__all__ = [
+    "FOLDER_VARIABLE",
+    "HISTORY_FILES",
+    "PDELTA_CODES",
+    "Checked",
+    "Doubt",
+    "Drawing",
+    "DrawnBar",
+    "Group",
+    "Indicators",
+    "MeasuredTest",
+    "Neighbour",
+    "Observed",
+    "PeerTest",
+    "Prediction",
+    "Predictions",
+    "Quartiles",
+    "Reversals",
+    "Specimen",
+    "Specimens",
+    "band",
+    "check",
+    "column",
+    "draw",
+    "find_history",
+    "indicators",
+    "measured_loops",
+    "nearest",
+    "net_force",
+    "predict",
+    "predict_one",
+    "properties",
+    "read_peer",
+    "read_specimens",
+    "read_test",
+    "shipped_reversals",
+]

@@ -1,0 +1,323 @@
+"""Tables 2 and 3 of the paper: the four tested columns and their springs.
+
+The values are read from `data/paper_table_2.csv` and `data/paper_table_3.csv`, which have them as
+printed, and are converted to SI.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from rbsdem import _data
+from rbsdem._arguments import Array
+from rbsdem.errors import InputError
+from rbsdem.model.column import Column, without_notes
+from rbsdem.model.materials import Concrete, Steel
+from rbsdem.model.rectangular import RectangularSection
+from rbsdem.model.reinforcement import Layout, Ties
+from rbsdem.model.springs import Bilinear, Takeda
+from rbsdem.section.diagram import Diagram
+from rbsdem.section.model import CONCRETE_DENSITY
+from rbsdem.section.spring_fit import SectionSprings
+
+__all__ = [
+    "KEYS",
+    "PaperSection",
+    "paper_columns",
+    "paper_sections",
+]
+
+KEYS = ("soesianawati_1", "tanaka_park_1", "tanaka_park_5", "zahn_7")
+"""The four columns of the paper, in its order."""
+
+# Whole numbers to divide or multiply by, so that 400 mm gives exactly 0.4 m.
+_DIVISOR = {"-": 1, "mm": 1000, "mm2": 1000**2}
+_FACTOR = {"kN": 1000, "MPa": 1000**2}
+
+
+@dataclass(frozen=True, slots=True)
+class PaperSection:
+    """One column of table 2, in SI.
+
+    Attributes
+    ----------
+    specimen : str
+        Name as printed.
+    span_depth_ratio : float
+        Length over depth.
+    length : float
+        From the base to the lateral load, of the equivalent cantilever [m].
+    axial_load : float
+        Compression positive [N].
+    concrete_strength : float
+        Cylinder strength [Pa].
+    width, depth : float
+        Of the section, depth in the direction of loading [m].
+    cover : float
+        Clear cover to the outer edge of the stirrups [m].
+    longitudinal_number : int
+        Number of longitudinal bars.
+    longitudinal_diameter : float
+        Of one bar [m].
+    longitudinal_yield_stress, longitudinal_ultimate_stress : float
+        Of the steel [Pa].
+    longitudinal_area : float
+        Of one bar [m2].
+    transverse_yield_stress, transverse_ultimate_stress : float
+        Of the steel [Pa].
+    transverse_diameter : float
+        Of one stirrup bar [m].
+    transverse_spacing : float
+        Of the stirrups near the base [m].
+    transverse_area : float
+        Of one stirrup bar [m2].
+    transverse_type : str
+        As printed.
+    shear_legs : int
+        Stirrup bars that cross the section.
+    """
+
+    specimen: str
+    span_depth_ratio: float
+    length: float
+    axial_load: float
+    concrete_strength: float
+    width: float
+    depth: float
+    cover: float
+    longitudinal_number: int
+    longitudinal_diameter: float
+    longitudinal_yield_stress: float
+    longitudinal_ultimate_stress: float
+    longitudinal_area: float
+    transverse_yield_stress: float
+    transverse_ultimate_stress: float
+    transverse_diameter: float
+    transverse_spacing: float
+    transverse_area: float
+    transverse_type: str
+    shear_legs: int
+
+    @property
+    def gross_area(self) -> float:
+        """Area of the concrete section [m2]."""
+        return self.width * self.depth
+
+    @property
+    def mass(self) -> float:
+        """Mass of the column from its gross volume and 2400 kg/m3 [kg]."""
+        return self.gross_area * self.length * CONCRETE_DENSITY
+
+    @property
+    def axial_load_ratio(self) -> float:
+        """Axial load over gross area times concrete strength."""
+        return self.axial_load / (self.gross_area * self.concrete_strength)
+
+    @property
+    def longitudinal_ratio(self) -> float:
+        """Area of all longitudinal bars over the gross area."""
+        return self.longitudinal_number * self.longitudinal_area / self.gross_area
+
+    @property
+    def section(self) -> RectangularSection:
+        """The section with its bars along the ties, as many on every face."""
+        return RectangularSection(
+            self.width,
+            self.depth,
+            Concrete(self.concrete_strength),
+            layout=Layout(
+                self.longitudinal_number,
+                self.longitudinal_diameter,
+                Steel(self.longitudinal_yield_stress, self.longitudinal_ultimate_stress),
+            ),
+            ties=Ties(
+                self.transverse_diameter,
+                self.transverse_spacing,
+                Steel(self.transverse_yield_stress, self.transverse_ultimate_stress),
+                legs=self.shear_legs,
+            ),
+            cover=self.cover,
+        )
+
+    def moment_curvature(
+        self,
+        axial_load: float | None,
+        curvature: ArrayLike,
+        tension: str = "ts",
+        confined: bool = False,
+    ) -> Array:
+        """Return the moments of its section; as `rbsdem.RectangularSection.moment_curvature`.
+
+        Parameters
+        ----------
+        axial_load : float or None
+            Compression positive [N]; None is the load of the column.
+        curvature, tension, confined
+            As there.
+
+        Returns
+        -------
+        ndarray, shape of `curvature`
+            Moments about mid-depth [N m].
+
+        Raises
+        ------
+        InputError, SolveError
+            As there.
+        """
+        load = self.axial_load if axial_load is None else axial_load
+        return self.section.moment_curvature(load, curvature, tension, confined)
+
+    def diagram(self, axial_load: float | None = None, **options: Any) -> Diagram:
+        """Return the diagram of its section; as `rbsdem.RectangularSection.diagram`.
+
+        Parameters
+        ----------
+        axial_load : float, optional
+            Compression positive [N]; by default that of the column.
+        **options
+            As there.
+
+        Returns
+        -------
+        Diagram
+            Curvatures, moments, events.
+
+        Raises
+        ------
+        InputError, SolveError
+            As there.
+        """
+        return self.section.diagram(
+            self.axial_load if axial_load is None else axial_load, **options
+        )
+
+    def springs(
+        self, length: float | None = None, axial_load: float | None = None, **options: Any
+    ) -> SectionSprings:
+        """Return the springs of the column; as `rbsdem.RectangularSection.springs`.
+
+        Parameters
+        ----------
+        length, axial_load : float, optional
+            Length [m] and axial load [N]; by default those of the column.
+        **options
+            As there.
+
+        Returns
+        -------
+        SectionSprings
+            Flexural and shear spring, events, report.
+
+        Raises
+        ------
+        InputError
+            As there.
+        """
+        return self.section.springs(
+            self.length if length is None else length,
+            self.axial_load if axial_load is None else axial_load,
+            **options,
+        )
+
+
+def paper_sections() -> dict[str, PaperSection]:
+    """Read table 2 of the paper.
+
+    Returns
+    -------
+    dict of str to PaperSection
+        The four columns by key, SI units: soesianawati_1, tanaka_park_1, tanaka_park_5, zahn_7.
+
+    Examples
+    --------
+    >>> paper_sections()["zahn_7"].axial_load
+    1010000.0
+    """
+    fields: dict[str, dict[str, Any]] = {key: {} for key in KEYS}
+    for row in _data.rows("paper_table_2.csv"):
+        name = row["property"]
+        if row["group"] != "column" and name != "shear_legs":
+            name = f"{row['group']}_{name}"
+        for key in KEYS:
+            fields[key][name] = _si(name, row[key], row["unit"])
+    return {key: PaperSection(**fields[key]) for key in KEYS}
+
+
+def paper_columns(kinematics: str = "small", **changes: Any) -> dict[str, Column]:
+    """Build the one-component columns of table 3 of the paper.
+
+    Height and axial load are those of table 2, the mass is the gross volume times 2400 kg/m3. The
+    shear spring is bilinear, the flexural one trilinear Takeda. The paper estimates B_1 as a ratio
+    to the initial stiffness, so it multiplies K_c here (`inner="kc"`).
+
+    Parameters
+    ----------
+    kinematics : {"small", "pdelta", "finite"}, default "small"
+        Level of kinematics; the axial load acts from "pdelta" on.
+    **changes
+        Other fields of `rbsdem.Column` to set on all four, as in ``axial_load=0.0``.
+
+    Returns
+    -------
+    dict of str to Column
+        The four columns by key: soesianawati_1, tanaka_park_1, tanaka_park_5, zahn_7.
+
+    Raises
+    ------
+    InputError
+        If a change names no field of `rbsdem.Column`, or its value is refused there.
+
+    Examples
+    --------
+    The columns of equation 4 of the paper, which has no axial load:
+
+    >>> columns = paper_columns("finite", axial_load=0.0)
+    >>> columns["tanaka_park_5"].height
+    1.65
+    """
+    springs: dict[str, dict[tuple[str, str], float]] = {key: {} for key in KEYS}
+    for row in _data.rows("paper_table_3.csv"):
+        for key in KEYS:
+            springs[key][row["spring"], row["parameter"]] = float(row[key])
+    sections = paper_sections()
+    # The axial load waits for other kinematics.
+    with without_notes():
+        columns = {key: _column(sections[key], springs[key], kinematics) for key in KEYS}
+        try:
+            return {key: replace(column, **changes) for key, column in columns.items()}
+        except TypeError as error:
+            raise InputError(f"paper_columns: {error}") from error
+
+
+def _column(section: PaperSection, s: dict[tuple[str, str], float], kinematics: str) -> Column:
+    return Column(
+        height=section.length,
+        mass=section.mass,
+        shear=Bilinear(k=s["shear", "K_y"], d_y=s["shear", "D_y"], k_post=s["shear", "K_u"]),
+        flexure=Takeda(
+            k_c=s["flexure", "K_c"],
+            d_c=s["flexure", "D_c"],
+            k_y=s["flexure", "K_y"],
+            d_y=s["flexure", "D_y"],
+            k_u=s["flexure", "K_u"],
+            b0=s["flexure", "B_0"],
+            b1=s["flexure", "B_1"],
+            inner="kc",
+        ),
+        axial_load=section.axial_load,
+        kinematics=kinematics,
+    )
+
+
+def _si(name: str, text: str, unit: str) -> float | int | str:
+    """Return one entry of table 2 in SI, with the type of the attribute `name`."""
+    kind = PaperSection.__annotations__[name]
+    if kind == "str":
+        return text
+    if kind == "int":
+        return int(text)
+    return float(text) / _DIVISOR[unit] if unit in _DIVISOR else float(text) * _FACTOR[unit]

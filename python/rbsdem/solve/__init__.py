@@ -1,0 +1,1 @@
+"""Analyses of a structure, their settings and cases."""

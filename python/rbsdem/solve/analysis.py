@@ -1,0 +1,461 @@
+"""Analyses of a column."""
+
+from __future__ import annotations
+
+import os
+import threading
+import warnings
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rbsdem import _arguments, _core, _views
+from rbsdem._arguments import Array
+from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning
+from rbsdem.model.column import Column, checked_column
+from rbsdem.motions.acting import acting
+from rbsdem.motions.motion import GroundMotion
+from rbsdem.result import Result, result_from_arrays
+from rbsdem.solve.methods import IN_TIME
+from rbsdem.solve.state_file import named_state, state_of
+
+#: Names of the methods in time.
+METHODS = IN_TIME
+
+Method = Literal["auto", "rk4", "rk45", "newmark", "hht", "generalised_alpha"]
+
+_DEFORMATIONS = ("slip", "rotation", "opening")
+_NONE = np.empty(0)
+_NONE.flags.writeable = False
+
+#: Threads whose runs are told nothing about.
+_silent = threading.local()
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Natural modes of the uncracked column.
+
+    Attributes
+    ----------
+    omega, frequency : ndarray, shape (count,)
+        Circular frequencies [rad/s] and frequencies [Hz], ascending.
+    shapes : ndarray, shape (2n, count), or (3n, count) where the joints open
+        Shapes in (slip 1..n, relative rotation 1..n, opening 1..n), one in each column, with
+        shape' M shape = 1.
+    stable_step : float
+        Longest step for which RK4 is stable, damping included [s].
+    """
+
+    omega: Array
+    frequency: Array
+    shapes: Array
+    stable_step: float
+
+
+@dataclass(frozen=True)
+class Matrices:
+    """Matrices of the uncracked column for small rotations, M q'' + C q' + (K + K_G) q = p.
+
+    Attributes
+    ----------
+    unknowns : tuple of str
+        Order of the unknowns: slip_1, ..., rotation_1, ... (relative to the body below), and
+        opening_1, ... where the joints open. In the paper's form theta_1, ... are absolute
+        rotations. The last rotation is no unknown where the top is fixed.
+    mass, stiffness, geometric, damping : ndarray, shape (unknowns, unknowns)
+        In N, m, kg, s and rad. `geometric` holds the second-order work of the axial forces, zero
+        with kinematics "small".
+    """
+
+    unknowns: tuple[str, ...]
+    mass: Array
+    stiffness: Array
+    geometric: Array
+    damping: Array
+
+
+def modes(column: Column, count: int | None = None) -> Modes:
+    """Return natural frequencies, mode shapes and the stable step of RK4.
+
+    Parameters
+    ----------
+    column : Column
+        The axial load takes part with `kinematics` "pdelta" and "finite".
+    count : int, optional
+        How many modes, the lowest first; each takes a time in proportion to the number of bodies.
+        Without it all of them, for up to 500 bodies.
+
+    Raises
+    ------
+    InputError
+        If the axial load is above the critical one; the message gives it.
+
+    Warns
+    -----
+    AccuracyWarning
+        If the axial load is so close to the critical one that low frequencies depend on its last
+        digits.
+    """
+    if count is not None:
+        count = _arguments.whole(count, "count")
+    omega, shapes, stable_step, note = _core.modes(_checked(column)._statement, count)
+    if note:
+        warnings.warn(note, AccuracyWarning, stacklevel=2)
+    return Modes(omega, omega / (2 * np.pi), shapes, stable_step)
+
+
+def matrices(column: Column, form: Literal["symmetric", "paper"] = "symmetric") -> Matrices:
+    """Return the matrices of mass, stiffness, geometric stiffness and damping, in full.
+
+    Parameters
+    ----------
+    column : Column
+        The column.
+    form : {"symmetric", "paper"}
+        In (slip, relative rotation), or in the paper's (slip, absolute rotation) with the rows of
+        its eqs 1 and 2 and the mass matrix [A B; C D] of eq 3, its misprints corrected.
+        M_symmetric = M_paper T with theta = cumulative sum of phi, and so for the others.
+    """
+    _arguments.choice(form, "form", ("symmetric", "paper"))
+    unknowns, found = _core.matrices(_checked(column)._statement, form == "paper")
+    return Matrices(unknowns, *(matrix.copy() for matrix in found))
+
+
+def cyclic(
+    column: Column,
+    *,
+    displacement: ArrayLike | None = None,
+    force: ArrayLike | None = None,
+    axial_load: ArrayLike | None = None,
+    initial: Result | str | os.PathLike[str] | None = None,
+    every: int | None = None,
+    collapse_drift: float | None = None,
+    openings: bool = False,
+) -> Result:
+    """Follow the static path of a column through displacements of the top, or lateral forces.
+
+    The path is exact for `kinematics` "small" and "pdelta": it goes from event to event (a spring
+    reaches the end of its line) without increments or tolerance. With "finite" each increment is
+    solved for equilibrium, and events are located. The path starts at zero, or in the
+    state that another analysis ended in.
+
+    Parameters
+    ----------
+    column : Column
+        The column.
+    displacement, force : array_like, shape (m,)
+        The loading, exactly one of the two: displacement of the top [m] or lateral force [N].
+    axial_load : array_like, shape (m,), optional
+        Axial load at the top at each point [N], compression positive, in place of the constant one
+        of the column; it changes in proportion on the way from point to point, and the path starts
+        under its first value. With `Column(axial_force_ratio=r)` the load is this one plus r F.
+        For `kinematics` "small" (layered joints) and "pdelta".
+    initial : Result or path, optional
+        The result of this column in whose end the path begins, or a file that
+        `Result.save_state` or the executable wrote. A static result that was driven by the same
+        quantity goes on with the same bits as one path. After a response in time the top is held
+        where the motion has brought it, the velocities vanish, and the joints come to equilibrium;
+        so do they where the axial load is another. Axial load, loading, method, masses and damping
+        may differ, springs, lengths, number of bodies and kinematics not. Energies go on; rows and
+        peaks are those of this path.
+    every : int, optional
+        Keep every n-th point and the last one. By default all points are kept.
+    collapse_drift : float, optional
+        Displacement of the top over the height at which the column counts as collapsed: the path
+        ends there, and `summary["status"]` is "collapsed".
+    openings : bool, optional
+        Whether to keep the openings of layered joints, for `Result.elongation` and
+        `Result.layer_deformation`.
+
+    Returns
+    -------
+    Result
+        A row for each point kept. Where the layers of a joint can no longer carry the axial load,
+        the path ends with the state there as its last row; `summary["status"]` is "axial_failure"
+        and `summary["lost_joint"]` is the number of the joint. `summary` has then also the
+        load that was lost, `axial_capacity` at that rotation [N], and the `fall` of the joint until
+        it would rest [m; NaN: it does not] with its `fall_energy` [J].
+
+    Raises
+    ------
+    InputError
+        For bad input.
+    SolveError
+        If the path cannot be continued (a force beyond the capacity); its attribute `result` holds
+        the path up to that point, with the last good state as its last row.
+
+    Warns
+    -----
+    AccuracyWarning
+        If a body turns by more than 0.1 rad with `kinematics` "small" or "pdelta".
+    """
+    if (displacement is None) == (force is None):
+        raise InputError("cyclic: give exactly one of displacement and force")
+    by_force = displacement is None
+    name = "force" if by_force else "displacement"
+    values = _arguments.vector(force if by_force else displacement, name)
+    if values.size == 0:
+        raise InputError(f"{name} is empty; give at least one point")
+    load = None if axial_load is None else _arguments.vector(axial_load, "axial_load")
+    kept = not _checked(column).opens and _arguments.switch(openings, "openings")
+    settings = settings_of(every, kept, collapse_drift=collapse_drift)
+    run = _core.cyclic(
+        column._statement + settings,
+        by_force,
+        values,
+        load,
+        None if initial is None else state_of(initial, "cyclic"),
+    )
+    call = {
+        name: values,
+        "axial_load": load,
+        "initial": named_state(initial),
+        "every": every,
+        "collapse_drift": collapse_drift,
+    }
+    return _return(column, run, {"analysis": "static", "driven": name}, call)
+
+
+def time_history(
+    column: Column,
+    time: ArrayLike | None = None,
+    *,
+    force: ArrayLike | None = None,
+    ground_acceleration: ArrayLike | GroundMotion | None = None,
+    dt: float | None = None,
+    method: Method | None = None,
+    initial: Mapping[str, ArrayLike] | Result | str | os.PathLike[str] | None = None,
+    vertical_acceleration: ArrayLike | GroundMotion | None = None,
+    axial_load: ArrayLike | None = None,
+    events: Literal["step", "located"] | None = None,
+    tolerance: float | None = None,
+    rho_infinity: float | None = None,
+    collapse_drift: float | None = None,
+    allow_unstable: bool = False,
+    max_seconds: float | None = None,
+    every: int | None = None,
+    openings: bool = False,
+    motion: bool = False,
+) -> Result:
+    """Compute the response in time to forces at the top and motions of the ground.
+
+    Parameters
+    ----------
+    column : Column
+        The column.
+    time : array_like, shape (m,), optional
+        Times of the loading, ascending [s]; two are enough for a free vibration. A ground motion
+        that is a `GroundMotion` brings its own.
+    force : array_like, shape (m,), optional
+        Lateral force at the top [N], linear between the times.
+    ground_acceleration : array_like of shape (m,), or GroundMotion, optional
+        Acceleration of the ground [m/s2], linear between the times.
+    dt : float, optional
+        Step [s]. If it divides every interval of `time`, rows are kept at `time`; otherwise the
+        steps run from the first to the last time and a row is kept after each. Without `dt` the
+        method chooses the step; "rk4" divides every interval into equal steps not longer than a
+        fifth of the stability limit.
+    method : {"auto", "rk4", "rk45", "newmark", "hht", "generalised_alpha"}, optional
+        "auto" lets the program choose; `summary["method"]` and `summary["reason"]` report its
+        choice. "rk4" is classical Runge-Kutta with a fixed step (the paper's scheme), "rk45"
+        Runge-Kutta 5(4) with error control. The others are implicit: average acceleration,
+        Hilber-Hughes-Taylor, generalised-alpha. The default is "auto" with ground motion; with a
+        lateral force alone the method must be named.
+    initial : mapping, Result or path, optional
+        State at the start. As a mapping: "slip" [m], "rotation" [rad], "opening" [m], and
+        "slip_velocity", "rotation_velocity", "opening_velocity", each of shape (n,). The springs
+        are loaded from zero to this state. Without "opening" the joints start in equilibrium under
+        axial load and weight. As a `Result` of this column, or a file that `Result.save_state` or
+        the executable wrote: the state that it ended in. Times that begin where those of the
+        result end go on with the same bits as one analysis, if the method is the same. After a
+        static path the column starts at rest; its lateral force is let go, unless `force` holds
+        it. What may differ is said at `cyclic`.
+    vertical_acceleration : array_like of shape (m,), or GroundMotion, optional
+        Vertical acceleration of the ground, upward positive [m/s2].
+    axial_load : array_like, shape (m,), optional
+        Axial load at the top [N], compression positive, in place of the constant one of the column.
+    events : {"step", "located"}, optional
+        For "rk4": a spring changes its line at the end of a step ("step", the default), or the step
+        is cut where the line ends ("located").
+    tolerance : float, optional
+        For "rk45" and "auto": allowed relative error of a step in the energy norm. The default is
+        1e-6.
+    rho_infinity : float, optional
+        For "hht" and "generalised_alpha": spectral radius at infinite frequency; 1 means no
+        numerical damping. The default is 0.8.
+    collapse_drift : float, optional
+        Displacement of the top over the height at which the column counts as collapsed: the
+        analysis ends there, and `summary["status"]` is "collapsed".
+    allow_unstable : bool, optional
+        For "rk4": accept a `dt` beyond the stability limit.
+    max_seconds : float, optional
+        A run that is expected to take longer is refused before it starts [s]; the message says how
+        long, and which method is faster. The default is 300.
+    every : int, optional
+        Keep every n-th step and the last one. By default rows are kept as described for `dt`.
+    openings : bool, optional
+        Whether to keep the openings of layered joints, for `Result.elongation` and
+        `Result.layer_deformation`.
+    motion : bool, optional
+        Whether to keep how the top moves, for `Result.velocity`, `Result.acceleration` and
+        `Result.absolute_acceleration`; `summary` then has "peak_floor_acceleration" [m/s2], the
+        largest absolute acceleration of the top at the ends of all steps, in size.
+
+    Returns
+    -------
+    Result
+        A row for each time kept; the first row is the start. Where the layers of a joint can no
+        longer carry the axial load, the analysis ends; `summary["status"]` is "axial_failure".
+
+    Raises
+    ------
+    InputError
+        For bad input, for a step beyond the stability limit (the message gives the limit), and for
+        a run that is expected to take more than `max_seconds`.
+    SolveError
+        If the motion grows without bounds, or a step does not converge; its attribute `result`
+        holds the rows up to that point.
+
+    Warns
+    -----
+    AccuracyWarning
+        If a body turns by more than 0.1 rad with `kinematics` "small" or "pdelta", and if vertical
+        loads have no effect on the column.
+    LongRunWarning
+        Before a run starts that is expected to take more than 5 s; it names the faster method.
+    """
+    given = {
+        "force": force,
+        "ground_acceleration": ground_acceleration,
+        "vertical_acceleration": vertical_acceleration,
+        "axial_load": axial_load,
+    }
+    time, given = acting(time, given, "time_history")
+    loads = {name: _loading(values, name) for name, values in given.items() if values is not None}
+    if not loads and not initial:
+        raise InputError(
+            "time_history: nothing acts; give a load (" + ", ".join(given) + ") or an initial state"
+        )
+    if time is None:
+        raise InputError("time_history: time is missing; give the times of the loading")
+    chosen = {
+        "method": method,
+        "dt": dt,
+        "events": events,
+        "tolerance": tolerance,
+        "rho_infinity": rho_infinity,
+        "collapse_drift": collapse_drift,
+        "allow_unstable": _arguments.switch(allow_unstable, "allow_unstable") or None,
+        "max_seconds": max_seconds,
+    }
+    kept = not _checked(column).opens and _arguments.switch(openings, "openings")
+    moves = _arguments.switch(motion, "motion")
+    settings = settings_of(every, kept, moves, **chosen)
+    times = _arguments.vector(time, "time")
+    from_end = initial is not None and not isinstance(initial, Mapping)
+    run, reached = _core.time_history(
+        column._statement + settings,
+        times,
+        loads,
+        *((_NONE, False) if from_end else _initial_state(initial, column)),
+        state_of(initial, "time_history") if from_end else None,
+        _views.view(column, "watches", kept),
+        lambda note: _tell(note, LongRunWarning, 5),
+    )
+    kept_initial = named_state(initial) if from_end else initial
+    call = {"time": times, **loads, "initial": kept_initial, **chosen, "every": every}
+    return _return(column, run, {"analysis": "dynamic"}, call, reached)
+
+
+@contextmanager
+def without_notes() -> Iterator[None]:
+    """Issue no warnings about runs of this thread: they are some of many.
+
+    The filters of warnings are those of all threads and cannot say so.
+    """
+    _silent.now = True
+    try:
+        yield
+    finally:
+        _silent.now = False
+
+
+def _tell(note: str, kind: type[Warning], stacklevel: int) -> None:
+    if not getattr(_silent, "now", False):
+        warnings.warn(note, kind, stacklevel=stacklevel)
+
+
+def _checked(column: Column) -> Column:
+    return checked_column(column)
+
+
+def settings_of(
+    every: int | None, openings: bool, motion: bool = False, **given: Any
+) -> _core.Statement:
+    """Return the groups analysis and output with the settings that are given."""
+    statement = _core.settings({name: v for name, v in given.items() if v is not None})
+    if every is None and not openings and not motion:
+        return statement
+    if every is not None and _arguments.whole(every, "every") < 1:
+        raise InputError(f"every = {every} must be 1 or more")
+    return statement + _core.group(
+        "output", {"every": every, "openings": int(openings) or None, "motion": int(motion) or None}
+    )
+
+
+def _loading(values: ArrayLike, name: str) -> Array:
+    array = _arguments.vector(values, name)
+    if array.size == 0:
+        raise InputError(f"{name} is empty; give one value for each time")
+    return array
+
+
+def _initial_state(initial: Mapping[str, ArrayLike] | None, column: Column) -> tuple[Array, bool]:
+    """Return deformations and velocities at the start, and whether openings are given.
+
+    An empty array means a column at rest.
+    """
+    if not initial:
+        return _NONE, False
+    n = len(column.joint_numbers)
+    known = _DEFORMATIONS if column.opens else _DEFORMATIONS[:2]
+    parts = {name: np.zeros(n) for name in (*known, *(f"{name}_velocity" for name in known))}
+    for name, values in initial.items():
+        if name not in parts:
+            if name in ("opening", "opening_velocity"):
+                raise InputError(
+                    f"initial: {name!r} needs joints that open; give the column axial_spring"
+                )
+            raise InputError(f"initial: {name!r} is not known; it is one of {', '.join(parts)}")
+        array = _arguments.finite_vector(np.atleast_1d(values), f"initial: {name}")
+        if array.shape != (n,):
+            raise InputError(f"initial: {name} has {array.size} values for n = {n} joints")
+        parts[name] = array
+    return np.concatenate([*parts.values()]), "opening" in initial
+
+
+def _return(
+    column: Column,
+    run: _core.Run,
+    about: dict[str, str],
+    call: dict[str, Any],
+    reached: Array | None = None,
+) -> Result:
+    arrays, state, summary, error, note = run
+    summary |= about
+    summary["kinematics"] = column.kinematics
+    if "lost_joint" in summary:
+        summary["lost_joint"] = column.joint_numbers[summary["lost_joint"] - 1]
+    given = {name: value for name, value in call.items() if value is not None}
+    result = result_from_arrays(arrays, column, summary, given, state, reached)
+    if error is not None:
+        error.result = result
+        raise error
+    if note:
+        _tell(note, AccuracyWarning, 4)
+    return result

@@ -1,0 +1,235 @@
+"""Case files of the executable, read into Python by the same reader."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+
+from rbsdem import _core
+from rbsdem._arguments import Array
+from rbsdem.errors import InputError, SolveError
+from rbsdem.model.column import Column
+from rbsdem.model.damping import Damping
+from rbsdem.model.footing import Footing
+from rbsdem.model.springs import SPRINGS, Spring
+from rbsdem.result import Result
+from rbsdem.section.reading import Groups, layered_column, recipe_of
+from rbsdem.solve.analysis import cyclic, time_history
+
+_DRIVES = ("displacement", "force", "ground_acceleration", "vertical_acceleration", "axial_load")
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A case file: a column, its loading and its analysis.
+
+    Attributes
+    ----------
+    title : str
+        Title of the case.
+    column : Column
+        The column.
+    method : str
+        "static", or a method of `time_history`.
+    time : ndarray, shape (m,)
+        Times of all loadings [s]; in a static analysis the numbers of the points. Empty for a case
+        without a loading.
+    displacement, force : ndarray, shape (m,), or None
+        Displacement of the top [m] or lateral force [N].
+    ground_acceleration, vertical_acceleration : ndarray, shape (m,), or None
+        Acceleration of the ground to +x and upward [m/s2].
+    axial_load : ndarray, shape (m,), or None
+        Axial load at the top in place of that of the column [N].
+    settings : dict
+        The settings of the analysis that were given, as keywords of `cyclic` or `time_history`: dt,
+        events, tolerance, rho_infinity, collapse_drift, allow_unstable, max_seconds, every,
+        openings, motion, initial (path of a state).
+    """
+
+    title: str
+    column: Column
+    method: str
+    time: Array
+    displacement: Array | None
+    force: Array | None
+    ground_acceleration: Array | None
+    vertical_acceleration: Array | None
+    axial_load: Array | None
+    settings: dict[str, Any]
+
+    def run(self, column: Column | None = None, **changes: Any) -> Result:
+        """Solve the case as the executable does.
+
+        Parameters
+        ----------
+        column : Column, optional
+            Another column in place of the case's.
+        **changes
+            Keywords of `cyclic` or `time_history` that replace or add to `settings`.
+
+        Returns
+        -------
+        Result
+            The result of `cyclic` or `time_history`; their exceptions are raised too.
+        """
+        column = self.column if column is None else column
+        if not self.time.size:
+            raise InputError(
+                "the case has no loading; give it a group &loading, or run its column: "
+                "rbsdem.cyclic(case.column, ...), rbsdem.time_history(case.column, ...)"
+            )
+        loads = {name: getattr(self, name) for name in _DRIVES if getattr(self, name) is not None}
+        try:
+            if self.method == "static":
+                result = cyclic(column, **loads, **(self.settings | changes))
+            else:
+                keywords = {"method": self.method} | self.settings | changes
+                result = time_history(column, self.time, **loads, **keywords)
+        except SolveError as error:
+            if error.result is not None:
+                error.result = replace(error.result, case=self)
+            raise
+        return replace(result, case=self)
+
+    def to_namelist(self) -> str:
+        """Return the text of a case file, from which the same case comes back.
+
+        Histories are written into the text itself, with all their digits.
+        """
+        head = {"title": _core.Text(self.title) if self.title else None}
+        parts = [_core.group("case", head), self.column._groups()]
+        for name in _DRIVES:
+            values = getattr(self, name)
+            if values is None:
+                continue
+            time = None if self.method == "static" else self.time
+            parts.append(_core.group("loading", {"drive": name, "time": time, "values": values}))
+        settings = dict(self.settings)
+        output = {name: settings.pop(name, None) for name in ("every", "openings", "motion")}
+        if "initial" in settings:
+            settings["initial"] = _core.Text(os.fspath(settings["initial"]))
+        parts.append(_core.group("analysis", {"method": self.method} | settings))
+        parts.append(_core.group("output", output))
+        numbers = [float(number) for part in parts for number in part.numbers]
+        return _core.to_namelist(_core.Statement("\n".join(part.text for part in parts), numbers))
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether another case has the same column, histories and settings, bit for bit."""
+        if not isinstance(other, Case):
+            return NotImplemented
+        return all(
+            np.array_equal(one, two) if isinstance(one, np.ndarray) else bool(one == two)
+            for one, two in (
+                (getattr(self, field.name), getattr(other, field.name)) for field in fields(self)
+            )
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+def read_case(path: str | os.PathLike[str]) -> Case:
+    """Read a case file of the executable, with its histories.
+
+    A case without a loading has a column and settings to be used, as for `rbsdem.ensemble`.
+    Loadings given at different times are interpolated linearly to common times.
+
+    Parameters
+    ----------
+    path : str or path
+        Path of the namelist file; paths of histories are relative to its folder.
+
+    Raises
+    ------
+    InputError
+        With a line for each error, as `rbsdem check` reports them.
+    """
+    statement, time, values, acting = _core.read_case(path)
+    groups: dict[str, list[dict[str, Any]]] = {}
+    for name, given in _core.groups(statement):
+        groups.setdefault(name, []).append(given)
+    # Of springs and of what a drawing has there are several.
+    found = {name: given[-1] for name, given in groups.items()}
+    springs = _Springs(groups)
+    settings = _core.typed("analysis", found.get("analysis", {}))
+    settings |= _core.typed("output", found.get("output", {}))
+    # The histories already end at the duration; the csv file is for the executable only.
+    for name in ("duration", "file", "state"):
+        settings.pop(name, None)
+    if "initial" in settings:
+        settings["initial"] = os.path.join(os.path.dirname(os.fspath(path)), settings["initial"])
+    column = _core.typed("column", found["column"])
+    column |= springs.of_joints(column.get("n", 1) + (column.get("top") == "fixed"))
+    beneath = {name: column.pop(f"{name}_0", None) for name in ("shear", "flexure", "axial_spring")}
+    footing = {
+        name: column.pop(f"footing_{name}")
+        for name in ("mass", "inertia", "height")
+        if f"footing_{name}" in column
+    }
+    if beneath["shear"] is not None:
+        column["footing"] = Footing(**beneath, **footing)
+    if "damping" in found:
+        column["damping"] = Damping(**_core.typed("damping", found["damping"]))
+    column = {"mass": None} | column
+    loads = (np.ascontiguousarray(values[:, i]) if acting[i] else None for i in range(len(_DRIVES)))
+    return Case(
+        found.get("case", {}).get("title", ""),
+        layered_column(recipe_of(groups), column) if "drawing" in groups else Column(**column),
+        settings.pop("method"),
+        time,
+        *loads,
+        settings,
+    )
+
+
+class _Springs:
+    """The springs of a case, from its groups."""
+
+    def __init__(self, groups: Groups) -> None:
+        names = ("shear", "flexure", "axial_spring", "layer_spring", "layers")
+        self.stated = {name: groups.get(name, []) for name in names}
+
+    def of_joints(self, last: int) -> dict[str, Any]:
+        """Return the springs of a column, one for all joints or one for each from 1 to the last.
+
+        Those of joint 0, beneath a footing, have its number in their names.
+        """
+        springs = {int(given["id"]): _spring(given) for given in self.stated["layer_spring"]}
+        layers: dict[tuple[int, ...], list[tuple[float, Spring]]] = {
+            _joints(given): list(
+                zip(
+                    _core.several(given["y"]),
+                    (springs[int(number)] for number in _core.several(given["spring"])),
+                    strict=True,
+                )
+            )
+            for given in self.stated["layers"]
+        }
+        column: dict[str, Any] = {}
+        for name in ("shear", "flexure", "axial_spring"):
+            places: dict[int | None, Spring] = {}
+            for given in self.stated[name]:
+                joints = _joints(given)
+                spring = _spring(given, layers[joints] if given["rule"] == "layered" else None)
+                places |= dict.fromkeys(joints or (None,), spring)
+            if 0 in places:
+                column[f"{name}_0"] = places.pop(0)
+            if None in places:
+                column[name] = places[None]
+            elif places:
+                column[name] = [places[joint] for joint in range(1, last + 1)]
+        return column
+
+
+def _joints(given: dict[str, Any]) -> tuple[int, ...]:
+    """Return the joints that a group names; an empty tuple means all joints."""
+    return tuple(int(joint) for joint in _core.several(given.get("joint", [])))
+
+
+def _spring(given: dict[str, Any], layers: list[tuple[float, Spring]] | None = None) -> Spring:
+    """Return the spring that a group states."""
+    kind = SPRINGS[given["rule"]]
+    values = {name: value for name, value in given.items() if name not in ("rule", "joint", "id")}
+    return kind(**(values if layers is None else {"layers": layers}))

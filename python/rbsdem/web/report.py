@@ -1,0 +1,90 @@
+"""A report: the page with its results inside, one file that asks nothing of a network."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from rbsdem import _core
+from rbsdem._files import whole_file
+from rbsdem.errors import InputError
+from rbsdem.web import texts
+from rbsdem.web.compute import Answers
+from rbsdem.web.near import Near
+from rbsdem.web.parts import one_file
+
+__all__ = ["report_data", "write_report"]
+
+#: Letters of a text that a report takes with it.
+_MOST_TEXT = 400_000
+
+
+def report_data(state: Mapping[str, Any], title: str, near: Near | None = None) -> dict[str, Any]:
+    """Return the answers to a state as a report holds them.
+
+    Parameters
+    ----------
+    state : mapping
+        Columns and loading.
+    title : str
+        Title of the report.
+    near : Near, optional
+        Tests to compare with.
+
+    Raises
+    ------
+    InputError
+        With a line for everything that is wrong with a column or the loading.
+    """
+    answers = Answers()
+    columns, loading = state["columns"], state["loading"]
+    loops = answers.loops(state)
+    faults = [fault["text"] for loop in loops for fault in loop["faults"]]
+    if faults:
+        raise InputError("\n".join(dict.fromkeys(faults)))
+    data: dict[str, Any] = {
+        "title": title,
+        "version": _core.version(),
+        "state": {"columns": columns, "loading": loading},
+        "loops": [{**loop, "seconds": 0} for loop in loops],
+        "sections": {code: answers.sections(state, code) for code in ("aci318", "ec2")},
+        "bands": [answers.band(given, loading) for given in columns],
+        "scales": None,
+        "own": answers.own_interaction(state),
+        "near": None if near is None else near.of(state),
+    }
+    if any(loop.get("dynamic") for loop in loops):
+        data["scales"] = [answers.scaled(given, loading, lambda _: None) for given in columns]
+    found = answers.solved(columns[0], loading)
+    data["exports"] = {}
+    if found.result is not None:
+        for form in ("namelist", "python"):
+            text = texts.exported(form, found, columns[0], state)
+            # A long history would be most of the report; the case that it is made from has it.
+            if len(text) < _MOST_TEXT:
+                data["exports"][form] = {"text": text, "name": "column"}
+    return data
+
+
+def write_report(
+    path: str | os.PathLike[str],
+    state: Mapping[str, Any],
+    title: str,
+    near: Near | None = None,
+) -> Path:
+    """Write a report of a state of the page, whole or not at all.
+
+    Parameters
+    ----------
+    path : path
+        File to write.
+    state, title, near
+        As for `report_data`.
+    """
+    target = Path(path)
+    page = one_file(title, report_data(state, title, near))
+    with whole_file(target) as file:
+        file.write(page.encode("utf-8"))
+    return target

@@ -1,0 +1,440 @@
+"""The server of the page: on this machine alone, and for who knows its address alone.
+
+It listens on 127.0.0.1. Every path begins with a random token; without it there is nothing. A
+request whose Host or Origin is another one is refused, so that a page of another site gets no
+answer even if it guesses the port. No request names a file: the page and its parts are read once
+from the package, and what a user opens comes as text. One answer is computed at a time; of the
+requests of a tab for the same thing the newest is answered, those before it are told so.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import secrets
+import tempfile
+import threading
+import warnings
+from collections import OrderedDict
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any, ClassVar
+from urllib.parse import urlsplit
+
+from rbsdem._files import whole_file
+from rbsdem.errors import InputError, RbsdemError
+from rbsdem.motions.read import read_motion
+from rbsdem.web import texts
+from rbsdem.web.compute import Answers
+from rbsdem.web.diagrams import defect
+from rbsdem.web.near import Near
+from rbsdem.web.parts import TYPES, parts
+from rbsdem.web.state import MOST_VALUES
+
+__all__ = ["ExploreServer", "RefusedError"]
+
+#: Largest request [bytes]: a state, and the text of a file.
+MOST_STATE, MOST_TEXT = 1_000_000, 8_000_000
+#: Columns side by side, tabs that are known, records that are kept, requests at once.
+_COLUMNS, _TABS, _RECORDS, _AT_ONCE = 2, 64, 16, 32
+#: Time in which a request must have come [s].
+_PATIENCE = 20.0
+
+_POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
+    "img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+
+
+class RefusedError(Exception):
+    """A request that is not answered: status and a text for who wrote the client."""
+
+    def __init__(self, status: int, text: str) -> None:
+        super().__init__(text)
+        self.status = status
+
+
+class OvertakenError(Exception):
+    """A newer request of the same tab for the same thing has come."""
+
+
+class ExploreServer(ThreadingHTTPServer):
+    """The server.
+
+    Parameters
+    ----------
+    port : int, optional
+        0 takes a free one.
+    start : mapping, optional
+        The state that the page begins with, in place of its own.
+    near : Near, optional
+        Tests to compare with.
+
+    Raises
+    ------
+    InputError
+        If the port is taken, or not one.
+    """
+
+    daemon_threads = True
+    allow_reuse_address = False
+
+    def __init__(
+        self, port: int = 0, start: Mapping[str, Any] | None = None, near: Near | None = None
+    ) -> None:
+        self.near = near
+        if not 0 <= port <= 65535:
+            raise InputError(f"--port {port}: a port is a number from 1 to 65535")
+        try:
+            super().__init__(("127.0.0.1", port), _Handler)
+        except OSError as error:
+            raise InputError(
+                f"--port {port}: cannot be opened ({error.strerror}); another program may have it: "
+                "choose another port, or leave it out"
+            ) from None
+        self.token = secrets.token_urlsafe(24)
+        self.start = start
+        self.answers = Answers()
+        self.parts = parts()
+        self.computing = threading.Lock()
+        self.room = threading.BoundedSemaphore(_AT_ONCE)
+        self._newest: OrderedDict[tuple[str, str], int] = OrderedDict()
+        self._newest_lock = threading.Lock()
+
+    @property
+    def port(self) -> int:
+        """The port that it listens on."""
+        return int(self.server_address[1])
+
+    @property
+    def address(self) -> str:
+        """The address for the browser, with the token."""
+        return f"http://127.0.0.1:{self.port}/{self.token}/"
+
+    # ---- newest wins ----------------------------------------------------------------------------
+
+    def announce(self, tab: str, lane: str, number: int) -> Callable[[], None]:
+        """Note the number of a request; return a check that raises if a newer one has come."""
+        key = (tab, lane)
+        with self._newest_lock:
+            self._newest[key] = max(number, self._newest.get(key, number))
+            self._newest.move_to_end(key)
+            while len(self._newest) > _TABS * len(LANES):
+                self._newest.popitem(last=False)
+
+        def check() -> None:
+            with self._newest_lock:
+                if self._newest.get(key, number) > number:
+                    raise OvertakenError
+
+        return check
+
+    # ---- what is asked --------------------------------------------------------------------------
+
+    def answer(self, lane: str, asked: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the answer to what the page asks.
+
+        Raises
+        ------
+        RefusedError
+            If the request is none of the page's.
+        OvertakenError
+            If a newer one of the tab is here.
+        """
+        tab, number = asked.get("tab"), asked.get("number")
+        if not isinstance(tab, str) or len(tab) > 64 or type(number) is not int:
+            raise RefusedError(400, "tab must be a short text and number a whole number")
+        check = (lambda: None) if lane in _ONCE else self.announce(tab, lane, number)
+        with self.computing:
+            check()
+            return {"number": number, **LANES[lane](self, asked, check)}
+
+    def _loops(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
+        return {"columns": self.answers.loops(_state(asked))}
+
+    def _sections(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
+        code = asked.get("code", "aci318")
+        if code not in ("aci318", "ec2"):
+            raise RefusedError(400, "code must be aci318 or ec2")
+        return {"columns": self.answers.sections(_state(asked), code)}
+
+    def _own(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
+        return {"columns": self.answers.own_interaction(_state(asked))}
+
+    def _bands(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
+        state = _state(asked)
+        found = []
+        for given in state["columns"]:
+            self._let_others(check)
+            found.append(self.answers.band(given, state["loading"]))
+        return {"columns": found}
+
+    def _scales(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
+        state = _state(asked)
+        return {
+            "columns": [
+                self.answers.scaled(given, state["loading"], lambda _: self._let_others(check))
+                for given in state["columns"]
+            ]
+        }
+
+    def _nearest(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
+        if self.near is None:
+            return {"none": "rbsdem explore --tests FOLDER shows the tests that are most like it"}
+        return self.near.of(_state(asked), lambda: self._let_others(check))
+
+    def _export(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
+        state, form, which = _state(asked), asked.get("form"), asked.get("column", 0)
+        if type(which) is not int or not 0 <= which < len(state["columns"]):
+            raise RefusedError(400, "column must be the number of a column")
+        given = state["columns"][which]
+        found = self.answers.solved(given, state["loading"])
+        if found.result is None:
+            return {"faults": found.faults}
+        if form not in ("namelist", "python", "csv"):
+            raise RefusedError(400, "form must be namelist, python or csv")
+        return {"text": texts.exported(form, found, given, state), "name": f"column_{'ab'[which]}"}
+
+    def _open(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
+        return opened(asked.get("text"))
+
+    def _record(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
+        text, name = asked.get("text"), asked.get("name")
+        units, dt = asked.get("units"), asked.get("dt")
+        if not isinstance(text, str) or not isinstance(name, str):
+            raise RefusedError(400, "name and text must be texts")
+        # Only the ending of the name is used, for the format.
+        ending = ".at2" if name.lower().endswith(".at2") else ".csv"
+        try:
+            with tempfile.TemporaryDirectory(prefix="rbsdem-") as folder:
+                path = Path(folder) / f"record{ending}"
+                with whole_file(path) as file:
+                    file.write(text.encode("utf-8"))
+                try:
+                    motion = read_motion(path, units, dt)
+                except InputError as error:
+                    raise InputError(str(error).replace(str(path), name[:80])) from None
+            if motion.acceleration.size > MOST_VALUES:
+                raise InputError(
+                    f"{name[:80]}: {motion.acceleration.size} values are too many here; at most "
+                    f"{MOST_VALUES}: cut the record or take larger steps"
+                )
+        except RbsdemError as error:
+            return {"faults": [{"field": "loading.record", "text": str(error)}]}
+        digest = hashlib.sha256(motion.acceleration.tobytes() + repr(motion.dt).encode())
+        key = digest.hexdigest()[:16]
+        records = self.answers.records
+        records[key] = motion
+        while len(records) > _RECORDS:
+            records.pop(next(iter(records)))
+        return {"id": key, "name": name[:80], "pga": motion.pga, "length": motion.length}
+
+    def _let_others(self, check: Callable[[], None]) -> None:
+        """Let another answer be computed first; a loop is waited for, a band is not."""
+        self.computing.release()
+        try:
+            threading.Event().wait(0.001)
+        finally:
+            self.computing.acquire()
+        check()
+
+
+Lane = Callable[[ExploreServer, Mapping[str, Any], Callable[[], None]], dict[str, Any]]
+
+#: What can be asked, by the last part of the path.
+LANES: dict[str, Lane] = {
+    "loops": ExploreServer._loops,
+    "sections": ExploreServer._sections,
+    "own": ExploreServer._own,
+    "bands": ExploreServer._bands,
+    "scales": ExploreServer._scales,
+    "nearest": ExploreServer._nearest,
+    "export": ExploreServer._export,
+    "open": ExploreServer._open,
+    "record": ExploreServer._record,
+}
+
+#: What is asked for once: a newer question takes nothing from it.
+_ONCE = ("export", "open", "record")
+
+
+def opened(text: object) -> dict[str, Any]:
+    """Return the state of the text of a case file, from its drawing or as the case that it is."""
+    try:
+        with warnings.catch_warnings():
+            # What there is to say of it stands beside its loop.
+            warnings.simplefilter("ignore")
+            case = texts.case_of_text(text)
+    except InputError as error:
+        return {"faults": [{"field": "case", "text": str(error)}]}
+    assert isinstance(text, str)
+    drawing = texts.drawing_in(text)
+    if drawing is not None:
+        try:
+            state = _state({"state": drawing})
+        except RefusedError:
+            state = None
+        if state is not None and _is_of(case, state):
+            return {"state": state}
+    note = (
+        "the file was changed after it was drawn: it is shown as it is, without its drawing"
+        if drawing is not None
+        else ""
+    )
+    column = {"name": "A", "case": text}
+    return {"state": {"columns": [column], "loading": {"kind": "own"}}, "note": note}
+
+
+def _is_of(case: Any, state: Mapping[str, Any]) -> bool:
+    """Return whether a case is what a drawing makes."""
+    found = Answers().solved(state["columns"][0], state["loading"])
+    if found.result is None:
+        return False
+    return bool(texts.case_of_result(found.result, case.title).to_namelist() == case.to_namelist())
+
+
+def _state(asked: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the state of a request, which has columns and a loading; the rest is checked later."""
+    state = asked.get("state")
+    if not isinstance(state, dict):
+        raise RefusedError(400, "state must be an object")
+    columns, loading = state.get("columns"), state.get("loading")
+    if not isinstance(columns, list) or not 1 <= len(columns) <= _COLUMNS:
+        raise RefusedError(400, "state: columns must be a list of one or two")
+    if not all(isinstance(column, dict) for column in columns) or not isinstance(loading, dict):
+        raise RefusedError(400, "state: each column and the loading must be objects")
+    return {"columns": columns, "loading": loading}
+
+
+class _Handler(BaseHTTPRequestHandler):
+    """One connection."""
+
+    server: ExploreServer
+    protocol_version = "HTTP/1.1"
+    server_version, sys_version = "rbsdem", ""
+    # Head and body of an answer go out at once, and nobody waits for more.
+    wbufsize = -1
+    disable_nagle_algorithm = True
+    timeout = _PATIENCE
+    #: Heads of every answer.
+    _heads: ClassVar[dict[str, str]] = {
+        "Content-Security-Policy": _POLICY,
+        "Cache-Control": "no-store",
+        "Referrer-Policy": "no-referrer",
+        "X-Content-Type-Options": "nosniff",
+        "X-Frame-Options": "DENY",
+        "Cross-Origin-Opener-Policy": "same-origin",
+        "Cross-Origin-Resource-Policy": "same-origin",
+    }
+
+    def do_GET(self) -> None:
+        """Send the page or one of its parts."""
+        self._guarded(self._get)
+
+    def do_POST(self) -> None:
+        """Answer a question of the page."""
+        self._guarded(self._post)
+
+    def _guarded(self, work: Callable[[str], None]) -> None:
+        if not self.server.room.acquire(blocking=False):
+            self._refuse(503, "too many requests at once")
+            return
+        try:
+            work(self._allowed())
+        except RefusedError as error:
+            self._refuse(error.status, str(error))
+        except OvertakenError:
+            self._send(409, b'{"overtaken": true}', "application/json")
+        except (ConnectionError, TimeoutError):
+            self.close_connection = True  # nobody waits for the answer
+        except Exception as error:  # one of the program, which must not end the server
+            self._refuse(500, defect(error))
+        finally:
+            self.server.room.release()
+
+    def _allowed(self) -> str:
+        """Return the path behind the token; refuse who does not know it or comes from elsewhere."""
+        names = {f"{host}:{self.server.port}" for host in ("127.0.0.1", "localhost")}
+        host = self.headers.get_all("Host") or []
+        if len(host) != 1 or host[0].lower() not in names:
+            raise RefusedError(403, "this address has another host")
+        for origin in self.headers.get_all("Origin") or []:
+            if origin.lower() != f"http://{host[0].lower()}":
+                raise RefusedError(403, "another site must not ask here")
+        if self.headers.get("Sec-Fetch-Site", "none") == "cross-site" and self.command == "POST":
+            raise RefusedError(403, "another site must not ask here")
+        _, _, rest = urlsplit(self.path).path.partition("/")
+        token, _, path = rest.partition("/")
+        known = self.server.token.encode()
+        if not secrets.compare_digest(token.encode("utf-8", "surrogatepass"), known):
+            raise RefusedError(404, "nothing is here; the address has a token that rbsdem printed")
+        return path
+
+    def _get(self, path: str) -> None:
+        if path == "start":
+            begin = {"state": self.server.start, "tests": self.server.near is not None}
+            self._send(200, json.dumps(begin).encode(), "application/json")
+            return
+        name = path or "index.html"
+        if name not in self.server.parts:
+            raise RefusedError(404, "nothing is here")
+        self._send(200, self.server.parts[name], TYPES[name.rsplit(".", 1)[1]])
+
+    def _post(self, path: str) -> None:
+        if path not in LANES:
+            raise RefusedError(404, "nothing is here")
+        if self.headers.get_content_type() != "application/json":
+            raise RefusedError(415, "send application/json")
+        asked = self._body(MOST_TEXT if path in ("open", "record") else MOST_STATE)
+        answer = self.server.answer(path, asked)
+        self._send(200, json.dumps(answer, allow_nan=False).encode(), "application/json")
+
+    def _body(self, most: int) -> dict[str, Any]:
+        """Return what was sent, a JSON object without NaN."""
+        length = self.headers.get("Content-Length", "")
+        if self.headers.get("Transfer-Encoding") or not length.isascii() or not length.isdigit():
+            raise RefusedError(411, "Content-Length is missing")
+        if len(length) > 12 or int(length) > most:
+            raise RefusedError(413, f"more than {most} bytes")
+        raw = self.rfile.read(int(length))
+        if len(raw) < int(length):
+            raise ConnectionResetError
+        try:
+            asked = json.loads(raw, parse_constant=_no_constant, parse_int=_whole)
+        except (ValueError, RecursionError) as error:
+            raise RefusedError(400, f"this is not JSON: {error}") from None
+        if not isinstance(asked, dict):
+            raise RefusedError(400, "send an object")
+        return asked
+
+    def _refuse(self, status: int, text: str) -> None:
+        # What is left of the request is not read.
+        self.close_connection = True
+        with suppress(ConnectionError, TimeoutError):
+            self._send(status, json.dumps({"error": text}).encode(), "application/json")
+
+    def _send(self, status: int, body: bytes, kind: str) -> None:
+        self.send_response(status)
+        self.send_header("Content-Type", kind)
+        self.send_header("Content-Length", str(len(body)))
+        for name, value in self._heads.items():
+            self.send_header(name, value)
+        if self.close_connection:
+            self.send_header("Connection", "close")
+        self.end_headers()
+        self.wfile.write(body)
+        self.wfile.flush()
+
+    def log_message(self, format: str, *arguments: object) -> None:  # noqa: A002
+        """Print nothing: the path has the token."""
+
+
+def _whole(digits: str) -> int | float:
+    """Return a whole number; one that no computer counts to becomes a float."""
+    return int(digits) if len(digits) < 16 else float(digits)
+
+
+def _no_constant(name: str) -> None:
+    raise ValueError(f"{name} is no number of JSON")
