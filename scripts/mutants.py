@@ -208,7 +208,7 @@ MUTANTS = (
     ),
     Mutant(
         "own-inertia-of-the-top",
-        "src/structure/column/column.f90",
+        "src/structure/column/new_column.f90",
         "+ spec%top_inertia + own*shift*column%upper(n)",
         "+ spec%top_inertia",
         "inertia",
@@ -216,7 +216,7 @@ MUTANTS = (
     ),
     Mutant(
         "weight-above-a-centroid",
-        "src/structure/column/column.f90",
+        "src/structure/column/new_column.f90",
         "column%axial_body = dead + column%gravity*(column%mass/2.0_wp + above(2:))",
         "column%axial_body = dead + column%gravity*(column%mass + above(2:))",
         "self-weight",
@@ -224,9 +224,9 @@ MUTANTS = (
     ),
     Mutant(
         "load-of-layered-joints",
-        "src/structure/column/column.f90",
-        "column%spring(n + 1:2*n)%axial_load = column%compression",
-        "column%spring(n + 1:2*n)%axial_load = column%axial_load",
+        "src/structure/column/new_column.f90",
+        "column%spring(i)%axial_load = column%compression(column%place(i)%index)",
+        "column%spring(i)%axial_load = column%axial_load",
         "self-weight",
         "column layered",
     ),
@@ -241,8 +241,8 @@ MUTANTS = (
     Mutant(
         "coriolis",
         "src/structure/column/finite.f90",
-        "separation = bottom(2) - below(2) + 2.0_wp*v(i)*spin_below + slip*turn_below",
-        "separation = bottom(2) - below(2) + v(i)*spin_below + slip*turn_below",
+        "separation = bottom(2) - below(2) + 2.0_wp*v(i, shear)*spin_below + slip*turn_below",
+        "separation = bottom(2) - below(2) + v(i, shear)*spin_below + slip*turn_below",
         "finite-rotations",
         "finite",
     ),

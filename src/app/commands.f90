@@ -45,7 +45,7 @@ module rbs_app_commands
       character(len=:), allocatable :: path
       type(case_record) :: case
       type(case_history) :: history
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(csv_recorder) :: recorder
       type(task_type) :: task
    end type run_type
@@ -162,7 +162,7 @@ contains
       logical, intent(in) :: with_matrices
       type(error_type), allocatable, intent(out) :: error
       type(case_record) :: case
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(modes_type) :: modes
       type(matrices_type) :: matrices
       type(message_list) :: messages

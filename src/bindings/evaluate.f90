@@ -112,7 +112,7 @@ contains
       type(request_type), intent(in) :: request
       type(answer_type), intent(inout) :: answer
       type(case_record) :: case
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(message_list) :: notes
       type(modes_type) :: modes
       type(matrices_type) :: matrices

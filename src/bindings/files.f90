@@ -29,7 +29,7 @@ contains
       type(answer_type), intent(inout) :: answer
       type(case_record) :: case
       type(case_history) :: history
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(statement_sink) :: statements
       integer :: place, m
 

@@ -34,7 +34,7 @@ module rbs_bindings_runs
    integer, parameter :: long_run = 3
 
    type :: run_type
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       !> Settings of analysis and output
       type(case_record) :: case
       type(array_recorder) :: recorder

@@ -109,7 +109,7 @@ contains
    subroutine column_from_statements(text, number, column, case, error)
       character(len=*), intent(in) :: text
       real(c_double), intent(in) :: number(:)
-      type(column_type), intent(out) :: column
+      class(column_type), allocatable, intent(out) :: column
       type(case_record), intent(out) :: case
       type(error_type), allocatable, intent(out) :: error
 

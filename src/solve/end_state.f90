@@ -107,7 +107,7 @@ contains
    !> Begin a state with what every analysis has. What the solver remembers follows.
    subroutine start_saving(self, column, standing, springs)
       class(end_state), intent(inout) :: self
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(standing_type), intent(inout) :: standing
       type(spring_array), intent(inout) :: springs
       real(wp) :: first(head)
@@ -138,7 +138,7 @@ contains
    !> Whether an analysis of a column can begin from the state.
    subroutine check(self, column, error)
       class(end_state), intent(in) :: self
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(error_type), allocatable, intent(out) :: error
       character(len=*), parameter :: kinematics(3) = [character(len=6) :: 'small', 'pdelta', 'finite']
       real(wp) :: expected(2)
@@ -186,7 +186,7 @@ contains
    !> comes next in the stream.
    subroutine take_up(self, column, standing, springs, error)
       class(end_state), intent(inout) :: self
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(standing_type), intent(out) :: standing
       type(spring_array), intent(inout) :: springs
       type(error_type), allocatable, intent(out) :: error
@@ -207,7 +207,7 @@ contains
 
    !> Two numbers that tell columns with other springs or lengths apart.
    subroutine find_stamp(column, stamp)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       real(wp), intent(out) :: stamp(2)
       integer(int64) :: hash
       integer :: i

@@ -2,10 +2,11 @@
 module rbs_solve_make_column
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_text, only: to_text
-   use rbs_structure_column_column, only: column_type, new_column
+   use rbs_structure_column_column, only: column_type
    use rbs_structure_spring_place, only: flexure
    use rbs_hysteresis_layered_layered_joint, only: check_axial_load
    use rbs_structure_column_column_record, only: column_record
+   use rbs_structure_column_new_column, only: new_column
    implicit none
    private
 
@@ -16,7 +17,7 @@ contains
    !> Validate a column and make it.
    subroutine make_column(spec, column, error)
       type(column_record), intent(inout) :: spec
-      type(column_type), intent(out) :: column
+      class(column_type), allocatable, intent(out) :: column
       type(error_type), allocatable, intent(out) :: error
       type(message_list) :: messages
       character(len=:), allocatable :: text

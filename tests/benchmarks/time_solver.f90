@@ -105,7 +105,7 @@ contains
 
    !> Soesianawati & Park No 1, table 3 of the paper, in n bodies; the base is as in one.
    subroutine make_paper_column(column, kinematics, n)
-      type(column_type), intent(out) :: column
+      class(column_type), allocatable, intent(out) :: column
       character(len=*), intent(in) :: kinematics
       integer, intent(in) :: n
       type(column_record) :: spec
@@ -238,7 +238,7 @@ contains
 
    !> Static cyclic path of one body, driven by displacement, per increment.
    subroutine time_static()
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(array_recorder), target :: recorder
       type(task_type) :: task
       type(error_type), allocatable :: error
@@ -261,7 +261,7 @@ contains
    subroutine time_rk4(what, kinematics, n)
       character(len=*), intent(in) :: what, kinematics
       integer, intent(in) :: n
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(summary_type) :: summary
       type(error_type), allocatable :: error
       type(analysis_record) :: analysis
@@ -320,7 +320,7 @@ contains
    !> The chain of the yardstick: column 1 of table 3 in n equal bodies, two bilinear springs a joint that
    !> together are as soft as those of one body.
    subroutine make_bilinear_column(column, n, strength)
-      type(column_type), intent(out) :: column
+      class(column_type), allocatable, intent(out) :: column
       integer, intent(in) :: n
       !> Of the shear springs, 1 as in the paper
       real(wp), intent(in) :: strength
@@ -350,7 +350,7 @@ contains
       integer, intent(in) :: n, steps
       !> Step [s], steps in a cycle of the load, strength of the shear springs
       real(wp), intent(in) :: dt, period, strength
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(summary_type) :: summary
       type(analysis_record) :: analysis
       type(loads_type) :: loads
@@ -370,7 +370,7 @@ contains
    !> The static path of one body, as `yardstick` follows it.
    subroutine compare_static(points)
       integer, intent(in) :: points
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(array_recorder), target :: recorder
       type(task_type) :: task
       type(error_type), allocatable :: error

@@ -113,7 +113,7 @@ contains
 
    !> A state far from the straight column, with more than full turns.
    type(state) function random_state(column, random) result(now)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(random_type), intent(inout) :: random
       integer :: i, n
 

@@ -8,7 +8,6 @@ module runs
    use rbs_base_text, only: to_text
    use rbs_structure_column_column, only: column_type
    use rbs_loading_signal, only: signal_type
-   use rbs_structure_column_energy, only: kinetic_energy, potential_energy
    use rbs_output_channels, only: new_channels
    use rbs_output_recorder, only: array_recorder
    use rbs_output_summary, only: summary_type
@@ -48,7 +47,7 @@ module runs
 
    !> A column, its loads, its initial state and the duration of the motion.
    type :: scene_type
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(loads_type) :: loads
       real(wp), allocatable :: q(:), v(:)
       real(wp) :: finish = 0.0_wp
@@ -61,7 +60,7 @@ contains
    !> Plan and run.
    subroutine run(data, column)
       type(run_data), intent(inout) :: data
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(array_recorder), target :: recorder
       type(task_type) :: task
       type(loads_type) :: loads
@@ -121,12 +120,12 @@ contains
    !> A state at time zero with the springs at the deformations q.
    subroutine new_state(state, column, loads, q, v)
       type(state_type), intent(out) :: state
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(loads_type), intent(in) :: loads
       real(wp), intent(in) :: q(:), v(:)
       type(error_type), allocatable :: outcome
       ! A state refers to its column, which a test may give up before it.
-      type(column_type), pointer :: kept
+      class(column_type), pointer :: kept
 
       allocate (kept, source=column)
       state%loads = loads
@@ -146,8 +145,8 @@ contains
    real(wp) function energy_of(state) result(energy)
       type(state_type), intent(in) :: state
 
-      energy = kinetic_energy(state%motion%column, state%q, state%v) + sum(state%springs%work) &
-               + potential_energy(state%motion%column, state%q) + state%along_joints
+      energy = state%motion%column%kinetic_energy(state%q, state%v) + sum(state%springs%work) &
+               + state%motion%column%potential_energy(state%q) + state%along_joints
    end function energy_of
 
    !> Residual of the balance of energy [J].
@@ -168,7 +167,7 @@ contains
    !> Move a state in steps that end at events: by rk4 without a tolerance, by the embedded pair with one.
    subroutine new_located(stepper, column, tolerance, step)
       type(located_stepper), intent(out) :: stepper
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       !> 0: rk4 [1], and the first step of the pair [s]
       real(wp), intent(in) :: tolerance, step
 

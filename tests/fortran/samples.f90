@@ -193,8 +193,9 @@ contains
    end function rich_column
 
    !> The column of a specification that must be valid.
-   type(column_type) function made(spec) result(column)
+   function made(spec) result(column)
       type(column_record), intent(in) :: spec
+      class(column_type), allocatable :: column
       type(error_type), allocatable :: error
       type(column_record) :: asked
 

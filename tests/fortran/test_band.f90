@@ -30,8 +30,9 @@ contains
    end subroutine collect_band
 
    !> A chain with openings, a mass on top, weight and axial load.
-   type(column_type) function full(n) result(column)
+   function full(n) result(column)
       integer, intent(in) :: n
+      class(column_type), allocatable :: column
       type(column_record) :: spec
       integer :: i
 
@@ -50,7 +51,7 @@ contains
 
    !> B by columns.
    subroutine joints_of_bodies(column, b)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       real(wp), intent(out) :: b(:, :)
       real(wp) :: x(column%unknowns)
       integer :: j
@@ -89,7 +90,7 @@ contains
    subroutine rigid(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 5
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp) :: x(3*n), d(3*n), expected(3*n)
       integer :: i
 
@@ -108,7 +109,7 @@ contains
    subroutine mass_diagonal(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 5
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp) :: b(3*n, 3*n), mass(3*n, 3*n), expected(3*n, 3*n)
       integer :: i
 
@@ -127,7 +128,7 @@ contains
 
    subroutine springs(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp), allocatable :: b(:, :), k(:, :), band(:, :)
       integer :: i, n
 
@@ -147,7 +148,7 @@ contains
 
    subroutine geometric(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp), allocatable :: b(:, :), k(:, :), band(:, :)
       integer :: n
 
@@ -167,7 +168,7 @@ contains
    subroutine openings(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 4
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp) :: b(3*n, 3*n)
 
       column = full(n)
@@ -181,7 +182,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 5
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(random_type) :: random
       real(wp) :: factor, softening(2*n, 2*n), stiffness(2*n, 2*n), w(2*n)
       integer :: i, trial

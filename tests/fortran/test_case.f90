@@ -639,7 +639,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
 
       spec = column_1('small')
       spec%height = 0.0_wp

@@ -8,9 +8,7 @@ module test_chain
    use rbs_base_text, only: to_text
    use rbs_structure_column_chain, only: body_forces
    use rbs_structure_column_column, only: column_type
-   use rbs_structure_column_energy, only: kinetic_energy, kinetic_of, potential_energy
    use rbs_structure_column_mass, only: symmetric_mass
-   use rbs_structure_column_top, only: top_position
    use rbs_loading_signal, only: signal_type
    use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices
    use rbs_solve_modal_modes, only: modes_type, find_modes
@@ -64,7 +62,7 @@ contains
       type(column_record), intent(in) :: spec
       type(random_type), intent(inout) :: random
       type(state_type), intent(out) :: state
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(loads_type) :: loads
       real(wp), allocatable :: q(:), v(:)
       integer :: step
@@ -94,7 +92,7 @@ contains
    !> body k has the potential w y, y = sum_{j<k} l_j (1 - th_j^2/2) + s (1 - th_k^2/2) + sum_{j<=k} (w_j
    !> - u_j th_{j-1}).
    subroutine add_dead_load(column, w, k, s, q, second_order, force)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       real(wp), intent(in) :: w, s, q(:)
       integer, intent(in) :: k
       logical, intent(in) :: second_order
@@ -200,7 +198,7 @@ contains
       type(random_type) :: random
       type(column_record) :: spec
       type(state_type) :: state
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(loads_type) :: loads
       type(motion_result) :: now
       real(wp) :: q(3), v(3), load(4), m, l
@@ -252,13 +250,13 @@ contains
             call now%create(state%motion%column)
             associate (motion => state%motion, column => state%motion%column, q => state%q, v => state%v)
                call motion%acceleration(state%springs, q, v, state%load, now)
-               of_loads = motion%load_power(q, v, state%load, now)
+               of_loads = motion%load_power(q, v, state%load)
                of_damping = motion%damping_power(state%springs, q, v)
                ! Steps of the size of q and v lose no digits.
                a = 1.0e-5_wp*now%a
-               of_motion = 0.5e5_wp*(kinetic_energy(column, q, v + a) - kinetic_energy(column, q, v - a))
-               of_potential = 50.0_wp*(potential_energy(column, q + 0.01_wp*v) &
-                                       - potential_energy(column, q - 0.01_wp*v))
+               of_motion = 0.5e5_wp*(column%kinetic_energy(q, v + a) - column%kinetic_energy(q, v - a))
+               of_potential = 50.0_wp*(column%potential_energy(q + 0.01_wp*v) &
+                                       - column%potential_energy(q - 0.01_wp*v))
                of_springs = sum([(state%springs%force(i)*v(i), i=1, size(v))])
             end associate
             call check_close(error, of_motion + of_potential + of_springs, of_loads - of_damping, 0.0_wp, &
@@ -287,7 +285,7 @@ contains
    !> the kinetic energy of the bodies is half of v M v of the joints.
    subroutine check_bodies(error, column, random)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(random_type), intent(inout) :: random
       real(wp), dimension(column%unknowns) :: v, x, back, f, g
       real(wp) :: mass(column%unknowns, column%unknowns)
@@ -305,7 +303,7 @@ contains
       call check_close(error, x(2*n - 1) + column%upper(n)*x(2*n), dot_product(column%arm, v), 0.0_wp, &
                        1.0e-14_wp, 'velocity of the top')
       call symmetric_mass(column, mass)
-      call check_close(error, kinetic_of(column, v), 0.5_wp*dot_product(v, matmul(mass, v)), 1.0e-13_wp, &
+      call check_close(error, column%kinetic_of(v), 0.5_wp*dot_product(v, matmul(mass, v)), 1.0e-13_wp, &
                        0.0_wp, 'kinetic energy')
    end subroutine check_bodies
 
@@ -323,9 +321,10 @@ contains
             spec = variant(n, kind, random)
             spec%self_weight = .false.
             call random_state(spec, random, state)
-            top = top_position(state%motion%column, state%q)
+            top(1) = state%motion%column%top_displacement(state%q)
+            top(2) = state%motion%column%top_height(state%q)
             call check_close(error, spec%axial_load*(top(2) - spec%height), &
-                             potential_energy(state%motion%column, state%q), 1.0e-9_wp, 0.0_wp, &
+                             state%motion%column%potential_energy(state%q), 1.0e-9_wp, 0.0_wp, &
                              'n = '//to_text(n)//', variant '//to_text(kind)//', height')
             call check_close(error, top(1), dot_product(state%motion%column%arm, state%q), 0.0_wp, &
                              1.0e-15_wp, 'displacement')
@@ -338,7 +337,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(state_type) :: state
       type(loads_type) :: loads
       type(rk4_scheme) :: fast, slow
@@ -381,7 +380,7 @@ contains
    subroutine idle_loads(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(state_type) :: idle, none
       type(loads_type) :: zeros
       type(rk4_scheme) :: a, b

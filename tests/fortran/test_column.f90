@@ -5,8 +5,7 @@ module test_column
    use rbs_base_error, only: error_type, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_structure_column_axial, only: geometric_stiffness, geometric_forces, axial_energy, &
-                                         critical_factor, check_stable
+   use rbs_structure_column_axial, only: geometric_stiffness, geometric_forces, critical_factor, check_stable
    use rbs_structure_column_column, only: column_type, small, pdelta, finite
    use rbs_structure_column_mass, only: symmetric_mass, paper_mass
    use rbs_structure_column_column_record, only: column_record
@@ -51,7 +50,7 @@ contains
 
    subroutine one_body(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_type) :: column
+      class(column_type), allocatable :: column
 
       column = made(column_1('small'))
       call check_equal(error, column%n, 1, 'bodies')
@@ -65,7 +64,7 @@ contains
    subroutine equal_bodies(error)
       type(error_type), allocatable, intent(inout) :: error
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
 
       spec = column_1('small')
       spec%n = 4
@@ -76,7 +75,7 @@ contains
 
    subroutine arms(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp) :: b(2*n)
       integer :: i, k
 
@@ -96,7 +95,7 @@ contains
 
    subroutine levels(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_type) :: column
+      class(column_type), allocatable :: column
 
       column = made(column_1('small'))
       call check_equal(error, column%kinematics, small, 'small')
@@ -109,7 +108,7 @@ contains
    subroutine spring_places(error)
       type(error_type), allocatable, intent(inout) :: error
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       integer :: i
 
       spec = chain(3, 'small')
@@ -126,7 +125,7 @@ contains
 
    !> Height of centroid k above joint i, k >= i (theory.md section 3).
    pure real(wp) function height(column, k, i)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       integer, intent(in) :: k, i
 
       height = sum(column%length(i:k - 1)) + 0.5_wp*column%length(k)
@@ -134,7 +133,7 @@ contains
 
    subroutine symmetric_definition(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp) :: mass(2*n, 2*n), expected(2*n, 2*n)
       integer :: i, j, k
 
@@ -161,7 +160,7 @@ contains
    !> x_k'' = sum of u_j'' (j <= k) + sum of l~_kj th_j'', l~_kj = l_j below k, l_k/2 for k, 0 above.
    subroutine paper_definition(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp) :: mass(2*n, 2*n), expected(2*n, 2*n), lever
       integer :: i, j, k
 
@@ -188,7 +187,7 @@ contains
 
    subroutine two_views(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp) :: from_relative(2*n, 2*n), symmetric(2*n, 2*n), paper(2*n, 2*n)
       integer :: i
 
@@ -207,7 +206,7 @@ contains
    subroutine mass_positive(error)
       type(error_type), allocatable, intent(inout) :: error
       real(wp), allocatable :: mass(:, :)
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       integer :: i
       integer, parameter :: bodies(4) = [1, 2, 20, 200]
       logical :: positive
@@ -224,7 +223,7 @@ contains
 
    subroutine translation(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp) :: mass(2*n, 2*n), shape(2*n)
 
       column = made(chain(n, 'small'))
@@ -240,7 +239,7 @@ contains
    end subroutine translation
 
    real(wp) function rod(column)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       integer :: k
 
       rod = 0.0_wp
@@ -250,7 +249,8 @@ contains
    end function rod
 
    !> A chain with axial load and weight.
-   type(column_type) function loaded() result(column)
+   function loaded() result(column)
+      class(column_type), allocatable :: column
       type(column_record) :: spec
 
       spec = chain(n, 'pdelta')
@@ -264,7 +264,7 @@ contains
    subroutine potential(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp) :: q(2*n), energy, theta, height_now
       integer :: i, k
 
@@ -282,13 +282,13 @@ contains
          height_now = height_now - 0.5_wp*column%length(k)*theta**2
       end do
       energy = energy + 3.0e5_wp*height_now
-      call check_close(error, axial_energy(column, q), energy, 1.0e-13_wp, 0.0_wp, 'energy')
+      call check_close(error, column%potential_energy(q), energy, 1.0e-13_wp, 0.0_wp, 'energy')
    end subroutine potential
 
    subroutine forces(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp) :: q(2*n), g(2*n), stiffness(2*n, 2*n)
       integer :: i
 
@@ -299,14 +299,14 @@ contains
       call geometric_stiffness(column, stiffness)
       call geometric_forces(column, q, g)
       call check_close(error, g, matmul(stiffness, q), 1.0e-12_wp, 0.0_wp, 'force')
-      call check_close(error, axial_energy(column, q), 0.5_wp*dot_product(q, g), 1.0e-13_wp, 0.0_wp, &
+      call check_close(error, column%potential_energy(q), 0.5_wp*dot_product(q, g), 1.0e-13_wp, 0.0_wp, &
                        'energy is half of q K_G q')
       call check_same(error, pack(stiffness, .true.), pack(transpose(stiffness), .true.), 'symmetry')
    end subroutine forces
 
    subroutine no_axial(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(column_record) :: spec
       real(wp) :: factor
 
@@ -339,7 +339,7 @@ contains
 
    subroutine critical_chain(error)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp) :: factor, stiffness(2*n, 2*n), share(2)
       logical :: positive(2)
       integer :: i, j
@@ -394,7 +394,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       real(wp), parameter :: m = 700.0_wp, j = 35.0_wp
       type(column_record) :: spec
-      type(column_type) :: column, plain
+      class(column_type), allocatable :: column, plain
       real(wp) :: mass(2*n, 2*n), without(2*n, 2*n), expected(2*n, 2*n), own, l, centroid
       integer :: a, b
 
@@ -438,7 +438,7 @@ contains
    subroutine rotary(error)
       type(error_type), allocatable, intent(inout) :: error
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
 
       spec = chain(n, 'small')
       column = made(spec)
@@ -459,7 +459,7 @@ contains
    subroutine weights(error)
       type(error_type), allocatable, intent(inout) :: error
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       integer :: i
 
       spec = chain(n, 'pdelta')
@@ -488,7 +488,7 @@ contains
    subroutine lifted(error)
       type(error_type), allocatable, intent(inout) :: error
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       integer :: i
 
       spec = chain(n, 'pdelta')
@@ -505,7 +505,7 @@ contains
    subroutine opening(error)
       type(error_type), allocatable, intent(inout) :: error
       type(column_record) :: spec
-      type(column_type) :: column, plain
+      class(column_type), allocatable :: column, plain
       real(wp) :: mass(3*n, 3*n), lateral(2*n, 2*n)
       integer :: i, j
 
@@ -535,7 +535,7 @@ contains
    subroutine names(error)
       type(error_type), allocatable, intent(inout) :: error
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
 
       spec = chain(n, 'small')
       allocate (spec%axial_spring(1))

@@ -6,15 +6,14 @@ module test_finite
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_structure_column_axial, only: geometric_forces, axial_energy
+   use rbs_structure_column_axial, only: geometric_forces
    use rbs_structure_column_column, only: column_type
-   use rbs_structure_column_finite, only: finite_work, finite_acceleration, finite_kinetic, &
-                                          finite_potential, finite_power, finite_top
+   use rbs_structure_column_finite, only: finite_chain_type
    use rbs_structure_column_mass, only: symmetric_mass
    use rbs_structure_column_column_record, only: column_record
    use exact, only: point, variant, state, sample, variant_of, random_state, place, dense_mass, &
                     dense_acceleration
-   use samples, only: made, random_type
+   use samples, only: elastic, made, random_type
    implicit none
    private
 
@@ -32,6 +31,7 @@ contains
                unit_test('closed joints are open ones held by their reactions', reactions), &
                unit_test('power balance of loads, springs, potential and damping', power_balance), &
                unit_test('kinetic energy and position of the top', kinetic), &
+               unit_test('velocity and acceleration of the top', moving_top), &
                unit_test('potential of axial load and weight from the heights', potential), &
                unit_test('potential of small rotations, without cancellation', small_potential), &
                unit_test('the derivative of the potential is the force', potential_force), &
@@ -44,20 +44,20 @@ contains
 
    !> Accelerations of a state.
    function accelerated(column, now) result(a)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(state), intent(in) :: now
       real(wp) :: a(size(now%q))
-      type(finite_work) :: work
+      real(wp) :: work(column%work_size), f(size(now%f)), of_speeds(2)
 
-      call work%create(column%n)
-      call finite_acceleration(column, work, now%q, now%v, now%f, now%load, a)
+      f = now%f
+      call column%accelerations(now%q, now%v, now%load, [real(wp) ::], f, work, a, of_speeds)
    end function accelerated
 
    subroutine accelerations(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(state) :: now
       real(wp), allocatable :: expected(:)
       real(wp) :: largest
@@ -82,7 +82,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(state) :: now
       real(wp), allocatable :: expected(:)
       real(wp) :: largest
@@ -116,7 +116,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(state) :: now
       real(wp) :: a(2), left(2), right(2), i_half, s, c
       integer :: i
@@ -147,20 +147,21 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 4
       type(random_type) :: random
-      type(column_type) :: closed, open
-      type(finite_work) :: work
+      class(column_type), allocatable :: closed, open
       type(state) :: now, held
-      real(wp) :: a(2*n), zero(n), b(3*n)
+      real(wp) :: a(2*n), zero(n), b(3*n), work(5*n)
 
       closed = made(sample(n, variant(lumped=.true.)))
       open = made(sample(n, variant(opens=.true., lumped=.true.)))
       zero = 0.0_wp
       now = random_state(closed, random)
-      call work%create(n)
-      call finite_acceleration(closed, work, now%q, now%v, now%f, now%load, a)
+      select type (closed)
+      class is (finite_chain_type)
+         call closed%accelerate(now%q, now%v, now%f, now%load, work, a)
+      end select
       held%q = [now%q, zero]
       held%v = [now%v, zero]
-      held%f = [now%f, work%axial]
+      held%f = [now%f, work(:n)]
       held%load = now%load
       b = accelerated(open, held)
       call check_close(error, b(:2*n), a, 1.0e-12_wp, 1.0e-12_wp*maxval(abs(a)), 'acceleration')
@@ -172,7 +173,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(state) :: now
       type(point), allocatable :: points(:)
       real(wp) :: left, right, terms
@@ -200,8 +201,8 @@ contains
                do k = 1, column%unknowns
                   call add(now%f(k)*now%v(k))
                end do
-               right = finite_power(column, now%q, now%v, now%load) &
-                       - 2.0_wp*spec%damping%mass*finite_kinetic(column, now%q, now%v)
+               right = column%power_of_loads(now%q, now%v, now%load) &
+                       - 2.0_wp*spec%damping%mass*column%kinetic_energy(now%q, now%v)
                call check_close(error, left, right, 0.0_wp, 1.0e-11_wp*terms, &
                                 'n = '//to_text(n)//', variant '//to_text(i))
             end do
@@ -224,7 +225,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(state) :: now
       type(point) :: points(6)
       real(wp), allocatable :: mass(:, :)
@@ -237,20 +238,62 @@ contains
          if (allocated(mass)) deallocate (mass)
          allocate (mass(column%unknowns, column%unknowns))
          call dense_mass(spec, now%q, mass)
-         call check_close(error, finite_kinetic(column, now%q, now%v), &
+         call check_close(error, column%kinetic_energy(now%q, now%v), &
                           0.5_wp*dot_product(now%v, matmul(mass, now%v)), 1.0e-13_wp, 0.0_wp, 'v M v/2')
          call place(spec, now%q, now%v, now%v, points)
-         call check_close(error, finite_top(column, now%q), [points(6)%x%d(0), points(6)%y%d(0)], 0.0_wp, &
-                          1.0e-14_wp, 'top')
+         call check_close(error, [column%top_displacement(now%q), column%top_height(now%q)], &
+                          [points(6)%x%d(0), points(6)%y%d(0)], 0.0_wp, 1.0e-14_wp, 'top')
       end do
    end subroutine kinetic
+
+   !> Velocity and acceleration of the top are derivatives of its displacement; a fixed top moves along
+   !> its own directions.
+   subroutine moving_top(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp), parameter :: h = 1.0e-4_wp
+      type(random_type) :: random
+      type(column_record) :: spec
+      class(column_type), allocatable :: column
+      type(state) :: now
+      real(wp) :: x(-1:1), speed(2)
+      integer :: i, k
+
+      do i = 1, 2
+         spec = sample(4, variant(opens=.true.))
+         if (i == 2) then
+            spec%top = 'fixed'
+            spec%top_mass = 100.0_wp
+            deallocate (spec%shear, spec%flexure)
+            allocate (spec%shear(5), source=elastic(4.0e8_wp))
+            allocate (spec%flexure(5), source=elastic(2.0e8_wp))
+         end if
+         column = made(spec)
+         now = random_state(column, random)
+         associate (phi => column%at(2, :))
+            if (column%held) then
+               now%q(phi(5)) = -sum(now%q(phi(:4)))
+               now%v(phi(5)) = -sum(now%v(phi(:4)))
+               now%f(phi(5)) = -sum(now%f(phi(:4)))
+            end if
+         end associate
+         ! The forces stand for accelerations.
+         now%f = now%f/maxval(abs(now%f))
+         do k = -1, 1
+            x(k) = column%top_displacement(now%q + k*h*now%v + 0.5_wp*(k*h)**2*now%f)
+         end do
+         call column%speeds(now%q, now%v, speed)
+         call check_close(error, speed(1), (x(1) - x(-1))/(2.0_wp*h), 1.0e-6_wp, 1.0e-6_wp, 'velocity')
+         call check_close(error, column%top_acceleration(now%q, now%v, now%f), &
+                          (x(1) - 2.0_wp*x(0) + x(-1))/h**2, 1.0e-5_wp, 1.0e-6_wp, 'acceleration')
+      end do
+   end subroutine moving_top
 
    !> P (y_T - height) + sum m g (y - y_0) over the masses of the bodies.
    subroutine potential(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(state) :: now
       type(point) :: points(6), straight(6)
       real(wp) :: energy
@@ -267,24 +310,28 @@ contains
          do k = 1, 5
             energy = energy + spec%masses(k)*spec%gravity*(points(k)%y%d(0) - straight(k)%y%d(0))
          end do
-         call check_close(error, finite_potential(column, now%q), energy, 1.0e-13_wp, 0.0_wp, &
+         call check_close(error, column%potential_energy(now%q), energy, 1.0e-13_wp, 0.0_wp, &
                           'variant '//to_text(i))
-         call check_same(error, finite_potential(column, 0.0_wp*now%q), 0.0_wp, 'straight')
+         call check_same(error, column%potential_energy(0.0_wp*now%q), 0.0_wp, 'straight')
       end do
    end subroutine potential
 
    subroutine small_potential(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
-      type(column_type) :: column
+      class(column_type), allocatable :: column, upright
+      type(column_record) :: spec
       real(wp) :: q(10)
       integer :: i
 
-      column = made(sample(5, variant(lumped=.true.)))
+      spec = sample(5, variant(lumped=.true.))
+      column = made(spec)
+      spec%kinematics = 'pdelta'
+      upright = made(spec)
       do i = 1, 10
          q(i) = random%uniform(0.0_wp, 1.0e-9_wp)
       end do
-      call check_close(error, finite_potential(column, q), axial_energy(column, q), 1.0e-14_wp, 0.0_wp, &
+      call check_close(error, column%potential_energy(q), upright%potential_energy(q), 1.0e-14_wp, 0.0_wp, &
                        'second order')
    end subroutine small_potential
 
@@ -292,7 +339,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(state) :: now
       real(wp), parameter :: h = 0.01_wp
       real(wp) :: mass(15, 15), slope(15), at(-3:3)
@@ -307,7 +354,7 @@ contains
       call dense_mass(spec, now%q, mass)
       do i = 1, 15
          do k = -3, 3
-            at(k) = finite_potential(column, moved(now%q, i, k*h))
+            at(k) = column%potential_energy(moved(now%q, i, k*h))
          end do
          slope(i) = (45.0_wp*(at(1) - at(-1)) - 9.0_wp*(at(2) - at(-2)) + at(3) - at(-3))/(60.0_wp*h)
       end do
@@ -330,7 +377,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 5
       type(random_type) :: random
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(state) :: one, now
       real(wp) :: right(2*n, 1), mass(2*n, 2*n), g(2*n), away(2), share
       integer :: i
@@ -360,7 +407,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 5
       type(random_type) :: random
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(state) :: one, now
       real(wp) :: right(3*n, 1), mass(3*n, 3*n), g(3*n), away(2), share
       integer :: i
@@ -392,7 +439,7 @@ contains
       integer, parameter :: n = 4
       type(random_type) :: random
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(state) :: now
       real(wp) :: before(3*n), after(3*n), turn
 
@@ -418,7 +465,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 4
       type(random_type) :: random
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(state) :: now
       real(wp) :: before(2*n), after(2*n), energy
       integer :: i
@@ -426,12 +473,12 @@ contains
       column = made(sample(n, variant(lumped=.true.)))
       now = random_state(column, random)
       before = accelerated(column, now)
-      energy = finite_potential(column, now%q)
+      energy = column%potential_energy(now%q)
       do i = 1, n
          now%q(n + i) = now%q(n + i) + (-1)**i*i*2.0_wp*pi
          after = accelerated(column, now)
          call check_close(error, after, before, 0.0_wp, 1.0e-13_wp*maxval(abs(before)), 'acceleration')
-         call check_close(error, finite_potential(column, now%q), energy, 1.0e-13_wp, 0.0_wp, 'potential')
+         call check_close(error, column%potential_energy(now%q), energy, 1.0e-13_wp, 0.0_wp, 'potential')
       end do
    end subroutine full_turns
 
@@ -440,7 +487,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(state) :: now
       real(wp) :: falling(10), expected(10)
 

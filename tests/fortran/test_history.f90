@@ -7,7 +7,6 @@ module test_history
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_structure_column_column, only: column_type
-   use rbs_structure_column_energy, only: kinetic_energy, potential_energy
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_output_observer, only: observer_type
    use rbs_output_channels, only: new_channels
@@ -120,7 +119,7 @@ contains
       integer, parameter :: n = 3
       type(error_type), allocatable :: outcome
       type(run_data) :: data
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(modes_type) :: modes
       real(wp) :: finish, wrong(3), h
       integer :: mode, i
@@ -153,7 +152,7 @@ contains
       type(error_type), allocatable :: outcome
       type(run_data) :: data
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(modes_type) :: modes
       real(wp), parameter :: alpha(3) = [60.0_wp, 0.0_wp, 30.0_wp], beta(3) = [0.0_wp, 5.0e-5_wp, 2.0e-5_wp]
       real(wp) :: wrong(3), c, w, t
@@ -207,7 +206,7 @@ contains
       logical, intent(in) :: by_ground
       type(error_type), allocatable :: outcome
       type(run_data) :: data
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(modes_type) :: modes
       real(wp) :: wrong(3), w, finish, h, q(4), exact(4)
       real(wp), allocatable :: load(:), wave(:)
@@ -263,7 +262,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(run_data) :: data
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(modes_type) :: modes
       real(wp) :: q(2), t, omega
       integer :: i
@@ -294,7 +293,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(modes_type) :: modes
       type(time_plan) :: plan
       type(initial_state) :: start
@@ -341,7 +340,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(run_data) :: data
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(modes_type) :: modes
 
       column = made(column_1('small'))
@@ -416,7 +415,7 @@ contains
       type(error_type), allocatable :: outcome
       type(random_type) :: random
       type(column_record) :: spec
-      type(column_type), target :: upright, turned
+      class(column_type), allocatable, target :: upright, turned
       type(motion_type) :: small, finite
       type(spring_array) :: springs
       type(motion_result) :: a, b
@@ -445,9 +444,9 @@ contains
          call small%acceleration(springs, q, v, load, a)
          call finite%acceleration(springs, q, v, load, b)
          call check_close(error, a%a, b%a, 1.0e-10_wp, 1.0e-10_wp, 'acceleration')
-         call check_close(error, kinetic_energy(small%column, q, v), kinetic_energy(finite%column, q, v), &
+         call check_close(error, small%column%kinetic_energy(q, v), finite%column%kinetic_energy(q, v), &
                           1.0e-10_wp, 0.0_wp, 'kinetic energy')
-         call check_close(error, potential_energy(small%column, q), potential_energy(finite%column, q), &
+         call check_close(error, small%column%potential_energy(q), finite%column%potential_energy(q), &
                           1.0e-10_wp, 0.0_wp, 'potential')
       end do
    end subroutine finite_small
@@ -492,7 +491,7 @@ contains
    subroutine spring_rows(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp), allocatable :: f(:)
       integer :: i
 
@@ -565,7 +564,7 @@ contains
    subroutine initial(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp) :: f(1)
 
       column = made(column_1('small'))
@@ -584,7 +583,7 @@ contains
    subroutine rows(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data, fine, thin
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(random_type) :: random
       integer :: steps, i
 
@@ -669,7 +668,7 @@ contains
       type(error_type), allocatable :: outcome
       type(failing_recorder), target :: recorder
       type(run_data) :: data
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(time_plan) :: plan
       type(loads_type) :: none
       type(task_type) :: task
@@ -691,7 +690,7 @@ contains
       type(array_recorder), target :: recorder
       type(counting_progress), target :: told
       type(run_data) :: data
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(time_plan) :: plan
       type(loads_type) :: none
       type(task_type) :: task
@@ -712,7 +711,7 @@ contains
    subroutine not_a_number(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data
-      type(column_type) :: column
+      class(column_type), allocatable :: column
 
       column = made(column_1('small'))
       data%time = [0.0_wp, 1.0_wp]

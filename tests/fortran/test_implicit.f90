@@ -72,7 +72,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(loads_type) :: loads
       type(state_type) :: state
       type(implicit_stepper) :: stepper
@@ -172,7 +172,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(modes_type) :: modes
       type(state_type) :: state
       type(implicit_stepper) :: stepper
@@ -250,7 +250,7 @@ contains
       type(error_type), allocatable :: outcome
       type(random_type) :: random
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(loads_type) :: loads
       type(state_type) :: state
       type(implicit_stepper) :: stepper
@@ -566,7 +566,7 @@ contains
       integer, parameter :: bodies(3) = [10, 200, 1000]
       type(error_type), allocatable :: outcome
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(loads_type) :: loads
       type(state_type) :: state
       type(implicit_stepper) :: stepper
@@ -844,7 +844,7 @@ contains
       type(error_type), allocatable :: outcome
       type(random_type) :: random
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(state_type) :: state
       type(implicit_stepper) :: stepper
       real(wp) :: q(6), v(6)
@@ -876,7 +876,7 @@ contains
    subroutine short_steps(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(state_type) :: state
       type(implicit_stepper) :: stepper
       real(wp), parameter :: h(5) = [1.0e-4_wp, 1.0e-5_wp, 1.0e-6_wp, 1.0e-7_wp, 1.0e-8_wp]

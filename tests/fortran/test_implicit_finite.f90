@@ -334,7 +334,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(loads_type) :: loads
       type(state_type) :: state(2)
       type(finite_stepper) :: finite
@@ -382,7 +382,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(loads_type) :: loads
       type(state_type) :: state
       type(finite_stepper) :: stepper
@@ -408,7 +408,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(loads_type) :: loads
       type(state_type) :: state
       type(finite_stepper) :: stepper

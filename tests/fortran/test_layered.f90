@@ -379,7 +379,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(spring_record) :: strip(4)
       real(wp), parameter :: y(4) = [-0.15_wp, -0.05_wp, 0.05_wp, 0.15_wp]
       integer :: i

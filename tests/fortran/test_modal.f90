@@ -68,7 +68,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 6
       type(error_type), allocatable :: outcome
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(column_record) :: spec
       type(modes_type) :: modes
       real(wp), dimension(2*n, 2*n) :: mass, stiffness, product
@@ -255,7 +255,7 @@ contains
       real(wp), parameter :: k = 3.0e9_wp, mass = 40.0_wp
       type(error_type), allocatable :: outcome
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(modes_type) :: plain, modes
       real(wp) :: m(3*n, 3*n), product(3*n, 3*n), expected(3*n)
       integer :: i, j
@@ -298,7 +298,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(modes_type) :: modes
       type(random_type) :: random
       real(wp) :: lowest, highest, factor
@@ -512,7 +512,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(modes_type) :: modes
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp) :: limit
 
       column = made(chain(most_dense + 1, 'small'))
@@ -531,7 +531,7 @@ contains
       real(wp), parameter :: roots(3) = [1.8751040687119611_wp, 4.6940911329741746_wp, 7.8547574382376126_wp]
       type(error_type), allocatable :: outcome
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(modes_type) :: modes
       integer :: i
 

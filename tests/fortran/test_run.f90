@@ -128,7 +128,7 @@ contains
    subroutine agreement(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: reference, data
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       character(len=6), parameter :: kinematics(3) = ['small ', 'pdelta', 'finite']
       real(wp) :: peak, wrong
       real(wp), parameter :: allowed(methods) = [1.0e-2_wp, 1.0e-4_wp, 0.0_wp, 2.0e-2_wp, 2.0e-2_wp, &
@@ -355,7 +355,7 @@ contains
    subroutine long_dt(error)
       type(error_type), allocatable, intent(inout) :: error
       type(run_data) :: data
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       integer :: method
 
       column = made(chain(4, 'small'))
@@ -475,7 +475,7 @@ contains
    subroutine reason(error)
       type(error_type), allocatable, intent(inout) :: error
       real(wp) :: time(51)
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(time_plan) :: auto, named
 
       time = times(50, 0.02_wp)

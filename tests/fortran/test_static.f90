@@ -91,7 +91,7 @@ contains
       type(summary_type), intent(out), optional :: summary
       real(wp), intent(in), optional :: collapse_drift
       type(array_recorder), target :: recorder
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(task_type) :: task
 
       if (present(every)) task%every = every
@@ -109,7 +109,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp), allocatable :: rows(:, :)
       real(wp), parameter :: x(3) = [0.01_wp, -0.02_wp, 0.005_wp]
       real(wp) :: flexibility
@@ -206,7 +206,7 @@ contains
       type(error_type), allocatable :: outcome
       type(random_type) :: random
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp), allocatable :: rows(:, :)
       real(wp) :: x(100), f(100)
       integer :: i
@@ -290,7 +290,7 @@ contains
       type(error_type), allocatable :: outcome
       type(random_type) :: random
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp), allocatable :: rows(:, :)
       real(wp) :: x(150), g(2*n), largest
       integer :: i
@@ -585,7 +585,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(equilibrium_type) :: solved, updated
       type(random_type) :: random
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(column_record) :: spec
       real(wp), dimension(4) :: k, none, rate, correction, rate_updated
       real(wp) :: force(2), force_updated(2)
@@ -620,7 +620,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(equilibrium_type) :: band
       type(random_type) :: random
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(column_record) :: spec
       real(wp), allocatable, dimension(:) :: k, r, rate, correction, rate_band, correction_band
       real(wp) :: gap, force(2), force_band(2), largest(2)
@@ -724,7 +724,7 @@ contains
       type(error_type), allocatable :: outcome
       type(random_type) :: random
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(summary_type) :: summary
       integer, parameter :: n = 60
       real(wp), allocatable :: rows(:, :)
@@ -820,7 +820,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(summary_type) :: summary
       real(wp), allocatable :: rows(:, :)
       real(wp) :: turn(3)

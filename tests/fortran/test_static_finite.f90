@@ -62,7 +62,7 @@ contains
       type(error_type), allocatable, intent(out) :: outcome
       type(summary_type), intent(out), optional :: summary
       real(wp), intent(in), optional :: drift
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(array_recorder), target :: recorder
       type(task_type) :: task
 
@@ -272,7 +272,7 @@ contains
    !> Forces and moments of everything above each joint, from the positions of the bodies alone.
    subroutine check_statics(error, column, row, tolerance)
       type(error_type), allocatable, intent(inout) :: error
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       real(wp), intent(in) :: row(:), tolerance
       real(wp), dimension(column%n) :: x, y, x_middle, below
       real(wp) :: top(2), th, shear, moment, tension, weight, down, largest(2)
@@ -320,7 +320,7 @@ contains
       type(error_type), allocatable :: outcome
       type(random_type) :: random
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(summary_type) :: summary
       real(wp), allocatable :: rows(:, :)
       real(wp) :: x(60), largest
@@ -350,7 +350,7 @@ contains
       type(error_type), allocatable :: outcome
       type(random_type) :: random
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp), allocatable :: rows(:, :)
       real(wp) :: x(40), largest
       integer :: i, j, n
@@ -404,7 +404,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(random_type) :: random
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       real(wp), allocatable :: rows(:, :)
       integer, parameter :: m = 15, parts = 200, n = 3
       real(wp) :: x(m), fine(m*parts), f(m*parts)

@@ -293,7 +293,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(modes_type) :: modes
       type(state_type) :: state
       type(pair45_scheme) :: scheme
@@ -558,7 +558,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       character(len=3), parameter :: inner(3) = ['kc ', 'kr ', 'one']
       type(column_record) :: spec
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(state_type) :: state, reference
       integer :: i
 

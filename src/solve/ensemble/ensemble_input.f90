@@ -13,7 +13,7 @@ module rbs_solve_ensemble_ensemble_input
 
    !> A column and what is asked of it.
    type :: ensemble_column
-      type(column_type) :: column
+      class(column_type), allocatable :: column
       type(analysis_record) :: analysis
       !> What its runs are watched for, and the number of limit states of the ensemble
       type(watch_type), allocatable :: watch(:)

@@ -32,7 +32,7 @@ module rbs_solve_modal_matrices
 contains
 
    subroutine assemble_matrices(column, paper, matrices, error)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       !> Whether in the paper's form: unknowns (slip, absolute rotation), rows of its eqs 1 and 2. Else in
       !> (slip, relative rotation), where all are symmetric
       logical, intent(in) :: paper
@@ -78,7 +78,7 @@ contains
    !> Take the rotation of a held top out, which is minus the sum of those below, and pass to absolute
    !> rotations: a relative one is the difference of two.
    subroutine transform(column, paper, a)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       logical, intent(in) :: paper
       real(wp), allocatable, intent(inout) :: a(:, :)
       integer :: i, last, n
@@ -126,7 +126,7 @@ contains
 
    !> C = sum_j 2 zeta_j omega_j (M s_j) (M s_j)', the modes s_j of the uncracked column.
    subroutine modal_damping(column, damping, error)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       !> Matrix (unknowns, unknowns) in slip, relative rotation and opening
       real(wp), allocatable, intent(out) :: damping(:, :)
       type(error_type), allocatable, intent(out) :: error

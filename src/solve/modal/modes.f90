@@ -50,7 +50,7 @@ contains
    !> Modes of the uncracked column; the axial forces count where the kinematics let them. Openings are
    !> modes of their own.
    subroutine find_modes(column, modes, error, count)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(modes_type), intent(out) :: modes
       type(error_type), allocatable, intent(out) :: error
       !> How many, the lowest first; without it all
@@ -121,7 +121,7 @@ contains
 
    !> Condition of the modes under axial load.
    subroutine set_condition(column, modes)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(modes_type), intent(inout) :: modes
       real(wp) :: factor, share
 
@@ -138,7 +138,7 @@ contains
    !> Lowest and highest circular frequency of the uncracked column [rad/s], for any number of bodies in
    !> O(n); the axial forces count where the kinematics let them.
    subroutine frequency_bounds(column, lowest, highest, error)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       real(wp), intent(out) :: lowest, highest
       type(error_type), allocatable, intent(out) :: error
 
@@ -150,7 +150,7 @@ contains
    end subroutine frequency_bounds
 
    subroutine frequency_range(column, axial, lowest, highest)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       !> Whether the axial forces count
       logical, intent(in) :: axial
       real(wp), intent(out) :: lowest, highest
@@ -171,7 +171,7 @@ contains
    !> first grows with omega and then falls (see the tests), and with c = 2 zeta omega, or on the half disc,
    !> it only falls; so no mode between two has a shorter limit than both.
    subroutine stability_limit(column, limit, error)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       real(wp), intent(out) :: limit
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: plain(2), loaded(2)
@@ -191,7 +191,7 @@ contains
    !> larger of the largest c and omega, which always gives a safe step; where c follows from the initial
    !> stiffness in the shape, the scalar equations themselves give the longest one.
    pure real(wp) function step_of_mode(column, plain, loaded) result(h)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       !> Circular frequency without and with axial forces [rad/s]
       real(wp), intent(in) :: plain, loaded
       real(wp) :: omega, c, remaining

@@ -3,7 +3,6 @@ module rbs_solve_static_curve
    use rbs_base_constants, only: unbounded
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column, only: column_type
-   use rbs_structure_column_top, only: largest_turn
    use rbs_hysteresis_interaction_joints, only: least_forward_rate, nearest_layer
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_static_curved_equilibrium, only: path_point
@@ -52,7 +51,7 @@ contains
 
    subroutine set(self, column, near, far)
       class(curve_type), intent(inout) :: self
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(path_point), intent(in) :: near, far
 
       if (.not. allocated(self%turns)) self%turns = column%place%kind == flexure
@@ -66,7 +65,7 @@ contains
 
    !> How fast the joints move the top, by which round-off of their rates is measured.
    pure real(wp) function motion_of(column, point) result(motion)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(path_point), intent(in) :: point
 
       motion = abs(point%displacement_rate)
@@ -76,7 +75,7 @@ contains
 
    !> Set rates that are round-off to zero.
    pure function clean(column, point) result(rate)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(path_point), intent(in) :: point
       real(wp) :: rate(column%unknowns)
       real(wp) :: least(2)
@@ -93,16 +92,16 @@ contains
    !> Whether the stride has been small enough for its tangents to tell what lies between.
    pure logical function is_gentle(self, column)
       class(curve_type), intent(in) :: self
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       real(wp) :: change(size(self%near%q)), turn, step
 
       associate (n => column%n, height => column%joint_height(column%n + 1))
          change = self%far%q - self%near%q
-         turn = largest_turn(column, change)
+         turn = column%largest_turn(change)
          step = max(turn, maxval(abs(change(:n)))/height)
          change = change - self%length*self%near%rate
          is_gentle = turn <= 2.0_wp*most_turn .and. &
-                     max(largest_turn(column, change), maxval(abs(change(:n)))/height) &
+                     max(column%largest_turn(change), maxval(abs(change(:n)))/height) &
                      <= most_bend*step + round_off
       end associate
    end function is_gentle

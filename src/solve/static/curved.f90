@@ -15,8 +15,6 @@ module rbs_solve_static_curved
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: put_on_plane
    use rbs_structure_column_column, only: column_type, finite
-   use rbs_structure_column_energy, only: potential_energy
-   use rbs_structure_column_top, only: largest_turn
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_curve, only: clean, most_turn
    use rbs_solve_static_path, only: static_path, describe_state, name_spring, is_on_end, on_the_end, &
@@ -65,7 +63,7 @@ contains
    !> Follow the targets one after the other.
    subroutine trace_curved(column, by_force, target, load, task, error)
       !> Under the axial load with which the path begins
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
       !> Targets (m), and axial loads at the top there; empty where it is constant [N]
@@ -165,7 +163,7 @@ contains
 
       self%stride%direction = self%direction
       way = abs(self%goal - self%stride%here%t)
-      turn = largest_turn(self%column, self%stride%here%rate)
+      turn = self%column%largest_turn(self%stride%here%rate)
       length = min(way, self%next_length)
       if (turn*length > most_turn) length = most_turn/turn
       shortest = no_stride*max(abs(self%stride%here%t), length)
@@ -207,8 +205,8 @@ contains
       call self%stride%find_event(self%springs, limit)
       associate (way => abs(self%stride%there%t - self%stride%here%t))
          near = (self%stride%spring > 0 .or. .not. abs(self%goal - limit) > 0.0_wp) .and. &
-                way <= close_by*self%extent .and. way*largest_turn(self%column, &
-                                                                   self%stride%here%rate) <= close_by
+                way <= close_by*self%extent .and. &
+                way*self%column%largest_turn(self%stride%here%rate) <= close_by
       end associate
       done = near
       if (.not. near) call self%stride%find_point(self%springs, limit, .true., done)
@@ -388,7 +386,7 @@ contains
       if (.not. self%stride%equilibrium%varies) return
       self%stride%equilibrium%load = [self%load_now, 0.0_wp]
       ! The load has done its work before the path begins.
-      self%load_work = self%load_now*potential_energy(self%stride%equilibrium%unit, self%stride%here%q)
+      self%load_work = self%load_now*self%stride%equilibrium%unit%potential_energy(self%stride%here%q)
    end subroutine stand_still
 
    !> Present to a tape where the path is and how far it may stride.

@@ -50,7 +50,7 @@ module rbs_solve_static_curved_equilibrium
       real(wp) :: driven(2) = [0.0_wp, 1.0_wp], load(2) = 0.0_wp, ratio = 0.0_wp
       !> The column under its constant axial loads alone, which where the load at the top varies is the
       !> weight, and under a unit at the top
-      type(column_type) :: steady, unit
+      class(column_type), allocatable :: steady, unit
       !> Weight above the joints that layered joints feel (unknowns) [N]
       real(wp), allocatable :: above(:)
       !> Largest slip, relative rotation and opening so far
@@ -78,7 +78,7 @@ contains
    subroutine create(self, column, by_force, varies)
       class(curved_equilibrium), intent(out) :: self
       !> Under the axial load with which the path begins
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       logical, intent(in) :: by_force, varies
       real(wp), allocatable :: band(:, :)
       integer :: m
@@ -105,7 +105,7 @@ contains
       integer :: i
 
       self%ratio = self%column%axial_force_ratio
-      self%unit = self%column
+      self%unit = self%steady
       second_order = merge(0.0_wp, 1.0_wp, self%column%kinematics == small)
       associate (unit => self%unit, steady => self%steady, n => self%column%n)
          unit%axial_load = 1.0_wp

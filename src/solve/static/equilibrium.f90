@@ -60,7 +60,7 @@ contains
 
    subroutine create(self, column)
       class(equilibrium_type), intent(out) :: self
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       integer :: m
 
       m = 2*column%n
@@ -82,7 +82,7 @@ contains
 
    subroutine create_few(self, column)
       type(equilibrium_type), intent(inout) :: self
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       real(wp) :: geometric(2*column%n + 1, 2*column%n + 1), stiffness(2*column%n, 2*column%n)
 
       associate (m => self%unknowns)
@@ -97,7 +97,7 @@ contains
 
    subroutine create_band(self, column)
       type(equilibrium_type), intent(inout) :: self
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       real(wp) :: stiffness(self%unknowns)
       integer :: i, n
 

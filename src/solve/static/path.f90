@@ -7,8 +7,6 @@ module rbs_solve_static_path
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_structure_column_column, only: column_type, finite
-   use rbs_structure_column_energy, only: potential_energy
-   use rbs_structure_column_top, only: largest_turn, top_displacement, top_position
    use rbs_hysteresis_interaction_joints, only: fall_of, vary_axial_loads
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_channels, only: energy_type, response_type
@@ -35,7 +33,7 @@ module rbs_solve_static_path
    !> The state of a path and how it goes on.
    type, abstract :: static_path
       !> The column, and under its constant axial loads alone where others vary, as the potential needs it
-      type(column_type) :: column, steady
+      class(column_type), allocatable :: column, steady
       type(spring_array) :: springs
       !> Number of springs that can move: with small rotations the openings keep still
       integer :: moving = 0
@@ -152,7 +150,7 @@ contains
    !> The column as it is given, its springs without load.
    subroutine prepare(self, column, by_force, moving)
       class(static_path), intent(inout) :: self
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       logical, intent(in) :: by_force
       !> Number of springs that can move
       integer, intent(in) :: moving
@@ -172,7 +170,7 @@ contains
    !> The straight column under its axial load.
    subroutine begin(self, column, by_force, moving, varies, error)
       class(static_path), intent(inout) :: self
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       logical, intent(in) :: by_force
       !> Number of springs that can move
       integer, intent(in) :: moving
@@ -330,7 +328,7 @@ contains
       ! A force that pulls the column back, as where second-order moments drive it on, is no strength.
       call self%task%summary%see_peak(self%displacement, merge(self%force, 0.0_wp, &
                                                           self%force*self%displacement >= 0.0_wp))
-      call self%task%summary%see_turn(largest_turn(self%column, self%springs%d))
+      call self%task%summary%see_turn(self%column%largest_turn(self%springs%d))
    end subroutine see_peaks
 
    !> Whether a spring has come to the open end that it goes to.
@@ -360,7 +358,7 @@ contains
       real(wp) :: there, reach
 
       if (self%by_force .or. self%direction /= 0 .or. self%column%kinematics == finite) return
-      there = top_displacement(self%column, self%springs%d)
+      there = self%column%top_displacement(self%springs%d)
       reach = sum(abs(self%column%arm*self%springs%d))
       if (abs(there - self%displacement) <= same_place*reach .or. &
           abs(there - self%displacement) > 2.0_wp*on_the_end*reach) return
@@ -401,7 +399,7 @@ contains
    pure real(wp) function axial_work(self)
       class(static_path), intent(in) :: self
 
-      axial_work = potential_energy(self%steady, self%springs%d) + self%load_work
+      axial_work = self%steady%potential_energy(self%springs%d) + self%load_work
    end function axial_work
 
    !> The energies at the present point.
@@ -422,13 +420,11 @@ contains
       !> Of the row, between two targets with the share of the way
       real(wp), intent(in) :: number
       type(response_type), intent(inout) :: response
-      real(wp) :: top(2)
 
       response%time = number
       response%displacement = self%displacement
       response%force = self%force
-      top = top_position(self%column, self%springs%d)
-      response%height = top(2)
+      response%height = self%column%top_height(self%springs%d)
    end subroutine find_response
 
    !> Where the path is, for a message.

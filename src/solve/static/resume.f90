@@ -5,7 +5,6 @@ module rbs_solve_static_resume
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: go_under, vary_axial_loads
    use rbs_structure_column_column, only: column_type
-   use rbs_structure_column_top, only: top_displacement
    use rbs_solve_end_state, only: end_state, standing_type, static_state
    use rbs_solve_line_search, only: false_position
    use rbs_solve_static_path, only: static_path, missing_work
@@ -25,7 +24,7 @@ contains
    !> The straight column under its axial load, or the state that another analysis ended in.
    subroutine begin_path(path, column, by_force, moving, varies, error, before)
       class(static_path), intent(inout) :: path
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       logical, intent(in) :: by_force
       !> Number of springs that can move
       integer, intent(in) :: moving
@@ -91,7 +90,7 @@ contains
             call path%stand_still()
          end if
       else
-         path%displacement = top_displacement(path%column, path%springs%d)
+         path%displacement = path%column%top_displacement(path%springs%d)
          path%force = standing%force
          if (path%column%opens) call path%compress(error)
          if (.not. allocated(error)) call settle(path, error)

@@ -5,7 +5,6 @@ module rbs_solve_static_row_check
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_structure_column_column, only: column_type, finite
-   use rbs_structure_column_top, only: top_displacement
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_spring_place, only: shear, flexure, axial
    implicit none
@@ -42,7 +41,7 @@ contains
 
    subroutine begin(self, column, missing_work)
       class(row_check), intent(out) :: self
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       real(wp), intent(in) :: missing_work
 
       self%at_begin = missing_work
@@ -61,7 +60,7 @@ contains
    !> Look at a row.
    subroutine look(self, column, springs, displacement, force, unbalance, works, missing_work, fault)
       class(row_check), intent(inout) :: self
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(spring_array), intent(in) :: springs
       !> Of the top [m], and lateral force [N]
       real(wp), intent(in) :: displacement, force
@@ -92,7 +91,7 @@ contains
       self%stiff_work = max(self%stiff_work, stiff_work)
       self%largest_place = max(self%largest_place, place)
       self%largest_work = max(self%largest_work, maxval(abs(works)))
-      associate (there => top_displacement(column, springs%d))
+      associate (there => column%top_displacement(springs%d))
          if (abs(there - displacement) > self%place*self%largest_place) then
             fault = 'its joints move the top by '//to_text(there)//' m'
          else if (unbalance > of_force*self%largest_force + digits*self%stiff_force) then

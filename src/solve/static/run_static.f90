@@ -21,7 +21,7 @@ contains
 
    !> Static path through displacements of the top or lateral forces.
    subroutine run_static(column, by_force, target, task, error, axial_load)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
       !> Targets (m)
@@ -30,7 +30,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       !> Axial load at the top at each target (m), instead of the constant one; empty: constant [N]
       real(wp), intent(in), optional :: axial_load(:)
-      type(column_type) :: loaded
+      class(column_type), allocatable :: loaded
       real(wp) :: load(size(target))
       logical :: varies, curved
 
@@ -93,7 +93,7 @@ contains
 
    !> One axial load for each target.
    subroutine check_axial_load(column, axial_load, targets, error)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       real(wp), intent(in) :: axial_load(:)
       integer, intent(in) :: targets
       type(error_type), allocatable, intent(out) :: error

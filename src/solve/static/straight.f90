@@ -46,7 +46,7 @@ contains
 
    !> Follow the targets one after the other.
    subroutine trace_straight(column, by_force, target, task, error)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
       !> Targets (m)

@@ -5,8 +5,6 @@
 module rbs_solve_static_stride
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column, only: finite
-   use rbs_structure_column_energy, only: potential_energy
-   use rbs_structure_column_top, only: top_displacement
    use rbs_hysteresis_interaction_joints, only: nearest_layer, moment_on_plane
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_line_search, only: false_position
@@ -146,7 +144,7 @@ contains
          if (.not. found) return
          if (self%equilibrium%by_force) then
             there%force = equilibrium%driven(1) + equilibrium%driven(2)*there%t
-            there%displacement = top_displacement(self%equilibrium%steady, there%q)
+            there%displacement = self%equilibrium%steady%top_displacement(there%q)
          else
             there%displacement = equilibrium%driven(1) + equilibrium%driven(2)*there%t
          end if
@@ -209,10 +207,10 @@ contains
             done = .not. strict .or. abs(work(2)) <= most_correction*max(largest, turnover)
             return
          end if
-         lift = [potential_energy(self%equilibrium%unit, here%q), &
-              potential_energy(self%equilibrium%unit, there%q)]
-         weight = [potential_energy(self%equilibrium%steady, here%q), &
-              potential_energy(self%equilibrium%steady, there%q)]
+         lift = [self%equilibrium%unit%potential_energy(here%q), &
+              self%equilibrium%unit%potential_energy(there%q)]
+         weight = [self%equilibrium%steady%potential_energy(here%q), &
+              self%equilibrium%steady%potential_energy(there%q)]
          works(2) = sum(self%curve%work([here%axial_load, there%axial_load], lift, &
                                         [here%axial_rate, there%axial_rate], &
                                         [here%lift_rate, there%lift_rate]))

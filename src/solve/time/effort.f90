@@ -33,7 +33,7 @@ contains
 
    !> Time that a run will take, within a factor of about three; it depends on the machine [s].
    pure real(wp) function expected_seconds(column, plan) result(seconds)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(time_plan), intent(in) :: plan
       type(method_type) :: method
 
@@ -53,7 +53,7 @@ contains
 
    !> What to say before a long run; empty for a short one.
    subroutine long_run_note(column, plan, text)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(time_plan), intent(in) :: plan
       character(len=:), allocatable, intent(out) :: text
       type(method_type) :: method, other
@@ -85,7 +85,7 @@ contains
 
    !> Refuse a run that is expected to take longer than the user allows.
    subroutine check_effort(column, max_seconds, plan, error)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       !> `unset`: the usual time [s]
       real(wp), intent(in) :: max_seconds
       type(time_plan), intent(in) :: plan

@@ -40,7 +40,7 @@ contains
    !> Allocate for a column.
    subroutine make_chain(self, column)
       class(finite_chain), intent(inout) :: self
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       integer :: i, m, n
 
       n = column%n
@@ -160,7 +160,7 @@ contains
    !> Bodies and joints at the end of the step, and the velocities of the joints.
    subroutine see_end(self, column, q)
       class(finite_chain), intent(inout) :: self
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       real(wp), intent(in), contiguous :: q(:)
       real(wp) :: rotation, opening, rates(2), below(3)
       integer :: i, n

@@ -14,8 +14,7 @@ module rbs_solve_time_finite_step
    use rbs_base_stream, only: stream_type
    use rbs_base_linalg, only: solve_general_band
    use rbs_structure_column_column, only: column_type
-   use rbs_structure_column_energy, only: kinetic_energy
-   use rbs_structure_column_finite, only: finite_work, finite_acceleration
+   use rbs_structure_column_finite, only: finite_chain_type
    use rbs_solve_time_finite_chain, only: finite_chain
    use rbs_solve_time_finite_joint, only: joint_forces, joint_tangent, local
    use rbs_loading_loads, only: lateral, horizontal, vertical, axial
@@ -51,7 +50,6 @@ module rbs_solve_time_finite_step
       real(wp), allocatable, private :: band(:, :), right(:, :)
       integer, allocatable, private :: pivot(:)
       type(motion_result), private :: now
-      type(finite_work), private :: work
    contains
       procedure :: start
       procedure :: find_residual
@@ -83,10 +81,12 @@ contains
          self%mass(2, :) = column%mass
          self%mass(3, :) = column%inertia
          call self%now%create(column)
-         call self%work%create(n)
          call state%motion%acceleration(state%springs, state%q, state%v, state%load, self%now)
-         call finite_acceleration(column, self%work, state%q, state%v, self%now%f, state%load, self%now%a)
-         if (.not. column%opens) self%tension = self%work%axial
+         select type (column)
+         class is (finite_chain_type)
+            call column%accelerate(state%q, state%v, self%now%f, state%load, self%now%work, self%now%a)
+            if (.not. column%opens) self%tension = self%now%work(:n)
+         end select
       end associate
       call self%place(state)
       call self%body_velocities(state)
@@ -112,7 +112,7 @@ contains
 
    !> Half-width of the band.
    pure integer function beside_diagonal(column) result(beside)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
 
       beside = merge(5, 6, column%opens)
    end function beside_diagonal
@@ -219,7 +219,7 @@ contains
    !> Loads less forces of the joints on the bodies, as the bodies are seen.
    subroutine balance(self, column, load, g)
       class(finite_step), intent(inout) :: self
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       real(wp), intent(in) :: load(4)
       real(wp), intent(out) :: g(:, :)
       real(wp) :: f(3), ground(3), reach(2)
@@ -255,7 +255,7 @@ contains
    !> Shear, moment and axial force of a joint.
    pure function forces_of(self, column, i) result(f)
       class(finite_step), intent(in) :: self
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       integer, intent(in) :: i
       real(wp) :: f(3)
 
@@ -267,7 +267,7 @@ contains
    !> field of gravity, but belongs to the axial load: it is taken away again.
    subroutine load_top(self, column, load, g)
       class(finite_step), intent(inout) :: self
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       real(wp), intent(in) :: load(4)
       real(wp), intent(inout) :: g(3)
       real(wp) :: force(2), rate(2), press
@@ -444,7 +444,7 @@ contains
       state%q(:) = self%q1
       state%v(:) = self%w1
       state%along_joints = 0.5_wp*sum(self%mass*self%v1**2) &
-                           - kinetic_energy(state%motion%column, state%q, state%v)
+                           - state%motion%column%kinetic_energy(state%q, state%v)
       state%time = state%time + h
       state%load = load
       self%largest = max(self%largest, self%scale)

@@ -7,7 +7,6 @@ module rbs_solve_time_located
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_structure_column_energy, only: kinetic_of
    use rbs_hysteresis_interaction_joints, only: choose_lines, put_on_plane
    use rbs_hysteresis_layer_events, only: turn_layer
    use rbs_solve_time_event, only: event_type, find_event, same_event, distance_to, standing_rotation, &
@@ -262,7 +261,7 @@ contains
       type(state_type), intent(in) :: state
       real(wp), intent(in) :: q(:), v(:)
 
-      energy = 0.5_wp*sum(state%motion%column%initial_stiffness*q**2) + kinetic_of(state%motion%column, v)
+      energy = 0.5_wp*sum(state%motion%column%initial_stiffness*q**2) + state%motion%column%kinetic_of(v)
    end function energy_of
 
    !> Springs that stand at an end of their line and go on, or have turned back already, change their line

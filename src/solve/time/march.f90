@@ -6,8 +6,6 @@ module rbs_solve_time_march
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: fall_of
    use rbs_structure_column_column, only: column_type
-   use rbs_structure_column_energy, only: kinetic_energy, potential_energy
-   use rbs_structure_column_top, only: top_motion, top_position
    use rbs_output_channels, only: energy_type, response_type
    use rbs_output_summary, only: summary_type
    use rbs_solve_end_state, only: standing_type
@@ -27,7 +25,7 @@ contains
 
    !> March through the plan.
    subroutine march(column, planned, stepper, time, loads, initial, task, error, sight)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(time_plan), intent(in) :: planned
       !> The method
       class(stepper_type), intent(inout) :: stepper
@@ -213,10 +211,10 @@ contains
       type(summary_type), intent(inout), optional :: summary
 
       energy%input = state%of_loads
-      energy%kinetic = kinetic_energy(state%motion%column, state%q, state%v) + state%along_joints
+      energy%kinetic = state%motion%column%kinetic_energy(state%q, state%v) + state%along_joints
       energy%spring = sum(state%springs%work)
       energy%damping = state%of_damping
-      energy%axial = potential_energy(state%motion%column, state%q)
+      energy%axial = state%motion%column%potential_energy(state%q)
       energy%residual = state%of_loads + state%at_begin - energy%kinetic - energy%spring - energy%damping &
                         - energy%axial
       if (present(summary)) call summary%see_energies(energy)
@@ -230,17 +228,14 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       !> Created if the rows hold how the top moves
       type(motion_result), intent(inout) :: now
-      real(wp) :: top(2)
-
-      top = top_position(state%motion%column, state%q)
       response%time = state%clock
-      response%displacement = top(1)
-      response%height = top(2)
+      response%displacement = state%motion%column%top_displacement(state%q)
+      response%height = state%motion%column%top_height(state%q)
       response%force = state%load(lateral)
       if (state%motion%damped) response%base = state%motion%base_reaction(state%springs, state%q, state%v)
       if (task%recorder%channels%motion) then
          call state%motion%acceleration(state%springs, state%q, state%v, state%load, now)
-         call top_motion(state%motion%column, state%q, state%v, now%a, response%motion(1), response%motion(2))
+         call state%motion%column%top_motion(state%q, state%v, now%a, response%motion(1), response%motion(2))
          response%motion(3) = state%load(horizontal)
       end if
       task%summary%rows = task%summary%rows + 1

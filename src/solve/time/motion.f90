@@ -13,9 +13,6 @@ module rbs_solve_time_motion
    use rbs_base_kinds, only: wp
    use rbs_structure_column_chain, only: chain_accelerations, second_order_forces
    use rbs_structure_column_column, only: column_type, small, finite
-   use rbs_structure_column_energy, only: kinetic_energy, power_of_lifts
-   use rbs_structure_column_finite, only: finite_work, finite_acceleration, finite_power
-   use rbs_structure_column_momentum, only: momentum_at_foot
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_modal_matrices, only: modal_damping
    use rbs_loading_loads, only: lateral, horizontal, vertical, axial
@@ -42,15 +39,13 @@ module rbs_solve_time_motion
       real(wp), allocatable, private :: moment(:)
       !> Axial forces that do second-order work at the time, in the order of the structure [N]
       real(wp), allocatable :: axial(:)
-      !> Cosine of the rotation, where the equation is the paper's eq 4
-      real(wp) :: cosine = 1.0_wp
-      type(finite_work), private :: work
+      real(wp), allocatable :: work(:)
    contains
       procedure :: create => create_result
    end type motion_result
 
    type :: motion_type
-      type(column_type), pointer :: column => null()
+      class(column_type), pointer :: column => null()
       !> The same, as solvers see it
       class(structure_type), pointer :: structure => null()
       !> Which of the four loads act (see `rbs_loading_loads`)
@@ -65,8 +60,6 @@ module rbs_solve_time_motion
       logical :: plain = .false.
       !> Whether slip and rotation of one joint are the only unknowns
       logical :: single = .false.
-      !> Whether it is the column of the paper's eq 4: one body, finite rotation, dead loads
-      logical :: equation_4 = .false.
       !> One over the mass or rotary inertia of each unknown, 0 for what is held (unknowns); the same of the
       !> bodies, by kind (n)
       real(wp), allocatable :: inverse(:), inverse_mass(:), inverse_inertia(:)
@@ -89,18 +82,18 @@ contains
 
    subroutine create_result(self, column)
       class(motion_result), intent(out) :: self
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
 
       allocate (self%a(column%unknowns), self%f(column%unknowns), self%force(column%unknowns), &
                 self%x(column%unknowns), self%along(column%n), self%turning(column%n), &
                 self%moment(column%n), source=0.0_wp)
       self%axial = [column%axial_body, column%axial_slip]
-      if (column%kinematics == finite) call self%work%create(column%n)
+      allocate (self%work(column%work_size), source=0.0_wp)
    end subroutine create_result
 
    subroutine create(self, column, acts, error)
       class(motion_type), intent(out) :: self
-      type(column_type), intent(in), target :: column
+      class(column_type), intent(in), target :: column
       !> Which of the loads act
       logical, intent(in) :: acts(4)
       type(error_type), allocatable, intent(out) :: error
@@ -118,9 +111,6 @@ contains
                           (column%axially_loaded .or. acts(vertical) .or. acts(axial))
       self%plain = column%kinematics /= finite .and. .not. (self%damped .or. acts(vertical) .or. acts(axial))
       self%single = column%unknowns == 2
-      self%equation_4 = self%single .and. column%kinematics == finite .and. &
-                        .not. (acts(vertical) .or. acts(axial) .or. column%axial_follows .or. &
-                               column%force_follows)
       self%inverse = merge(0.0_wp, 1.0_wp/column%inertias, column%is_held)
       self%inverse_mass = self%inverse(1:2*column%n:2)
       self%inverse_inertia = self%inverse(2:2*column%n:2)
@@ -135,14 +125,11 @@ contains
       !> Loads at the time
       real(wp), intent(in) :: load(4)
       type(motion_result), intent(inout) :: result
+      real(wp) :: of_speeds(2)
 
       if (self%column%kinematics == finite) then
          call joint_forces(self, springs, q, v, load, result%f)
-         if (self%equation_4) then
-            call accelerate_equation_4(self, q, v, load, result%f, result%a, result%cosine)
-         else
-            call finite_acceleration(self%column, result%work, q, v, result%f, load, result%a)
-         end if
+         call self%column%accelerations(q, v, load, result%axial, result%f, result%work, result%a, of_speeds)
          return
       end if
       if (self%column%opens) then
@@ -280,52 +267,14 @@ contains
       end do
    end subroutine divide
 
-   !> One body, finite rotation: the paper's eq 4, corrected, with axial load and weight; s is the distance of
-   !> the centroid from the joint.
-   !>
-   !>     m u'' + m s cos(th) th'' - m s sin(th) th'^2 + V = F - m a_g
-   !>     m s cos(th) u'' + (I + m s^2) th'' + M = (F l - m s a_g) cos(th) + P l sin(th)
-   pure subroutine accelerate_equation_4(self, q, v, load, f, a, cosine)
-      type(motion_type), intent(in) :: self
-      !> Deformations, velocities and forces of the joint
-      real(wp), intent(in) :: q(2), v(2), f(2)
-      real(wp), intent(in) :: load(4)
-      !> Accelerations, and the cosine of the rotation
-      real(wp), intent(out) :: a(2), cosine
-      real(wp) :: sine, coupling, along, about, determinant
-
-      sine = sin(q(2))
-      cosine = cos(q(2))
-      associate (column => self%column, m => self%column%mass(1), inertia => self%column%inertia_above(1), &
-                 moment => self%column%moment_above(1))
-         coupling = moment*cosine
-         along = load(lateral) - m*load(horizontal) - f(1) + moment*sine*v(2)**2
-         about = (column%length(1)*load(lateral) - moment*load(horizontal))*cosine &
-                 + column%axial_body(1)*column%length(1)*sine - f(2)
-         if (column%mass_damping > 0.0_wp) then
-            along = along - column%mass_damping*(m*v(1) + coupling*v(2))
-            about = about - column%mass_damping*(coupling*v(1) + inertia*v(2))
-         end if
-         determinant = 1.0_wp/(m*inertia - coupling**2)
-         a(1) = (inertia*along - coupling*about)*determinant
-         a(2) = (m*about - coupling*along)*determinant
-      end associate
-   end subroutine accelerate_equation_4
-
    !> Power of the loads at a state [W].
-   real(wp) function load_power(self, q, v, load, result) result(watt)
+   real(wp) function load_power(self, q, v, load) result(watt)
       class(motion_type), intent(in) :: self
       real(wp), intent(in), contiguous :: q(:), v(:)
       real(wp), intent(in) :: load(4)
-      !> What `acceleration` gave at the same deformations
-      type(motion_result), intent(in) :: result
 
-      if (self%equation_4) then
-         watt = load(lateral)*(v(1) + self%column%length(1)*result%cosine*v(2)) &
-                - load(horizontal)*(self%column%mass(1)*v(1) &
-                                    + self%column%moment_above(1)*result%cosine*v(2))
-      else if (self%column%kinematics == finite) then
-         watt = finite_power(self%column, q, v, load)
+      if (self%column%kinematics == finite) then
+         watt = self%column%power_of_loads(q, v, load)
       else
          watt = self%top_velocity(v)*load(lateral) - self%momentum(v)*load(horizontal) &
                 + self%lifting_power(q, v, load)
@@ -347,7 +296,7 @@ contains
       end if
       if (allocated(self%modal)) watt = watt + inner_product(size(v), v, modal_forces(size(v), self%modal, v))
       if (self%column%mass_damping > 0.0_wp) then
-         watt = watt + 2.0_wp*self%column%mass_damping*kinetic_energy(self%column, q, v)
+         watt = watt + 2.0_wp*self%column%mass_damping*self%column%kinetic_energy(q, v)
       end if
    end function damping_power
 
@@ -358,7 +307,7 @@ contains
       real(wp), intent(in) :: load(4)
 
       watt = 0.0_wp
-      if (self%acts(vertical) .or. self%acts(axial)) watt = power_of_lifts(self%column, q, v, load)
+      if (self%acts(vertical) .or. self%acts(axial)) watt = self%column%power_of_lifts(q, v, load)
    end function lifting_power
 
    !> Velocity of the top along x, small rotations [m/s].
@@ -388,7 +337,7 @@ contains
       base = [force_at(self, springs, q, v, self%column%at(shear, 1)), &
               force_at(self, springs, q, v, self%column%at(flexure, 1))]
       if (self%column%mass_damping > 0.0_wp) then
-         base = base + self%column%mass_damping*momentum_at_foot(self%column, q, v)
+         base = base + self%column%mass_damping*self%column%momentum_at_foot(q, v)
       end if
    end function base_reaction
 
@@ -402,7 +351,7 @@ contains
       force = force_at(self, springs, q, v, self%column%at(shear, 1))
       if (.not. self%damped) return
       if (self%column%mass_damping > 0.0_wp) then
-         momentum = momentum_at_foot(self%column, q, v)
+         momentum = self%column%momentum_at_foot(q, v)
          force = force + self%column%mass_damping*momentum(1)
       end if
    end function base_shear

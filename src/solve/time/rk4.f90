@@ -38,7 +38,7 @@ contains
 
    subroutine create(self, column)
       class(rk4_scheme), intent(out) :: self
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
 
       self%order = 4
       allocate (self%q(column%unknowns), self%v(column%unknowns), self%stage_q(column%unknowns), &
@@ -106,7 +106,7 @@ contains
                                                         - motion%column%mass_above(1)*now(horizontal))
                else
                   self%of_loads = self%of_loads &
-                                  + h*weight(stage)*motion%load_power(self%stage_q, self%stage_v, now, result)
+                                  + h*weight(stage)*motion%load_power(self%stage_q, self%stage_v, now)
                   self%of_damping = self%of_damping &
                                     + h*weight(stage)*motion%damping_power(state%springs, self%stage_q, &
                                                                            self%stage_v)

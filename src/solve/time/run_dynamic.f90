@@ -42,7 +42,7 @@ contains
 
    !> Choice of the method, stability limit and plan of the steps of a dynamic analysis.
    subroutine plan_dynamic(column, analysis, time, loads, plan, error)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       !> Validated settings
       type(analysis_record), intent(in) :: analysis
       !> Times of the loading (m) [s]
@@ -68,7 +68,7 @@ contains
 
    !> Steps of the method chosen.
    subroutine plan_steps(column, analysis, time, loads, plan, error)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(analysis_record), intent(in) :: analysis
       real(wp), intent(in) :: time(:)
       type(loads_type), intent(in) :: loads
@@ -128,7 +128,7 @@ contains
    !> The method for a case whose user leaves it to the program: the most accurate one if it takes hardly any
    !> time, else the cheapest. It is chosen by counts of steps, never by a clock.
    subroutine choose_method(column, analysis, time, plan, error)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(analysis_record), intent(in) :: analysis
       real(wp), intent(in) :: time(:)
       type(time_plan), intent(inout) :: plan
@@ -176,7 +176,7 @@ contains
 
    !> Response in time under lateral force, ground motion, axial load, or all of them.
    subroutine run_dynamic(column, analysis, plan, time, loads, initial, task, error, sight)
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       !> Validated settings
       type(analysis_record), intent(in) :: analysis
       !> From `plan_dynamic`
@@ -216,7 +216,7 @@ contains
    !> The method of a plan, ready for its first step.
    subroutine new_stepper(stepper, column, analysis, plan)
       class(stepper_type), allocatable, intent(out) :: stepper
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(analysis_record), intent(in) :: analysis
       type(time_plan), intent(in) :: plan
       type(rk4_stepper), allocatable :: fixed
@@ -267,7 +267,7 @@ contains
    subroutine set_implicit(stepper, method, column)
       class(stepper_type), allocatable, intent(out) :: stepper
       type(implicit_stepper), intent(in) :: method
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
 
       if (column%kinematics == finite) then
          allocate (stepper, source=with_finite_rotations(method))

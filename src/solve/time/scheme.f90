@@ -36,7 +36,7 @@ module rbs_solve_time_scheme
          import :: scheme_type, column_type
          implicit none
          class(scheme_type), intent(out) :: self
-         type(column_type), intent(in) :: column
+         class(column_type), intent(in) :: column
       end subroutine create_interface
 
       !> A step of h on the present lines of the springs; deformations and velocities of the state stay.

@@ -4,7 +4,6 @@ module rbs_solve_time_sight
    use rbs_base_check, only: is_given
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column, only: column_type, finite
-   use rbs_structure_column_top, only: top_motion, top_displacement, largest_turn
    use rbs_hysteresis_interaction_joints, only: fill_openings, opening_of
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_summary, only: peaks_type
@@ -46,7 +45,7 @@ module rbs_solve_time_sight
       !> Openings and rotations at rest now
       real(wp), allocatable, private :: openings_now(:)
       !> The column, and whether openings are still watched
-      type(column_type), pointer, private :: column => null()
+      class(column_type), pointer, private :: column => null()
       logical, private :: opens = .false.
       !> States within a step (unknowns, 4), and openings there
       real(wp), allocatable, private :: inner_q(:, :), inner_v(:, :), inner_openings(:, :)
@@ -106,7 +105,7 @@ contains
       if (floor) call self%now%create(motion%column)
       self%q = q
       self%clock = clock
-      self%displacement = top_displacement(motion%column, q)
+      self%displacement = motion%column%top_displacement(q)
       call fill_openings(springs, self%column%n, self%openings)
       self%openings_now = self%openings
       call self%see(motion, springs, q, v, load, clock)
@@ -130,8 +129,8 @@ contains
          turn = abs(q(2))
          shear = springs%f0(1) + springs%k(1)*(q(1) - springs%d0(1))
       else
-         displacement = top_displacement(motion%column, q)
-         turn = largest_turn(motion%column, q)
+         displacement = motion%column%top_displacement(q)
+         turn = motion%column%largest_turn(q)
          shear = motion%base_shear(springs, q, v)
       end if
       if (abs(displacement) > abs(self%peak_displacement) .or. abs(load(lateral)) > abs(self%peak_force)) then
@@ -142,7 +141,7 @@ contains
       if (abs(shear) > abs(self%peak_base_shear)) call self%see_base(shear)
       if (self%feels) then
          call motion%acceleration(springs, q, v, load, self%now)
-         call top_motion(motion%column, q, v, self%now%a, speed, acceleration)
+         call motion%column%top_motion(q, v, self%now%a, speed, acceleration)
          call self%see_floor(acceleration + load(horizontal))
       end if
       if (.not. self%watching) return
@@ -220,7 +219,7 @@ contains
       m = size(q0)
       ! No cubic goes further beyond its ends than that.
       reach = 4.0_wp/27.0_wp*h
-      displacement = [top_displacement(motion%column, q0), top_displacement(motion%column, q1)]
+      displacement = [motion%column%top_displacement(q0), motion%column%top_displacement(q1)]
       if (peaks_may_grow(self, motion, springs, displacement, q0, v0, q1, v1, reach)) then
          call fill_inner(m, q0, v0, q1, v1, h, self%inner_q, self%inner_v)
          call find_peaks(self, motion, springs)
@@ -294,7 +293,7 @@ contains
       integer :: i, j
 
       do j = 1, 4
-         displacement(j) = top_displacement(motion%column, self%inner_q(:, j))
+         displacement(j) = motion%column%top_displacement(self%inner_q(:, j))
          base(j) = motion%base_shear(springs, self%inner_q(:, j), self%inner_v(:, j))
       end do
       if (may_exceed(displacement, self%peak_displacement)) then
@@ -336,7 +335,7 @@ contains
       integer :: i, j
 
       do j = 1, 4
-         value(j) = top_displacement(motion%column, self%inner_q(:, j))
+         value(j) = motion%column%top_displacement(self%inner_q(:, j))
       end do
       top = cubic_through(value)
       open = .not. self%reached < huge(1.0_wp)

@@ -6,8 +6,6 @@ module rbs_solve_time_start
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: go_under, vary_axial_loads
    use rbs_structure_column_column, only: column_type
-   use rbs_structure_column_energy, only: kinetic_energy, potential_energy
-   use rbs_structure_column_top, only: top_displacement
    use rbs_solve_end_state, only: end_state, standing_type, moving_state
    use rbs_loading_loads, only: loads_type, lateral, vertical, top_axial => axial
    use rbs_solve_time_plan, only: time_plan, same_step
@@ -32,7 +30,7 @@ contains
    !> The state that another analysis ended in. At a time that is that of its end the clock goes on.
    subroutine resume_state(state, column, loads, before, plan, standing, error)
       type(state_type), intent(out) :: state
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(loads_type), intent(in) :: loads
       type(end_state), intent(inout) :: before
       type(time_plan), intent(inout) :: plan
@@ -86,9 +84,9 @@ contains
       type(state_type), intent(in) :: state
 
       residual_of = state%of_loads + state%at_begin &
-                    - (kinetic_energy(state%motion%column, state%q, state%v) + state%along_joints) &
+                    - (state%motion%column%kinetic_energy(state%q, state%v) + state%along_joints) &
                     - sum(state%springs%work) - state%of_damping &
-                    - potential_energy(state%motion%column, state%q)
+                    - state%motion%column%potential_energy(state%q)
    end function residual_of
 
    !> The same method goes on with what it remembers, unless a load jumps at the start.
@@ -119,7 +117,7 @@ contains
       associate (column => state%motion%column)
          standing%kind = moving_state
          standing%pressed = state%springs%pressed
-         standing%displacement = top_displacement(column, state%q)
+         standing%displacement = column%top_displacement(state%q)
          standing%force = state%load(lateral)
          standing%axial_load = column%axial_load + state%load(top_axial)
          allocate (standing%press(column%n))
@@ -152,7 +150,7 @@ contains
 
    subroutine start_state(state, column, loads, initial, begin, error)
       type(state_type), intent(out) :: state
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(loads_type), intent(in) :: loads
       type(initial_state), intent(in) :: initial
       real(wp), intent(in) :: begin
@@ -167,8 +165,8 @@ contains
          if (allocated(error)) return
       end if
       call state%springs%move_all(state%q)
-      state%at_begin = kinetic_energy(state%motion%column, state%q, state%v) + sum(state%springs%work) &
-                       + potential_energy(state%motion%column, state%q)
+      state%at_begin = state%motion%column%kinetic_energy(state%q, state%v) + sum(state%springs%work) &
+                       + state%motion%column%potential_energy(state%q)
    end subroutine start_state
 
    !> The same column at rest once more, under ground motions that have taken the place of others.
@@ -189,7 +187,7 @@ contains
    !> The straight column at rest under the loads of the first moment.
    subroutine create_state(state, column, loads, begin, error)
       type(state_type), intent(out) :: state
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       type(loads_type), intent(in) :: loads
       real(wp), intent(in) :: begin
       type(error_type), allocatable, intent(out) :: error
@@ -208,7 +206,7 @@ contains
    !> Loads by the time since the start of the run, and those of the moment.
    subroutine prepare_loads(state, column)
       type(state_type), intent(inout) :: state
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
 
       call state%loads%find_acting()
       call state%loads%set_begin(state%begin)
@@ -220,7 +218,7 @@ contains
    !> Virgin springs; layered joints begin under the axial forces of the first moment.
    subroutine create_springs(state, column)
       type(state_type), intent(inout) :: state
-      type(column_type), intent(in) :: column
+      class(column_type), intent(in) :: column
       real(wp) :: axial_load(column%unknowns)
       integer :: heard(column%unknowns), i
       logical :: varies

@@ -9,7 +9,7 @@ module rbs_structure_column_axial
    implicit none
    private
 
-   public :: geometric_stiffness, geometric_forces, axial_energy, critical_factor, check_stable
+   public :: geometric_stiffness, geometric_forces, critical_factor, check_stable
 
 contains
 
@@ -61,23 +61,6 @@ contains
          g(i, flexure) = above
       end do
    end subroutine geometric_forces
-
-   !> Potential of the axial forces to second order, zero for the straight column [J].
-   pure real(wp) function axial_energy(column, q) result(energy)
-      type(column_type), intent(in) :: column
-      !> Deformations (2 n)
-      real(wp), intent(in) :: q(column%n, 2)
-      real(wp) :: rotation
-      integer :: i
-
-      energy = 0.0_wp
-      rotation = 0.0_wp
-      do i = 1, column%n
-         energy = energy - column%axial_slip(i)*q(i, shear)*rotation
-         rotation = rotation + q(i, flexure)
-         energy = energy - 0.5_wp*column%axial_body(i)*column%length(i)*rotation**2
-      end do
-   end function axial_energy
 
    !> The number by which all axial forces must be multiplied to make the uncracked column lose its
    !> stiffness; `huge` if no multiple does. Tension too can buckle a column of several bodies, by slip

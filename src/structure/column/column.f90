@@ -11,7 +11,6 @@
 !> is the lowest one turned about the middle of the column: it slips and opens along the directions of the
 !> body above it, which are fixed.
 module rbs_structure_column_column
-   use rbs_base_check, only: is_given
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
@@ -19,17 +18,15 @@ module rbs_structure_column_column
    use rbs_structure_channel, only: channel_type, response_type, row_contents
    use rbs_structure_column_chain, only: deformations, displacements, body_forces, second_order_forces, &
                                chain_accelerations, add_joint_stiffness, add_axial_stiffness
-   use rbs_structure_column_column_record, only: column_record
    use rbs_hysteresis_interaction_joints, only: opening_of, rest_of
-   use rbs_hysteresis_spring_record, only: make_rules
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_structure_spring_place, only: spring_place, shear, flexure, axial
-   use rbs_structure_structure, only: structure_type, unknown_group, small, pdelta, finite, lateral, &
-                                      horizontal, vertical, top_axial, signals
+   use rbs_structure_spring_place, only: flexure
+   use rbs_structure_structure, only: structure_type, small, pdelta, finite, lateral, horizontal, &
+                                      vertical, top_axial, signals
    implicit none
    private
 
-   public :: column_type, new_column
+   public :: column_type
    public :: small, pdelta, finite, column_channel
 
    !> What rows of a column hold besides what all structures have; some only where joints have axial
@@ -46,9 +43,6 @@ module rbs_structure_column_column
 
    !> Rotations of bodies that are differences of numbers this much larger are zero.
    real(wp), parameter :: no_rotation = 1.0e-9_wp
-
-   !> Rotary inertia of a body that does not turn [kg m2]: any positive number.
-   real(wp), parameter :: of_held_body = 1.0_wp
 
    type, extends(structure_type) :: column_type
       ! The unknowns, as many as springs, are 2 n or, with axial springs, 3 n
@@ -117,263 +111,14 @@ module rbs_structure_column_column
       procedure :: check_initial
       procedure :: channels
       procedure :: fill_row
+      procedure :: momentum_at_foot
+      procedure :: top_motion
+      procedure, non_overridable :: kinetic_of
+      procedure, non_overridable :: power_of_lifts
+      procedure, non_overridable :: largest_turn
    end type column_type
 
 contains
-
-   !> Make the column of a validated specification.
-   subroutine new_column(column, spec)
-      type(column_type), intent(out) :: column
-      type(column_record), intent(in) :: spec
-      integer :: first, last, n
-
-      column%footing = spec%footing
-      column%held = spec%top == 'fixed'
-      n = spec%joints()
-      column%n = n
-      column%height = spec%height
-      ! The bodies of the column itself
-      first = merge(2, 1, column%footing)
-      last = first + spec%n - 1
-      column%opens = allocated(spec%axial_spring)
-      column%kinds = merge(3, 2, column%opens)
-      column%unknowns = column%kinds*n
-      select case (spec%kinematics)
-      case ('pdelta')
-         column%kinematics = pdelta
-      case ('finite')
-         column%kinematics = finite
-      case default
-         column%kinematics = small
-      end select
-
-      allocate (column%length(n), column%mass(n), source=0.0_wp)
-      if (allocated(spec%lengths)) then
-         column%length(first:last) = spec%lengths
-      else
-         column%length(first:last) = spec%height/spec%n
-      end if
-      if (allocated(spec%masses)) then
-         column%mass(first:last) = spec%masses
-      else
-         column%mass(first:last) = spec%mass*(column%length(first:last)/spec%height)
-      end if
-      if (column%footing) then
-         column%length(1) = spec%footing_height
-         column%mass(1) = spec%footing_mass
-      end if
-      column%mass_damping = spec%damping%mass
-      column%stiffness_damping = spec%damping%stiffness
-      column%tangent_damping = spec%damping%tangent
-      if (allocated(spec%damping%modal)) column%modal_damping = spec%damping%modal
-      column%damped = column%mass_damping > 0.0_wp .or. column%stiffness_damping > 0.0_wp .or. &
-                      allocated(column%modal_damping)
-      column%axial_follows = spec%axial_follows
-      column%force_follows = spec%force_follows
-
-      call set_heights(column)
-      call set_weights(column, spec)
-      call set_bodies(column, spec, first, last)
-      call set_mass_sums(column)
-      call set_lifted_masses(column)
-      call set_springs(column, spec)
-      call set_unknowns(column)
-   end subroutine new_column
-
-   subroutine set_heights(column)
-      type(column_type), intent(inout) :: column
-      integer :: i, n
-
-      n = column%n
-      allocate (column%joint_height(n + 1))
-      allocate (column%arm(column%unknowns), source=0.0_wp)
-      column%joint_height(1) = 0.0_wp
-      do i = 1, n
-         column%joint_height(i + 1) = column%joint_height(i) + column%length(i)
-      end do
-      column%total_height = column%joint_height(n + 1)
-      column%arm(:n) = 1.0_wp
-      ! Summed from the top down: the lever arm of an upper joint is not a difference of large heights.
-      column%arm(2*n) = column%length(n)
-      do i = n - 1, 1, -1
-         column%arm(n + i) = column%arm(n + i + 1) + column%length(i)
-      end do
-   end subroutine set_heights
-
-   !> Axial forces of load and weight of the bodies.
-   subroutine set_weights(column, spec)
-      type(column_type), intent(inout) :: column
-      type(column_record), intent(in) :: spec
-      real(wp) :: above(column%n + 1)
-      real(wp) :: dead
-      integer :: i, n
-
-      n = column%n
-      column%axial_load = spec%axial_load
-      column%axial_force_ratio = spec%axial_force_ratio
-      if (is_given(spec%axial_height)) column%axial_lever = spec%axial_height/spec%height
-      dead = merge(0.0_wp, column%axial_load*column%axial_lever, column%axial_follows)
-      if (spec%self_weight) column%gravity = spec%gravity
-      above(n + 1) = 0.0_wp
-      do i = n, 1, -1
-         above(i) = above(i + 1) + column%mass(i)
-      end do
-      column%weight = column%gravity*column%mass
-      column%axial_body = dead + column%gravity*(column%mass/2.0_wp + above(2:))
-      column%axial_joint = dead + column%gravity*above(:n)
-      column%axial_slip = column%axial_joint
-      if (column%held) column%axial_slip(n) = 0.0_wp
-      column%compression = column%axial_load + column%gravity*above(:n)
-      column%axially_loaded = column%kinematics /= small .and. &
-                              (abs(dead) > 0.0_wp .or. column%gravity > 0.0_wp)
-   end subroutine set_weights
-
-   !> Centroids and rotary inertias, the lumped mass included.
-   subroutine set_bodies(column, spec, first, last)
-      type(column_type), intent(inout) :: column
-      type(column_record), intent(in) :: spec
-      !> Bodies of the column itself
-      integer, intent(in) :: first, last
-      real(wp) :: own, shift
-      integer :: i, n
-
-      n = column%n
-      column%inertia = column%mass*(column%length**2 + spec%depth**2)/12.0_wp
-      if (allocated(spec%rotary_inertia)) then
-         column%inertia(first:last) = spec%rotary_inertia(min([(i, i=1, spec%n)], size(spec%rotary_inertia)))
-      end if
-      column%lower = column%length/2.0_wp
-      column%upper = column%length/2.0_wp
-      if (column%footing) column%inertia(1) = spec%footing_inertia
-      if (column%held) then
-         column%mass(n) = spec%top_mass
-         column%inertia(n) = of_held_body
-         return
-      end if
-      if (.not. spec%top_mass > 0.0_wp .and. .not. spec%top_inertia > 0.0_wp) return
-      own = column%mass(n)
-      shift = spec%top_mass/(own + spec%top_mass)*column%upper(n)
-      column%inertia(n) = column%inertia(n) + spec%top_inertia + own*shift*column%upper(n)
-      column%mass(n) = own + spec%top_mass
-      column%upper(n) = own/column%mass(n)*column%upper(n)
-      column%lower(n) = column%length(n) - column%upper(n)
-   end subroutine set_bodies
-
-   !> Sums over the bodies above each joint; every term is positive, so nothing cancels.
-   subroutine set_mass_sums(column)
-      type(column_type), intent(inout) :: column
-      integer :: i, n
-
-      n = column%n
-      allocate (column%mass_above(n + 1), column%moment_above(n + 1), column%inertia_above(n + 1), &
-                source=0.0_wp)
-      do i = n, 1, -1
-         associate (m => column%mass(i), l => column%length(i), s => column%lower(i))
-            column%mass_above(i) = column%mass_above(i + 1) + m
-            column%moment_above(i) = column%moment_above(i + 1) + l*column%mass_above(i + 1) + m*s
-            column%inertia_above(i) = column%inertia_above(i + 1) &
-                                      + 2.0_wp*l*column%moment_above(i + 1) &
-                                      + l**2*column%mass_above(i + 1) &
-                                      + m*s**2 + column%inertia(i)
-         end associate
-      end do
-      allocate (column%ground_arm(column%unknowns), source=0.0_wp)
-      column%ground_arm(:n) = column%mass_above(:n)
-      column%ground_arm(n + 1:2*n) = column%moment_above(:n)
-   end subroutine set_mass_sums
-
-   !> Axial forces per vertical acceleration of the ground.
-   subroutine set_lifted_masses(column)
-      type(column_type), intent(inout) :: column
-      integer :: n
-
-      n = column%n
-      ! A body without length does not lean.
-      column%lifted_body = column%mass_above(2:)
-      where (column%length > 0.0_wp)
-         column%lifted_body = column%mass*column%lower/column%length + column%mass_above(2:)
-      end where
-      column%lifted_joint = column%mass_above(:n)
-   end subroutine set_lifted_masses
-
-   subroutine set_springs(column, spec)
-      type(column_type), intent(inout) :: column
-      type(column_record), intent(in) :: spec
-      integer :: i, joint, n
-
-      n = column%n
-      allocate (column%spring(column%unknowns), column%place(column%unknowns))
-      allocate (column%at(3, n), source=0)
-      do i = 1, n
-         column%at(:2, i) = [i, n + i]
-         column%spring(i) = spec%shear(min(i, size(spec%shear)))
-         column%spring(n + i) = spec%flexure(min(i, size(spec%flexure)))
-         ! A shear spring may ask for the work of the flexural one of its joint.
-         joint = merge(i - 1, i, column%footing)
-         column%place(i) = spring_place(shear, 1, joint, n + i, i)
-         column%place(n + i) = spring_place(flexure, 1, joint, index=i)
-         if (.not. column%opens) cycle
-         column%at(axial, i) = 2*n + i
-         column%spring(2*n + i) = spec%axial_spring(min(i, size(spec%axial_spring)))
-         column%place(2*n + i) = spring_place(axial, 1, joint, index=i)
-      end do
-      ! Layered joints and axial springs carry the axial load of load and weight above them.
-      do i = n + 1, column%unknowns
-         column%spring(i)%axial_load = column%compression(column%place(i)%index)
-      end do
-      call make_rules(column%spring, column%rules)
-      column%initial_stiffness = column%rules%initial_stiffness()
-   end subroutine set_springs
-
-   !> The coordinates of the bodies, in which the mass is diagonal; see `rbs_structure_column_chain`.
-   subroutine set_unknowns(column)
-      type(column_type), intent(inout) :: column
-      integer :: i, n, m
-
-      n = column%n
-      m = column%unknowns
-      column%half_width = 3
-      allocate (column%inertias(m), column%is_held(m), column%part(m))
-      column%is_held = .false.
-      column%is_held(2*n) = column%held
-      column%has_held = column%held
-      do i = 1, n
-         column%inertias(2*i - 1:2*i) = [column%mass(i), column%inertia(i)]
-         column%part(2*i - 1:2*i) = i
-         if (.not. column%opens) cycle
-         column%inertias(2*n + i) = column%mass(i)
-         column%part(2*n + i) = n + i
-      end do
-      column%inverse_mass = 1.0_wp/column%mass
-      column%inverse_inertia = 1.0_wp/column%inertia
-      if (column%held) column%inverse_inertia(n) = 0.0_wp
-      column%work_size = 2*m + n
-      column%base_spring = [column%at(shear, 1)]
-      column%base_factor = [1.0_wp]
-      allocate (column%group(merge(3, 2, column%opens)))
-      column%group(1) = unknown_group(1, 2*n, 2, 1, n, 1.0_wp)
-      column%group(2) = unknown_group(2, 2*n, 2, n + 1, 2*n, column%upper(n))
-      if (column%opens) column%group(3) = unknown_group(2*n + 1, 3*n, 1, 2*n + 1, 3*n)
-      do i = 1, size(column%pattern)
-         allocate (column%pattern(i)%force(m), source=0.0_wp)
-      end do
-      associate (push => column%pattern(lateral), ground => column%pattern(horizontal))
-         push%force(2*n - 1:2*n) = [1.0_wp, column%upper(n)]
-         if (column%held) push%force(2*n) = 0.0_wp
-         ground%force(1:2*n:2) = -column%mass
-      end associate
-      if (column%opens) then
-         column%pattern(vertical)%force(2*n + 1:) = -column%mass
-         column%pattern(top_axial)%force(3*n) = -1.0_wp
-      end if
-      do i = 1, size(column%pattern)
-         associate (pattern => column%pattern(i))
-            pattern%first = findloc(abs(pattern%force) > 0.0_wp, .true., dim=1)
-            pattern%last = findloc(abs(pattern%force) > 0.0_wp, .true., dim=1, back=.true.)
-            if (pattern%first == 0) pattern%first = 1
-         end associate
-      end do
-   end subroutine set_unknowns
 
    !> Changes of the deformations of the joints from those of the bodies.
    subroutine spring_rates(self, dx, dd)
@@ -788,5 +533,112 @@ contains
          row(at + n + i) = rest_of(springs, self%at(flexure, i))
       end do
    end subroutine fill_row
+
+   !> Kinetic energy of velocities of the joints with small rotations, relative to the ground [J].
+   pure real(wp) function kinetic_of(self, v) result(energy)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: v(:)
+      real(wp) :: top, turning, centroid, height
+      integer :: i, n
+
+      n = self%n
+      top = 0.0_wp
+      turning = 0.0_wp
+      energy = 0.0_wp
+      do i = 1, n
+         turning = turning + v(n + i)
+         centroid = top + v(i) + self%lower(i)*turning
+         top = centroid + self%upper(i)*turning
+         energy = energy + 0.5_wp*(self%mass(i)*centroid**2 + self%inertia(i)*turning**2)
+      end do
+      if (.not. self%opens) return
+      height = 0.0_wp
+      do i = 1, n
+         height = height + v(2*n + i)
+         energy = energy + 0.5_wp*self%mass(i)*height**2
+      end do
+   end function kinetic_of
+
+   !> Power of vertical ground motion and of what is added to the axial load, small rotations [W].
+   pure real(wp) function power_of_lifts(self, d, v, load) result(watt)
+      class(column_type), intent(in) :: self
+      !> Deformations and their velocities (unknowns)
+      real(wp), intent(in), contiguous :: d(:), v(:)
+      !> Signals of the loads
+      real(wp), intent(in) :: load(4)
+      real(wp) :: rotation, turning, rising, body, joint
+      integer :: i, n
+
+      watt = 0.0_wp
+      n = self%n
+      rotation = 0.0_wp
+      turning = 0.0_wp
+      rising = 0.0_wp
+      do i = 1, n
+         body = load(top_axial)*self%axial_lever + load(vertical)*self%lifted_body(i)
+         joint = load(top_axial)*self%axial_lever + load(vertical)*self%lifted_joint(i)
+         if (i == n .and. self%held) joint = 0.0_wp
+         if (self%kinematics /= small) watt = watt + joint*(v(i)*rotation + d(i)*turning)
+         rotation = rotation + d(n + i)
+         turning = turning + v(n + i)
+         if (self%kinematics /= small) watt = watt + body*self%length(i)*rotation*turning
+         if (self%opens) then
+            rising = rising + v(2*n + i)
+            watt = watt - self%mass(i)*load(vertical)*rising
+         end if
+      end do
+      if (self%opens) watt = watt - load(top_axial)*rising
+   end function power_of_lifts
+
+   !> Momentum along x, relative to the ground [kg m/s], and angular momentum about the lowest joint, as it
+   !> has slipped and opened [kg m2/s]. They are conjugate to slip and rotation of that joint: the first
+   !> rows of M q'. With small rotations the centroids move along x at their heights.
+   pure function momentum_at_foot(self, d, v) result(momentum)
+      class(column_type), intent(in) :: self
+      !> Deformations and their velocities (unknowns)
+      real(wp), intent(in), contiguous :: d(:), v(:)
+      real(wp) :: momentum(2)
+      real(wp) :: top, turning, centroid
+      integer :: i, n
+
+      n = size(d)/self%kinds
+      momentum = 0.0_wp
+      top = 0.0_wp
+      turning = 0.0_wp
+      do i = 1, n
+         turning = turning + v(n + i)
+         centroid = top + v(i) + self%lower(i)*turning
+         top = centroid + self%upper(i)*turning
+         momentum(1) = momentum(1) + self%mass(i)*centroid
+         momentum(2) = momentum(2) + self%mass(i)*centroid*(self%joint_height(i) + self%lower(i)) &
+                       + self%inertia(i)*turning
+      end do
+   end function momentum_at_foot
+
+   !> Velocity and acceleration of the top along x, relative to the ground [m/s, m/s2].
+   pure subroutine top_motion(self, d, v, a, velocity, acceleration)
+      class(column_type), intent(in) :: self
+      !> Deformations and their first and second derivatives (unknowns)
+      real(wp), intent(in), contiguous :: d(:), v(:), a(:)
+      real(wp), intent(out) :: velocity, acceleration
+
+      velocity = inner_product(size(d), self%arm, v)
+      acceleration = inner_product(size(d), self%arm, a)
+   end subroutine top_motion
+
+   !> Largest absolute rotation of a body in deformations, or in a change of them, in size [rad].
+   pure real(wp) function largest_turn(self, change) result(largest)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: change(:)
+      real(wp) :: rotation
+      integer :: i
+
+      largest = 0.0_wp
+      rotation = 0.0_wp
+      do i = self%n + 1, 2*self%n
+         rotation = rotation + change(i)
+         largest = max(largest, abs(rotation))
+      end do
+   end function largest_turn
 
 end module rbs_structure_column_column

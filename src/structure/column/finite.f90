@@ -22,23 +22,32 @@ module rbs_structure_column_finite
    use rbs_base_linalg, only: solve_tridiagonal
    use rbs_structure_column_column, only: column_type
    use rbs_structure_spring_place, only: shear, flexure, axial
+   use rbs_structure_structure, only: lateral, horizontal, vertical, top_axial
    implicit none
    private
 
-   public :: finite_work, finite_acceleration
-   public :: finite_kinetic, finite_potential, finite_power, finite_top, finite_momentum
+   public :: finite_chain_type
 
-   !> Arrays of `finite_acceleration`, allocated once.
-   type :: finite_work
-      !> Axial force of each joint, tension positive (n) [N]: the reaction of joints that do not open
-      real(wp), allocatable :: axial(:)
-      !> Sine and cosine of the relative rotations (n)
-      real(wp), allocatable, private :: sine(:), cosine(:)
-      !> Equations of the reactions: diagonal (n) and the numbers beside it (n - 1 of n) [1/kg]
-      real(wp), allocatable, private :: diagonal(:), beside(:)
+   !> What the work array of `accelerations` holds of each joint (n): its axial force, tension positive [N],
+   !> which is a reaction where it does not open; sine and cosine of its rotation; diagonal of the equations
+   !> of the reactions, and the numbers beside it [1/kg]
+   integer, parameter :: reaction = 1, sine = 2, cosine = 3, diagonal = 4, beside = 5
+
+   type, extends(column_type) :: finite_chain_type
    contains
-      procedure :: create
-   end type finite_work
+      procedure :: accelerations
+      procedure :: accelerate
+      procedure :: speeds
+      procedure :: power_of_loads
+      procedure :: kinetic_energy
+      procedure :: potential_energy
+      procedure :: angular_momentum
+      procedure :: top_displacement
+      procedure :: top_height
+      procedure :: top_acceleration
+      procedure :: momentum_at_foot
+      procedure :: top_motion
+   end type finite_chain_type
 
    !> A body on the way up the chain.
    type :: moving_body
@@ -52,55 +61,77 @@ module rbs_structure_column_finite
 
 contains
 
-   subroutine create(self, n)
-      class(finite_work), intent(out) :: self
-      !> Number of bodies
-      integer, intent(in) :: n
-
-      allocate (self%axial(n), self%sine(n), self%cosine(n), self%diagonal(n), self%beside(n))
-   end subroutine create
-
-   !> Acceleration of the unknowns, relative to the ground.
+   !> Accelerations of the joints, relative to the ground.
    !>
    !> Damping in proportion to the mass, -alpha (m v_c, I om) on every body, is -alpha M q' in the unknowns:
    !> it takes alpha q' from the accelerations.
-   subroutine finite_acceleration(column, work, q, v, f, load, a)
-      type(column_type), intent(in) :: column
-      type(finite_work), intent(inout) :: work
-      !> Unknowns, their velocities, and the forces of the joints conjugate to them, springs and damping
-      !> (unknowns)
-      real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds), f(column%n, column%kinds)
-      !> Lateral force at the top [N], acceleration of the ground in x and in y [m/s2], axial load that is
-      !> added to that of the column, compression positive [N]
-      real(wp), intent(in) :: load(4)
-      !> Accelerations (unknowns)
-      real(wp), intent(out) :: a(column%n, column%kinds)
-      logical :: positive
-      integer :: n
+   subroutine accelerations(self, d, v, load, axial, f, work, a, of_speeds)
+      class(finite_chain_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), v(:), load(:), axial(:)
+      real(wp), intent(inout), contiguous :: f(:)
+      real(wp), intent(inout), contiguous :: work(:)
+      real(wp), intent(out), contiguous :: a(:)
+      real(wp), intent(out) :: of_speeds(2)
 
-      n = column%n
-      call accelerate(column, work, q, v, f, load, a)
-      if (.not. column%opens) then
-         if (n == 1) then
-            work%axial(1) = work%axial(1)/work%diagonal(1)
-         else
-            call solve_tridiagonal(work%diagonal, work%beside, work%axial, positive)
-            ! Only numbers beyond all meaning get here; the caller sees that the state is not finite.
-            if (.not. positive) work%axial = ieee_value(a(1, shear), ieee_quiet_nan)
-         end if
-         call add_reactions(column, work, q, a)
+      of_speeds = 0.0_wp
+      if (size(d) == 2 .and. .not. (self%axial_follows .or. self%force_follows)) then
+         call accelerate_one_body(self, d, v, f, load, a)
+      else
+         call self%accelerate(d, v, f, load, work, a)
       end if
-      if (column%mass_damping > 0.0_wp) a = a - column%mass_damping*v
-   end subroutine finite_acceleration
+      associate (unused => axial)
+      end associate
+   end subroutine accelerations
+
+   !> The same for any chain; it leaves the axial forces of joints that do not open in the work array (n).
+   subroutine accelerate(self, d, v, f, load, work, a)
+      class(finite_chain_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), v(:), f(:), load(:)
+      real(wp), intent(inout), contiguous :: work(:)
+      real(wp), intent(out), contiguous :: a(:)
+
+      call accelerate_under_forces(self, d, v, f, load, work, a)
+      if (.not. self%opens) call add_reactions(self, d, work, a)
+      if (self%mass_damping > 0.0_wp) a = a - self%mass_damping*v
+   end subroutine accelerate
+
+   !> One body under dead loads: the paper's eq 4, corrected, with axial load and weight; s is the distance of
+   !> the centroid from the joint.
+   !>
+   !>     m u'' + m s cos(th) th'' - m s sin(th) th'^2 + V = F - m a_g
+   !>     m s cos(th) u'' + (I + m s^2) th'' + M = (F l - m s a_g) cos(th) + P l sin(th)
+   pure subroutine accelerate_one_body(self, d, v, f, load, a)
+      class(finite_chain_type), intent(in) :: self
+      real(wp), intent(in) :: d(2), v(2), f(2), load(4)
+      real(wp), intent(out) :: a(2)
+      real(wp) :: s, coupling, along, about, determinant, axial
+
+      associate (m => self%mass(1), inertia => self%inertia_above(1), moment => self%moment_above(1))
+         s = sin(d(2))
+         coupling = moment*cos(d(2))
+         along = load(lateral) - m*load(horizontal) - f(1) + moment*s*v(2)**2
+         axial = self%axial_body(1) + load(top_axial) + load(vertical)*self%lifted_body(1)
+         about = (self%length(1)*load(lateral) - moment*load(horizontal))*cos(d(2)) &
+                 + axial*self%length(1)*s - f(2)
+         if (self%mass_damping > 0.0_wp) then
+            along = along - self%mass_damping*(m*v(1) + coupling*v(2))
+            about = about - self%mass_damping*(coupling*v(1) + inertia*v(2))
+         end if
+         determinant = 1.0_wp/(m*inertia - coupling**2)
+         a(1) = (inertia*along - coupling*about)*determinant
+         a(2) = (m*about - coupling*along)*determinant
+      end associate
+   end subroutine accelerate_one_body
 
    !> Accelerations under the known forces. If the joints do not open the axial forces are not known: they
    !> are left out, and the equations are set up which say that the accelerations w'' vanish,
-   !> w''(N) = w''(0) - G N = 0; `work%axial` is then w''(0).
-   subroutine accelerate(column, work, q, v, f, load, a)
-      type(column_type), intent(in) :: column
-      type(finite_work), intent(inout) :: work
+   !> w''(N) = w''(0) - G N = 0; the reactions in `work` are then w''(0).
+   subroutine accelerate_under_forces(column, q, v, f, load, work, a)
+      class(finite_chain_type), intent(in) :: column
+      !> Unknowns, their velocities, and the forces of the joints conjugate to them, springs and damping
       real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds), f(column%n, column%kinds)
       real(wp), intent(in) :: load(4)
+      real(wp), intent(inout) :: work(column%n, 5)
       real(wp), intent(out) :: a(column%n, column%kinds)
       !> Joint below and above the body: forces, slip and opening
       real(wp) :: transverse, tension, moment, slip, opening
@@ -132,7 +163,7 @@ contains
       flexibility = 0.0_wp
       held = [0.0_wp, 1.0_wp]
       ! Seen from a frame that falls, the ground is what accelerates, upwards by the weight.
-      below = [load(2), load(3) + column%gravity]
+      below = [load(horizontal), load(vertical) + column%gravity]
       do i = 1, n
          s = sin(q(i, flexure))
          c = cos(q(i, flexure))
@@ -185,14 +216,14 @@ contains
                a(i, shear) = a(i, shear) - 2.0_wp*v(i, axial)*spin_below - opening*turn_below
                a(i, axial) = separation + opening*spin_below**2
             else
-               work%sine(i) = s
-               work%cosine(i) = c
-               work%axial(i) = separation
-               work%diagonal(i) = flexibility + per_mass + (lower*s)**2*per_inertia
-               work%beside(i) = lower*s*slip_above*per_inertia - c*per_mass
+               work(i, sine) = s
+               work(i, cosine) = c
+               work(i, reaction) = separation
+               work(i, diagonal) = flexibility + per_mass + (lower*s)**2*per_inertia
+               work(i, beside) = lower*s*slip_above*per_inertia - c*per_mass
                flexibility = per_mass + slip_above**2*per_inertia
                if (i == n - 1 .and. column%held) then
-                  work%beside(i) = -(c*held(2) - s*held(1))*per_mass - lower*s*upper*held(1)*per_inertia
+                  work(i, beside) = -(c*held(2) - s*held(1))*per_mass - lower*s*upper*held(1)*per_inertia
                   flexibility = per_mass + (upper*held(1))**2*per_inertia
                end if
             end if
@@ -202,7 +233,7 @@ contains
                if (column%opens) then
                   a(i, axial) = s*bottom(1) + c*bottom(2)
                else
-                  work%axial(i) = s*bottom(1) + c*bottom(2)
+                  work(i, reaction) = s*bottom(1) + c*bottom(2)
                end if
             end if
             ! T'' = c'' + upper (om' t - om^2 e), along its own t and e.
@@ -217,12 +248,12 @@ contains
          spin_below = spin
          turn_below = turn
       end do
-   end subroutine accelerate
+   end subroutine accelerate_under_forces
 
    !> Force at the top along t_n and e_n. The weight of all masses is in the field of acceleration; that of
    !> the lumped mass belongs to the axial load and is taken away again here.
    pure subroutine force_at_top(column, load, s, c, along_t, along_e)
-      type(column_type), intent(in) :: column
+      class(finite_chain_type), intent(in) :: column
       real(wp), intent(in) :: load(4)
       !> Sine and cosine of the rotation of the top body
       real(wp), intent(in) :: s, c
@@ -230,30 +261,33 @@ contains
       real(wp), intent(out) :: along_t, along_e
       real(wp) :: down, axial
 
-      axial = column%axial_load + load(4)
+      axial = column%axial_load + load(top_axial)
       down = column%weight(column%n) - column%gravity*column%mass(column%n)
       if (.not. column%axial_follows) down = down + axial
       along_t = down*s
       along_e = -down*c
       if (column%axial_follows) along_e = along_e - axial
       if (column%force_follows) then
-         along_t = along_t + load(1)
+         along_t = along_t + load(lateral)
       else
-         along_t = along_t + load(1)*c
-         along_e = along_e + load(1)*s
+         along_t = along_t + load(lateral)*c
+         along_e = along_e + load(lateral)*s
       end if
    end subroutine force_at_top
 
-   !> Add what the reactions of joints that do not open give to the accelerations.
-   subroutine add_reactions(column, work, q, a)
-      type(column_type), intent(in) :: column
-      type(finite_work), intent(in) :: work
+   !> Find the reactions of joints that do not open, and add what they give to the accelerations.
+   subroutine add_reactions(column, q, work, a)
+      class(finite_chain_type), intent(in) :: column
       real(wp), intent(in) :: q(column%n, column%kinds)
-      real(wp), intent(inout) :: a(column%n, column%kinds)
+      real(wp), intent(inout) :: work(column%n, 5), a(column%n, column%kinds)
       real(wp) :: turn, turn_below, below, above, along
+      logical :: positive
       integer :: i, n
 
       n = column%n
+      call solve_tridiagonal(work(:, diagonal), work(:, beside), work(:, reaction), positive)
+      ! Only numbers beyond all meaning get here; the caller sees that the state is not finite.
+      if (.not. positive) work(:, reaction) = ieee_value(a(1, shear), ieee_quiet_nan)
       turn_below = 0.0_wp
       below = 0.0_wp
       do i = 1, n
@@ -261,17 +295,17 @@ contains
             call add_last_reaction(column, work, i, turn_below, below, a)
             cycle
          end if
-         turn = column%lower(i)*work%sine(i)*work%axial(i)
+         turn = column%lower(i)*work(i, sine)*work(i, reaction)
          above = 0.0_wp
          if (i < n) then
-            above = work%axial(i + 1)
+            above = work(i + 1, reaction)
             turn = turn + q(i + 1, shear)*above
          end if
          turn = -turn/column%inertia(i)
-         along = work%sine(i)/column%mass(i)
-         a(i, shear) = a(i, shear) + above*along - column%lower(i)*work%cosine(i)*turn - below
+         along = work(i, sine)/column%mass(i)
+         a(i, shear) = a(i, shear) + above*along - column%lower(i)*work(i, cosine)*turn - below
          a(i, flexure) = a(i, flexure) + turn - turn_below
-         below = work%axial(i)*along + column%upper(i)*turn
+         below = work(i, reaction)*along + column%upper(i)*turn
          turn_below = turn
       end do
    end subroutine add_reactions
@@ -279,8 +313,8 @@ contains
    !> The same at the two bodies that the joint of a held top is between. Its reaction acts along the fixed
    !> vertical, at the top of the body below.
    pure subroutine add_last_reaction(column, work, i, turn_below, below, a)
-      type(column_type), intent(in) :: column
-      type(finite_work), intent(in) :: work
+      class(finite_chain_type), intent(in) :: column
+      real(wp), intent(in) :: work(column%n, 5)
       !> n - 1 or n
       integer, intent(in) :: i
       !> Acceleration of the body below in rotation, and of its top along its normal, from the reactions
@@ -290,7 +324,7 @@ contains
       integer :: n
 
       n = column%n
-      associate (s => work%sine, c => work%cosine, force => work%axial)
+      associate (s => work(:, sine), c => work(:, cosine), force => work(:, reaction))
          if (i < n) then
             turn = (column%upper(i)*s(n)*force(n) - column%lower(i)*s(i)*force(i))/column%inertia(i)
             a(i, shear) = a(i, shear) + force(n)*(c(i)*s(n) + s(i)*c(n))/column%mass(i) &
@@ -308,7 +342,7 @@ contains
 
    !> Go up by one body: places and velocities of body i from those of body i - 1.
    pure subroutine climb(column, q, v, i, body)
-      type(column_type), intent(in) :: column
+      class(finite_chain_type), intent(in) :: column
       real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds)
       integer, intent(in) :: i
       type(moving_body), intent(inout) :: body
@@ -336,7 +370,7 @@ contains
 
    !> Rotation and places of body i from those of body i - 1.
    pure subroutine place_body(column, q, i, body, normal)
-      type(column_type), intent(in) :: column
+      class(finite_chain_type), intent(in) :: column
       real(wp), intent(in) :: q(column%n, column%kinds)
       integer, intent(in) :: i
       type(moving_body), intent(inout) :: body
@@ -359,120 +393,202 @@ contains
    end subroutine place_body
 
    !> Kinetic energy relative to the ground [J].
-   pure real(wp) function finite_kinetic(column, q, v) result(energy)
-      type(column_type), intent(in) :: column
-      !> Unknowns and their velocities (unknowns)
-      real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds)
+   pure real(wp) function kinetic_energy(self, d, v) result(energy)
+      class(finite_chain_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), v(:)
       type(moving_body) :: body
       integer :: i
 
       energy = 0.0_wp
-      do i = 1, column%n
-         call climb(column, q, v, i, body)
-         energy = energy + column%mass(i)*(body%centroid(1)**2 + body%centroid(2)**2) &
-                  + column%inertia(i)*body%spin**2
+      do i = 1, self%n
+         call climb(self, d, v, i, body)
+         energy = energy + self%mass(i)*(body%centroid(1)**2 + body%centroid(2)**2) &
+                  + self%inertia(i)*body%spin**2
       end do
       energy = 0.5_wp*energy
-   end function finite_kinetic
+   end function kinetic_energy
 
    !> Potential of the column's axial load, unless it follows the top, and of the weight; zero for the
    !> straight closed column [J].
-   pure real(wp) function finite_potential(column, q) result(energy)
-      type(column_type), intent(in) :: column
-      !> Unknowns (unknowns)
-      real(wp), intent(in) :: q(column%n, column%kinds)
+   pure real(wp) function potential_energy(self, d) result(energy)
+      class(finite_chain_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
       real(wp) :: rotation, half(2), drop, rise, s, c
       integer :: i, n
 
-      n = column%n
+      n = self%n
       energy = 0.0_wp
       rotation = 0.0_wp
       rise = 0.0_wp
       s = 0.0_wp
       c = 1.0_wp
       do i = 1, n
-         if (i == n .and. column%held) then
+         if (i == n .and. self%held) then
             s = 0.0_wp
             c = 1.0_wp
          end if
-         rise = rise - q(i, shear)*s
-         if (column%opens) rise = rise + q(i, axial)*c
-         rotation = rotation + q(i, flexure)
+         rise = rise - d(i)*s
+         if (self%opens) rise = rise + d(2*n + i)*c
+         rotation = rotation + d(n + i)
          ! 1 - cos without cancellation
          half = [sin(0.5_wp*rotation), cos(0.5_wp*rotation)]
-         drop = column%length(i)*2.0_wp*half(1)**2
+         drop = self%length(i)*2.0_wp*half(1)**2
          s = 2.0_wp*half(1)*half(2)
          c = 1.0_wp - 2.0_wp*half(1)**2
-         energy = energy + column%weight(i)*(rise - 0.5_wp*drop)
+         energy = energy + self%weight(i)*(rise - 0.5_wp*drop)
          rise = rise - drop
       end do
-      if (.not. column%axial_follows) energy = energy + column%axial_load*rise
-   end function finite_potential
+      if (.not. self%axial_follows) energy = energy + self%axial_load*rise
+   end function potential_energy
+
+   pure subroutine speeds(self, d, v, speed)
+      class(finite_chain_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), v(:)
+      real(wp), intent(out) :: speed(2)
+      type(moving_body) :: body
+      integer :: i
+
+      speed(horizontal) = 0.0_wp
+      do i = 1, self%n
+         call climb(self, d, v, i, body)
+         speed(horizontal) = speed(horizontal) - self%mass(i)*body%centroid(1)
+      end do
+      speed(lateral) = body%top(1)
+   end subroutine speeds
 
    !> Power of the loads that are in no potential: lateral force, ground, additional axial load, and the
    !> column's axial load if it follows the top [W].
-   pure real(wp) function finite_power(column, q, v, load) result(power)
-      type(column_type), intent(in) :: column
-      !> Unknowns and their velocities (unknowns)
-      real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds)
-      !> As for `finite_acceleration`
-      real(wp), intent(in) :: load(4)
+   pure real(wp) function power_of_loads(self, d, v, load) result(power)
+      class(finite_chain_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), v(:), load(:)
       type(moving_body) :: body
       integer :: i
 
       power = 0.0_wp
-      do i = 1, column%n
-         call climb(column, q, v, i, body)
-         power = power - column%mass(i)*(load(2)*body%centroid(1) + load(3)*body%centroid(2))
+      do i = 1, self%n
+         call climb(self, d, v, i, body)
+         power = power - self%mass(i)*(load(horizontal)*body%centroid(1) + load(vertical)*body%centroid(2))
       end do
-      if (column%force_follows) then
-         power = power + load(1)*(body%top(1)*body%c - body%top(2)*body%s)
+      if (self%force_follows) then
+         power = power + load(lateral)*(body%top(1)*body%c - body%top(2)*body%s)
       else
-         power = power + load(1)*body%top(1)
+         power = power + load(lateral)*body%top(1)
       end if
-      if (column%axial_follows) then
-         power = power - (column%axial_load + load(4))*(body%top(1)*body%s + body%top(2)*body%c)
+      if (self%axial_follows) then
+         power = power - (self%axial_load + load(top_axial))*(body%top(1)*body%s + body%top(2)*body%c)
       else
-         power = power - load(4)*body%top(2)
+         power = power - load(top_axial)*body%top(2)
       end if
-   end function finite_power
+   end function power_of_loads
 
-   !> Position of the top [m].
-   pure function finite_top(column, q) result(top)
-      type(column_type), intent(in) :: column
-      !> Unknowns (unknowns)
-      real(wp), intent(in) :: q(column%n, column%kinds)
-      !> x and y
-      real(wp) :: top(2)
-      type(moving_body) :: body
-      real(wp) :: normal(2)
-      integer :: i
-
-      do i = 1, column%n
-         call place_body(column, q, i, body, normal)
-      end do
-      top = body%top_place
-   end function finite_top
-
-   !> Momentum along x [kg m/s], and angular momentum about the lowest joint, as it has slipped and opened
-   !> [kg m2/s].
-   pure function finite_momentum(column, q, v) result(momentum)
-      type(column_type), intent(in) :: column
-      real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds)
-      real(wp) :: momentum(2)
+   !> Angular momentum about the lowest joint, as it has slipped and opened [kg m2/s].
+   pure real(wp) function angular_momentum(self, d, v) result(momentum)
+      class(finite_chain_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), v(:)
       type(moving_body) :: body
       real(wp) :: foot(2), lever(2)
       integer :: i
 
       momentum = 0.0_wp
-      do i = 1, column%n
-         call climb(column, q, v, i, body)
+      do i = 1, self%n
+         call climb(self, d, v, i, body)
          if (i == 1) foot = body%bottom_place
          lever = body%centroid_place - foot
-         momentum(1) = momentum(1) + column%mass(i)*body%centroid(1)
-         momentum(2) = momentum(2) + column%mass(i)*(body%centroid(1)*lever(2) - body%centroid(2)*lever(1)) &
-                       + column%inertia(i)*body%spin
+         momentum = momentum + self%mass(i)*(body%centroid(1)*lever(2) - body%centroid(2)*lever(1)) &
+                    + self%inertia(i)*body%spin
       end do
-   end function finite_momentum
+   end function angular_momentum
+
+   pure real(wp) function top_displacement(self, d) result(x)
+      class(finite_chain_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
+      type(moving_body) :: body
+
+      if (size(d) == 2) then
+         x = d(1) + self%length(1)*sin(d(2))
+      else
+         body = top_body(self, d)
+         x = body%top_place(1)
+      end if
+   end function top_displacement
+
+   pure real(wp) function top_height(self, d) result(y)
+      class(finite_chain_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
+      type(moving_body) :: body
+
+      body = top_body(self, d)
+      y = body%top_place(2)
+   end function top_height
+
+   pure function top_body(self, d) result(body)
+      class(finite_chain_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
+      type(moving_body) :: body
+      real(wp) :: normal(2)
+      integer :: i
+
+      do i = 1, self%n
+         call place_body(self, d, i, body, normal)
+      end do
+   end function top_body
+
+   pure real(wp) function top_acceleration(self, d, v, a) result(acceleration)
+      class(finite_chain_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), v(:), a(:)
+      real(wp) :: rotation, spin, turn, s, c, along_t, along_e
+      integer :: i, n
+
+      n = self%n
+      acceleration = 0.0_wp
+      rotation = 0.0_wp
+      spin = 0.0_wp
+      turn = 0.0_wp
+      do i = 1, n
+         if (i == n .and. self%held) then
+            rotation = 0.0_wp
+            spin = 0.0_wp
+            turn = 0.0_wp
+         end if
+         s = sin(rotation)
+         c = cos(rotation)
+         along_t = a(i) - d(i)*spin**2
+         along_e = -2.0_wp*v(i)*spin - d(i)*turn
+         if (self%opens) then
+            along_t = along_t + 2.0_wp*v(2*n + i)*spin + d(2*n + i)*turn
+            along_e = along_e + a(2*n + i) - d(2*n + i)*spin**2
+         end if
+         rotation = rotation + d(n + i)
+         spin = spin + v(n + i)
+         turn = turn + a(n + i)
+         acceleration = acceleration + along_t*c + along_e*s &
+                        + self%length(i)*(cos(rotation)*turn - sin(rotation)*spin**2)
+      end do
+   end function top_acceleration
+
+   !> Momentum along x [kg m/s], and angular momentum about the lowest joint, as it has slipped and opened
+   !> [kg m2/s].
+   pure function momentum_at_foot(self, d, v) result(momentum)
+      class(finite_chain_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), v(:)
+      real(wp) :: momentum(2)
+      real(wp) :: speed(2)
+
+      call self%speeds(d, v, speed)
+      momentum = [-speed(horizontal), self%angular_momentum(d, v)]
+   end function momentum_at_foot
+
+   !> Velocity and acceleration of the top along x, relative to the ground [m/s, m/s2].
+   pure subroutine top_motion(self, d, v, a, velocity, acceleration)
+      class(finite_chain_type), intent(in) :: self
+      !> Deformations and their first and second derivatives (unknowns)
+      real(wp), intent(in), contiguous :: d(:), v(:), a(:)
+      real(wp), intent(out) :: velocity, acceleration
+      real(wp) :: speed(2)
+
+      call self%speeds(d, v, speed)
+      velocity = speed(lateral)
+      acceleration = self%top_acceleration(d, v, a)
+   end subroutine top_motion
 
 end module rbs_structure_column_finite
