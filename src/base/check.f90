@@ -10,7 +10,7 @@ module rbs_base_check
    implicit none
    private
 
-   public :: is_given, check_positive, check_finite, check_name
+   public :: is_given, check_finite, check_name
 
    !> Whether the user has given a number. Lists and texts that are not given are not allocated.
    interface is_given
@@ -31,28 +31,6 @@ contains
 
       integer_is_given = i /= unset_integer
    end function integer_is_given
-
-   !> The number must be given, finite and above zero.
-   subroutine check_positive(x, name, unit, messages, ok)
-      real(wp), intent(in) :: x
-      !> The name of the quantity: 'column: height'
-      character(len=*), intent(in) :: name
-      !> Its unit, empty for a pure number
-      character(len=*), intent(in) :: unit
-      type(message_list), intent(inout) :: messages
-      !> Whether the check passed
-      logical, intent(out), optional :: ok
-      logical :: passed
-
-      call check_finite(x, name, unit, messages, passed)
-      if (passed) then
-         passed = x > 0.0_wp
-         if (.not. passed) then
-            call messages%add(trim(name//' = '//to_text(x)//' '//unit)//' must be above zero')
-         end if
-      end if
-      if (present(ok)) ok = passed
-   end subroutine check_positive
 
    !> The number must be given and finite.
    subroutine check_finite(x, name, unit, messages, ok)

@@ -238,27 +238,9 @@ contains
       !> Largest number of values
       integer, intent(in) :: most
       logical, intent(in), optional :: required
-      type(key_type) :: key
-      integer :: i
 
-      key = key_type(name=name, unit=unit, bound=bound, optional=.not. is_true(required), most=most, &
-                     meaning=meaning)
-      select case (self%mode)
-      case (collecting)
-         call append(self, key)
-      case (putting)
-         if (name == self%wanted) x = self%number
-      case (listing)
-         if (allocated(x)) call list_numbers(self, name, x)
-      case (checking)
-         if (.not. allocated(x)) return
-         key%optional = .false.
-         do i = 1, size(x)
-            if (size(x) > 1) key%name = name//'('//to_text(i)//')'
-            call check_number(x(i), trim(self%group), key, self%messages, self%sound)
-         end do
-      case default                                  ! no other mode
-      end select
+      call number_list(self, key_type(name=name, unit=unit, bound=bound, optional=.not. is_true(required), &
+                                      most=most, meaning=meaning), x)
    end subroutine real_list_key
 
    subroutine integer_list_key(self, name, i, unit, bound, meaning, most, required)
@@ -269,26 +251,39 @@ contains
       type(bound_type), intent(in) :: bound
       integer, intent(in) :: most
       logical, intent(in), optional :: required
-      type(key_type) :: key
-      integer :: worst
+      real(wp), allocatable :: x(:)
 
-      key = key_type(name=name, kind=integer_kind, unit=unit, bound=bound, &
-                     optional=.not. is_true(required), most=most, meaning=meaning)
+      if (allocated(i)) x = real(i, wp)
+      call number_list(self, key_type(name=name, kind=integer_kind, unit=unit, bound=bound, &
+                                      optional=.not. is_true(required), most=most, meaning=meaning), x)
+      if (allocated(x)) i = nint(x)
+   end subroutine integer_list_key
+
+   subroutine number_list(self, key, x)
+      type(key_visitor), intent(inout) :: self
+      type(key_type), intent(in) :: key
+      real(wp), allocatable, intent(inout) :: x(:)
+      type(key_type) :: one
+      integer :: i
+
       select case (self%mode)
       case (collecting)
          call append(self, key)
       case (putting)
-         if (name == self%wanted) i = nint(self%number)
+         if (key%name == self%wanted) x = self%number
       case (listing)
-         if (allocated(i)) call list_numbers(self, name, real(i, wp))
+         if (allocated(x)) call list_numbers(self, key%name, x)
       case (checking)
-         if (.not. allocated(i)) return
-         worst = minval(i)
-         if (real(worst, wp) >= bound%least) worst = maxval(i)
-         call check_number(real(worst, wp), trim(self%group), key, self%messages, self%sound)
+         if (.not. allocated(x)) return
+         one = key
+         one%optional = .false.
+         do i = 1, size(x)
+            if (size(x) > 1) one%name = trim(key%name)//'('//to_text(i)//')'
+            call check_number(x(i), trim(self%group), one, self%messages, self%sound)
+         end do
       case default                                  ! no other mode
       end select
-   end subroutine integer_list_key
+   end subroutine number_list
 
    !> A word or a text of limited length. Without choices it is free; an empty text means: not given.
    subroutine text_key(self, name, text, meaning, choices, required)

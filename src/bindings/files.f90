@@ -4,7 +4,7 @@ module rbs_bindings_files
    use rbs_bindings_exchange, only: request_type, answer_type
    use rbs_bindings_statements, only: case_from_statements
    use rbs_case_case_record, only: case_record
-   use rbs_case_writer, only: namelist_sink, statement_sink, write_case
+   use rbs_case_writer, only: case_text, write_case
    use rbs_structure_column_column, only: column_type
    use rbs_io_case_file, only: case_history, load_case
    use rbs_io_history, only: layout_type
@@ -30,7 +30,7 @@ contains
       type(case_record) :: case
       type(case_history) :: history
       class(column_type), allocatable :: column
-      type(statement_sink) :: statements
+      type(case_text) :: statements
       integer :: place, m
 
       call load_case(path, case, history, answer%error, unloaded=.true.)
@@ -55,6 +55,7 @@ contains
          end if
       end associate
       case%loadings = 0
+      statements%is_statement = .true.
       call write_case(case, statements)
       answer%text = statements%buffer%text(:statements%buffer%length)
       answer%value = statements%number(:statements%count)
@@ -87,12 +88,12 @@ contains
       type(request_type), intent(in) :: request
       type(answer_type), intent(inout) :: answer
       type(case_record) :: case
-      type(namelist_sink) :: sink
+      type(case_text) :: text
 
       call case_from_statements(request%statement, request%number, case, answer%error)
       if (allocated(answer%error)) return
-      call write_case(case, sink)
-      answer%text = sink%buffer%text(:sink%buffer%length)
+      call write_case(case, text)
+      answer%text = text%buffer%text(:text%buffer%length)
    end subroutine case_to_text
 
    !> Displacements [m] and forces [N] of a measured test, and its name. The text of the request: units of

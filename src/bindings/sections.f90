@@ -38,17 +38,6 @@ contains
 
       reader%of_section = .true.
       call put_statements(request%statement, request%number, reader, messages)
-      select case (request%what)
-      case ('concrete_response', 'moment_curvature', 'section_events')
-         call reader%check('diagram', messages)
-      case ('section_flexure')
-         call reader%check('springs', messages)
-      case ('section_shear')
-         call reader%check('shear', messages)
-      case ('layer_response')
-         call reader%check('layer', messages)
-      case default                                  ! no settings
-      end select
       call messages%raise(answer%error)
       if (allocated(answer%error)) return
       select case (request%what)

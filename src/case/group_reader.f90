@@ -26,7 +26,7 @@ module rbs_case_group_reader
    character(len=16), parameter, public :: group_names(*) = [character(len=16) :: &
       'case', 'units', 'column', 'damping', spring_groups, drawing_groups, 'loading', 'analysis', 'output']
 
-   !> The groups that Python gives of a section: the drawing, and what is asked of it.
+   !> The groups that Python gives of a section: the drawing, and last the four kinds of what is asked of it.
    character(len=16), parameter, public :: section_groups(10) = [character(len=16) :: &
       'section', 'concrete', 'steel', 'bars', 'ties', 'spiral', 'diagram', 'springs', 'shear', 'layer']
 
@@ -64,7 +64,6 @@ module rbs_case_group_reader
       procedure :: find
       procedure :: put_numbers
       procedure :: put_text
-      procedure :: check
       procedure :: finish
       procedure, private :: is_spring
       procedure, private :: collect_keys
@@ -241,24 +240,23 @@ contains
       end if
    end subroutine put_text
 
-   !> Check the values of what is asked of a section.
-   subroutine check(self, group, messages)
-      class(group_reader), intent(inout) :: self
-      character(len=*), intent(in) :: group
-      type(message_list), intent(inout) :: messages
-
-      self%group = group
-      call self%visitor%start_check(group)
-      call self%visit_open()
-      call self%visitor%end_check(messages)
-   end subroutine check
-
-   !> Give the springs to the joints after all groups have been set.
+   !> After all groups have been set: give the springs to the joints, or check what is asked of a section.
    subroutine finish(self, messages)
       class(group_reader), intent(inout) :: self
       type(message_list), intent(inout) :: messages
+      integer :: i
 
-      call place_springs(self%entries, self%case%column, messages)
+      if (.not. self%of_section) then
+         call place_springs(self%entries, self%case%column, messages)
+         return
+      end if
+      do i = size(section_groups) - 3, size(section_groups)
+         if (.not. self%seen(i)) cycle
+         self%group = section_groups(i)
+         call self%visitor%start_check(self%group)
+         call self%visit_open()
+         call self%visitor%end_check(messages)
+      end do
    end subroutine finish
 
    !> The SI unit of a parameter of a spring, which depends on the kind of the spring; other units are

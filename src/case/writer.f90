@@ -17,68 +17,47 @@ module rbs_case_writer
    implicit none
    private
 
-   public :: sink_type, namelist_sink, statement_sink, write_case
+   public :: case_text, write_case
 
    !> Longest line of a namelist text.
    integer, parameter :: line_length = 100
 
-   !> A destination for groups.
-   type, abstract :: sink_type
-   contains
-      procedure(group_interface), deferred :: group
-   end type sink_type
-
-   abstract interface
-      subroutine group_interface(self, name, entry)
-         import :: sink_type, entry_type
-         implicit none
-         class(sink_type), intent(inout) :: self
-         character(len=*), intent(in) :: name
-         type(entry_type), intent(in) :: entry(:)
-      end subroutine group_interface
-   end interface
-
-   !> The text of a case file; from its numbers the same bits are read back.
-   type, extends(sink_type) :: namelist_sink
-      type(text_buffer) :: buffer
-   contains
-      procedure :: group => namelist_group
-   end type namelist_sink
-
-   !> Names in lines, one per group, and numbers in an array; see `rbs_bindings_statements`.
-   type, extends(sink_type) :: statement_sink
+   !> Groups as text: that of a case file, from whose numbers the same bits are read back, or a statement for
+   !> Python: names in lines, one per group, and numbers in an array, see `rbs_bindings_statements`.
+   type :: case_text
+      logical :: is_statement = .false.
       type(text_buffer) :: buffer
       integer :: count = 0
       real(wp), allocatable :: number(:)
    contains
-      procedure :: group => statement_group
-   end type statement_sink
+      procedure :: group => add_group
+   end type case_text
 
 contains
 
    !> Write the whole case without its units: numbers are in SI.
-   subroutine write_case(case, sink)
+   subroutine write_case(case, text)
       type(case_record), intent(inout) :: case
-      class(sink_type), intent(inout) :: sink
+      type(case_text), intent(inout) :: text
       integer :: i
 
-      call write_record(case, 'case', sink)
-      call write_record(case, 'column', sink)
-      call write_record(case, 'damping', sink)
-      call write_all_springs(case%column, sink)
-      if (allocated(case%drawing)) call write_drawing(case, sink)
+      call write_record(case, 'case', text)
+      call write_record(case, 'column', text)
+      call write_record(case, 'damping', text)
+      call write_all_springs(case%column, text)
+      if (allocated(case%drawing)) call write_drawing(case, text)
       do i = 1, case%loadings
-         call write_record(case, 'loading', sink, i)
+         call write_record(case, 'loading', text, i)
       end do
-      call write_record(case, 'analysis', sink)
-      call write_record(case, 'output', sink)
+      call write_record(case, 'analysis', text)
+      call write_record(case, 'output', text)
    end subroutine write_case
 
    !> Write the values of a group that differ from those of a new record.
-   subroutine write_record(case, group, sink, number)
+   subroutine write_record(case, group, text, number)
       type(case_record), intent(inout) :: case
       character(len=*), intent(in) :: group
-      class(sink_type), intent(inout) :: sink
+      type(case_text), intent(inout) :: text
       !> Which of several
       integer, intent(in), optional :: number
       type(case_record) :: new
@@ -93,39 +72,39 @@ contains
       call v%list()
       call case%visit_group(group, v, number)
       if (v%listed > 0 .or. group == 'column' .or. group == 'loading') then
-         call sink%group(group, v%entry(:v%listed))
+         call text%group(group, v%entry(:v%listed))
       end if
    end subroutine write_record
 
    !> Write what a column was drawn from.
-   subroutine write_drawing(case, sink)
+   subroutine write_drawing(case, text)
       type(case_record), intent(inout) :: case
-      class(sink_type), intent(inout) :: sink
+      type(case_text), intent(inout) :: text
       integer :: i
 
-      call write_record(case, 'drawing', sink)
-      call write_record(case, 'section', sink)
-      call write_record(case, 'concrete', sink)
+      call write_record(case, 'drawing', text)
+      call write_record(case, 'section', text)
+      call write_record(case, 'concrete', text)
       associate (drawing => case%drawing)
          do i = 1, size(drawing%section%steels)
-            call write_record(case, 'steel', sink, i)
+            call write_record(case, 'steel', text, i)
          end do
-         call write_record(case, 'bars', sink)
-         if (allocated(drawing%layout)) call write_record(case, 'layout', sink)
-         if (allocated(drawing%inner_layout)) call write_record(case, 'inner_layout', sink)
+         call write_record(case, 'bars', text)
+         if (allocated(drawing%layout)) call write_record(case, 'layout', text)
+         if (allocated(drawing%inner_layout)) call write_record(case, 'inner_layout', text)
          if (drawing%section%hoops%kind /= no_ties) then
-            call write_record(case, trim(drawing%section%hoops%name()), sink)
+            call write_record(case, trim(drawing%section%hoops%name()), text)
          end if
          do i = 1, size(drawing%parameters)
-            call write_record(case, 'parameter', sink, i)
+            call write_record(case, 'parameter', text, i)
          end do
       end associate
    end subroutine write_drawing
 
    !> Write the springs of a column; equal springs are written once.
-   subroutine write_all_springs(column, sink)
+   subroutine write_all_springs(column, text)
       type(column_record), intent(in) :: column
-      class(sink_type), intent(inout) :: sink
+      type(case_text), intent(inout) :: text
       type(entry_list) :: layer_springs
 
       call write_springs('shear', column%shear)
@@ -161,16 +140,16 @@ contains
             if (any(first /= 1) .or. beneath > 0) then
                entry%joint = pack([(j - beneath, j=1, size(first))], first == i)
             end if
-            call write_spring(entry, sink)
-            if (allocated(spring(i)%y)) call write_layers(entry, layer_springs, sink)
+            call write_spring(entry, text)
+            if (allocated(spring(i)%y)) call write_layers(entry, layer_springs, text)
          end do
       end subroutine write_springs
    end subroutine write_all_springs
 
    !> Write a spring, or the layers of joints.
-   subroutine write_spring(entry, sink)
+   subroutine write_spring(entry, text)
       type(spring_entry), intent(inout) :: entry
-      class(sink_type), intent(inout) :: sink
+      type(case_text), intent(inout) :: text
       type(spring_entry) :: new
       type(key_type), allocatable :: keys(:)
       type(key_visitor) :: v
@@ -181,16 +160,16 @@ contains
       call new%visit(v, keys)
       call v%list()
       call entry%visit(v, keys)
-      call sink%group(trim(entry%group), v%entry(:v%listed))
+      call text%group(trim(entry%group), v%entry(:v%listed))
    end subroutine write_spring
 
    !> Write the springs of layers that have not been written before, then the layers.
-   subroutine write_layers(joint, layer_springs, sink)
+   subroutine write_layers(joint, layer_springs, text)
       !> The joints and their layered spring
       type(spring_entry), intent(in) :: joint
       !> Springs of layers that have been written before
       type(entry_list), intent(inout) :: layer_springs
-      class(sink_type), intent(inout) :: sink
+      type(case_text), intent(inout) :: text
       type(spring_entry) :: layers
       type(spring_record) :: layer
       integer :: i, j
@@ -208,14 +187,27 @@ contains
          call layer_springs%add('layer_spring', '')
          layer_springs%entry(j)%id = j
          layer_springs%entry(j)%spring = layer
-         call write_spring(layer_springs%entry(j), sink)
+         call write_spring(layer_springs%entry(j), text)
       end do
-      call write_spring(layers, sink)
+      call write_spring(layers, text)
    end subroutine write_layers
+
+   !> Add one group.
+   subroutine add_group(self, name, entry)
+      class(case_text), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      type(entry_type), intent(in) :: entry(:)
+
+      if (self%is_statement) then
+         call statement_group(self, name, entry)
+      else
+         call namelist_group(self, name, entry)
+      end if
+   end subroutine add_group
 
    !> Write `&name key = value, ... /` in lines of limited length.
    subroutine namelist_group(self, name, entry)
-      class(namelist_sink), intent(inout) :: self
+      type(case_text), intent(inout) :: self
       character(len=*), intent(in) :: name
       type(entry_type), intent(in) :: entry(:)
       character(len=:), allocatable :: full, head
@@ -285,7 +277,7 @@ contains
 
    !> Append `name key key:count key=text`, separated by tabs, and the numbers.
    subroutine statement_group(self, name, entry)
-      class(statement_sink), intent(inout) :: self
+      type(case_text), intent(inout) :: self
       character(len=*), intent(in) :: name
       type(entry_type), intent(in) :: entry(:)
       character(len=1), parameter :: tab = achar(9)
@@ -305,7 +297,7 @@ contains
    end subroutine statement_group
 
    subroutine add_numbers(self, number)
-      type(statement_sink), intent(inout) :: self
+      type(case_text), intent(inout) :: self
       real(wp), intent(in) :: number(:)
       real(wp), allocatable :: longer(:)
 

@@ -6,11 +6,11 @@ module rbs_hysteresis_spring_record
    use rbs_base_check, only: is_given, check_finite, check_name
    use rbs_base_constants, only: unset
    use rbs_base_error, only: message_list
-   use rbs_base_keys, only: key_type, word_kind, check_number, choice_name, find_key
+   use rbs_base_keys, only: key_type, word_kind, check_number, choice_name
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text, list_of
    use rbs_hysteresis_layered_layered_joint, only: layered_rule
-   use rbs_hysteresis_registry, only: rule_names, new_rule, keys_of, suits
+   use rbs_hysteresis_registry, only: rule_names, new_rule, suits
    use rbs_hysteresis_rule, only: rule_type, spring_rules, rule_length, most_parameters, in_layer
    implicit none
    private
@@ -41,8 +41,6 @@ module rbs_hysteresis_spring_record
       integer :: places_line = 0
       real(wp), allocatable :: layer_value(:, :)
    contains
-      procedure :: set
-      procedure :: get
       procedure :: set_layers
       procedure :: layer
       procedure :: validate
@@ -62,34 +60,6 @@ contains
       text = ''
       if (self%line > 0) text = 'line '//to_text(self%line)//': '
    end subroutine place_of_spring
-
-   !> Set a parameter by name. A name that the rule does not have leaves the record as it is.
-   subroutine set(self, name, value)
-      class(spring_record), intent(inout) :: self
-      character(len=*), intent(in) :: name
-      real(wp), intent(in) :: value
-      type(key_type), allocatable :: keys(:)
-      integer :: place
-
-      call keys_of(self%rule, keys)
-      place = find_key(keys, name)
-      if (place > 0) self%value(place) = value
-   end subroutine set
-
-   !> A parameter by name, its default where none was given; `unset` if the rule does not have it.
-   impure elemental real(wp) function get(self, name)
-      class(spring_record), intent(in) :: self
-      character(len=*), intent(in) :: name
-      type(key_type), allocatable :: keys(:)
-      integer :: place
-
-      get = unset
-      call keys_of(self%rule, keys)
-      place = find_key(keys, name)
-      if (place == 0) return
-      get = self%value(place)
-      if (.not. is_given(get)) get = keys(place)%default
-   end function get
 
    !> Give a joint its layers.
    pure subroutine set_layers(self, y, spring)

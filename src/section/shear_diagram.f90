@@ -8,7 +8,7 @@ module rbs_section_shear_diagram
    use rbs_base_error, only: error_type, message_list
    use rbs_base_constants, only: unset
    use rbs_base_key_visitor, only: key_visitor, visited_record
-   use rbs_base_keys, only: above_zero, any_number, bound_type
+   use rbs_base_keys, only: above_zero, any_number, bound_type, check_number, key_type
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_section_balance, only: state_type, begin, advance
@@ -18,7 +18,6 @@ module rbs_section_shear_diagram
    use rbs_section_cross_section, only: section_type, slice
    use rbs_section_shear_coupling, only: couple
    use rbs_section_shear_flow, only: flow_type, begin_flow, shear_stresses, transverse_ratio
-   use rbs_base_check, only: check_positive
    implicit none
    private
 
@@ -275,8 +274,10 @@ contains
 
       if (size(curvature) == 0) call messages%add('shear: curvature is empty; give at least one')
       before = 0.0_wp
+      ok = .true.
       do i = 1, size(curvature)
-         call check_positive(curvature(i), 'shear: curvature '//to_text(i), '1/m', messages, ok)
+         call check_number(curvature(i), 'shear', &
+                           key_type('curvature '//to_text(i), unit='1/m', bound=above_zero), messages, ok)
          if (.not. ok) return
          if (curvature(i) <= before) then
             call messages%add('shear: curvature '//to_text(i)//' = '//to_text(curvature(i))//' 1/m is '// &

@@ -14,8 +14,10 @@ program time_solver
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use rbs_base_constants, only: pi
    use rbs_base_error, only: error_type
+   use rbs_base_keys, only: key_type, find_key
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column, only: column_type
+   use rbs_hysteresis_registry, only: keys_of
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_output_channels, only: new_channels
    use rbs_output_recorder, only: array_recorder
@@ -118,23 +120,34 @@ contains
       if (kinematics == 'pdelta') spec%axial_load = 744.0e3_wp
       allocate (spec%shear(1), spec%flexure(1))
       spec%shear(1)%rule = 'bilinear'
-      call spec%shear(1)%set('k', 7.0387e8_wp)
-      call spec%shear(1)%set('d_y', 1.2960e-4_wp)
-      call spec%shear(1)%set('k_post', 8.3185e6_wp)
+      call set_value(spec%shear(1), 'k', 7.0387e8_wp)
+      call set_value(spec%shear(1), 'd_y', 1.2960e-4_wp)
+      call set_value(spec%shear(1), 'k_post', 8.3185e6_wp)
       spec%flexure(1) = paper_flexure()
       call make_column(spec, column, error)
       if (allocated(error)) error stop 'time_solver: the column is refused'
    end subroutine make_paper_column
 
+   !> Set a parameter of a spring by name.
+   subroutine set_value(spec, name, value)
+      type(spring_record), intent(inout) :: spec
+      character(len=*), intent(in) :: name
+      real(wp), intent(in) :: value
+      type(key_type), allocatable :: keys(:)
+
+      call keys_of(spec%rule, keys)
+      spec%value(find_key(keys, name)) = value
+   end subroutine set_value
+
    type(spring_record) function paper_flexure() result(spec)
       spec%rule = 'takeda'
-      call spec%set('k_c', 2.5428e8_wp)
-      call spec%set('d_c', 3.1891e-4_wp)
-      call spec%set('k_y', 6.2937e7_wp)
-      call spec%set('d_y', 2.7183e-3_wp)
-      call spec%set('k_u', 7.5772e6_wp)
-      call spec%set('b0', 0.4_wp)
-      call spec%set('b1', 0.22_wp)
+      call set_value(spec, 'k_c', 2.5428e8_wp)
+      call set_value(spec, 'd_c', 3.1891e-4_wp)
+      call set_value(spec, 'k_y', 6.2937e7_wp)
+      call set_value(spec, 'd_y', 2.7183e-3_wp)
+      call set_value(spec, 'k_u', 7.5772e6_wp)
+      call set_value(spec, 'b0', 0.4_wp)
+      call set_value(spec, 'b1', 0.22_wp)
    end function paper_flexure
 
    !> A wave whose amplitude grows and falls, with a second one on it that makes inner loops.
@@ -186,21 +199,21 @@ contains
       do i = 1, strips
          y(i) = 0.4_wp*((i - 0.5_wp)/strips - 0.5_wp)
          layer(i)%rule = 'concrete'
-         call layer(i)%set('k', 1.6e10_wp/strips)
-         call layer(i)%set('f_peak', 4.8e6_wp/strips)
-         call layer(i)%set('d_peak', 6.0e-4_wp)
-         call layer(i)%set('k_soft', 3.0e8_wp/strips)
-         call layer(i)%set('f_res', 1.5e6_wp/strips)
-         call layer(i)%set('contact', 0.35_wp)
-         call layer(i)%set('misfit', 0.4_wp)
-         call layer(i)%set('wear', 0.03_wp)
+         call set_value(layer(i), 'k', 1.6e10_wp/strips)
+         call set_value(layer(i), 'f_peak', 4.8e6_wp/strips)
+         call set_value(layer(i), 'd_peak', 6.0e-4_wp)
+         call set_value(layer(i), 'k_soft', 3.0e8_wp/strips)
+         call set_value(layer(i), 'f_res', 1.5e6_wp/strips)
+         call set_value(layer(i), 'contact', 0.35_wp)
+         call set_value(layer(i), 'misfit', 0.4_wp)
+         call set_value(layer(i), 'wear', 0.03_wp)
       end do
       y(strips + 1:) = [-0.16_wp, 0.16_wp]
       do i = strips + 1, strips + 2
          layer(i)%rule = 'steel'
-         call layer(i)%set('k', 8.0e8_wp)
-         call layer(i)%set('f_y', 7.2e5_wp)
-         call layer(i)%set('k_post', 8.0e6_wp)
+         call set_value(layer(i), 'k', 8.0e8_wp)
+         call set_value(layer(i), 'f_y', 7.2e5_wp)
+         call set_value(layer(i), 'k_post', 8.0e6_wp)
       end do
       joint(1)%rule = 'layered'
       joint(1)%axial_load = 7.0e5_wp
@@ -333,13 +346,13 @@ contains
       spec%depth = 0.4_wp
       allocate (spec%shear(1), spec%flexure(1))
       spec%shear(1)%rule = 'bilinear'
-      call spec%shear(1)%set('k', n*7.0387e8_wp)
-      call spec%shear(1)%set('d_y', strength*1.2960e-4_wp/n)
-      call spec%shear(1)%set('k_post', n*8.3185e6_wp)
+      call set_value(spec%shear(1), 'k', n*7.0387e8_wp)
+      call set_value(spec%shear(1), 'd_y', strength*1.2960e-4_wp/n)
+      call set_value(spec%shear(1), 'k_post', n*8.3185e6_wp)
       spec%flexure(1)%rule = 'bilinear'
-      call spec%flexure(1)%set('k', n*6.2937e7_wp)
-      call spec%flexure(1)%set('d_y', 2.7183e-3_wp/n)
-      call spec%flexure(1)%set('k_post', n*7.5772e6_wp)
+      call set_value(spec%flexure(1), 'k', n*6.2937e7_wp)
+      call set_value(spec%flexure(1), 'd_y', 2.7183e-3_wp/n)
+      call set_value(spec%flexure(1), 'k_post', n*7.5772e6_wp)
       call make_column(spec, column, error)
       if (allocated(error)) call give_up(error)
    end subroutine make_bilinear_column

@@ -1,17 +1,21 @@
 !> Springs, columns and paths that several suites use.
 module samples
    use, intrinsic :: iso_fortran_env, only: int64
+   use rbs_base_check, only: is_given
+   use rbs_base_constants, only: unset
    use rbs_base_error, only: error_type
+   use rbs_base_keys, only: key_type, find_key
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column, only: column_type
    use rbs_solve_make_column, only: make_column
    use rbs_structure_column_column_record, only: column_record
+   use rbs_hysteresis_registry, only: keys_of
    use rbs_hysteresis_spring_record, only: spring_record
    implicit none
    private
 
    public :: elastic, bilinear, compression, takeda, bilinear_1, takeda_1, column_1, chain, rich_column, made
-   public :: concrete_1, steel_1, random_type
+   public :: concrete_1, steel_1, random_type, set_value, value_of
 
    !> Soesianawati & Park No 1, table 3 of the paper: flexure [N m, rad] ...
    real(wp), parameter, public :: k_c = 2.5428e8_wp, d_c = 3.1891e-4_wp
@@ -56,27 +60,55 @@ contains
       end do
    end function uniform_array
 
+   !> Set a parameter of a spring by name. A name that its rule does not have leaves the record as it is.
+   subroutine set_value(spec, name, value)
+      type(spring_record), intent(inout) :: spec
+      character(len=*), intent(in) :: name
+      real(wp), intent(in) :: value
+      type(key_type), allocatable :: keys(:)
+      integer :: place
+
+      call keys_of(spec%rule, keys)
+      place = find_key(keys, name)
+      if (place > 0) spec%value(place) = value
+   end subroutine set_value
+
+   !> A parameter by name, its default where none was given; `unset` if the rule does not have it.
+   impure elemental real(wp) function value_of(spec, name) result(value)
+      type(spring_record), intent(in) :: spec
+      character(len=*), intent(in) :: name
+      type(key_type), allocatable :: keys(:)
+      integer :: place
+
+      value = unset
+      call keys_of(spec%rule, keys)
+      place = find_key(keys, name)
+      if (place == 0) return
+      value = spec%value(place)
+      if (.not. is_given(value)) value = keys(place)%default
+   end function value_of
+
    type(spring_record) function elastic(k) result(spec)
       real(wp), intent(in) :: k
 
       spec%rule = 'elastic'
-      call spec%set('k', k)
+      call set_value(spec, 'k', k)
    end function elastic
 
    type(spring_record) function bilinear(k, d_y, k_post) result(spec)
       real(wp), intent(in) :: k, d_y, k_post
 
       spec%rule = 'bilinear'
-      call spec%set('k', k)
-      call spec%set('d_y', d_y)
-      call spec%set('k_post', k_post)
+      call set_value(spec, 'k', k)
+      call set_value(spec, 'd_y', d_y)
+      call set_value(spec, 'k_post', k_post)
    end function bilinear
 
    type(spring_record) function compression(k) result(spec)
       real(wp), intent(in) :: k
 
       spec%rule = 'compression'
-      call spec%set('k', k)
+      call set_value(spec, 'k', k)
    end function compression
 
    type(spring_record) function takeda(k_c, d_c, k_y, d_y, k_u, b0, b1, inner) result(spec)
@@ -84,14 +116,14 @@ contains
       character(len=*), intent(in) :: inner
 
       spec%rule = 'takeda'
-      call spec%set('k_c', k_c)
-      call spec%set('d_c', d_c)
-      call spec%set('k_y', k_y)
-      call spec%set('d_y', d_y)
-      call spec%set('k_u', k_u)
-      call spec%set('b0', b0)
-      call spec%set('b1', b1)
-      call spec%set('inner', real(findloc(['kc ', 'kr ', 'one'] == inner, .true., dim=1), wp))
+      call set_value(spec, 'k_c', k_c)
+      call set_value(spec, 'd_c', d_c)
+      call set_value(spec, 'k_y', k_y)
+      call set_value(spec, 'd_y', d_y)
+      call set_value(spec, 'k_u', k_u)
+      call set_value(spec, 'b0', b0)
+      call set_value(spec, 'b1', b1)
+      call set_value(spec, 'inner', real(findloc(['kc ', 'kr ', 'one'] == inner, .true., dim=1), wp))
    end function takeda
 
    !> Shear spring of column 1.
@@ -112,25 +144,25 @@ contains
       real(wp), intent(in) :: share
 
       spec%rule = 'concrete'
-      call spec%set('k', 1.6e10_wp*share)
-      call spec%set('f_peak', 4.8e6_wp*share)
-      call spec%set('d_peak', 6.0e-4_wp)
-      call spec%set('k_soft', 2.4e9_wp*share)
-      call spec%set('f_res', 1.0e6_wp*share)
-      call spec%set('plastic', 1.2_wp)
-      call spec%set('contact', 0.35_wp)
-      call spec%set('misfit', 0.4_wp)
-      call spec%set('wear', 0.03_wp)
+      call set_value(spec, 'k', 1.6e10_wp*share)
+      call set_value(spec, 'f_peak', 4.8e6_wp*share)
+      call set_value(spec, 'd_peak', 6.0e-4_wp)
+      call set_value(spec, 'k_soft', 2.4e9_wp*share)
+      call set_value(spec, 'f_res', 1.0e6_wp*share)
+      call set_value(spec, 'plastic', 1.2_wp)
+      call set_value(spec, 'contact', 0.35_wp)
+      call set_value(spec, 'misfit', 0.4_wp)
+      call set_value(spec, 'wear', 0.03_wp)
    end function concrete_1
 
    !> A row of bars of the joint, 1600 mm2 of 450 MPa over 0.4 m.
    type(spring_record) function steel_1() result(spec)
       spec%rule = 'steel'
-      call spec%set('k', 8.0e8_wp)
-      call spec%set('f_y', 7.2e5_wp)
-      call spec%set('k_post', 8.0e6_wp)
-      call spec%set('isotropic_hardening', 0.01_wp)
-      call spec%set('endurance', 2000.0_wp)
+      call set_value(spec, 'k', 8.0e8_wp)
+      call set_value(spec, 'f_y', 7.2e5_wp)
+      call set_value(spec, 'k_post', 8.0e6_wp)
+      call set_value(spec, 'isotropic_hardening', 0.01_wp)
+      call set_value(spec, 'endurance', 2000.0_wp)
    end function steel_1
 
    !> Column 1 as one body.

@@ -9,7 +9,7 @@ module test_band
    use rbs_structure_column_column, only: column_type
    use rbs_structure_column_mass, only: symmetric_mass
    use rbs_structure_column_column_record, only: column_record
-   use samples, only: chain, elastic, made, random_type
+   use samples, only: set_value, chain, elastic, made, random_type
    implicit none
    private
 
@@ -190,8 +190,8 @@ contains
       do trial = 1, 40
          spec = chain(n, 'pdelta')
          do i = 1, n
-            call spec%shear(i)%set('k', 10.0_wp**random%uniform(4.0_wp, 9.0_wp))
-            call spec%flexure(i)%set('k', 10.0_wp**random%uniform(5.0_wp, 8.0_wp))
+            call set_value(spec%shear(i), 'k', 10.0_wp**random%uniform(4.0_wp, 9.0_wp))
+            call set_value(spec%flexure(i), 'k', 10.0_wp**random%uniform(5.0_wp, 8.0_wp))
          end do
          ! Compression and tension, weight against tension too
          spec%axial_load = random%uniform(-1.0e5_wp, 1.0e5_wp)

@@ -14,7 +14,7 @@ module test_capped
    use rbs_hysteresis_rule, only: most_parameters
    use rbs_structure_column_column_record, only: column_record
    use rbs_hysteresis_spring_record, only: spring_record
-   use samples, only: elastic, random_type
+   use samples, only: set_value, value_of, elastic, random_type
    implicit none
    private
 
@@ -43,12 +43,12 @@ contains
    !> Elastic 100 up to (1, 100), cap (3, 120), softening with -10 to the residual 20 at 13.
    type(spring_record) function hand() result(spec)
       spec%rule = 'peak_oriented'
-      call spec%set('d_y', 1.0_wp)
-      call spec%set('f_y', 100.0_wp)
-      call spec%set('d_cap', 3.0_wp)
-      call spec%set('f_cap', 120.0_wp)
-      call spec%set('d_pc', 12.0_wp)
-      call spec%set('f_res', 20.0_wp)
+      call set_value(spec, 'd_y', 1.0_wp)
+      call set_value(spec, 'f_y', 100.0_wp)
+      call set_value(spec, 'd_cap', 3.0_wp)
+      call set_value(spec, 'f_cap', 120.0_wp)
+      call set_value(spec, 'd_pc', 12.0_wp)
+      call set_value(spec, 'f_res', 20.0_wp)
    end function hand
 
    !> The backbone of a side; the negative side has the values of the positive one if it is not given.
@@ -65,9 +65,9 @@ contains
       real(wp) function value(name)
          character(len=*), intent(in) :: name
 
-         value = spec%get(name)
+         value = value_of(spec, name)
          if (s < 0) then
-            if (is_given(spec%get(name//'_neg'))) value = spec%get(name//'_neg')
+            if (is_given(value_of(spec, name//'_neg'))) value = value_of(spec, name//'_neg')
          end if
       end function value
    end function side_of
@@ -81,12 +81,12 @@ contains
       call keys_of('pinching', keys)
       spec%rule = 'pinching'
       do i = 1, size(keys)
-         call spec%set(trim(keys(i)%name), 1.0_wp*i)
+         call set_value(spec, trim(keys(i)%name), 1.0_wp*i)
       end do
       call check_same(error, spec%value(:size(keys)), [(1.0_wp*i, i=1, size(keys))], 'each has a place')
-      call check_same(error, spec%get(keys%name), spec%value(:size(keys)), 'there and back')
-      call spec%set('k', 7.0_wp)
-      call check_true(error, .not. is_given(spec%get('k')), 'k is not there')
+      call check_same(error, value_of(spec, keys%name), spec%value(:size(keys)), 'there and back')
+      call set_value(spec, 'k', 7.0_wp)
+      call check_true(error, .not. is_given(value_of(spec, 'k')), 'k is not there')
       call keys_of('peak_oriented', more)
       call check_true(error, find_key(keys, 'kappa_f') > 0 .and. find_key(more, 'kappa_f') == 0, &
                       'rules with kappa_f')
@@ -102,24 +102,24 @@ contains
 
       spec = hand()
       call expect(error, spec, '')
-      call spec%set('f_y_neg', 130.0_wp)
+      call set_value(spec, 'f_y_neg', 130.0_wp)
       call expect(error, spec, 'f_cap_neg = 120 must not be below f_y_neg = 130')
       spec = hand()
       spec%rule = 'pinching'
-      call spec%set('kappa_d', 0.5_wp)
+      call set_value(spec, 'kappa_d', 0.5_wp)
       call expect(error, spec, 'kappa_f is missing')
-      call spec%set('kappa_f', 1.5_wp)
+      call set_value(spec, 'kappa_f', 1.5_wp)
       call expect(error, spec, 'kappa_f = 1.5 must not be above 1')
       spec = hand()
-      call spec%set('d_c', 0.5_wp)
+      call set_value(spec, 'd_c', 0.5_wp)
       call expect(error, spec, 'are a point together')
-      call spec%set('f_c', 40.0_wp)
+      call set_value(spec, 'f_c', 40.0_wp)
       call expect(error, spec, 'f_c / d_c = 80 must be above f_y / d_y = 100 (cracking softens)')
       spec = hand()
-      call spec%set('c', 0.5_wp)
+      call set_value(spec, 'c', 0.5_wp)
       call expect(error, spec, 'c = 0.5 must')
-      call spec%set('c', 1.0_wp)
-      call spec%set('lambda_a', 1.7_wp)
+      call set_value(spec, 'c', 1.0_wp)
+      call set_value(spec, 'lambda_a', 1.7_wp)
       call expect(error, spec, 'lambda_a = 1.7 must be 0 (it is off) or at least '// &
                   'f_cap**2 (1 + d_cap/d_pc)/(k f_y d_y) = 1.8')
       call axial(error)
@@ -159,10 +159,10 @@ contains
 
       spec = hand()
       call check_same(error, spec%initial_stiffness(), 100.0_wp, 'elastic up to yield')
-      call spec%set('d_y_neg', 0.5_wp)
+      call set_value(spec, 'd_y_neg', 0.5_wp)
       call check_same(error, spec%initial_stiffness(), 200.0_wp, 'the negative side is stiffer')
-      call spec%set('d_c', 0.1_wp)
-      call spec%set('f_c', 50.0_wp)
+      call set_value(spec, 'd_c', 0.1_wp)
+      call set_value(spec, 'f_c', 50.0_wp)
       call check_same(error, spec%initial_stiffness(), 500.0_wp, 'up to cracking')
    end subroutine stiffness
 
@@ -183,11 +183,11 @@ contains
                        'a steep line from 0.5 meets 90 + 10 d')
       call check_close(error, side%meeting(50.0_wp, 6.0_wp), 7.5_wp, 1.0e-14_wp, 0.0_wp, &
                        'one from 6 meets 150 - 10 d')
-      call spec%set('d_c', 0.25_wp)
-      call spec%set('f_c', 40.0_wp)
-      call spec%set('d_cap', 1.0_wp)
-      call spec%set('f_cap', 100.0_wp)
-      call spec%set('f_res', 0.0_wp)
+      call set_value(spec, 'd_c', 0.25_wp)
+      call set_value(spec, 'f_c', 40.0_wp)
+      call set_value(spec, 'd_cap', 1.0_wp)
+      call set_value(spec, 'f_cap', 100.0_wp)
+      call set_value(spec, 'f_res', 0.0_wp)
       side = backbone_side()
       call side%draw(side_of(spec, 1))
       call check_close(error, side%d(:side%last), [0.0_wp, 0.25_wp, 1.0_wp, 13.0_wp], 1.0e-15_wp, 0.0_wp, &
@@ -233,11 +233,11 @@ contains
       type(backbone_side) :: side
 
       spec = hand()
-      call spec%set('d_u', 8.0_wp)
+      call set_value(spec, 'd_u', 8.0_wp)
       side = backbone_side()
       call side%draw(side_of(spec, 1))
       call check_same(error, side%d(:side%last), [0.0_wp, 1.0_wp, 3.0_wp, 8.0_wp, 8.7_wp], 'while softening')
-      call spec%set('d_u', 20.0_wp)
+      call set_value(spec, 'd_u', 20.0_wp)
       side = backbone_side()
       call side%draw(side_of(spec, 1))
       call check_same(error, side%d(:side%last), [0.0_wp, 1.0_wp, 3.0_wp, 13.0_wp, 20.0_wp, 20.2_wp], &
@@ -266,30 +266,31 @@ contains
       integer :: j
 
       spec = hand()
-      call spec%set('d_cap', random%uniform(1.0_wp, 5.0_wp))
-      call spec%set('f_cap', 100.0_wp + (spec%get('d_cap') - 1.0_wp)*random%uniform(0.0_wp, 20.0_wp))
-      call spec%set('d_pc', random%uniform(1.0_wp, 50.0_wp))
-      call spec%set('f_res', random%uniform(-50.0_wp, 90.0_wp))
-      if (spec%get('f_res') < 0.0_wp) call spec%set('f_res', 0.0_wp)
+      call set_value(spec, 'd_cap', random%uniform(1.0_wp, 5.0_wp))
+      call set_value(spec, 'f_cap', 100.0_wp + (value_of(spec, 'd_cap') - 1.0_wp)* &
+                     random%uniform(0.0_wp, 20.0_wp))
+      call set_value(spec, 'd_pc', random%uniform(1.0_wp, 50.0_wp))
+      call set_value(spec, 'f_res', random%uniform(-50.0_wp, 90.0_wp))
+      if (value_of(spec, 'f_res') < 0.0_wp) call set_value(spec, 'f_res', 0.0_wp)
       if (random%uniform(0.0_wp, 1.0_wp) > 0.5_wp) then
-         call spec%set('d_c', 0.2_wp)
-         call spec%set('f_c', random%uniform(34.0_wp, 60.0_wp))
+         call set_value(spec, 'd_c', 0.2_wp)
+         call set_value(spec, 'f_c', random%uniform(34.0_wp, 60.0_wp))
       end if
       if (random%uniform(0.0_wp, 1.0_wp) > 0.5_wp) then
-         call spec%set('d_y_neg', random%uniform(0.6_wp, 1.0_wp))
-         call spec%set('f_res_neg', 0.5_wp*spec%get('f_res'))
-         call spec%set('d_u_neg', random%uniform(5.0_wp, 15.0_wp))
+         call set_value(spec, 'd_y_neg', random%uniform(0.6_wp, 1.0_wp))
+         call set_value(spec, 'f_res_neg', 0.5_wp*value_of(spec, 'f_res'))
+         call set_value(spec, 'd_u_neg', random%uniform(5.0_wp, 15.0_wp))
       end if
-      call spec%set('b0', random%uniform(0.0_wp, 0.8_wp))
-      call spec%set('lambda_s', random%uniform(25.0_wp, 200.0_wp))
-      call spec%set('lambda_c', random%uniform(25.0_wp, 200.0_wp))
-      call spec%set('lambda_k', random%uniform(25.0_wp, 200.0_wp))
-      call spec%set('lambda_a', random%uniform(25.0_wp, 200.0_wp))
-      call spec%set('c', random%uniform(1.0_wp, 2.0_wp))
+      call set_value(spec, 'b0', random%uniform(0.0_wp, 0.8_wp))
+      call set_value(spec, 'lambda_s', random%uniform(25.0_wp, 200.0_wp))
+      call set_value(spec, 'lambda_c', random%uniform(25.0_wp, 200.0_wp))
+      call set_value(spec, 'lambda_k', random%uniform(25.0_wp, 200.0_wp))
+      call set_value(spec, 'lambda_a', random%uniform(25.0_wp, 200.0_wp))
+      call set_value(spec, 'c', random%uniform(1.0_wp, 2.0_wp))
       if (random%uniform(0.0_wp, 1.0_wp) > 0.5_wp) then
          spec%rule = 'pinching'
-         call spec%set('kappa_f', random%uniform(0.1_wp, 1.0_wp))
-         call spec%set('kappa_d', random%uniform(0.1_wp, 1.0_wp))
+         call set_value(spec, 'kappa_f', random%uniform(0.1_wp, 1.0_wp))
+         call set_value(spec, 'kappa_d', random%uniform(0.1_wp, 1.0_wp))
       end if
       do j = 1, size(d)
          size_of_move = random%uniform(-0.5_wp, 1.1_wp)
@@ -328,13 +329,13 @@ contains
             side(s) = side_of(spec, s)
          end do
          other = spec
-         call other%set('d_y', side(-1)%d_y)
-         call other%set('f_res', side(-1)%f_res)
-         call other%set('d_u', side(-1)%d_u)
-         call other%set('d_y_neg', side(1)%d_y)
-         call other%set('f_res_neg', side(1)%f_res)
+         call set_value(other, 'd_y', side(-1)%d_y)
+         call set_value(other, 'f_res', side(-1)%f_res)
+         call set_value(other, 'd_u', side(-1)%d_u)
+         call set_value(other, 'd_y_neg', side(1)%d_y)
+         call set_value(other, 'f_res_neg', side(1)%f_res)
          ! A parameter without a value on one side cannot be given for the other side alone.
-         call other%set('d_u_neg', max(side(1)%d_u, 1.0e9_wp))
+         call set_value(other, 'd_u_neg', max(side(1)%d_u, 1.0e9_wp))
          call follow_path(spec, d, f)
          call follow_path(other, -d, mirrored)
          call check_same(error, mirrored, 0.0_wp - f, 'mirror')
@@ -380,8 +381,8 @@ contains
       integer :: i
 
       spec = hand()
-      call spec%set('f_res', 0.0_wp)
-      call spec%set('lambda_s', 1.8_wp)
+      call set_value(spec, 'f_res', 0.0_wp)
+      call set_value(spec, 'lambda_s', 1.8_wp)
       call spring%create([spec])
       call spring%advance_to(1, 4.0_wp)
       call check_close(error, spring%force(1), 110.0_wp, 1.0e-14_wp, 0.0_wp, 'at 4')

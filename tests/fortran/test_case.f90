@@ -18,8 +18,8 @@ module test_case
    use rbs_base_keys, only: deformation, force, stiffness
    use rbs_case_group_reader, only: unit_in_group
    use rbs_base_units, only: unit_system, unit_type, to_si, length_units, force_units, acceleration_units
-   use samples, only: elastic, bilinear, takeda, bilinear_1, takeda_1, column_1, chain, k_c, d_c, k_y, &
-                      d_y, k_u, s_k
+   use samples, only: set_value, elastic, bilinear, takeda, bilinear_1, takeda_1, column_1, chain, k_c, &
+                      d_c, k_y, d_y, k_u, s_k
    implicit none
    private
 
@@ -164,22 +164,22 @@ contains
       type(spring_record) :: spec
 
       spec = takeda_1('kc')
-      call spec%set('k_c', 0.0_wp)
+      call set_value(spec, 'k_c', 0.0_wp)
       call expect_spring(error, spec, 'k_c = 0 must be above zero')
       spec = takeda_1('kc')
-      call spec%set('d_c', -1.0_wp)
+      call set_value(spec, 'd_c', -1.0_wp)
       call expect_spring(error, spec, 'd_c = -1 must be above zero')
       spec = takeda_1('kc')
-      call spec%set('k_y', unset)
+      call set_value(spec, 'k_y', unset)
       call expect_spring(error, spec, 'k_y is missing')
       spec = takeda_1('kc')
-      call spec%set('k_u', -1.0_wp)
+      call set_value(spec, 'k_u', -1.0_wp)
       call expect_spring(error, spec, 'k_u = -1 must not be negative')
       spec = takeda_1('kc')
-      call spec%set('b0', -0.1_wp)
+      call set_value(spec, 'b0', -0.1_wp)
       call expect_spring(error, spec, 'b0 = -0.1 must not be negative')
       spec = takeda_1('kc')
-      call spec%set('b1', 0.0_wp)
+      call set_value(spec, 'b1', 0.0_wp)
       call expect_spring(error, spec, 'b1 = 0 must be above zero')
       call expect_spring(error, takeda_1('ko'), 'inner is not known; it is one of kc kr one')
    end subroutine spring_takeda_numbers
@@ -319,7 +319,7 @@ contains
       spec%flexure = spec%flexure(:2)
       call expect_column(error, spec, 'column: 2 flexure springs for 3 joints; give one, or one for each')
       spec = chain(3, 'small')
-      call spec%flexure(2)%set('k', -1.0_wp)
+      call set_value(spec%flexure(2), 'k', -1.0_wp)
       call expect_column(error, spec, 'flexure spring of joint 2: k = -1 must be above zero')
    end subroutine column_springs
 
@@ -404,7 +404,7 @@ contains
       integer :: i
 
       contact%rule = 'compression'
-      call contact%set('k', 1.0e9_wp)
+      call set_value(contact, 'k', 1.0e9_wp)
       spec = chain(3, 'small')
       allocate (spec%axial_spring(1), source=contact)
       call expect_column(error, spec, '')
@@ -418,10 +418,10 @@ contains
          spec%axial_spring(i) = elastic(1.0e9_wp)
       end do
       call expect_column(error, spec, '')
-      call spec%axial_spring(2)%set('k', 0.0_wp)
+      call set_value(spec%axial_spring(2), 'k', 0.0_wp)
       call expect_column(error, spec, 'axial spring of joint 2: k = 0 must be above zero')
       spec%axial_spring = spec%axial_spring(:2)
-      call spec%axial_spring(2)%set('k', 1.0_wp)
+      call set_value(spec%axial_spring(2), 'k', 1.0_wp)
       call expect_column(error, spec, 'column: 2 axial springs for 3 joints')
       deallocate (spec%axial_spring)
       spec%flexure(3) = contact
@@ -518,7 +518,7 @@ contains
       spec%cycles = [2, 2, 2]
       call expect_loading(error, spec, .false., 'loading: cycles has 3 values for 2 amplitudes')
       spec%cycles = [2, 0]
-      call expect_loading(error, spec, .false., 'loading: cycles = 0 must be 1 or more')
+      call expect_loading(error, spec, .false., 'loading: cycles(2) = 0 must be 1 or more')
       spec = drift_protocol()
       spec%repeats = 0
       call expect_loading(error, spec, .false., 'loading: repeats = 0 must be 1 or more')
@@ -644,8 +644,8 @@ contains
       spec = column_1('small')
       spec%height = 0.0_wp
       spec%mass = unset
-      call spec%shear(1)%set('k_post', 2.0_wp*s_k)
-      call spec%flexure(1)%set('d_c', ieee_value(1.0_wp, ieee_quiet_nan))
+      call set_value(spec%shear(1), 'k_post', 2.0_wp*s_k)
+      call set_value(spec%flexure(1), 'd_c', ieee_value(1.0_wp, ieee_quiet_nan))
       call make_column(spec, column, outcome)
       call check_failed(error, outcome, bad_input, 'column: height = 0 m must be above zero')
       call check_failed(error, outcome, bad_input, 'column: mass is missing; give it a value in kg')

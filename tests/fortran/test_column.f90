@@ -10,7 +10,7 @@ module test_column
    use rbs_structure_column_mass, only: symmetric_mass, paper_mass
    use rbs_structure_column_column_record, only: column_record
    use rbs_structure_spring_place, only: spring_name
-   use samples, only: chain, column_1, elastic, made, random_type, k_c, s_k, mass_1, height_1
+   use samples, only: value_of, chain, column_1, elastic, made, random_type, k_c, s_k, mass_1, height_1
    implicit none
    private
 
@@ -114,12 +114,15 @@ contains
       spec = chain(3, 'small')
       column = made(spec)
       do i = 1, 3
-         call check_same(error, column%spring(i)%get('k'), spec%shear(i)%get('k'), 'shear of a joint')
-         call check_same(error, column%spring(3 + i)%get('k'), spec%flexure(i)%get('k'), 'flexure of a joint')
+         call check_same(error, value_of(column%spring(i), 'k'), value_of(spec%shear(i), 'k'), &
+                         'shear of a joint')
+         call check_same(error, value_of(column%spring(3 + i), 'k'), value_of(spec%flexure(i), 'k'), &
+                         'flexure of a joint')
       end do
       spec%shear = spec%shear(2:2)
       column = made(spec)
-      call check_same(error, [(column%spring(i)%get('k'), i=1, 3)], spread(spec%shear(1)%get('k'), 1, 3), &
+      call check_same(error, [(value_of(column%spring(i), 'k'), i=1, 3)], &
+                      spread(value_of(spec%shear(1), 'k'), 1, 3), &
                       'one for every joint')
    end subroutine spring_places
 

@@ -8,7 +8,7 @@ module test_concrete
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_hysteresis_spring_record, only: spring_record
-   use samples, only: concrete_1, random_type
+   use samples, only: set_value, value_of, concrete_1, random_type
    implicit none
    private
 
@@ -40,11 +40,11 @@ contains
    !> A spring with simple parameters: 100 at a closing of 2, then slope -10 down to 20 at 10.
    type(spring_record) function hand() result(spec)
       spec%rule = 'concrete'
-      call spec%set('k', 100.0_wp)
-      call spec%set('f_peak', 100.0_wp)
-      call spec%set('d_peak', 2.0_wp)
-      call spec%set('k_soft', 10.0_wp)
-      call spec%set('f_res', 20.0_wp)
+      call set_value(spec, 'k', 100.0_wp)
+      call set_value(spec, 'f_peak', 100.0_wp)
+      call set_value(spec, 'd_peak', 2.0_wp)
+      call set_value(spec, 'k_soft', 10.0_wp)
+      call set_value(spec, 'f_res', 20.0_wp)
    end function hand
 
    !> r = 100/(100 - 50) = 2: the curve is f_peak 2 x/(1 + x^2).
@@ -92,7 +92,7 @@ contains
       real(wp) :: f(3)
 
       spec = hand()
-      call spec%set('plastic', 5.0_wp)
+      call set_value(spec, 'plastic', 5.0_wp)
       call follow_path(spec, [-4.0_wp, -3.6_wp, -3.2_wp], f)
       call check_close(error, f, [-80.0_wp, -40.0_wp, 0.0_wp], 1.0e-12_wp, 1.0e-11_wp, 'force')
    end subroutine stiffest
@@ -117,9 +117,9 @@ contains
       real(wp) :: f(6)
 
       spec = hand()
-      call spec%set('plastic', 5.0_wp)
-      call spec%set('contact', 0.25_wp)
-      call spec%set('misfit', 0.5_wp)
+      call set_value(spec, 'plastic', 5.0_wp)
+      call set_value(spec, 'contact', 0.25_wp)
+      call set_value(spec, 'misfit', 0.5_wp)
       call follow_path(spec, [-4.0_wp, -0.2_wp, -1.7_wp, -2.55_wp, -3.4_wp, -3.7_wp], f)
       call check_close(error, f, -[80.0_wp, 0.0_wp, 0.0_wp, 10.0_wp, 20.0_wp, 50.0_wp], 1.0e-12_wp, &
                        1.0e-11_wp, 'force')
@@ -151,7 +151,7 @@ contains
       real(wp) :: f(7), first, all
 
       spec = hand()
-      call spec%set('wear', 0.1_wp)
+      call set_value(spec, 'wear', 0.1_wp)
       call follow_path(spec, [-4.0_wp, 1.0_wp, -4.0_wp, 1.0_wp, 2.0_wp, 1.0_wp, -5.0_wp], f)
       first = log((wide + d_peak)/d_peak)
       call check_close(error, f(3), -80.0_wp*0.9_wp**first, 1.0e-12_wp, 0.0_wp, 'after one opening')
@@ -188,13 +188,13 @@ contains
       integer :: j
 
       spec = hand()
-      call spec%set('k', random%uniform(51.0_wp, 300.0_wp))
-      call spec%set('k_soft', 10.0_wp**random%uniform(-1.0_wp, 3.0_wp))
-      call spec%set('f_res', random%uniform(0.0_wp, 100.0_wp))
-      call spec%set('plastic', random%uniform(0.0_wp, 2.0_wp))
-      call spec%set('contact', max(0.0_wp, random%uniform(-0.3_wp, 0.95_wp)))
-      call spec%set('misfit', max(0.0_wp, random%uniform(-0.3_wp, 0.95_wp)))
-      call spec%set('wear', max(0.0_wp, random%uniform(-0.2_wp, 0.2_wp)))
+      call set_value(spec, 'k', random%uniform(51.0_wp, 300.0_wp))
+      call set_value(spec, 'k_soft', 10.0_wp**random%uniform(-1.0_wp, 3.0_wp))
+      call set_value(spec, 'f_res', random%uniform(0.0_wp, 100.0_wp))
+      call set_value(spec, 'plastic', random%uniform(0.0_wp, 2.0_wp))
+      call set_value(spec, 'contact', max(0.0_wp, random%uniform(-0.3_wp, 0.95_wp)))
+      call set_value(spec, 'misfit', max(0.0_wp, random%uniform(-0.3_wp, 0.95_wp)))
+      call set_value(spec, 'wear', max(0.0_wp, random%uniform(-0.2_wp, 0.2_wp)))
       do j = 1, size(d)
          exponent = random%uniform(-1.0_wp, 1.2_wp)
          d(j) = random%uniform(-1.0_wp, 0.5_wp)*10.0_wp**exponent
@@ -233,7 +233,7 @@ contains
                call check_close(error, line%force(d), before, 0.0_wp, 1.0e-10_wp, 'force at an event')
                call check_true(error, line%lo <= line%hi, 'ends in order')
                call check_true(error, line%lo <= d .and. d <= line%hi, 'on the new line')
-               call check_true(error, line%k <= (1.0_wp + 1.0e-9_wp)*spec%get('k'), &
+               call check_true(error, line%k <= (1.0_wp + 1.0e-9_wp)*value_of(spec, 'k'), &
                                'not stiffer than at first')
             end do
             call check_true(error, lines < 50, 'few lines in one move')
@@ -297,13 +297,13 @@ contains
 
       do path = 1, 300
          call random_spring(random, spec, d)
-         if (mod(path, 2) == 0) call spec%set('misfit', 0.0_wp)
+         if (mod(path, 2) == 0) call set_value(spec, 'misfit', 0.0_wp)
          call follow_path(spec, d, f)
          do j = 1, size(d)
             call check_true(error, f(j) <= 0.0_wp, 'no tension')
-            call check_true(error, f(j) >= -spec%get('f_peak')*(1.0_wp + 1.0e-12_wp), &
+            call check_true(error, f(j) >= -value_of(spec, 'f_peak')*(1.0_wp + 1.0e-12_wp), &
                             'not above the strength')
-            if (spec%get('misfit') > 0.0_wp) cycle
+            if (value_of(spec, 'misfit') > 0.0_wp) cycle
             if (d(j) > 0.0_wp) cycle
             call follow_path(spec, d(j:j), straight)
             call check_true(error, f(j) >= straight(1) - 1.0e-9_wp, 'within the envelope')
@@ -320,7 +320,7 @@ contains
       real(wp) :: f(8)
 
       spec = hand()
-      call spec%set('friction', 0.5_wp)
+      call set_value(spec, 'friction', 0.5_wp)
       call follow_path(spec, [-4.0_wp, -3.7_wp, -3.0_wp, -2.0_wp, -2.02_wp, -3.0_wp, -4.0_wp, -5.0_wp], f)
       call check_close(error, f, -[80.0_wp, 50.0_wp, 0.5_wp*slope*(3.0_wp - c_p), &
                                    0.5_wp*slope*(2.0_wp - c_p), 0.5_wp*slope*(2.0_wp - c_p) + 2.0_wp, &
@@ -341,9 +341,9 @@ contains
       real(wp) :: f(10)
 
       spec = hand()
-      call spec%set('contact', 0.25_wp)
-      call spec%set('misfit', 0.5_wp)
-      call spec%set('seating', 1.0_wp)
+      call set_value(spec, 'contact', 0.25_wp)
+      call set_value(spec, 'misfit', 0.5_wp)
+      call set_value(spec, 'seating', 1.0_wp)
       call follow_path(spec, -[4.0_wp, c_p - 1.0_wp, 1.5_wp, closed, 1.9_wp, 1.2_wp, 1.21_wp, 1.4_wp, &
                                1.39_wp, 1.3_wp], f)
       call check_close(error, f, -[80.0_wp, 0.0_wp, rise*(1.5_wp - touch), 20.0_wp, slope*(1.9_wp - c_p), &

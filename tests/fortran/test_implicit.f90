@@ -14,7 +14,8 @@ module test_implicit
    use rbs_structure_column_column_record, only: column_record
    use runs, only: scene_type, scenes, new_scene, new_mass, play, play_located, find_reference, new_state, &
                    signal_of, check_order, residual_of, distance
-   use samples, only: chain, column_1, compression, elastic, made, random_type, takeda_1, d_y, k_u
+   use samples, only: set_value, value_of, chain, column_1, compression, elastic, made, random_type, &
+                      takeda_1, d_y, k_u
    implicit none
    private
 
@@ -580,8 +581,8 @@ contains
          spec%axial_spring(1) = elastic(2.0e9_wp*bodies(i))
          ! The same column in more bodies, with equal total flexibility and mass.
          do j = 1, size(spec%shear)
-            call spec%shear(j)%set('k', spec%shear(j)%get('k')*bodies(i))
-            call spec%flexure(j)%set('k', spec%flexure(j)%get('k')*bodies(i))
+            call set_value(spec%shear(j), 'k', value_of(spec%shear(j), 'k')*bodies(i))
+            call set_value(spec%flexure(j), 'k', value_of(spec%flexure(j), 'k')*bodies(i))
          end do
          spec%masses = spec%masses/bodies(i)
          spec%axial_load = 1.0e6_wp
@@ -623,12 +624,12 @@ contains
          spec%n = bodies(i)
          share = 1.0_wp/bodies(i)
          ! The flexibility of one joint, distributed over all; shear is elastic.
-         spec%shear(1) = elastic(spec%shear(1)%get('k')*bodies(i))
-         call spec%flexure(1)%set('k_c', spec%flexure(1)%get('k_c')*bodies(i))
-         call spec%flexure(1)%set('k_y', spec%flexure(1)%get('k_y')*bodies(i))
-         call spec%flexure(1)%set('k_u', spec%flexure(1)%get('k_u')*bodies(i))
-         call spec%flexure(1)%set('d_c', spec%flexure(1)%get('d_c')*share)
-         call spec%flexure(1)%set('d_y', spec%flexure(1)%get('d_y')*share)
+         spec%shear(1) = elastic(value_of(spec%shear(1), 'k')*bodies(i))
+         call set_value(spec%flexure(1), 'k_c', value_of(spec%flexure(1), 'k_c')*bodies(i))
+         call set_value(spec%flexure(1), 'k_y', value_of(spec%flexure(1), 'k_y')*bodies(i))
+         call set_value(spec%flexure(1), 'k_u', value_of(spec%flexure(1), 'k_u')*bodies(i))
+         call set_value(spec%flexure(1), 'd_c', value_of(spec%flexure(1), 'd_c')*share)
+         call set_value(spec%flexure(1), 'd_y', value_of(spec%flexure(1), 'd_y')*share)
          spec%axial_load = 5.0e5_wp
          spec%top_mass = 2.0e4_wp
          spec%damping%stiffness = 1.0e-3_wp

@@ -13,7 +13,8 @@ module test_layered
    use rbs_solve_make_column, only: make_column
    use rbs_structure_column_column_record, only: column_record
    use rbs_hysteresis_spring_record, only: spring_record
-   use samples, only: bilinear, compression, concrete_1, elastic, steel_1, takeda_1, random_type
+   use samples, only: set_value, value_of, bilinear, compression, concrete_1, elastic, steel_1, takeda_1, &
+                      random_type
    implicit none
    private
 
@@ -416,11 +417,11 @@ contains
       call expect(error, spec, &
                   "layer 2 has the rule 'takeda'; it is one of elastic, bilinear, compression")
       wrong = steel_1()
-      call wrong%set('k_post', wrong%get('k'))
+      call set_value(wrong, 'k_post', value_of(wrong, 'k'))
       call expect(error, joint(0.0_wp, [0.1_wp, 0.2_wp], [steel_1(), wrong]), &
                   'layer 2: k_post = 8e+08 must be below k = 8e+08')
       wrong = concrete_1(1.0_wp)
-      call wrong%set('f_peak', 1.0e7_wp)
+      call set_value(wrong, 'f_peak', 1.0e7_wp)
       call expect(error, joint(0.0_wp, [0.1_wp, 0.2_wp], [wrong, steel_1()]), &
                   'layer 1: f_peak = 1e+07 must be below k d_peak = 9.6e+06')
    end subroutine validation

@@ -9,7 +9,8 @@ module test_modal
    use rbs_structure_column_mass, only: symmetric_mass
    use rbs_solve_modal_modes, only: modes_type, find_modes, frequency_bounds, stability_limit
    use rbs_structure_column_column_record, only: column_record, most_dense
-   use samples, only: bilinear, chain, column_1, elastic, made, random_type, k_c, s_k, mass_1, height_1
+   use samples, only: set_value, value_of, bilinear, chain, column_1, elastic, made, random_type, k_c, &
+                      s_k, mass_1, height_1
    implicit none
    private
 
@@ -309,8 +310,8 @@ contains
          spec = chain(n, merge('small ', 'pdelta', mod(trial, 3) == 0))
          do i = 1, n
             spec%masses(i) = 10.0_wp**random%uniform(-4.0_wp, 4.0_wp)
-            call spec%shear(i)%set('k', 10.0_wp**random%uniform(0.0_wp, 12.0_wp))
-            call spec%flexure(i)%set('k', 10.0_wp**random%uniform(0.0_wp, 12.0_wp))
+            call set_value(spec%shear(i), 'k', 10.0_wp**random%uniform(0.0_wp, 12.0_wp))
+            call set_value(spec%flexure(i), 'k', 10.0_wp**random%uniform(0.0_wp, 12.0_wp))
          end do
          if (mod(trial, 4) == 1) then
             allocate (spec%axial_spring(1))
@@ -459,7 +460,7 @@ contains
             spec%damping%modal = [zeta]
             spec%damping%mass = 1.0_wp
          else
-            spec%flexure(1) = bilinear(spec%flexure(1)%get('k'), 1.0e-3_wp, 0.0_wp)
+            spec%flexure(1) = bilinear(value_of(spec%flexure(1), 'k'), 1.0e-3_wp, 0.0_wp)
          end if
          call stability_limit(made(spec), limit, outcome)
          call check_passed(error, outcome, 'stability_limit')

@@ -5,7 +5,7 @@ module test_peak_oriented
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: follow_path, spring_array
-   use samples, only: random_type
+   use samples, only: set_value, random_type
    implicit none
    private
 
@@ -40,12 +40,12 @@ contains
       character(len=*), intent(in) :: rule
 
       spec%rule = rule
-      call spec%set('d_y', 1.0_wp)
-      call spec%set('f_y', 100.0_wp)
-      call spec%set('d_cap', 3.0_wp)
-      call spec%set('f_cap', 120.0_wp)
-      call spec%set('d_pc', 12.0_wp)
-      call spec%set('f_res', 20.0_wp)
+      call set_value(spec, 'd_y', 1.0_wp)
+      call set_value(spec, 'f_y', 100.0_wp)
+      call set_value(spec, 'd_cap', 3.0_wp)
+      call set_value(spec, 'f_cap', 120.0_wp)
+      call set_value(spec, 'd_pc', 12.0_wp)
+      call set_value(spec, 'f_res', 20.0_wp)
    end function hand
 
    !> Forces along a path against those by hand.
@@ -69,7 +69,7 @@ contains
       spec = hand('peak_oriented')
       call expect(error, spec, d, f, 'positive side')
       call expect(error, spec, -d, -f, 'negative side')
-      call spec%set('d_u', 15.0_wp)
+      call set_value(spec, 'd_u', 15.0_wp)
       ! The other side is whole: from 20 straight to its cap, which is steeper than to its yield point.
       call expect(error, spec, [13.0_wp, 20.0_wp, 15.0_wp, 17.0_wp, 15.0_wp, -1.0_wp], &
                   [20.0_wp, 0.0_wp, -600.0_wp/23.0_wp, 0.0_wp, -600.0_wp/23.0_wp, -2520.0_wp/23.0_wp], 'torn')
@@ -83,8 +83,8 @@ contains
       type(spring_record) :: spec
 
       spec = hand('peak_oriented')
-      call spec%set('d_c', 0.2_wp)
-      call spec%set('f_c', 40.0_wp)
+      call set_value(spec, 'd_c', 0.2_wp)
+      call set_value(spec, 'f_c', 40.0_wp)
       call expect(error, spec, [0.1_wp, 0.2_wp, 0.6_wp, 1.0_wp], [20.0_wp, 40.0_wp, 70.0_wp, 100.0_wp], &
                   'backbone')
       call expect(error, spec, [0.6_wp, 0.4_wp, -0.2_wp, -0.6_wp], [70.0_wp, 42.5_wp, -40.0_wp, -70.0_wp], &
@@ -138,13 +138,13 @@ contains
       real(wp) :: break_force
 
       spec = hand('pinching')
-      call spec%set('kappa_f', 0.4_wp)
-      call spec%set('kappa_d', 0.5_wp)
+      call set_value(spec, 'kappa_f', 0.4_wp)
+      call set_value(spec, 'kappa_d', 0.5_wp)
       break_force = 0.4_wp*110.0_wp/2.9_wp*1.35_wp
       call expect(error, spec, [2.0_wp, -2.0_wp, 0.0_wp, 0.45_wp, 1.225_wp, 2.0_wp], &
                   [110.0_wp, -110.0_wp, break_force*0.9_wp/1.35_wp, break_force, &
                    0.5_wp*(break_force + 110.0_wp), 110.0_wp], 'both sides loaded')
-      call spec%set('kappa_d', 0.4_wp)
+      call set_value(spec, 'kappa_d', 0.4_wp)
       call expect(error, spec, [2.0_wp, -2.0_wp, 0.54_wp], &
                   [110.0_wp, -110.0_wp, 0.4_wp*110.0_wp/2.9_wp*1.44_wp], 'less missing')
       ! A side that has not yielded breaks at zero deformation.
@@ -163,8 +163,8 @@ contains
       do i = 0, 1
          c = 1.0_wp + 0.5_wp*i
          spec = hand('peak_oriented')
-         call spec%set('lambda_s', 10.0_wp)
-         call spec%set('c', c)
+         call set_value(spec, 'lambda_s', 10.0_wp)
+         call set_value(spec, 'c', c)
          left = 1.0_wp - (energy/1000.0_wp)**c
          call expect(error, spec, [2.0_wp, -2.0_wp, -2.5_wp], &
                      [110.0_wp, -left*(100.0_wp + 10.0_wp*(2.0_wp - left)), &
@@ -179,9 +179,9 @@ contains
       integer :: i
 
       spec = hand('peak_oriented')
-      call spec%set('lambda_s', 10.0_wp)
+      call set_value(spec, 'lambda_s', 10.0_wp)
       do i = 1, 2
-         call spec%set('fade', real(i, wp))
+         call set_value(spec, 'fade', real(i, wp))
          call expect(error, spec, [2.0_wp, -2.0_wp], &
                      [110.0_wp, -left(i)*(100.0_wp + 10.0_wp*(2.0_wp - left(i)))], 'forces')
       end do
@@ -194,7 +194,7 @@ contains
       real(wp) :: left
 
       spec = hand('peak_oriented')
-      call spec%set('lambda_c', 10.0_wp)
+      call set_value(spec, 'lambda_c', 10.0_wp)
       left = 1.0_wp - energy/1000.0_wp
       call expect(error, spec, [2.0_wp, -8.0_wp], [110.0_wp, -(150.0_wp*left - 80.0_wp)], 'forces')
    end subroutine softening
@@ -206,7 +206,7 @@ contains
       real(wp) :: k
 
       spec = hand('peak_oriented')
-      call spec%set('lambda_k', 10.0_wp)
+      call set_value(spec, 'lambda_k', 10.0_wp)
       k = 100.0_wp*(1.0_wp - energy/1000.0_wp)
       call expect(error, spec, [2.0_wp, 1.5_wp, 1.0_wp, 1.8_wp, 2.0_wp, 2.1_wp], &
                   [110.0_wp, 110.0_wp - 0.5_wp*k, 110.0_wp - k, 110.0_wp - 0.2_wp*k, 110.0_wp, 111.0_wp], &
@@ -220,7 +220,7 @@ contains
       real(wp) :: yield, force, second, reached, slope
 
       spec = hand('peak_oriented')
-      call spec%set('lambda_a', 10.0_wp)
+      call set_value(spec, 'lambda_a', 10.0_wp)
       ! The second excursion, from 0.9 to the moved yield of the other side, to (-2, -110), back to zero.
       yield = 1.0_wp/(1.0_wp - energy/1000.0_wp)
       force = 100.0_wp + 10.0_wp*(yield - 1.0_wp)
@@ -234,9 +234,9 @@ contains
    !> A hinge, elastic 100 up to 1 and then plastic.
    type(spring_record) function hinge() result(spec)
       spec%rule = 'bilinear'
-      call spec%set('k', 100.0_wp)
-      call spec%set('d_y', 1.0_wp)
-      call spec%set('k_post', 0.0_wp)
+      call set_value(spec, 'k', 100.0_wp)
+      call set_value(spec, 'd_y', 1.0_wp)
+      call set_value(spec, 'k_post', 0.0_wp)
    end function hinge
 
    !> A work of 200 = lambda_h f_y d_y leaves 0.2 + 0.8/2 = 0.6 of the side that is entered next; what the
@@ -247,8 +247,8 @@ contains
       type(spring_record) :: spec
 
       spec = hand('peak_oriented')
-      call spec%set('lambda_h', 2.0_wp)
-      call spec%set('s_min', 0.2_wp)
+      call set_value(spec, 'lambda_h', 2.0_wp)
+      call set_value(spec, 's_min', 0.2_wp)
       call springs%create([spec, hinge()], told=[2, 0])
       call springs%advance_to(2, 5.0_wp)
       call springs%advance_to(1, 2.0_wp)
@@ -275,13 +275,13 @@ contains
       do history = 1, 400
          spec = hand(merge('pinching     ', 'peak_oriented', mod(history, 2) == 0))
          if (mod(history, 2) == 0) then
-            call spec%set('kappa_f', 0.4_wp)
-            call spec%set('kappa_d', 0.5_wp)
+            call set_value(spec, 'kappa_f', 0.4_wp)
+            call set_value(spec, 'kappa_d', 0.5_wp)
          end if
-         call spec%set('lambda_h', 2.0_wp)
+         call set_value(spec, 'lambda_h', 2.0_wp)
          if (mod(history, 3) == 0) then
-            call spec%set('d_c', 0.3_wp)
-            call spec%set('f_c', 60.0_wp)
+            call set_value(spec, 'd_c', 0.3_wp)
+            call set_value(spec, 'f_c', 60.0_wp)
          end if
          e = 10.0_wp**random%uniform(-9.0_wp, -4.0_wp)
          at = int(random%uniform(2.0_wp, 18.0_wp))

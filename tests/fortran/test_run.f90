@@ -22,7 +22,8 @@ module test_run
    use rbs_case_analysis_record, only: analysis_record
    use rbs_structure_column_column_record, only: column_record
    use runs, only: run_data, run, times, new_located
-   use samples, only: bilinear, chain, column_1, compression, elastic, made, k_c, k_u, height_1
+   use samples, only: set_value, value_of, bilinear, chain, column_1, compression, elastic, made, k_c, &
+                      k_u, height_1
    use row_places, only: row_time, row_displacement, row_force, row_input, row_kinetic, row_spring, &
                          row_damping, row_axial, row_residual, row_top, row_joints
    implicit none
@@ -101,11 +102,12 @@ contains
       spec%depth = 0.4_wp*length
       spec%damping%mass = 5.0_wp/time
       spec%damping%stiffness = 1.0e-5_wp*time
-      spec%shear(1) = bilinear(spec%shear(1)%get('k')*force/length, spec%shear(1)%get('d_y')*length, &
-                               spec%shear(1)%get('k_post')*force/length)
-      call spec%flexure(1)%set('k_c', spec%flexure(1)%get('k_c')*force*length)
-      call spec%flexure(1)%set('k_y', spec%flexure(1)%get('k_y')*force*length)
-      call spec%flexure(1)%set('k_u', spec%flexure(1)%get('k_u')*force*length)
+      spec%shear(1) = bilinear(value_of(spec%shear(1), 'k')*force/length, &
+                               value_of(spec%shear(1), 'd_y')*length, &
+                               value_of(spec%shear(1), 'k_post')*force/length)
+      call set_value(spec%flexure(1), 'k_c', value_of(spec%flexure(1), 'k_c')*force*length)
+      call set_value(spec%flexure(1), 'k_y', value_of(spec%flexure(1), 'k_y')*force*length)
+      call set_value(spec%flexure(1), 'k_u', value_of(spec%flexure(1), 'k_u')*force*length)
       allocate (spec%axial_spring(1))
       spec%axial_spring(1) = bilinear(2.0e9_wp*force/length, 4.0e-3_wp*length, 1.0e8_wp*force/length)
    end function scaled
@@ -428,12 +430,12 @@ contains
 
       spec = column_1('pdelta')
       spec%n = n
-      spec%shear(1) = elastic(spec%shear(1)%get('k')*n)
-      call spec%flexure(1)%set('k_c', spec%flexure(1)%get('k_c')*n)
-      call spec%flexure(1)%set('k_y', spec%flexure(1)%get('k_y')*n)
-      call spec%flexure(1)%set('k_u', spec%flexure(1)%get('k_u')*n)
-      call spec%flexure(1)%set('d_c', spec%flexure(1)%get('d_c')/n)
-      call spec%flexure(1)%set('d_y', spec%flexure(1)%get('d_y')/n)
+      spec%shear(1) = elastic(value_of(spec%shear(1), 'k')*n)
+      call set_value(spec%flexure(1), 'k_c', value_of(spec%flexure(1), 'k_c')*n)
+      call set_value(spec%flexure(1), 'k_y', value_of(spec%flexure(1), 'k_y')*n)
+      call set_value(spec%flexure(1), 'k_u', value_of(spec%flexure(1), 'k_u')*n)
+      call set_value(spec%flexure(1), 'd_c', value_of(spec%flexure(1), 'd_c')/n)
+      call set_value(spec%flexure(1), 'd_y', value_of(spec%flexure(1), 'd_y')/n)
       spec%top_mass = 2.0e4_wp
    end function stiff
 

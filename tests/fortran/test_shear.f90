@@ -612,7 +612,7 @@ contains
          call setter%find(trim(names(i)), '', place, messages)
          call setter%put_numbers(place, values(i:i))
       end do
-      call setter%check('shear', messages)
+      call setter%finish(messages)
       call check_curvatures([2.0e-3_wp, 1.0e-3_wp], messages)
       call check_equal(error, messages%count, 4, 'messages')
       call check_contains(error, messages%text, 'shear: length = -1 m', 'span')

@@ -18,8 +18,8 @@ module test_static
    use rbs_solve_static_path, only: kept_rows
    use rbs_solve_task, only: task_type
    use rbs_structure_column_column_record, only: column_record
-   use samples, only: bilinear, bilinear_1, chain, column_1, elastic, made, random_type, takeda_1, &
-                      k_c, d_y, f_y, k_u, s_k, s_d, height_1
+   use samples, only: set_value, value_of, bilinear, bilinear_1, chain, column_1, elastic, made, &
+                      random_type, takeda_1, k_c, d_y, f_y, k_u, s_k, s_d, height_1
    use row_places, only: row_time, row_displacement, row_force, row_axial, row_residual, row_joints, &
                          row_spring, row_input, row_top
    implicit none
@@ -120,8 +120,8 @@ contains
       column = made(spec)
       flexibility = 0.0_wp
       do i = 1, n
-         flexibility = flexibility + 1.0_wp/spec%shear(i)%get('k') &
-                       + (2.0_wp - column%joint_height(i))**2/spec%flexure(i)%get('k')
+         flexibility = flexibility + 1.0_wp/value_of(spec%shear(i), 'k') &
+                       + (2.0_wp - column%joint_height(i))**2/value_of(spec%flexure(i), 'k')
       end do
       call run(spec, .false., x, rows, outcome)
       call check_passed(error, outcome, 'driven by displacement')
@@ -129,7 +129,7 @@ contains
       call check_close(error, rows(row_input, :), 0.5_wp*x**2/flexibility, 1.0e-12_wp, 0.0_wp, 'work')
       do i = 1, 3
          call check_close(error, rows(row_joints:row_joints + n - 1, i), &
-                          x(i)/flexibility/spec%shear%get('k'), &
+                          x(i)/flexibility/value_of(spec%shear, 'k'), &
                           1.0e-13_wp, 0.0_wp, 'slips')
       end do
       call run(spec, .true., x/flexibility, rows, outcome)
@@ -195,8 +195,10 @@ contains
       spec%n = n
       spec%flexure = [(takeda_1('kc'), i=1, n)]
       do i = 1, n
-         call spec%flexure(i)%set('k_c', spec%flexure(i)%get('k_c')*(1.0_wp + 0.3_wp*sin(1.0_wp*i)))
-         call spec%flexure(i)%set('k_u', spec%flexure(i)%get('k_u')*(1.0_wp + 0.2_wp*cos(1.0_wp*i)))
+         call set_value(spec%flexure(i), 'k_c', value_of(spec%flexure(i), 'k_c')* &
+                        (1.0_wp + 0.3_wp*sin(1.0_wp*i)))
+         call set_value(spec%flexure(i), 'k_u', value_of(spec%flexure(i), 'k_u')* &
+                        (1.0_wp + 0.2_wp*cos(1.0_wp*i)))
       end do
    end function yielding_chain
 

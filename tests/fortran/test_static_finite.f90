@@ -14,8 +14,8 @@ module test_static_finite
    use rbs_solve_task, only: task_type
    use rbs_structure_column_column_record, only: column_record
    use rbs_hysteresis_spring_record, only: spring_record
-   use samples, only: bilinear, bilinear_1, chain, column_1, compression, elastic, made, random_type, &
-      takeda, takeda_1, f_y, d_y, k_u, s_k, height_1, mass_1
+   use samples, only: set_value, value_of, bilinear, bilinear_1, chain, column_1, compression, elastic, &
+                      made, random_type, takeda, takeda_1, f_y, d_y, k_u, s_k, height_1, mass_1
    use row_places, only: row_displacement, row_force, row_axial, row_residual, row_joints, row_spring, &
                          row_input, row_top
    implicit none
@@ -172,7 +172,7 @@ contains
       allocate (spec%shear(1))
       spec%shear(1) = elastic(1.0e13_wp)
       spec%flexure = [(elastic(1.0_wp*n), i=1, n)]
-      call spec%flexure(1)%set('k', 2.0_wp*n)
+      call set_value(spec%flexure(1), 'k', 2.0_wp*n)
    end function beam
 
    !> Integrals of 1 and of 2 k^2 sin^2 - 1 over sqrt(1 - k^2 sin^2) from `low` to pi/2, by Simpson's rule.
@@ -264,8 +264,10 @@ contains
       spec%lengths = spec%lengths*(spec%height/sum(spec%lengths))
       spec%flexure = [(takeda_1('kc'), i=1, n)]
       do i = 1, n
-         call spec%flexure(i)%set('k_c', spec%flexure(i)%get('k_c')*(1.0_wp + 0.3_wp*sin(1.0_wp*i)))
-         call spec%flexure(i)%set('k_u', spec%flexure(i)%get('k_u')*(1.0_wp + 0.2_wp*cos(1.0_wp*i)))
+         call set_value(spec%flexure(i), 'k_c', value_of(spec%flexure(i), 'k_c')* &
+                        (1.0_wp + 0.3_wp*sin(1.0_wp*i)))
+         call set_value(spec%flexure(i), 'k_u', value_of(spec%flexure(i), 'k_u')* &
+                        (1.0_wp + 0.2_wp*cos(1.0_wp*i)))
       end do
    end function yielding_chain
 
@@ -612,8 +614,8 @@ contains
 
       spec = beam(1)
       spec%axial_load = 3.0_wp
-      call spec%flexure(1)%set('k', 1.0_wp)
-      call spec%shear(1)%set('k', 10.0_wp)
+      call set_value(spec%flexure(1), 'k', 1.0_wp)
+      call set_value(spec%shear(1), 'k', 10.0_wp)
       farthest = 0.0_wp
       do i = 1, 100000
          th = 0.5_wp*pi*i/100001
@@ -640,8 +642,8 @@ contains
       real(wp) :: th, force
 
       spec = beam(1)
-      call spec%flexure(1)%set('k', 1.0_wp)
-      call spec%shear(1)%set('k', 100.0_wp)
+      call set_value(spec%flexure(1), 'k', 1.0_wp)
+      call set_value(spec%shear(1), 'k', 100.0_wp)
       spec%axial_load = 1.25_wp
       call run(spec, .true., [0.1_wp], rows, outcome)
       call check_failed(error, outcome, analysis_failed, &

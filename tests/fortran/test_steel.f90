@@ -11,7 +11,7 @@ module test_steel
    use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_hysteresis_spring_record, only: spring_record
-   use samples, only: random_type
+   use samples, only: set_value, value_of, random_type
    implicit none
    private
 
@@ -58,9 +58,9 @@ contains
       real(wp), intent(in) :: k_post
 
       spec%rule = 'steel'
-      call spec%set('k', 1.0_wp)
-      call spec%set('f_y', 1.0_wp)
-      call spec%set('k_post', k_post)
+      call set_value(spec, 'k', 1.0_wp)
+      call set_value(spec, 'f_y', 1.0_wp)
+      call set_value(spec, 'k_post', k_post)
    end function bank
 
    !> The same without roundness.
@@ -68,8 +68,8 @@ contains
       real(wp), intent(in) :: k_post
 
       spec = bank(k_post)
-      call spec%set('r0', 1.0e12_wp)
-      call spec%set('cr1', 0.0_wp)
+      call set_value(spec, 'r0', 1.0e12_wp)
+      call set_value(spec, 'cr1', 0.0_wp)
    end function sharp
 
    subroutine check_path(error, spec, d, expected, what)
@@ -140,8 +140,8 @@ contains
       type(spring_record) :: spec
 
       spec = sharp(0.05_wp)
-      call spec%set('f_u', 1.2_wp)
-      call spec%set('plateau', 3.0_wp)
+      call set_value(spec, 'f_u', 1.2_wp)
+      call set_value(spec, 'plateau', 3.0_wp)
       call check_path(error, spec, [3.9_wp, 5.0_wp, 8.0_wp, 20.0_wp, 18.0_wp, 10.0_wp, 9.0_wp], &
                       [1.0_wp, 1.05_wp, 1.2_wp, 1.2_wp, -0.8_wp, -1.2_wp, -1.2_wp], 'corners at 4 and 8')
       call check_path(error, spec, [3.0_wp, 1.0_wp, -1.0_wp, -2.0_wp, -4.0_wp, -2.0_wp], &
@@ -154,7 +154,7 @@ contains
       type(spring_record) :: spec
 
       spec = sharp(0.0_wp)
-      call spec%set('endurance', 50.0_wp)
+      call set_value(spec, 'endurance', 50.0_wp)
       call check_path(error, spec, [2.0_wp, 0.0_wp, -1.0_wp, -3.0_wp, 2.0_wp], &
                       [1.0_wp, -1.0_wp, -98.0_wp/99.0_wp, -98.0_wp/99.0_wp, 9403.0_wp/9801.0_wp], 'S6')
    end subroutine wear
@@ -170,7 +170,7 @@ contains
       integer :: i, j
 
       spec = bank(0.0_wp)
-      call spec%set('endurance', endurance)
+      call set_value(spec, 'endurance', endurance)
       call follow_path(spec, to, f)
       call check_close(error, f(1), 1.0_wp, 1.0e-12_wp, 0.0_wp, 'no wear on the virgin curve')
       s = share*y_32
@@ -198,7 +198,7 @@ contains
       integer :: i
 
       spec = bank(0.01_wp)
-      call spec%set('endurance', 50.0_wp)
+      call set_value(spec, 'endurance', 50.0_wp)
       call spring%create([spec])
       do i = 1, 40
          call spring%advance_to(1, 4.0_wp*(-1)**i)
@@ -215,12 +215,12 @@ contains
 
       h = 1.0_wp + 0.1_wp*(0.5_wp*[0.1_wp, 3.2_wp])**0.8_wp
       spec = sharp(0.0_wp)
-      call spec%set('isotropic_hardening', 0.1_wp)
+      call set_value(spec, 'isotropic_hardening', 0.1_wp)
       call check_path(error, spec, [1.05_wp, 1.1_wp, 4.2_wp], [0.5_wp*(1.0_wp + h(1)), h(1), h(2)], 'S7')
       call check_path(error, spec, [1.05_wp, 1.1_wp, 4.2_wp], &
                       [1.00455141051_wp, 1.00910282102_wp, 1.14564513624_wp], 'S7 as printed')
       ! Growth by the share 0.1 at a plastic reach of 2 hardening_reach.
-      call spec%set('hardening_reach', 1.6_wp)
+      call set_value(spec, 'hardening_reach', 1.6_wp)
       call check_path(error, spec, [4.2_wp], [1.1_wp], 'with a reach of its own')
    end subroutine hardening
 
@@ -239,13 +239,13 @@ contains
          flat = random%uniform(0.0_wp, 30.0_wp)
          if (path == 1) flat = 0.0_wp
          spec = bank(b)
-         call spec%set('r0', random%uniform(0.5_wp, 25.0_wp))
-         call spec%set('cr1', random%uniform(0.0_wp, 0.95_wp))
-         call spec%set('cr2', random%uniform(0.05_wp, 0.5_wp))
+         call set_value(spec, 'r0', random%uniform(0.5_wp, 25.0_wp))
+         call set_value(spec, 'cr1', random%uniform(0.0_wp, 0.95_wp))
+         call set_value(spec, 'cr2', random%uniform(0.05_wp, 0.5_wp))
          call follow_path(spec, d, f)
          call check_close(error, f, min(d, 1.0_wp + b*(d - 1.0_wp)), 1.0e-11_wp, 0.0_wp, 'without end')
-         call spec%set('f_u', f_u)
-         call spec%set('plateau', flat)
+         call set_value(spec, 'f_u', f_u)
+         call set_value(spec, 'plateau', flat)
          call follow_path(spec, d, f)
          call check_close(error, f, min(d, 1.0_wp + b*max(d - 1.0_wp - flat, 0.0_wp), f_u), 1.0e-11_wp, &
                           0.0_wp, 'with plateau and end')
@@ -258,25 +258,25 @@ contains
 
       spec = bank(0.01_wp)
       call expect(error, spec, '')
-      call spec%set('k_post', 1.0_wp)
+      call set_value(spec, 'k_post', 1.0_wp)
       call expect(error, spec, 'k_post = 1 must be below k = 1')
       spec = bank(0.01_wp)
-      call spec%set('plateau', 2.0_wp)
+      call set_value(spec, 'plateau', 2.0_wp)
       call expect(error, spec, 'plateau = 2 needs f_u')
-      call spec%set('f_u', 0.9_wp)
+      call set_value(spec, 'f_u', 0.9_wp)
       call expect(error, spec, 'f_u = 0.9 must not be below f_y = 1')
-      call spec%set('f_u', 1.0_wp)
+      call set_value(spec, 'f_u', 1.0_wp)
       call expect(error, spec, '')
-      call spec%set('k_post', 0.0_wp)
+      call set_value(spec, 'k_post', 0.0_wp)
       call expect(error, spec, 'f_u = 1 is not reached with k_post = 0')
       spec = bank(0.01_wp)
-      call spec%set('endurance', 5.0_wp)
+      call set_value(spec, 'endurance', 5.0_wp)
       call expect(error, spec, 'the widest limit of an element')
       ! Hardening to 1.4 makes a limit of (1.4 - 0.99)/0.01 = 41.
-      call spec%set('f_u', 1.4_wp)
-      call spec%set('endurance', 40.0_wp)
+      call set_value(spec, 'f_u', 1.4_wp)
+      call set_value(spec, 'endurance', 40.0_wp)
       call expect(error, spec, 'endurance = 40 must be 41 or more')
-      call spec%set('endurance', 41.5_wp)
+      call set_value(spec, 'endurance', 41.5_wp)
       call expect(error, spec, '')
    end subroutine relations
 
@@ -316,7 +316,7 @@ contains
 
       do path = 1, 300
          call random_bank(random, spec, options=.true.)
-         call spec%set('endurance', 0.0_wp)
+         call set_value(spec, 'endurance', 0.0_wp)
          d(1) = -random%uniform(1.0_wp, 9.0_wp)
          d(2) = random%uniform(2.0_wp, 6.0_wp)
          low = random%uniform(d(1), d(2))
@@ -343,20 +343,20 @@ contains
       real(wp) :: choice
 
       spec = bank(max(0.0_wp, random%uniform(-0.02_wp, 0.1_wp)))
-      call spec%set('r0', random%uniform(0.5_wp, 25.0_wp))
-      call spec%set('cr1', random%uniform(0.0_wp, 0.95_wp))
-      call spec%set('cr2', random%uniform(0.05_wp, 0.5_wp))
+      call set_value(spec, 'r0', random%uniform(0.5_wp, 25.0_wp))
+      call set_value(spec, 'cr1', random%uniform(0.0_wp, 0.95_wp))
+      call set_value(spec, 'cr2', random%uniform(0.05_wp, 0.5_wp))
       if (.not. options) return
-      call spec%set('isotropic_hardening', max(0.0_wp, random%uniform(-0.05_wp, 0.2_wp)))
-      call spec%set('hardening_reach', random%uniform(0.2_wp, 5.0_wp))
+      call set_value(spec, 'isotropic_hardening', max(0.0_wp, random%uniform(-0.05_wp, 0.2_wp)))
+      call set_value(spec, 'hardening_reach', random%uniform(0.2_wp, 5.0_wp))
       choice = random%uniform(0.0_wp, 1.0_wp)
-      if (spec%get('k_post') > 0.02_wp .and. choice > 0.3_wp) then
-         call spec%set('f_u', random%uniform(1.0_wp, 1.5_wp))
-         call spec%set('plateau', max(0.0_wp, random%uniform(-2.0_wp, 8.0_wp)))
+      if (value_of(spec, 'k_post') > 0.02_wp .and. choice > 0.3_wp) then
+         call set_value(spec, 'f_u', random%uniform(1.0_wp, 1.5_wp))
+         call set_value(spec, 'plateau', max(0.0_wp, random%uniform(-2.0_wp, 8.0_wp)))
       end if
       choice = random%uniform(5.0_wp, 100.0_wp)
       do
-         call spec%set('endurance', choice)
+         call set_value(spec, 'endurance', choice)
          call spec%validate('spring', messages)
          if (messages%count == 0) exit
          messages%count = 0
@@ -575,14 +575,14 @@ contains
       real(wp) :: f(4)
 
       spec%rule = 'steel'
-      call spec%set('k', 1.0_wp)
-      call spec%set('f_y', 1.0_wp)
-      call spec%set('k_post', 0.0_wp)
-      call spec%set('r0', 1.0e12_wp)
-      call spec%set('cr1', 0.0_wp)
-      call spec%set('endurance', 50.0_wp)
-      call spec%set('d_buckle', 2.0_wp)
-      call spec%set('buckling', 4.0_wp)
+      call set_value(spec, 'k', 1.0_wp)
+      call set_value(spec, 'f_y', 1.0_wp)
+      call set_value(spec, 'k_post', 0.0_wp)
+      call set_value(spec, 'r0', 1.0e12_wp)
+      call set_value(spec, 'cr1', 0.0_wp)
+      call set_value(spec, 'endurance', 50.0_wp)
+      call set_value(spec, 'd_buckle', 2.0_wp)
+      call set_value(spec, 'buckling', 4.0_wp)
       call follow_path(spec, [4.0_wp, -1.0_wp, -3.0_wp, 4.0_wp], f)
       call check_close(error, f, [1.0_wp, -16.0_wp/19.0_wp, -16.0_wp/19.0_wp, 1483.0_wp/1881.0_wp], &
                        1.0e-12_wp, 0.0_wp, 'stretched to twice d_buckle')

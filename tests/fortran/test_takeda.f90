@@ -6,7 +6,7 @@ module test_takeda
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_hysteresis_spring_record, only: spring_record
-   use samples, only: takeda, takeda_1, k_c, d_c, k_y, d_y, k_u, b0, b1, f_c, f_y, k_0, random_type
+   use samples, only: value_of, takeda, takeda_1, k_c, d_c, k_y, d_y, k_u, b0, b1, f_c, f_y, k_0, random_type
    implicit none
    private
 
@@ -310,7 +310,7 @@ contains
       found = 0
       do path = 1, 400
          call random_spring(random, spec)
-         call random_path(random, spec%get('d_y'), d)
+         call random_path(random, value_of(spec, 'd_y'), d)
          call spring%create([spec])
          do j = 1, size(d)
             call spring%advance_to(1, d(j))
@@ -422,7 +422,7 @@ contains
 
       do path = 1, 200
          call random_spring(random, spec)
-         call random_path(random, spec%get('d_y'), d)
+         call random_path(random, value_of(spec, 'd_y'), d)
          call check_increments(error, spec, d, 7)
          if (mod(path, 10) == 0) call check_increments(error, spec, d, 1000)
       end do
@@ -439,7 +439,7 @@ contains
       steepest = 0.0_wp
       do path = 1, 60
          call random_spring(random, spec)
-         call random_path(random, spec%get('d_y'), d)
+         call random_path(random, value_of(spec, 'd_y'), d)
          call spring%create([spec])
          to = 0.0_wp
          do j = 1, size(d)
@@ -466,7 +466,7 @@ contains
 
       do path = 1, 300
          call random_spring(random, spec)
-         call random_path(random, spec%get('d_y'), d)
+         call random_path(random, value_of(spec, 'd_y'), d)
          call follow_path(spec, d, f)
          call follow_path(spec, -d, f_mirror)
          ! + 0: makes zeros of both signs equal.
@@ -485,7 +485,7 @@ contains
       least = 0.0_wp
       do path = 1, 300
          call random_spring(random, spec)
-         call random_path(random, spec%get('d_y'), d)
+         call random_path(random, value_of(spec, 'd_y'), d)
          call spring%create([spec])
          do j = 1, size(d)
             call spring%advance_to(1, d(j))
