@@ -25,7 +25,7 @@ program unit_tests
    use test_segment, only: collect_segment
    use test_shear, only: collect_shear
    use test_signal, only: collect_signal
-   use test_case, only: collect_case
+   use test_units, only: collect_units
    use test_springs, only: collect_springs
    use test_static, only: collect_static
    use test_static_finite, only: collect_static_finite
@@ -56,7 +56,7 @@ program unit_tests
 
    suites = [suite_type('text', collect_text), suite_type('section', collect_section), &
               suite_type('linalg', collect_linalg), &
-             suite_type('case', collect_case), suite_type('segment', collect_segment), &
+             suite_type('units', collect_units), suite_type('segment', collect_segment), &
              suite_type('bilinear', collect_bilinear), suite_type('takeda', collect_takeda), &
              suite_type('capped', collect_capped), &
              suite_type('peak_oriented', collect_peak_oriented), &

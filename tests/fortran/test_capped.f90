@@ -1,7 +1,6 @@
 !> Springs with a capped backbone: corners, deterioration, and the properties of the rules to the last bit.
 module test_capped
    use check, only: unit_test, check_close, check_contains, check_equal, check_same, check_true
-   use paths, only: check_copies, check_increments
    use rbs_base_error, only: error_type, message_list
    use rbs_base_check, only: is_given
    use rbs_base_keys, only: find_key, key_type
@@ -32,10 +31,7 @@ contains
                unit_test('backbone: strength and softening by hand', weakened), &
                unit_test('backbone: rupture', rupture), &
                unit_test('deterioration: shares by hand', shares), &
-               unit_test('property 2: 1, 7, 1000 increments, to the last bit', increments), &
                unit_test('property 6: the mirror path with swapped sides, to the last bit', mirror), &
-               unit_test('property 9: the work from the virgin state is never negative', work_positive), &
-               unit_test('property 13: copies, marks and restores', copies), &
                unit_test('a side whose energy is used up has no force and is not stuck', exhausted), &
                unit_test('no line is steeper than the virgin one', steepest)]
    end subroutine collect_capped
@@ -300,21 +296,6 @@ contains
       end do
    end subroutine random_spring
 
-   subroutine increments(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_record) :: spec
-      real(wp) :: d(20)
-      integer :: path
-
-      do path = 1, 200
-         call random_spring(random, spec, d)
-         call expect(error, spec, '')
-         call check_increments(error, spec, d, 7)
-         if (path <= 20) call check_increments(error, spec, d, 1000)
-      end do
-   end subroutine increments
-
    subroutine mirror(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
@@ -341,37 +322,6 @@ contains
          call check_same(error, mirrored, 0.0_wp - f, 'mirror')
       end do
    end subroutine mirror
-
-   subroutine work_positive(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_record) :: spec
-      type(spring_array) :: spring
-      real(wp) :: d(60)
-      integer :: path, j
-
-      do path = 1, 300
-         call random_spring(random, spec, d)
-         call spring%create([spec])
-         do j = 1, size(d)
-            call spring%advance_to(1, d(j))
-            call check_true(error, spring%work(1) >= -1.0e-9_wp, 'work')
-         end do
-      end do
-   end subroutine work_positive
-
-   subroutine copies(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_record) :: spec
-      real(wp) :: d(40)
-      integer :: path
-
-      do path = 1, 200
-         call random_spring(random, spec, d)
-         call check_copies(error, spec, d, random, 12.0_wp)
-      end do
-   end subroutine copies
 
    !> lambda = 1.8: the excursion to 4 dissipates 50 + 220 + 115 - 110**2/200 = 324.5 of 180.
    subroutine exhausted(error)

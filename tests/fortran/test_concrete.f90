@@ -1,12 +1,11 @@
 !> Concrete across a joint (docs/rules.md section 9): envelope, unloading, cracks that close gradually.
 module test_concrete
    use check, only: unit_test, check_close, check_same, check_true
-   use paths, only: check_copies, check_increments
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_rule, only: rule_type, rule_memory
    use rbs_hysteresis_segment, only: segment
-   use rbs_hysteresis_springs, only: follow_path, spring_array
+   use rbs_hysteresis_springs, only: follow_path
    use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: set_value, value_of, concrete_1, random_type
    implicit none
@@ -29,9 +28,6 @@ contains
                unit_test('wear: by the way of opening over the widest one', wear), &
                unit_test('partial unloading is one line both ways', partial), &
                unit_test('forces are continuous where lines meet', continuous), &
-               unit_test('property 2: 1, 7, 1000 increments, to the last bit', increments), &
-               unit_test('copies and trial moves leave no trace', copies), &
-               unit_test('property 9: work is not negative', work_positive), &
                unit_test('envelope is never left outward', envelope), &
                unit_test('friction: two paths, and the initial stiffness between them', friction), &
                unit_test('seating: opening does not follow the early touch', seating)]
@@ -241,51 +237,6 @@ contains
          end do
       end do
    end subroutine continuous
-
-   subroutine increments(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_record) :: spec
-      real(wp) :: d(20)
-      integer :: path
-
-      do path = 1, 200
-         call random_spring(random, spec, d)
-         call check_increments(error, spec, d, 7)
-         if (path <= 20) call check_increments(error, spec, d, 1000)
-      end do
-   end subroutine increments
-
-   subroutine copies(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_record) :: spec
-      real(wp) :: d(40)
-      integer :: path
-
-      do path = 1, 100
-         call random_spring(random, spec, d)
-         call check_copies(error, spec, d, random, 12.0_wp)
-      end do
-   end subroutine copies
-
-   subroutine work_positive(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_record) :: spec
-      type(spring_array) :: spring
-      real(wp) :: d(60)
-      integer :: path, j
-
-      do path = 1, 300
-         call random_spring(random, spec, d)
-         call spring%create([spec])
-         do j = 1, size(d)
-            call spring%advance_to(1, d(j))
-            call check_true(error, spring%work(1) >= -1.0e-10_wp, 'work')
-         end do
-      end do
-   end subroutine work_positive
 
    !> There is never tension; if the faces match, the force never exceeds that of loading in one direction.
    subroutine envelope(error)

@@ -1,7 +1,6 @@
 !> Joints of layers (docs/rules.md section 11): equilibrium of the axial load, closed forms, refusals.
 module test_layered
-   use check, only: unit_test, check_close, check_failed, check_same, check_true
-   use paths, only: check_copies, check_increments
+   use check, only: unit_test, check_close, check_failed, check_true
    use rbs_base_error, only: bad_input, error_type, message_list
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column, only: column_type
@@ -53,8 +52,6 @@ contains
                unit_test('virgin joint of an unsymmetric section has no moment', unsymmetric), &
                unit_test('order of the layers does not matter', order), &
                unit_test('a layer cut in two is the same layer', cut_layer), &
-               unit_test('property 2: 1, 7, 100 increments, to the last bit', increments), &
-               unit_test('copies and trial moves leave no trace', copies), &
                unit_test('initial stiffness is the slope of the first line', first_slope), &
                unit_test('axial load beyond the capacity is refused', refused), &
                unit_test('validation names layer, value and remedy', validation)]
@@ -325,35 +322,6 @@ contains
          call check_close(error, g, f, 0.0_wp, 1.0e-9_wp*maxval(abs(f)), 'moment')
       end do
    end subroutine cut_layer
-
-   subroutine increments(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_record) :: spec
-      real(wp) :: d(20)
-      integer :: path
-
-      do path = 1, 30
-         spec = section(random%uniform(-2.0e5_wp, 0.8e6_wp), 10)
-         call wander(random, d)
-         call check_increments(error, spec, d, 7)
-         call check_increments(error, spec, d, 100)
-      end do
-   end subroutine increments
-
-   subroutine copies(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_record) :: spec
-      real(wp) :: d(20)
-      integer :: path
-
-      do path = 1, 20
-         spec = section(random%uniform(-2.0e5_wp, 0.8e6_wp), 10)
-         call wander(random, d)
-         call check_copies(error, spec, d, random, 2.0e-2_wp)
-      end do
-   end subroutine copies
 
    logical function carries(spec)
       type(spring_record), intent(in) :: spec

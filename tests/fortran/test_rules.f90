@@ -1,14 +1,15 @@
 !> What holds for every rule in the registry, with random parameters on random paths (`any_rule`).
 module test_rules
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use, intrinsic :: iso_fortran_env, only: int64
    use any_rule, only: detours, loops, detour_result, loop_result, random_spring, random_path, yield_of
-   use check, only: unit_test, check_true
+   use check, only: unit_test, check_same, check_true
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_hysteresis_registry, only: rule_names
    use rbs_hysteresis_spring_record, only: spring_record
-   use rbs_hysteresis_springs, only: spring_array
+   use rbs_hysteresis_springs, only: follow_path, spring_array
    use samples, only: random_type
    implicit none
    private
@@ -27,6 +28,8 @@ contains
       tests = [unit_test('a detour of size e changes later forces by 10 k e at most', &
                          continuous), &
                unit_test('property 9: no loop and no path gives energy', dissipative), &
+               unit_test('property 2: 1, 7, 1000 increments, to the last bit', increments), &
+               unit_test('property 13: copies and trial moves leave no trace', trials), &
                unit_test('what a spring remembers is all that it goes on by', resumes)]
    end subroutine collect_rules
 
@@ -56,6 +59,77 @@ contains
          call check_true(error, found%loops > 0, trim(rule_names(i))//': some loops close')
       end do
    end subroutine dissipative
+
+   !> On a path cut into increments every move ends at the same force.
+   subroutine increments(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_record) :: spec
+      type(spring_array) :: spring
+      real(wp) :: d(24), f(24), begin
+      integer :: rule, history, parts, i, j
+
+      do rule = 1, size(rule_names)
+         do history = 1, merge(4, 60, rule_names(rule) == 'layered')
+            call random_history(trim(rule_names(rule)), history, spec, d)
+            call follow_path(spec, d, f)
+            parts = merge(1000, 7, mod(history, 20) == 0)
+            call spring%create([spec])
+            begin = 0.0_wp
+            do j = 1, size(d)
+               if (ieee_is_nan(f(j))) exit  ! Layers that carry their axial load no more.
+               do i = 1, parts - 1
+                  call spring%advance_to(1, begin + (d(j) - begin)*i/parts)
+               end do
+               call spring%advance_to(1, d(j))
+               call check_same(error, spring%force(1), f(j), trim(rule_names(rule)))
+               begin = d(j)
+            end do
+         end do
+      end do
+   end subroutine increments
+
+   !> Trial moves with mark and restore, and copies, change nothing.
+   subroutine trials(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_record) :: spec
+      type(spring_array) :: spring, copy
+      real(wp) :: d(24), f(24), reach
+      integer :: rule, history, j
+
+      do rule = 1, size(rule_names)
+         do history = 1, merge(4, 60, rule_names(rule) == 'layered')
+            call random_history(trim(rule_names(rule)), history, spec, d)
+            reach = maxval(abs(d))
+            call follow_path(spec, d, f)
+            call spring%create([spec])
+            do j = 1, size(d)
+               if (ieee_is_nan(f(j))) exit
+               copy = spring
+               call copy%advance_to(1, random%uniform(-reach, reach))
+               call spring%mark()
+               call spring%advance_to(1, random%uniform(-reach, reach))
+               call spring%advance_to(1, random%uniform(-reach, reach))
+               call spring%restore()
+               if (mod(j, 2) == 0) call spring%forget_mark()
+               call spring%advance_to(1, d(j))
+               call check_same(error, spring%force(1), f(j), trim(rule_names(rule)))
+            end do
+         end do
+      end do
+   end subroutine trials
+
+   subroutine random_history(rule, history, spec, d)
+      character(len=*), intent(in) :: rule
+      integer, intent(in) :: history
+      type(spring_record), intent(out) :: spec
+      real(wp), intent(out) :: d(:)
+      type(random_type) :: random
+
+      random%state = 7919_int64*history + len(rule)
+      call random_spring(random, rule, spec)
+      call random_path(random, yield_of(spec), d)
+   end subroutine random_history
 
    !> A path that is cut anywhere goes on with the same bits in springs that were made anew and given the
    !> memory: a rule that leaves something out of `serialize` fails.

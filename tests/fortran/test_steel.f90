@@ -4,7 +4,6 @@
 !> is bilinear and every force is known in closed form.
 module test_steel
    use check, only: unit_test, check_close, check_contains, check_equal, check_same, check_true
-   use paths, only: check_copies, check_increments
    use rbs_base_error, only: error_type, message_list
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_rule, only: rule_type, rule_memory
@@ -48,8 +47,6 @@ contains
                unit_test('mirrored path, mirrored bits', mirror), &
                unit_test('forces are continuous where lines meet', events), &
                unit_test('few lines in a cycle', lines_of_cycle), &
-               unit_test('property 2: 1, 7, 1000 increments, to the last bit', increments), &
-               unit_test('copies and trial moves leave no trace', copies), &
                unit_test('bars that were stretched far wear faster in compression', buckling)]
    end subroutine collect_steel
 
@@ -537,35 +534,6 @@ contains
          call check_true(error, spring%events - before <= 18, 'lines of the third cycle')
       end do
    end subroutine lines_of_cycle
-
-   subroutine increments(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_record) :: spec
-      real(wp) :: d(20)
-      integer :: path
-
-      do path = 1, 200
-         call random_bank(random, spec, options=mod(path, 2) == 0)
-         call random_path(random, d)
-         call check_increments(error, spec, d, 7)
-         if (path <= 20) call check_increments(error, spec, d, 1000)
-      end do
-   end subroutine increments
-
-   subroutine copies(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_record) :: spec
-      real(wp) :: d(40)
-      integer :: path
-
-      do path = 1, 100
-         call random_bank(random, spec, options=.true.)
-         call random_path(random, d)
-         call check_copies(error, spec, d, random, 12.0_wp)
-      end do
-   end subroutine copies
 
    !> Stretched to 4 = 2 d_buckle, a unit of plastic compression counts 1 + 4 (2 - 1) = 5 times: the strength
    !> loses 5/(2 endurance - 5) = 1/19 for each unit of the way; in tension 1/99 as ever.
