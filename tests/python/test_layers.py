@@ -123,7 +123,12 @@ def faults_of_module(name: str, code: list[str]) -> Iterator[str]:
     for function in re.findall(r"\bfunction \w+.*?end function", "\n".join(own), re.DOTALL):
         result = re.search(r"result *\((\w+)\)", function)
         deferred = re.search(r"character\(len=:\).*::.*", function)
-        if not name.startswith("app/") and result and deferred and re.search(rf"\b{result[1]}\b", deferred[0]):
+        if (
+            not name.startswith("app/")
+            and result
+            and deferred
+            and re.search(rf"\b{result[1]}\b", deferred[0])
+        ):
             yield f"a function returns text of deferred length: {function.splitlines()[0]}"
 
 
